@@ -3,7 +3,7 @@
 //! It composes the parts and defines their order; the parts themselves do the work.
 
 use kmotiondef::AccessSize;
-use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_at};
+use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, Function, function_at};
 use kmotiondef::function::{Attributes, Polled};
 use kmotiondef::map::{FPGA, TIMER0};
 use kmotiondef::structs::Chan;
@@ -12,7 +12,9 @@ use kmotiondef::variables::{
 };
 use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId};
 use vm::bus::Bus;
-use vm::firmware::{Caller, ExecutedPacket, Firmware, Outcome, Pure, Signature, TickContext, Value};
+use vm::firmware::{
+    Caller, ExecutedPacket, Firmware, Outcome, Pure, SharedAccess, Signature, TickContext, Value,
+};
 use vm::memory::GuestMemory;
 use vm::scheduler::Turn;
 use vm::trap::{Trap, TrapKind};
@@ -20,6 +22,7 @@ use vm::trap::{Trap, TrapKind};
 use crate::commands::Scripts;
 use crate::firmware::dispatch::{HANDLERS, signatures};
 use crate::firmware::parts::Parts;
+use crate::firmware::races::shared;
 use crate::firmware::{math, serial, waits};
 use crate::io::Io;
 use crate::io::bits::bit_state;
@@ -110,10 +113,13 @@ impl Kernel {
     /// Tells what only the end of a run makes certain.
     pub(crate) fn sum_up(&mut self, context: &TickContext<'_>) {
         self.settle_notices(context.now);
-        let Parts { out, machine, io, calls, .. } = &mut self.parts;
+        let Parts { out, machine, io, calls, races, .. } = &mut self.parts;
         let held = String::from_utf8_lossy(out.console.held()).into_owned();
         if !held.is_empty() {
             out.remark(context.now, Message::UnfinishedLine { text: held });
+        }
+        if let Some(races) = races {
+            races.finish(context.threads, context.now, out);
         }
         for thread in ThreadId::all().filter(|thread| context.threads.state(*thread).is_active()) {
             let reads = calls.waits.of(thread).calls.iter().filter(|call| call.polls == Polled::Bit);
@@ -250,7 +256,20 @@ impl Firmware for Kernel {
             (Some(_), None) => {}
         }
         self.note_call(number, caller);
-        HANDLERS[number](&mut self.parts, caller)
+        if self.parts.races.is_none() {
+            return HANDLERS[number](&mut self.parts, caller);
+        }
+        let before = shared::before(&mut self.parts, Function::ALL[number], caller);
+        let outcome = HANDLERS[number](&mut self.parts, caller)?;
+        shared::after(&mut self.parts, before, &outcome, caller);
+        Ok(outcome)
+    }
+
+    fn accessed(&mut self, access: &SharedAccess<'_>, _: &GuestMemory) {
+        let Parts { races, out, .. } = &mut self.parts;
+        if let Some(races) = races {
+            races.accessed(access, out);
+        }
     }
 
     fn pure(&self, address: GuestAddr) -> Option<Pure> {
@@ -265,8 +284,11 @@ impl Firmware for Kernel {
         function_at(address).map_or(0, |number| FIRMWARE_FUNCTIONS[number].attributes.changed_registers)
     }
 
-    fn begins(&mut self, thread: ThreadId, memory: &mut GuestMemory) {
-        self.parts.calls.globals.restore(thread, memory);
+    fn begins(&mut self, thread: ThreadId, context: &mut TickContext<'_>) {
+        self.parts.calls.globals.restore(thread, context.memory);
+        if let Some(races) = &mut self.parts.races {
+            races.begins(thread, context.threads, context.now);
+        }
     }
 
     fn callback(&self, memory: &GuestMemory) -> GuestAddr {
@@ -366,7 +388,7 @@ impl Firmware for Kernel {
     }
 
     fn quiet_ticks(&self, memory: &GuestMemory) -> u64 {
-        let Parts { out, io, machine, servo, pc, world, calls, clock, timing: _ } = &self.parts;
+        let Parts { out, io, machine, servo, pc, world, calls, clock, timing: _, races: _ } = &self.parts;
         let now = clock.tick_start;
         let is_quiet = servo.cache.is_settled()
             && out.console.is_idle()

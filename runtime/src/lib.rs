@@ -58,7 +58,7 @@ pub use io::flash::FLASH_SIZE;
 pub use io::konnect::{KonnectBoard, Port};
 pub use io::snapamp::{Quantity, Side};
 pub use kernel::{Kernel, pure_function};
-pub use out::{Event, EventKind, Message, REMARKS, Remark, RemarkRow, Severity, Speaker};
+pub use out::{Event, EventKind, Message, OtherPlace, REMARKS, Remark, RemarkRow, Severity, Speaker};
 pub use pc::files::{Directory, FILE_BYTES, FileError, HostFiles, NoFiles, Overlay};
 pub use pc::{ANSWERS_HELP, AnswerError, Answers, OpenBox};
 pub use world::attached::DeviceSpec;

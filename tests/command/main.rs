@@ -20,6 +20,7 @@ mod keyboard;
 mod live;
 mod plots;
 mod profile;
+mod races;
 mod real_code;
 mod run;
 mod serve;

@@ -53,6 +53,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
             ("loaded", &["loaded"]),
             ("verify", &["verify"]),
             ("translations", &["translations"]),
+            ("shared memory", &["shared"]),
             ("program", &["program"]),
             ("firmware", &["firmware"]),
             ("thread", &["thread"]),

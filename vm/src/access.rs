@@ -10,6 +10,13 @@ use crate::slot::Slot;
 use crate::trap::{Access, TrapKind};
 use kmotiondef::AccessSize;
 
+/// The high word of a store of eight bytes whose low word was stored in an earlier slice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct HighWord {
+    place: GuestAddr,
+    value: u32,
+}
+
 impl<F: Firmware + ?Sized> Slice<'_, F> {
     /// Loads a value from memory or from registers of a device.
     ///
@@ -57,6 +64,34 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
             Width::F32 => self.store(addr, f32::from_slot(slot)),
             Width::F64 => self.store(addr, f64::from_slot(slot)),
         }
+    }
+
+    /// Stores the low word of a slot of eight bytes; the high one is yielded, to be stored in a later slice.
+    ///
+    /// Where that cannot be done in two words, all is stored.
+    ///
+    /// # Errors
+    /// Those of the whole store.
+    pub(crate) fn store_low_word(
+        &mut self,
+        addr: GuestAddr,
+        width: Width,
+        slot: u64,
+    ) -> Result<Option<HighWord>, TrapKind> {
+        let place = addr.offset(4);
+        let old = self.memory.load::<u32>(place);
+        self.store_slot(addr, width, slot)?;
+        let Ok(old) = old else { return Ok(None) };
+        self.memory.store(place, old)?;
+        Ok(Some(HighWord { place, value: (slot >> 32) as u32 }))
+    }
+
+    /// Stores the rest of a slot.
+    ///
+    /// # Errors
+    /// What the place has become meanwhile.
+    pub(crate) fn store_high_word(&mut self, word: HighWord) -> Result<(), TrapKind> {
+        self.memory.store(word.place, word.value)
     }
 
     /// A load that memory has refused as `kind`.

@@ -13,6 +13,8 @@ use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use crate::call::CallArguments;
 use crate::firmware::{Caller, Firmware, Outcome, Value};
 use crate::memory::GuestMemory;
+#[cfg(doc)]
+use crate::meter;
 use crate::program::Program;
 use crate::thread::Threads;
 use crate::trap::{Trap, TrapKind};
@@ -36,6 +38,21 @@ pub enum Stop {
     Paused,
     /// The program did the impossible.
     Trapped(Trap),
+}
+
+/// Where a thread that runs bytecode can lose the processor.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Preemption {
+    /// After a `charge` that overdraws the budget: what it pays for is never split.
+    #[default]
+    Segments,
+    /// Before any instruction, in the cycle in which the slice ends, as on the board: between the load and the store of
+    /// one statement, too, and between the two words of a store of eight bytes.
+    ///
+    /// A segment that the budget covers is executed as ever. Another one is executed in [`meter::steps`] to its end,
+    /// in this slice and the next: an instruction takes effect if some of the budget is left then. A firmware function,
+    /// a call within the program with its result, and the copy of a block are one step.
+    Instructions,
 }
 
 /// Names one of an engine's contexts.
@@ -215,6 +232,13 @@ pub trait Executor: Default {
 
     /// All contexts as they were at an instant between two slices.
     type Snapshot: fmt::Debug;
+
+    /// Determines where contexts that are started from now on can lose the processor.
+    fn set_preemption(&mut self, preemption: Preemption);
+
+    /// Has contexts that are started from now on report their accesses to memory that threads can share
+    /// ([`Firmware::accessed`]).
+    fn observe(&mut self);
 
     /// Gives `id` a fresh context that is at the beginning of the function at `entry`.
     ///

@@ -237,6 +237,27 @@ pub struct ExecutedPacket {
     pub text: String,
 }
 
+/// An access of a program to memory that threads can share.
+#[derive(Clone, Copy, Debug)]
+pub struct SharedAccess<'a> {
+    /// The thread; `None` for the call-back.
+    pub thread: Option<ThreadId>,
+    /// The instruction.
+    pub at: CodeAddr,
+    /// The first byte.
+    pub address: GuestAddr,
+    /// Bytes.
+    pub size: u32,
+    /// Whether it is a store.
+    pub is_store: bool,
+    /// The value as a register slot; 0 for the copy of a block.
+    pub value: u64,
+    /// The loads in the same function whose values the stored one is made of.
+    pub made_of: &'a [CodeAddr],
+    /// The instant.
+    pub now: Cycles,
+}
+
 /// The firmware as the machine sees it.
 ///
 /// In each tick the machine calls, in this order: [`callback`](Self::callback) (and runs what it
@@ -303,8 +324,8 @@ pub trait Firmware: Bus {
     }
 
     /// `thread` is about to run from its entry point.
-    fn begins(&mut self, thread: ThreadId, memory: &mut GuestMemory) {
-        let _ = (thread, memory);
+    fn begins(&mut self, thread: ThreadId, context: &mut TickContext<'_>) {
+        let _ = (thread, context);
     }
 
     /// A thread has run in its slice, from `start` to `end`.
@@ -321,6 +342,11 @@ pub trait Firmware: Bus {
     /// A packet of real code was executed; reported when the thread loses the processor.
     fn packet_ran(&mut self, packet: ExecutedPacket) {
         let _ = packet;
+    }
+
+    /// A program has made an access; reported where the machine [observes](crate::machine::Config::observed) them.
+    fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory) {
+        let _ = (access, memory);
     }
 
     /// A thread was stopped by a trap, or the call-back, which the kernel must then take out.

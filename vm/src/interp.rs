@@ -14,8 +14,11 @@ mod dispatch;
 mod holds;
 mod jumps;
 mod memory;
+mod observe;
 mod parts;
 mod sequences;
+mod split;
+mod steps;
 
 use std::sync::Arc;
 
@@ -26,8 +29,11 @@ use self::activation::{Exit, State};
 use self::code::{Code, Encoded, Words};
 use self::context::{Context, Saved};
 use self::holds::Holds;
+use self::observe::Observer;
+use self::split::Split;
+use self::steps::{NextStep, Stepping};
 use crate::call::CallArguments;
-use crate::engine::{ContextId, Executor, ForeignSnapshot, FrameView, Hold, Slice, Stack, Stop};
+use crate::engine::{ContextId, Executor, ForeignSnapshot, FrameView, Hold, Preemption, Slice, Stack, Stop};
 use crate::firmware::{Firmware, Outcome};
 use crate::memory::GuestMemory;
 use crate::operand::SigRef;
@@ -41,6 +47,7 @@ pub struct BytecodeEngine {
     words: Translations<Arc<Encoded>>,
     contexts: [Option<Running>; ContextId::COUNT],
     holds: Holds,
+    steps: Stepping,
 }
 
 /// A context, and the code that it is in.
@@ -61,7 +68,8 @@ impl BytecodeEngine {
     /// Gives all contexts the words at which they should be held now.
     fn refresh(&mut self) {
         for Running { code, .. } in self.contexts.iter_mut().flatten() {
-            let plain = self.words.get(&code.program, |program| Arc::new(Encoded::new(program)));
+            let observed = self.steps.observer.is_some();
+            let plain = self.words.get(&code.program, |program| Arc::new(Encoded::new(program, observed)));
             code.words = self.holds.words(&code.program, plain);
         }
     }
@@ -78,6 +86,14 @@ impl Executor for BytecodeEngine {
     type Code = Program;
     type Snapshot = BytecodeSnapshot;
 
+    fn set_preemption(&mut self, preemption: Preemption) {
+        self.steps.preemption = preemption;
+    }
+
+    fn observe(&mut self) {
+        self.steps.observer = Some(Observer::default());
+    }
+
     fn start<F: Firmware + ?Sized>(
         &mut self,
         id: ContextId,
@@ -87,7 +103,11 @@ impl Executor for BytecodeEngine {
         _firmware: &F,
     ) -> Result<(), TrapKind> {
         let function = program.function_at(entry).ok_or(TrapKind::BadCallTarget { addr: entry })?;
-        let words = self.words.get(program, |program| Arc::new(Encoded::new(program)));
+        let observed = self.steps.observer.is_some();
+        if let Some(observer) = &mut self.steps.observer {
+            observer.forget();
+        }
+        let words = self.words.get(program, |program| Arc::new(Encoded::new(program, observed)));
         let words = self.holds.words(program, words);
         self.holds.passes[id.index()] = false;
         let code = Code { program: Arc::clone(program), words };
@@ -103,11 +123,11 @@ impl Executor for BytecodeEngine {
             return Stop::Ended;
         };
         let stop = if self.holds.is_active() {
-            self.holds.resume(id, code, context, slice)
+            self.holds.resume(id, code, context, slice, &mut self.steps)
         } else {
             self.holds.passes[id.index()] = false;
             enter(&code.program, context)
-                .and_then(|()| run(id, &code.program, code.words.words(), context, slice))
+                .and_then(|()| run(id, &code.program, code.words.words(), context, slice, &mut self.steps))
         };
         stop.unwrap_or_else(|kind| {
             let at = code.program.address_of(context.calls.pc);
@@ -196,14 +216,49 @@ fn run<F: Firmware + ?Sized>(
     words: &Words,
     context: &mut Context,
     slice: &mut Slice<'_, F>,
+    steps: &mut Stepping,
 ) -> Result<Stop, TrapKind> {
     loop {
-        let exit = execute(program, words, context, slice);
+        let mut exit = Exit::Shared;
+        if context.split.is_none() {
+            exit = execute(program, words, context, slice);
+        }
+        let is_alone = matches!(exit, Exit::Shared);
+        if is_alone {
+            let access = steps.observer.as_mut().and_then(|observer| observer.about_to(program, context));
+            match context.next_step(program, words, slice)? {
+                NextStep::Held => return Ok(Stop::Held),
+                step @ (NextStep::Preempted | NextStep::StoredLowWord) => {
+                    if let (NextStep::StoredLowWord, Some(access)) = (step, access) {
+                        access.report(id, context, slice);
+                    }
+                    return Ok(Stop::Preempted);
+                }
+                NextStep::Executed => continue,
+                NextStep::Execute => {}
+            }
+            let pc = context.calls.pc;
+            let alone = steps.single.with(program, words, pc, |word| execute(program, word, context, slice));
+            exit = alone.unwrap_or(Exit::Trap(TrapKind::Unreachable));
+            if let Some(access) =
+                access.filter(|_| matches!(exit, Exit::Held | Exit::Copy { .. } | Exit::Clear { .. }))
+            {
+                access.report(id, context, slice);
+            }
+        }
         match exit {
             Exit::Preempted => {
+                let charge = context.calls.pc;
                 context.calls.pc += 1;
-                return Ok(Stop::Preempted);
+                match steps.preemption {
+                    Preemption::Segments => return Ok(Stop::Preempted),
+                    Preemption::Instructions => {
+                        context.split = Split::begin(program, charge, &mut slice.budget);
+                    }
+                }
             }
+            // The instruction after the one that was executed alone.
+            Exit::Held | Exit::Shared if is_alone => {}
             Exit::Load(address, width, register) => {
                 let slot = slice.load_slot(address, width)?;
                 context.set(register, slot);
@@ -222,7 +277,7 @@ fn run<F: Firmware + ?Sized>(
                 context.calls.pc += 1;
             }
             Exit::Trap(kind) => return Err(kind),
-            Exit::Held => return Ok(Stop::Held),
+            Exit::Held | Exit::Shared => return Ok(Stop::Held),
             Exit::Call(function) => context.call(program, function)?,
             Exit::Ended => return Ok(Stop::Ended),
             Exit::CallFirmware(address, signature) => {

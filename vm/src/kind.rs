@@ -83,6 +83,8 @@ operand_names! {
     Index = "index",
     /// The number of branches of a table, less one.
     Count = "n",
+    /// The number of bytes of a block.
+    Len = "len",
     /// The displacement of an access.
     Off = "off",
     /// The place of a double in the pool.
@@ -91,7 +93,7 @@ operand_names! {
     Sig = "sig",
     /// The register that is copied.
     Src = "src",
-    /// Where a branch goes.
+    /// Where a branch goes, or a block is written.
     To = "to",
 }
 

@@ -31,7 +31,9 @@
 //! - A program is data. Anything derived from it belongs to an engine; nothing belongs to the process.
 //! - A run is a function of images, inputs and options: no clock, no randomness, no operating-system thread, no hash
 //!   order.
-//! - `charge` is the only place where a thread of bytecode can lose the processor.
+//! - `charge` is the only place where a thread of bytecode can lose the processor; with
+//!   [`Preemption::Instructions`](engine::Preemption) also before the instructions of a segment that the budget does not
+//!   cover, in the cycles that [`meter::steps`] says.
 //! - A restored machine continues exactly as it did after the snapshot; nothing on a native stack owns anything.
 
 mod access;
@@ -57,6 +59,7 @@ pub mod profile;
 pub mod program;
 mod protection;
 pub mod scheduler;
+mod shared;
 pub mod slot;
 #[cfg(test)]
 mod testing;

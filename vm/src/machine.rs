@@ -18,7 +18,7 @@ use self::engines::Engines;
 use self::held::Held;
 pub use self::snapshot::Snapshot;
 use crate::dsp::{DspEngine, HotCode};
-use crate::engine::{ContextId, Engine, Slice, Stop};
+use crate::engine::{ContextId, Engine, Preemption, Slice, Stop};
 use crate::firmware::{Firmware, TickContext};
 use crate::interp::BytecodeEngine;
 use crate::loaded::Loaded;
@@ -37,6 +37,9 @@ const CALLBACK_TICKS: i64 = 100;
 /// What a tick takes of the computer besides programs, in cycles of theirs that take it as long.
 const TICK_WORK: u64 = 500;
 
+/// The cycles by which servo interrupts differ where threads lose the processor as on the board.
+const UNEVENNESS: u64 = 64;
+
 const CALLBACK_LIMIT: Cycles = Cycles::new(CALLBACK_TICKS * Cycles::PER_TICK.get());
 
 /// Settings of a machine.
@@ -50,11 +53,23 @@ pub struct Config {
     pub strict_stack: bool,
     /// What accesses do that a program should not make.
     pub faults: Faults,
+    /// Where threads that run bytecode lose the processor.
+    pub preemption: Preemption,
+    /// Whether each access of bytecode to memory that threads can share is reported to the firmware; bytecode is
+    /// interpreted then.
+    pub observed: bool,
 }
 
 impl Default for Config {
     fn default() -> Self {
-        Self { servo: None, shortcuts: true, strict_stack: false, faults: Faults::Trap }
+        Self {
+            servo: None,
+            shortcuts: true,
+            strict_stack: false,
+            faults: Faults::Trap,
+            preemption: Preemption::Segments,
+            observed: false,
+        }
     }
 }
 
@@ -98,13 +113,22 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         memory.set_faults(config.faults);
         // Known when this is compiled, so that what never translates has no code generator.
         let hot = if E::TRANSLATES { HotCode::HERE } else { None };
+        let mut engine = engine;
+        engine.set_preemption(config.preemption);
+        if config.observed {
+            engine.observe();
+        }
         Self {
             config,
             memory,
             threads: Threads::new(),
             loaded: Default::default(),
             longest_steps: Default::default(),
-            engines: Engines { programs: engine, images: DspEngine::new(hot, E::KEEPS_ACCOUNT) },
+            engines: Engines {
+                programs: engine,
+                images: DspEngine::new(hot, E::KEEPS_ACCOUNT),
+                ran: ThreadSet::EMPTY,
+            },
             firmware,
             tick: Ticks::default(),
             turn: Turn::Primary,
@@ -179,6 +203,12 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     #[must_use]
     pub const fn images(&self) -> &DspEngine {
         &self.engines.images
+    }
+
+    /// The threads that have run bytecode since power-up; no snapshot sets that back.
+    #[must_use]
+    pub const fn ran(&self) -> ThreadSet {
+        self.engines.ran
     }
 
     /// Guest memory.
@@ -289,7 +319,11 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
 
     /// What the servo interrupt takes of the present tick.
     fn servo_time(&self) -> Cycles {
-        self.config.servo.unwrap_or_else(|| self.firmware.servo_time(&self.memory))
+        let time = self.config.servo.unwrap_or_else(|| self.firmware.servo_time(&self.memory));
+        match self.config.preemption {
+            Preemption::Segments => time,
+            Preemption::Instructions => time + unevenness(self.tick),
+        }
     }
 
     /// Runs the call-back, if there is one, and returns what it spent; `None` if it is held.
@@ -388,7 +422,8 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             .ok_or(TrapKind::BadCallTarget { addr: entry })
             .and_then(|loaded| self.engines.start(id, loaded, entry, stack, &self.firmware))
             .map_err(|kind| Trap::new(kind, code_at(entry), Some(thread)))?;
-        self.firmware.begins(thread, &mut self.memory);
+        let now = start_of(self.tick);
+        self.with_context(now, |firmware, context| firmware.begins(thread, context));
         Ok(())
     }
 
@@ -529,6 +564,17 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             TickContext { memory: &mut self.memory, threads: &mut self.threads, tick: self.tick, now };
         work(&mut self.firmware, &mut context);
     }
+}
+
+/// What the servo interrupt takes longer in one tick than in others where threads lose the processor as on the board.
+///
+/// The firmware's interrupt is not always equally long. Slices that were would end in the same place of a loop each
+/// time, or never there. The number is a function of the tick alone (the mixer of SplitMix64).
+fn unevenness(tick: Ticks) -> Cycles {
+    let mut bits = tick.get().wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    bits = (bits ^ bits >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    Cycles::new(((bits ^ bits >> 31) % UNEVENNESS).cast_signed())
 }
 
 /// The beginning of a tick.

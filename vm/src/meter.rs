@@ -18,12 +18,15 @@
 //!
 //! A segment that begins after a call is charged when the callee has returned, so a firmware
 //! call that overdraws the budget loses the processor directly after itself.
+//!
+//! Where threads lose the processor as on the board ([`Preemption::Instructions`](crate::engine::Preemption)), a
+//! segment that the budget does not cover is executed in [steps](steps) up to the cycle in which the slice ends.
 
 use std::ops::Range;
 
 use crate::kind::{Name, OpKind};
 use crate::op::Op;
-use crate::operand::Label;
+use crate::operand::{Addr, Label};
 
 /// The charges that `body` needs: the word before which each stands, and its cycles, ascending.
 ///
@@ -115,6 +118,68 @@ fn successors(words: &[Op], begins: &[bool], first: usize, start: usize) -> Vec<
     }
     found.retain(|at| *at < words.len());
     found
+}
+
+/// The cycles of a segment, put down to its instructions.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Steps {
+    /// The cycles before the first instruction takes effect.
+    pub head: u32,
+    /// The instructions in their order, and the cycles from the moment in which each takes effect to that of the next;
+    /// of the last one, to the end of the segment.
+    pub steps: Vec<(usize, u32)>,
+}
+
+/// The steps of what the charge at `charge` pays for: everything up to the next charge, or up to the first
+/// instruction that may continue elsewhere. The result of a call belongs to the call.
+///
+/// Each instruction takes what the vendor's code takes for it at least; what the charge pays for besides, locals in
+/// memory for instance, passes before the first of them. A charge that is too small for that is shared out in
+/// proportion.
+#[must_use]
+pub fn steps(ops: &[Op], charge: usize) -> Steps {
+    let total = ops.get(charge).map_or(0, stated);
+    let mut effects: Vec<(usize, u32)> = Vec::new();
+    let mut sum = 0_u32;
+    for (word, op) in ops.iter().enumerate().skip(charge + 1) {
+        if matches!(op.kind(), OpKind::Charge | OpKind::Structure) {
+            break;
+        }
+        let (lead, work) = shape(op);
+        effects.push((word, sum.saturating_add(lead)));
+        sum = sum.saturating_add(lead).saturating_add(work);
+        if ends_segment(op.kind()) {
+            break;
+        }
+    }
+    let place = |effect: u32| match total.checked_sub(sum) {
+        Some(rest) => rest + effect,
+        None => (u64::from(effect) * u64::from(total) / u64::from(sum)) as u32,
+    };
+    let mut ends = effects.iter().skip(1).map(|(_, effect)| place(*effect)).chain([total]);
+    let head = effects.first().map_or(total, |(_, effect)| place(*effect));
+    let lasting = |(word, effect): &(usize, u32)| (*word, ends.next().unwrap_or(total) - place(*effect));
+    Steps { head, steps: effects.iter().map(lasting).collect() }
+}
+
+/// The cycles that the vendor's code takes before an instruction takes effect, and from then on
+/// (`spec/costs.md` section 6): a constant address takes two, a load four until the value is there.
+fn shape(op: &Op) -> (u32, u32) {
+    let address = if op.operand::<Addr>(Name::Addr).is_some() { 2 } else { 0 };
+    match op.kind() {
+        OpKind::Structure | OpKind::Charge | OpKind::Result(_) => (0, 0),
+        OpKind::Constant => (0, 2),
+        OpKind::Move | OpKind::Argument(_) | OpKind::Stop => (0, 1),
+        OpKind::Address | OpKind::Negation => (0, 3),
+        OpKind::Conversion => (0, 4),
+        // With the constant on its right side.
+        OpKind::Arithmetic => (0, 2 + op.cost()),
+        OpKind::Load(_) => (address, 5),
+        OpKind::Store(width) => (address, width.bytes().div_ceil(4)),
+        OpKind::Block => (0, op.cost()),
+        OpKind::Jump | OpKind::Branch | OpKind::Call | OpKind::Return(_) => (0, 6),
+        OpKind::Table => (0, 9),
+    }
 }
 
 /// Whether `op` is a call, after which a segment ends.
@@ -232,6 +297,24 @@ mod tests {
     fn existing_charges_do_not_change_the_charge_points() {
         let charge = |cycles| Op::Charge { cycles: Count32(cycles) };
         check(&[charge(1), ADD, charge(2), ADD, br_if(2), charge(2), RET], &[(0, 1), (2, 2), (5, 2)]);
+    }
+
+    #[test]
+    fn the_steps_of_a_segment_take_what_its_charge_pays() {
+        let charge = |cycles| Op::Charge { cycles: Count32(cycles) };
+        let load = Op::LoadI32At { dst: RegI32(0), addr: Addr(0x8000_0000) };
+        let store = Op::StoreI32At { src: RegI32(0), addr: Addr(0x8000_0000) };
+        let update = |cycles| [charge(cycles), load, ADD, store, br(0), RET];
+        let check = |ops: &[Op], head, expected: &[(usize, u32)]| {
+            assert_eq!(steps(ops, 0), Steps { head, steps: expected.to_vec() });
+        };
+        // The value is loaded in cycle 2 of the 19 that the words take at least, and stored in cycle 12.
+        check(&update(19), 2, &[(1, 5), (2, 5), (3, 1), (4, 6)]);
+        check(&update(44), 27, &[(1, 5), (2, 5), (3, 1), (4, 6)]);
+        check(&update(4), 0, &[(1, 1), (2, 1), (3, 0), (4, 2)]);
+        check(&[charge(7), CALL, RESULT, ADD], 1, &[(1, 6)]);
+        check(&[charge(7), charge(2), RET], 7, &[]);
+        check(&[charge(7), ADD, charge(2), RET], 4, &[(1, 3)]);
     }
 
     #[test]

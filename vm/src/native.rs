@@ -40,7 +40,7 @@ use self::context::{Context, Saved};
 use self::fiber::Fiber;
 use self::protected::ProtectedBlocks;
 use self::translate::PureFunctions;
-use crate::engine::{ContextId, Executor, ForeignSnapshot, Slice, Stack, Stop};
+use crate::engine::{ContextId, Executor, ForeignSnapshot, Preemption, Slice, Stack, Stop};
 use crate::firmware::Firmware;
 use crate::interp::{BytecodeEngine, BytecodeSnapshot};
 use crate::program::Program;
@@ -58,6 +58,9 @@ pub struct NativeEngine {
     protected: ProtectedBlocks,
     /// Runs the contexts whose program cannot be compiled.
     bytecode: BytecodeEngine,
+    preemption: Preemption,
+    /// Whether accesses to shared memory are reported, which the interpreter does.
+    observed: bool,
     /// Tells this engine from all others: a suspended fiber can go on in the engine alone that it is of.
     identity: Rc<()>,
 }
@@ -79,10 +82,13 @@ impl NativeEngine {
 
     /// The machine code of `program`.
     fn code(&mut self, program: &Arc<Program>, pure: PureFunctions<'_>) -> Option<Arc<MachineCode>> {
-        let shared = &self.shared;
-        let compile = |program: &Program| MachineCode::compile(program, pure).ok().map(Arc::new);
+        if self.observed {
+            return None;
+        }
+        let (shared, preemption) = (&self.shared, self.preemption);
+        let compile = |program: &Program| MachineCode::compile(program, pure, preemption).ok().map(Arc::new);
         self.code.get(program, |program| match shared {
-            Some(shared) => shared.get(program, compile),
+            Some(shared) => shared.get(program, preemption, compile),
             None => compile(program),
         })
     }
@@ -93,6 +99,19 @@ impl Executor for NativeEngine {
 
     type Code = Program;
     type Snapshot = NativeSnapshot;
+
+    fn set_preemption(&mut self, preemption: Preemption) {
+        if self.preemption != preemption {
+            self.code = Translations::default();
+        }
+        self.preemption = preemption;
+        self.bytecode.set_preemption(preemption);
+    }
+
+    fn observe(&mut self) {
+        self.observed = true;
+        self.bytecode.observe();
+    }
 
     fn start<F: Firmware + ?Sized>(
         &mut self,

@@ -11,8 +11,8 @@ use std::sync::Arc;
 use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 
 use crate::bus::Bus;
-use crate::engine::{ContextId, Executor, ForeignSnapshot, Slice, Stack, Stop};
-use crate::firmware::{Caller, Firmware, Outcome, Signature, TickContext, Value};
+use crate::engine::{ContextId, Executor, ForeignSnapshot, Preemption, Slice, Stack, Stop};
+use crate::firmware::{Caller, Firmware, Outcome, SharedAccess, Signature, TickContext, Value};
 use crate::interp::{BytecodeEngine, BytecodeSnapshot};
 use crate::memory::GuestMemory;
 use crate::op::Op;
@@ -150,6 +150,13 @@ impl Executor for ProfilingEngine {
     type Code = Program;
     type Snapshot = ProfilingSnapshot;
 
+    /// Always [`Preemption::Segments`]: the account is of whole segments.
+    fn set_preemption(&mut self, _: Preemption) {}
+
+    fn observe(&mut self) {
+        self.inner.observe();
+    }
+
     fn start<F: Firmware + ?Sized>(
         &mut self,
         id: ContextId,
@@ -246,6 +253,10 @@ impl<F: Firmware + ?Sized> Firmware for Metered<'_, F> {
         *caller.budget = budget - self.left;
         self.called = Some((address, before - budget));
         outcome
+    }
+
+    fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory) {
+        self.firmware.accessed(access, memory);
     }
 
     fn callback(&self, memory: &GuestMemory) -> GuestAddr {

@@ -4,7 +4,7 @@ use std::fmt;
 
 use kmotiondef::{Bit, CodeAddr};
 use runtime::debug::{DebugInfo, SourcePlace};
-use runtime::{Event, EventKind, Message, Remark, Severity, Speaker};
+use runtime::{Event, EventKind, Message, OtherPlace, Remark, Severity, Speaker};
 use vm::trap::{Scene, Trap, TrapKind};
 
 /// A place in a source.
@@ -71,6 +71,10 @@ pub fn scene(event: &Event) -> Option<&Scene> {
 #[must_use]
 pub fn words(remark: &Remark, programs: &[DebugInfo]) -> String {
     let who = who(remark, programs);
+    if let Some(other) = remark.message.other() {
+        let text = remark.message.to_string().replace(&other.to_string(), &place_of(other, programs));
+        return format!("{who} {text}");
+    }
     match &remark.message {
         // A sentence about the reader.
         message @ (Message::UndrivenInput { .. } | Message::Assisted { .. } | Message::MovesAway { .. }) => {
@@ -92,6 +96,12 @@ pub fn who(remark: &Remark, programs: &[DebugInfo]) -> String {
     };
     let place = remark.place.and_then(|place| source(place, programs));
     place.map_or(who.clone(), |place| format!("{who} at {place}"))
+}
+
+/// The second place of a remark: "thread 2 at b.c:7:3 in `main`".
+fn place_of(other: OtherPlace, programs: &[DebugInfo]) -> String {
+    let Some(place) = source(other.at, programs) else { return other.to_string() };
+    other.thread.map_or(format!("the call-back at {place}"), |thread| format!("thread {thread} at {place}"))
 }
 
 /// One remark on inputs that nothing drives, their levels, and who read each of them first.

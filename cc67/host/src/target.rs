@@ -151,6 +151,11 @@ pub trait Target {
         Vec::new()
     }
 
+    /// Two threads that change the same cell by a load and a store, and the name of the cell; `None` where that is unknown.
+    fn contended_cell(&self) -> Option<(ThreadId, ThreadId, String)> {
+        None
+    }
+
     /// Axes that execute a motion of their own, such as a jog that nobody ends; empty where unknown.
     fn moving(&self) -> Vec<AxisId> {
         Vec::new()

@@ -241,7 +241,12 @@ impl Described {
         loaded.iter_mut().enumerate().for_each(|(index, program)| program.starts = starting.contains(&index));
 
         machine_file.cpu.board_faults |= board.board_faults;
-        let machine = MachineConfig { shortcuts: !board.no_shortcuts, ..MachineConfig::default() };
+        let machine = MachineConfig {
+            shortcuts: !board.no_shortcuts,
+            preemption: board.form.preemption(),
+            observed: board.races,
+            ..MachineConfig::default()
+        };
         let disk = board.files(&machine_file);
         let flashed = flash.contents();
         let config =

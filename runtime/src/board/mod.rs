@@ -35,6 +35,7 @@ use vm::thread::ThreadState;
 
 use crate::board::debug::{CodeDetail, DebugInfo};
 use crate::board::machine_file::{MachineFile, NS_PER_INSTRUCTION};
+use crate::firmware::races;
 use crate::io::flash::FLASH_SIZE;
 use crate::kernel::Kernel;
 use crate::out::{Event, EventKind, Remark, Request, Speaker};
@@ -139,6 +140,7 @@ impl<E: Engine> Board<E> {
         kernel.parts.pc.host.connect(config.host && connected.pc.is_connected);
         kernel.parts.pc.host.answer_with(config.answers.unwrap_or_else(|| connected.pc.answers.clone()));
         kernel.parts.timing = config.timing;
+        kernel.parts.races = config.machine.observed.then(Box::default);
         connect::install(&mut kernel.parts, connected);
         let servo = connected.cpu.servo_us.map(|time| Cycles::new((time * CYCLES_PER_US) as i64));
         let settings = MachineConfig {
@@ -307,6 +309,23 @@ impl<E: Engine> Board<E> {
     #[must_use]
     pub fn thread(&self, thread: ThreadId) -> &ThreadState {
         self.machine.threads().state(thread)
+    }
+
+    /// Two threads that have run bytecode and change the same cell by a load and a store, and the name of the cell; only
+    /// cells whose address is written in the programs are found.
+    #[must_use]
+    pub fn contended_cell(&self) -> Option<(ThreadId, ThreadId, String)> {
+        let ran = ThreadId::all().filter(|thread| self.machine.ran().contains(*thread));
+        let programs = ran.filter_map(|thread| Some((thread, self.machine.program(thread)?.updated_cells())));
+        let programs: Vec<_> = programs.collect();
+        let mut pairs = programs
+            .iter()
+            .enumerate()
+            .flat_map(|(index, one)| programs.iter().skip(index + 1).map(move |other| (one, other)));
+        pairs.find_map(|((one, cells), (other, theirs))| {
+            let cell = cells.intersection(theirs).next()?;
+            Some((*one, *other, races::name_of(cell.get(), 4)))
+        })
     }
 
     /// An element of `persist.UserData`; `None` beyond the last.

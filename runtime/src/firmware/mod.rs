@@ -13,6 +13,7 @@ pub(crate) mod math;
 pub(crate) mod motion;
 pub(crate) mod parts;
 pub(crate) mod persist;
+pub(crate) mod races;
 pub(crate) mod serial;
 pub(crate) mod snapamp;
 pub(crate) mod spindle;

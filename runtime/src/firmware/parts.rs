@@ -11,6 +11,7 @@ use vm::memory::GuestMemory;
 use vm::scheduler::Turn;
 
 use super::calls::Calls;
+use super::races::Races;
 use crate::io::remark_on;
 use crate::io::{Io, bits};
 use crate::machine::{Lines, Machine};
@@ -46,6 +47,8 @@ pub(crate) struct Parts {
     pub(crate) clock: Clock,
     /// Whose time is counted.
     pub(crate) timing: Timing,
+    /// What threads do to memory that they share, where that is looked at.
+    pub(crate) races: Option<Box<Races>>,
 }
 
 impl Parts {
@@ -66,6 +69,7 @@ impl Parts {
                 sending: Cycles::default(),
             },
             timing: Timing::Fast,
+            races: None,
         }
     }
 

@@ -16,7 +16,7 @@ use vm::trap::Trap;
 
 pub(crate) use console::Console;
 pub use record::Record;
-pub use remarks::{Message, REMARKS, Remark, RemarkRow, Severity, Speaker};
+pub use remarks::{Message, OtherPlace, REMARKS, Remark, RemarkRow, Severity, Speaker};
 
 /// What goes out: console text on its way, events since the last time they were taken, requests to the board.
 #[derive(Clone, Debug)]

@@ -53,6 +53,24 @@ impl fmt::Display for Speaker {
     }
 }
 
+/// The second place of a remark about two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OtherPlace {
+    /// The thread; `None` for the call-back.
+    pub thread: Option<ThreadId>,
+    /// The instruction.
+    pub at: CodeAddr,
+}
+
+impl fmt::Display for OtherPlace {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.thread {
+            Some(thread) => write!(formatter, "thread {thread} at {}", self.at),
+            None => write!(formatter, "the call-back at {}", self.at),
+        }
+    }
+}
+
 /// A remark of the simulation that the real board would not make.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remark {
@@ -201,7 +219,59 @@ macro_rules! messages {
     };
 }
 
+impl Message {
+    /// The second place of a remark about two.
+    #[must_use]
+    pub const fn other(&self) -> Option<OtherPlace> {
+        match self {
+            Self::RaceUpdate { other, .. }
+            | Self::RaceStore { other, .. }
+            | Self::RaceClaim { other, .. }
+            | Self::RaceTorn { other, .. }
+            | Self::RaceTornStore { other, .. }
+            | Self::RaceRequest { other, .. }
+            | Self::RaceRelays { other }
+            | Self::OrderEarly { other, .. }
+            | Self::LockOrder { other, .. } => Some(*other),
+            _ => None,
+        }
+    }
+}
+
 messages! {
+    /// Two threads change a cell by a load and a store, so that one can wipe out what the other has stored.
+    RaceUpdate { other: OtherPlace, cell: String, effect: String } = "race-update", Warning, [always],
+        "and {other} both change {cell} by a load and a store: {effect}. Hold the same lock at both places (MutexLock, MutexUnlock), or change bits with AtomicSet and AtomicClear";
+    /// A thread stores to a cell that another changes by a load and a store.
+    RaceStore { other: OtherPlace, cell: String } = "race-store", Warning, [always],
+        "stores to {cell}, which {other} changes by a load and a store: a store in between is wiped out. Hold the same lock at both places (MutexLock, MutexUnlock)";
+    /// Two threads test the same cell and take it if it is free.
+    RaceClaim { other: OtherPlace, cell: String } = "race-claim", Warning, [always],
+        "and {other} both test whether {cell} is free and then set it: both can find it free. Take it with TestAndSet or MutexLock";
+    /// A thread loads a value of eight bytes while another stores it.
+    RaceTorn { other: OtherPlace, cell: String } = "race-torn", Warning, [always],
+        "loads the eight bytes of {cell}, which {other} stores as two words: half of the value can be old. Hold the same lock at both places, or set a flag after the value and read the flag first";
+    /// A thread stores a value of eight bytes while another loads it.
+    RaceTornStore { other: OtherPlace, cell: String } = "race-torn-store", Warning, [always],
+        "stores the eight bytes of {cell} as two words, and {other} loads them: half of the value can be old. Hold the same lock at both places, or set a flag after the value and read the flag first";
+    /// Two threads send requests to the PC without an order between them.
+    RaceRequest { other: OtherPlace, cell: String } = "race-request", Warning, [always],
+        "and {other} both send requests to the PC through {cell}: the second overwrites the first, and both threads see the answer of one. Hold the same lock from the request to its answer";
+    /// Two threads switch outputs of Kanalog that lie in the same word.
+    RaceRelays { other: OtherPlace } = "race-relays", Warning, [always],
+        "and {other} both switch outputs of one group of 16 on Kanalog (bits 144-159, 160-167), which the firmware does by a load and a store: one can undo the other. Hold the same lock at both places";
+    /// An order is posted before the parameter that belongs to it.
+    OrderEarly { cell: String, order: String, other: OtherPlace } = "order-early", Warning, [always],
+        "stores {cell} after the order in {order} is posted (by {other}): the order can be executed with the old value. Store the parameter first, the order last";
+    /// Two threads take the same locks in opposite orders.
+    LockOrder { other: OtherPlace, lock: String, held: String } = "lock-order", Warning, [always],
+        "takes the lock {lock} while it holds {held}, and {other} takes them in the opposite order: both can wait forever. Take locks in the same order everywhere";
+    /// A thread has ended with a lock.
+    LockKept { lock: String } = "lock-kept", Warning, [always],
+        "took the lock {lock} and has ended without MutexUnlock: whoever needs the lock next waits forever";
+    /// A call starts a thread that is active.
+    ThreadRestarted { thread: ThreadId } = "thread-restarted", Warning, [always],
+        "StartThread({thread}): thread {thread} is active, so it begins again, and what it had half done stays half done";
     /// A call names a bit that does not exist.
     NoSuchBit { function: Function, bit: i32 } = "no-such-bit", Warning, [always],
         "{function}({bit}): no such bit (0-2047)";

@@ -16,7 +16,7 @@ use super::core::{Core, Halt, HotCode};
 use super::inspect::packet_text;
 use super::view::View;
 use crate::call::ArgumentList;
-use crate::engine::{ContextId, Executor, ForeignSnapshot, Slice, Stack, Stop};
+use crate::engine::{ContextId, Executor, ForeignSnapshot, Preemption, Slice, Stack, Stop};
 use crate::firmware::{ExecutedPacket, Firmware, Outcome, Value};
 use crate::loaded::Image;
 use crate::memory::GuestMemory;
@@ -85,6 +85,12 @@ fn board_stack(thread: ThreadId) -> (u32, u32) {
 impl Executor for DspEngine {
     type Code = Image;
     type Snapshot = DspSnapshot;
+
+    /// The processor takes interrupts between two packets, whatever bytecode does.
+    fn set_preemption(&mut self, _: Preemption) {}
+
+    /// Accesses of code for the processor are not reported.
+    fn observe(&mut self) {}
 
     fn start<F: Firmware + ?Sized>(
         &mut self,

@@ -42,6 +42,8 @@ pub(super) enum Exit {
     Trap(TrapKind),
     /// A debugger holds the context before this word.
     Held,
+    /// An access to memory that threads can share, which is reported.
+    Shared,
 }
 
 /// How the execution continues after an instruction.

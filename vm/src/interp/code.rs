@@ -7,7 +7,8 @@ use std::fmt;
 use std::sync::Arc;
 
 use super::context::Head;
-use super::dispatch::{Handler, handler_of};
+use super::dispatch::{Handler, OBSERVED, SHARED, handler_of};
+use super::observe::{self, AccessPlace};
 use super::parts::{A, B, DST, Parts, is_commutative, parts_of};
 use super::sequences::{AHEAD, BREAK, Text};
 use crate::meter::branch_target;
@@ -40,7 +41,23 @@ impl Word {
     }
 
     /// One at which a context is held.
-    pub(super) const HELD: Self = Self::new(BREAK, [0; WORD / 2]);
+    pub(super) const HELD: Self = Self::new(BREAK, [BREAK, 0, 0, 0]);
+
+    /// That of an instruction whose accesses to shared memory are reported.
+    fn observed(op: &Op) -> Self {
+        let plain = Self::plain(op);
+        match observe::place_of(op) {
+            Some(AccessPlace::Constant(address)) if !observe::is_shared(address) => plain,
+            Some(AccessPlace::Register) => Self { handler: OBSERVED, ..plain },
+            Some(AccessPlace::Constant(_) | AccessPlace::Block) => Self { handler: SHARED, ..plain },
+            None => plain,
+        }
+    }
+
+    /// Whether a context is held at it.
+    pub(super) const fn is_held(&self) -> bool {
+        self.parts[0] == BREAK
+    }
 
     /// What [`encode`] leaves in the word of a function for calls of it.
     #[inline(always)]
@@ -64,22 +81,36 @@ impl Word {
 
 /// The words of one program.
 #[derive(Clone)]
-pub(super) struct Encoded(Box<Words>);
+pub(super) struct Encoded {
+    words: Box<Words>,
+    /// Whether accesses to shared memory are reported.
+    observed: bool,
+}
 
 impl Encoded {
-    /// Those of `program`.
-    pub(super) fn new(program: &Program) -> Self {
-        Self(encode(program, &|_, _| false))
+    /// Those of `program`, with accesses to shared memory reported or not.
+    pub(super) fn new(program: &Program, observed: bool) -> Self {
+        Self::with(program, observed, &|_, _| false)
     }
 
     /// The same, where a debugger holds contexts at some words.
-    pub(super) fn held(program: &Program, is_held: &dyn Fn(usize, &Op) -> bool) -> Self {
-        Self(encode(program, is_held))
+    pub(super) fn held(&self, program: &Program, is_held: &dyn Fn(usize, &Op) -> bool) -> Self {
+        Self::with(program, self.observed, is_held)
+    }
+
+    fn with(program: &Program, observed: bool, is_held: &dyn Fn(usize, &Op) -> bool) -> Self {
+        let is_observed =
+            |pc: usize, op: &Op| observed && !is_held(pc, op) && observe::place_of(op).is_some();
+        let mut words = encode(program, &|pc, op| is_held(pc, op) || is_observed(pc, op));
+        for (pc, op) in program.ops().iter().enumerate().filter(|(pc, op)| is_observed(*pc, op)) {
+            words[pc] = Word::observed(op);
+        }
+        Self { words, observed }
     }
 
     /// The words.
     pub(super) const fn words(&self) -> &Words {
-        &self.0
+        &self.words
     }
 }
 
@@ -116,6 +147,9 @@ fn encode(program: &Program, is_held: &dyn Fn(usize, &Op) -> bool) -> Box<Words>
     let text = Text { ops, codes: &codes, parts: &parts, is_target: &is_target };
     let word = |pc: usize| {
         let mut parts = parts[pc];
+        if codes[pc] == BREAK {
+            parts[0] = BREAK;
+        }
         if let Op::Func { .. } = ops[pc] {
             let Head { parameters, registers, frame } = Head::of(program, FuncRef(pc as u32));
             parts = [parts[0], parameters, registers, frame];

@@ -5,6 +5,7 @@ use std::cell::Cell;
 use kmotiondef::{CodeAddr, GuestAddr};
 
 use super::jumps::{JumpPoint, Jumps};
+use super::split::Split;
 use crate::engine::{FrameView, Stack};
 use crate::operand::FuncRef;
 use crate::program::{Program, body_of};
@@ -166,6 +167,8 @@ pub(super) struct Context {
     pub(super) calls: Calls,
     /// The entry function, until it is entered.
     pub(super) pending: Option<FuncRef>,
+    /// The segment that is executed in steps, if the slice ends or has ended in one.
+    pub(super) split: Option<Split>,
 }
 
 /// A context as it was at an instant.
@@ -176,6 +179,7 @@ pub(super) struct Saved {
     registers: Vec<u64>,
     calls: Calls,
     pending: Option<FuncRef>,
+    split: Option<Split>,
 }
 
 impl Context {
@@ -186,18 +190,20 @@ impl Context {
             registers: self.registers[..live.min(self.registers.len())].to_vec(),
             calls: self.calls.clone(),
             pending: self.pending,
+            split: self.split.clone(),
         }
     }
 
     /// Makes the context what it was.
     pub(super) fn put_back(&mut self, saved: &Saved) {
-        let Saved { registers, calls, pending } = saved;
+        let Saved { registers, calls, pending, split } = saved;
         if self.registers.len() < registers.len() + WINDOW {
             self.registers.resize(registers.len() + WINDOW, 0);
         }
         self.registers[..registers.len()].copy_from_slice(registers);
         self.calls.clone_from(calls);
         self.pending = *pending;
+        self.split.clone_from(split);
     }
 
     pub(super) fn new() -> Self {
@@ -213,6 +219,7 @@ impl Context {
                 result: 0,
             },
             pending: None,
+            split: None,
         }
     }
 
@@ -227,6 +234,7 @@ impl Context {
         calls.pc = function.0 as usize;
         calls.result = 0;
         self.pending = Some(function);
+        self.split = None;
     }
 
     /// Begins the outermost call; its parameters are 0.
@@ -268,6 +276,11 @@ impl Context {
     /// The calls, and the registers of all of them.
     pub(super) fn parts(&mut self) -> (&mut Calls, &[Cell<u64>]) {
         (&mut self.calls, Cell::from_mut(&mut self.registers[..]).as_slice_of_cells())
+    }
+
+    /// A register of the current call.
+    pub(super) fn get(&self, register: u16) -> u64 {
+        self.registers[self.calls.current.base + usize::from(register)]
     }
 
     /// Sets a register of the current call.

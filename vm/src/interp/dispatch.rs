@@ -23,6 +23,7 @@
 use super::activation::{Activation, Exit, Flow, State};
 use super::code::Words;
 use super::context::Window;
+use super::observe::is_shared;
 use super::parts::Assigned;
 use super::sequences::{BREAK, for_each_sequence};
 use crate::for_each_op;
@@ -156,6 +157,39 @@ for_each_op!(define_steps);
 /// The handler of an opcode.
 pub(super) const fn handler_of(code: u16) -> Handler {
     if code == BREAK { held } else { ROWS[code as usize] }
+}
+
+/// An access through a register where those to shared memory are reported.
+pub(super) const OBSERVED: Handler = observed;
+/// An access that is always reported.
+pub(super) const SHARED: Handler = shared;
+
+fn observed<'m>(
+    state: &mut State<'m>,
+    window: &'m Window,
+    code: &Words,
+    sdram: &mut Sdram,
+    double: f64,
+    single: f32,
+) {
+    let Some(word) = code.first() else { return };
+    let [opcode, _, base, off] = word.parts;
+    let address = (window[usize::from(base)].get() as u32).wrapping_add_signed((off as i16).into());
+    if is_shared(address) {
+        return shared(state, window, code, sdram, double, single);
+    }
+    ROWS[usize::from(opcode)](state, window, code, sdram, double, single);
+}
+
+fn shared<'m>(
+    state: &mut State<'m>,
+    window: &'m Window,
+    code: &Words,
+    sdram: &mut Sdram,
+    double: f64,
+    single: f32,
+) {
+    leave(Activation { state, window, sdram, code, double, single }, Exit::Shared);
 }
 
 /// What a word does at which a debugger holds the context.

@@ -1,16 +1,16 @@
 //! Where a debugger holds contexts: before instructions that it names, after one instruction, after a change in memory.
 //!
 //! A word at which a context is held has an opcode that leaves the execution in a copy of the words that the interpreter executes, so
-//! what is nowhere held runs as fast as ever. To execute one instruction alone, it is the only one in a text of such
-//! words. What is watched for changes is compared after every instruction that can store; those have the opcode too.
+//! what is nowhere held runs as fast as ever. What is watched for changes is compared after every instruction that can store; those have the opcode too.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use kmotiondef::{CodeAddr, GuestAddr};
 
-use super::code::{Code, Encoded, Word};
+use super::code::{Code, Encoded, Words};
 use super::context::Context;
+use super::steps::{SingleText, Stepping};
 use crate::engine::{ContextId, Hold, HoldReason, Slice, Stop};
 use crate::firmware::Firmware;
 use crate::memory::GuestMemory;
@@ -43,8 +43,7 @@ pub(super) struct Holds {
     pub(super) passes: [bool; ContextId::COUNT],
     pub(super) hold: Option<Hold>,
     patched: Vec<(Arc<Program>, Arc<Encoded>)>,
-    /// As many words as the longest program has that was executed by single instructions; all are held.
-    scratch: Vec<Word>,
+    single: SingleText,
 }
 
 impl Holds {
@@ -97,7 +96,7 @@ impl Holds {
         let is_probed = |op: &Op| !self.watched.is_empty() && may_store(op);
         let is_held =
             |pc: usize, op: &Op| self.breakpoints.contains(&program.address_of(pc).get()) || is_probed(op);
-        let words = Arc::new(Encoded::held(program, &is_held));
+        let words = Arc::new(plain.held(program, &is_held));
         self.patched.push((Arc::clone(program), Arc::clone(&words)));
         words
     }
@@ -109,6 +108,7 @@ impl Holds {
         code: &Code,
         context: &mut Context,
         slice: &mut Slice<'_, F>,
+        steps: &mut Stepping,
     ) -> Result<Stop, TrapKind> {
         let me = id.index();
         if let Some(index) = self.take_change(slice.memory) {
@@ -118,7 +118,7 @@ impl Holds {
         loop {
             if self.passes[me] {
                 let at = code.program.address_of(context.calls.pc);
-                let stop = self.single(id, code, context, slice);
+                let stop = self.single(id, code, context, slice, steps);
                 // A call that waits is the same instruction when it is made again.
                 self.passes[me] = matches!(stop, Ok(Stop::Waiting(_)));
                 let stop = stop?;
@@ -133,7 +133,7 @@ impl Holds {
                 self.passes[me] = true;
                 return Ok(self.hold(id, HoldReason::Step));
             }
-            let stop = super::run(id, &code.program, code.words.words(), context, slice)?;
+            let stop = super::run(id, &code.program, code.words.words(), context, slice, steps)?;
             if stop != Stop::Held {
                 return Ok(stop);
             }
@@ -156,17 +156,13 @@ impl Holds {
         code: &Code,
         context: &mut Context,
         slice: &mut Slice<'_, F>,
+        steps: &mut Stepping,
     ) -> Result<Stop, TrapKind> {
+        let program = &code.program;
         let pc = context.calls.pc;
-        let Some(op) = code.program.ops().get(pc) else { return Err(TrapKind::Unreachable) };
-        let words = &mut self.scratch;
-        if words.len() < code.words.words().len() {
-            words.resize(code.words.words().len(), Word::HELD);
-        }
-        words[pc] = Word::plain(op);
-        let stop = super::run(id, &code.program, words, context, slice);
-        words[pc] = Word::HELD;
-        stop
+        let run = |words: &Words| super::run(id, program, words, context, slice, steps);
+        let stop = self.single.with(program, code.words.words(), pc, run);
+        stop.unwrap_or(Err(TrapKind::Unreachable))
     }
 }
 

@@ -6,6 +6,7 @@ use crate::dsp::{DspEngine, DspSnapshot};
 use crate::engine::{ContextId, Engine, Executor, ForeignSnapshot, Slice, Stack, Stop};
 use crate::firmware::Firmware;
 use crate::loaded::Loaded;
+use crate::scheduler::ThreadSet;
 use crate::trap::TrapKind;
 
 /// The contexts of all engines as they were; `S` is what the engine of bytecode keeps of its own.
@@ -18,12 +19,14 @@ pub(super) struct EnginesSnapshot<S> {
 /// One engine for each kind of [`Loaded`].
 ///
 /// Whoever names a context says what it is loaded with, and by that whose context it is.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Engines<E> {
     /// Runs bytecode.
     pub(super) programs: E,
     /// Runs real images.
     pub(super) images: DspEngine,
+    /// The threads that have run bytecode. No snapshot sets it back.
+    pub(super) ran: ThreadSet,
 }
 
 impl<E: Engine> Engines<E> {
@@ -53,7 +56,10 @@ impl<E: Engine> Engines<E> {
         slice: &mut Slice<'_, F>,
     ) -> Stop {
         match loaded {
-            Loaded::Program(_) => self.programs.resume(id, slice),
+            Loaded::Program(_) => {
+                self.ran = id.thread().map_or(self.ran, |thread| self.ran.with(thread));
+                self.programs.resume(id, slice)
+            }
             Loaded::Image(_) => self.images.resume(id, slice),
         }
     }

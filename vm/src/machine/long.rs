@@ -8,7 +8,7 @@
 use kmotiondef::{Cycles, ThreadId, Ticks};
 
 use super::{Machine, Window, end_of, start_of};
-use crate::engine::{ContextId, Engine, Slice, Stop};
+use crate::engine::{ContextId, Engine, Preemption, Slice, Stop};
 use crate::firmware::Firmware;
 use crate::scheduler::Turn;
 use crate::thread::{Progress, ThreadState};
@@ -49,7 +49,9 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     /// The next slices as a long one: every other tick, the primary thread has those between them.
     fn plan_long_slice(&self, limit: Ticks) -> Option<LongSlice> {
         let active = self.threads.active();
-        if active.len() != 1 || self.turn != Turn::Primary {
+        // A slice that is over where it ends has to end there.
+        let is_split = self.config.preemption == Preemption::Instructions;
+        if active.len() != 1 || self.turn != Turn::Primary || is_split {
             return None;
         }
         let thread = ThreadId::all().find(|thread| active.contains(*thread))?;

@@ -13,6 +13,7 @@ use super::compile::{CompileError, StackUse, compile, host_isa};
 use super::entry::{Begin, RunPiece};
 use super::piece::{Handover, Marks, Places};
 use super::translate::PureFunctions;
+use crate::engine::Preemption;
 use crate::memory::GuestMemory;
 use crate::program::Program;
 
@@ -64,9 +65,12 @@ struct CodeMemory(ManuallyDrop<JITModule>);
 
 impl CodeMemory {
     /// Room for the code of `program`.
-    fn new(program: &Program) -> Result<Self, CompileError> {
+    fn new(program: &Program, preemption: Preemption) -> Result<Self, CompileError> {
+        // A segment that may be split is there a second time.
+        let copies = if preemption == Preemption::Instructions { 3 } else { 1 };
         Self::with_room(
-            program.functions().len() * 2 * RESERVE_PER_FUNCTION + program.ops().len() * RESERVE_PER_WORD,
+            program.functions().len() * 2 * RESERVE_PER_FUNCTION
+                + program.ops().len() * RESERVE_PER_WORD * copies,
         )
     }
 
@@ -93,13 +97,17 @@ impl Drop for CodeMemory {
 
 impl MachineCode {
     /// Compiles `program`, for a firmware that has the functions `pure`.
-    pub(super) fn compile(program: &Program, pure: PureFunctions<'_>) -> Result<Self, CompileError> {
+    pub(super) fn compile(
+        program: &Program,
+        pure: PureFunctions<'_>,
+        preemption: Preemption,
+    ) -> Result<Self, CompileError> {
         let mut lengths = program.functions().iter().map(|function| function.body.len());
         if let Some(length) = lengths.find(|length| *length > MAX_WORDS) {
             return Err(CompileError::TooLong(length));
         }
-        let mut memory = CodeMemory::new(program)?;
-        let functions = compile(&mut *memory.0, program, pure)?;
+        let mut memory = CodeMemory::new(program, preemption)?;
+        let functions = compile(&mut *memory.0, program, pure, preemption)?;
         memory.0.finalize_definitions()?;
         let at = |id: FuncId| memory.0.get_finalized_function(id);
         let entries = functions.entries.into_iter();

@@ -16,6 +16,7 @@ use super::translate::{
     PureFunctions, Translation, begin_signature, function_signature, request_signature, thunk_signature,
     translate, translate_begin, translate_request, translate_thunk,
 };
+use crate::engine::Preemption;
 use crate::op::Op;
 use crate::operand::Class;
 use crate::program::{Function, Program};
@@ -101,6 +102,7 @@ pub(super) fn compile(
     module: &mut dyn Module,
     program: &Program,
     pure: PureFunctions<'_>,
+    preemption: Preemption,
 ) -> Result<Functions, CompileError> {
     let jumps =
         |op: &Op| matches!(op, Op::CallFw { addr, .. } if JumpFunction::at(GuestAddr::new(addr.0)).is_some());
@@ -117,7 +119,7 @@ pub(super) fn compile(
         if function.classes.len() > MAX_REGISTERS {
             return Err(CompileError::TooManyRegisters(function.classes.len()));
         }
-        let translation = Translation { program, function, functions: &functions, request, pure };
+        let translation = Translation { program, function, functions: &functions, request, pure, preemption };
         let frame = compiler.function(*id, translation)? + thunk_frame;
         let guest = function.frame + BYTES_PER_CALL;
         stack.native_per_guest = stack.native_per_guest.max(frame.div_ceil(guest));

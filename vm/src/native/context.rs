@@ -8,6 +8,7 @@ use super::fiber::{Answer, Fiber, SavedFiber};
 use super::protected::ProtectedBlocks;
 use super::request::{Reason, Request};
 use super::state::BYTES_PER_CALL;
+use crate::access::HighWord;
 use crate::call::ArgumentList;
 use crate::engine::{ContextId, Slice, Stack, Stop};
 use crate::firmware::{Firmware, Outcome};
@@ -24,6 +25,8 @@ enum Next {
     Answer(Answer),
     /// With the answer to this request, which a long slice could not give.
     Request(Request),
+    /// With the rest of a store.
+    HighWord(HighWord),
     /// With the firmware call of this address and signature, for which it waits.
     CallFirmware(GuestAddr, SigRef),
     /// Not at all; it stopped for good.
@@ -199,6 +202,10 @@ impl Context {
                 let request = *request;
                 self.answer(id, slice, request)?
             }
+            Next::HighWord(word) => {
+                slice.store_high_word(*word)?;
+                NextStep::Go(Answer::Slot(0))
+            }
             Next::CallFirmware(address, signature) => {
                 let (address, signature) = (*address, *signature);
                 self.call_firmware(id, slice, address, signature)?
@@ -269,6 +276,13 @@ impl Context {
             Reason::Store => {
                 slice.store_slot(address, request.width().ok_or(TrapKind::Unreachable)?, request.b)?;
                 0
+            }
+            Reason::StoreLowWord => {
+                let width = request.width().ok_or(TrapKind::Unreachable)?;
+                let Some(word) = slice.store_low_word(address, width, request.b)? else {
+                    return Ok(NextStep::Go(Answer::Slot(0)));
+                };
+                return Ok(self.halt(Halt::Preempted, Next::HighWord(word)));
             }
             Reason::Copy => {
                 let from = GuestAddr::new((request.a >> 32) as u32);

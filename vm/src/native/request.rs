@@ -56,6 +56,9 @@ codes! {
         Load,
         /// Store the register slot `b` to the address `a`.
         Store,
+        /// Store the low word of the register slot `b` to the address `a`, end the slice, and store the high word in the
+        /// next.
+        StoreLowWord,
         /// Copy: `a` is the destination, with the source in its upper half; `b` the length.
         Copy,
         /// Clear `b` bytes at `a`.
@@ -103,7 +106,13 @@ impl Request {
             u64::from(place) + self.b <= u64::from(SDRAM.size)
         };
         match self.reason() {
-            Some(Reason::Load | Reason::Store | Reason::CallFirmware | Reason::NeedsBoard) => true,
+            Some(
+                Reason::Load
+                | Reason::Store
+                | Reason::StoreLowWord
+                | Reason::CallFirmware
+                | Reason::NeedsBoard,
+            ) => true,
             Some(Reason::Copy) => !is_in_sdram(self.a) || !is_in_sdram(self.a >> 32),
             Some(Reason::Clear) => !is_in_sdram(self.a),
             Some(

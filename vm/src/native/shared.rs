@@ -3,13 +3,14 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::code::MachineCode;
+use crate::engine::Preemption;
 use crate::program::Program;
 
 /// Programs that are kept; the one that was used longest ago goes first.
 const MOST: usize = 32;
 
-/// A program, and its machine code; `None` where it cannot be compiled.
-type Known = (Program, Option<Arc<MachineCode>>);
+/// A program, where its machine code loses the processor, and that code; `None` where it cannot be compiled.
+type Known = (Program, Preemption, Option<Arc<MachineCode>>);
 
 /// Machine code of the programs that were compiled last, for engines whose boards have the same firmware.
 ///
@@ -22,25 +23,27 @@ impl SharedCode {
     pub(super) fn get(
         &self,
         program: &Program,
+        preemption: Preemption,
         compile: impl FnOnce(&Program) -> Option<Arc<MachineCode>>,
     ) -> Option<Arc<MachineCode>> {
-        if let Some(code) = self.find(program) {
+        if let Some(code) = self.find(program, preemption) {
             return code;
         }
         let code = compile(program);
-        if self.find(program).is_none() {
+        if self.find(program, preemption).is_none() {
             let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
             known.truncate(MOST - 1);
-            known.insert(0, (program.clone(), code.clone()));
+            known.insert(0, (program.clone(), preemption, code.clone()));
         }
         code
     }
 
-    fn find(&self, program: &Program) -> Option<Option<Arc<MachineCode>>> {
+    fn find(&self, program: &Program, preemption: Preemption) -> Option<Option<Arc<MachineCode>>> {
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let index = known.iter().position(|(known, _)| known == program)?;
+        let is_same = |(other, kind, _): &Known| *kind == preemption && other == program;
+        let index = known.iter().position(is_same)?;
         let found = known.remove(index);
-        let code = found.1.clone();
+        let code = found.2.clone();
         known.insert(0, found);
         Some(code)
     }
@@ -62,7 +65,7 @@ mod tests {
         };
         let mut compiled = Vec::new();
         let mut ask = |number| {
-            let found = shared.clone().get(&of(number), |_| {
+            let found = shared.clone().get(&of(number), Preemption::Segments, |_| {
                 compiled.push(number);
                 None
             });

@@ -5,6 +5,7 @@ mod long_slices;
 mod loops;
 mod shortcuts;
 mod snapshots;
+mod split;
 
 use std::sync::Arc;
 
@@ -12,7 +13,7 @@ use kmotiondef::{CodeAddr, Cycles, GuestAddr, Ticks};
 use proptest::prelude::*;
 
 use super::NativeEngine;
-use crate::engine::{ContextId, Engine, Slice, Stop};
+use crate::engine::{ContextId, Engine, Executor, Preemption, Slice, Stop};
 use crate::firmware::Wake;
 use crate::interp::BytecodeEngine;
 use crate::machine::{Config, Machine};
@@ -71,13 +72,22 @@ impl<E: Engine> World<E> {
     }
 
     fn resume(&mut self, budget: i64, woken: Option<Wake>) -> Seen {
+        self.resume_part(budget, budget, woken)
+    }
+
+    /// Goes on in a slice of `length` of which some is left.
+    fn resume_within(&mut self, length: i64, budget: i64) -> Seen {
+        self.resume_part(length, budget, None)
+    }
+
+    fn resume_part(&mut self, length: i64, budget: i64, woken: Option<Wake>) -> Seen {
         let mut slice = Slice {
             memory: &mut self.memory,
             threads: &mut self.threads,
             firmware: &mut self.firmware,
             tick: Ticks::new(1),
             start: Cycles::new(0),
-            length: Cycles::new(budget),
+            length: Cycles::new(length),
             budget: Cycles::new(budget),
             woken,
             is_long: false,
@@ -102,9 +112,16 @@ impl World<NativeEngine> {
 /// Runs the last of `functions` on both engines, a slice of each of `budgets` at a time, and yields how
 /// it stopped at last.
 fn lockstep(functions: &str, budgets: &[i64]) -> Stop {
+    lockstep_with(Preemption::Segments, functions, budgets)
+}
+
+/// The same where the context loses the processor as `preemption` says.
+fn lockstep_with(preemption: Preemption, functions: &str, budgets: &[i64]) -> Stop {
     let program = Arc::new(program(1, functions));
     let mut bytecode = World::<BytecodeEngine>::new(&program);
     let mut native = World::<NativeEngine>::new(&program);
+    bytecode.engine.set_preemption(preemption);
+    native.engine.set_preemption(preemption);
     bytecode.start();
     native.start();
     assert!(native.is_compiled());

@@ -9,6 +9,8 @@
 //! A small loop is translated twice, and so is a stretch of code without calls: `candidates.rs` finds them, `turns.rs`
 //! plans several turns on one test of the budget and few checks of addresses, `fast.rs` makes them.
 //!
+//! Where threads lose the processor as on the board, a segment is translated twice, too: `split.rs`.
+//!
 //! The arms of the instructions are in `arith.rs`, `memory.rs` and `control.rs`, one method an
 //! instruction, named as in the table.
 
@@ -21,6 +23,7 @@ mod memory;
 mod nan;
 mod parts;
 mod shortcut;
+mod split;
 mod strides;
 mod turns;
 
@@ -42,6 +45,7 @@ use self::parts::{CallParts, Flags, FrameParts, Registers, Twice};
 use self::turns::Plan;
 use super::request::{Reason, Request};
 use super::state::{BYTES_PER_CALL, State};
+use crate::engine::Preemption;
 use crate::firmware::Pure;
 use crate::for_each_op;
 use crate::kind::{Name, OpKind};
@@ -72,6 +76,8 @@ pub(super) struct Translation<'a> {
     pub(super) request: FuncId,
     /// The firmware's functions that only compute.
     pub(super) pure: PureFunctions<'a>,
+    /// Where the function loses the processor.
+    pub(super) preemption: Preemption,
 }
 
 /// Where the firmware's functions that only compute are found.
@@ -450,6 +456,7 @@ impl<'a, 'b> Translator<'a, 'b> {
             if op.kind() == OpKind::Branch {
                 begins.insert(at + 1);
             }
+            begins.extend(self.after_steps(at));
         }
         let Translation { program, function, .. } = self.translation;
         self.twice.plans = turns::plans(program, function, &begins, &|op| self.cost_in_turns(op));

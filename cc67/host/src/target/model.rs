@@ -123,6 +123,10 @@ impl<E: Engine> Target for Board<E> {
         self.standing_axes()
     }
 
+    fn contended_cell(&self) -> Option<(ThreadId, ThreadId, String)> {
+        self.contended_cell()
+    }
+
     fn moving(&self) -> Vec<AxisId> {
         self.moving()
     }

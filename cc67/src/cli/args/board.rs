@@ -4,14 +4,35 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, ensure};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use compiler::words::suggest;
 use runtime::{Directory, HostFiles, MachineFile, Overlay, REMARKS};
+use vm::engine::Preemption;
 
 use super::engine::EngineName;
 use super::pc::PcArguments;
 use super::uart::UartArguments;
 use crate::cli::io::input::read;
+
+/// How close to the board a run is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RunForm {
+    /// Threads are switched between statements only
+    #[default]
+    Fast,
+    /// Threads are switched between any two accesses to memory, as on the board: updates can be lost
+    Board,
+}
+
+impl RunForm {
+    /// Where threads lose the processor.
+    pub(crate) const fn preemption(self) -> Preemption {
+        match self {
+            Self::Fast => Preemption::Segments,
+            Self::Board => Preemption::Instructions,
+        }
+    }
+}
 
 /// The options of a board, of every command that has one.
 #[derive(Debug, Args)]
@@ -48,6 +69,14 @@ pub(crate) struct BoardArguments {
     /// The engine that executes the programs
     #[arg(long, value_enum, default_value_t)]
     pub(crate) engine: EngineName,
+    /// How close the run is to the board: `fast` never switches threads inside a statement, `board` does, between any
+    /// two accesses to memory
+    #[arg(long = "as", value_name = "FORM", value_enum, default_value_t, overrides_with = "form")]
+    pub(crate) form: RunForm,
+    /// Watch what threads do to memory that they share, and report what goes wrong on the board: lost updates, cells taken
+    /// twice, values read half old, locks in opposite orders; programs are interpreted
+    #[arg(long)]
+    pub(crate) races: bool,
     /// Execute your own firmware file in place of the modelled firmware
     #[arg(long, value_name = "FILE")]
     pub(crate) boot: Option<PathBuf>,
@@ -64,6 +93,8 @@ impl BoardArguments {
     /// Refuses an option that a firmware file does not know.
     pub(crate) fn refuse_with_boot(&self) -> Result<()> {
         ensure!(self.engine == EngineName::default(), "`--engine` does not work with `--boot`");
+        ensure!(self.form == RunForm::default(), "`--as` does not work with `--boot`");
+        ensure!(!self.races, "`--races` does not work with `--boot`");
         Ok(())
     }
 

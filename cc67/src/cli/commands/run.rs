@@ -11,7 +11,7 @@ use kmotiondef::{AxisId, ThreadId, Ticks};
 use vm::profile::ProfilingEngine;
 
 use crate::cli::args::beside::BesideArguments;
-use crate::cli::args::board::BoardArguments;
+use crate::cli::args::board::{BoardArguments, RunForm};
 use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::args::time::{DEFAULT_LIMIT, seconds};
 use crate::cli::args::trace::TraceArguments;
@@ -84,6 +84,10 @@ fn run_setup(arguments: &RunArguments, setup: Setup) -> Result<Exit> {
 }
 
 fn run_profiled(arguments: &RunArguments, setup: Setup, target: &str) -> Result<Exit> {
+    anyhow::ensure!(
+        arguments.board.form == RunForm::Fast,
+        "`--profile` accounts for whole statements, which `--as board` splits: leave one out"
+    );
     let target = profile::target(target)?;
     let (exit, report) = match setup.firmware() {
         Some(firmware) => {
@@ -158,6 +162,14 @@ impl RunArguments {
         }
         if self.state {
             state.lines().iter().for_each(|line| terminal::note(line));
+        }
+        let contended = session.target().contended_cell().filter(|_| self.board.form == RunForm::Fast);
+        if let Some((one, other, cell)) = contended {
+            // It is about the run, not one of the board's remarks.
+            terminal::aside(&format!(
+                "note: threads {one} and {other} both change {cell} by a load and a store. Statements were not split; \
+                 `--as board` splits them as the board does, `--races` names the lines\n"
+            ));
         }
         if let Some(how) = how_it_ended(exit, session, &ending) {
             terminal::note(&how);

@@ -54,7 +54,9 @@ fn machine_of<E: Engine>(seed: u64) -> Machine<Fake, E> {
     let count = 1 + numbers.below(4) as i32;
     let mut chosen = |_| texts[numbers.below(texts.len() as u64) as usize].as_str();
     let programs: Vec<(i32, &str)> = (1..=count).map(|number| (number, chosen(number))).collect();
-    let mut machine = machine_on::<E>(Config::default(), &programs);
+    let preemption = if seed.is_multiple_of(2) { Preemption::Instructions } else { Preemption::Segments };
+    let config = Config { preemption, ..Config::default() };
+    let mut machine = machine_on::<E>(config, &programs);
     for (number, text) in &programs {
         let loaded = machine.program(thread(*number)).expect("it is loaded");
         let main = if *text == generated { loaded.functions().last() } else { loaded.functions().first() };

@@ -11,6 +11,7 @@ use kmotiondef::GuestAddr;
 use super::super::request::Reason;
 use super::super::state::State;
 use super::{Translator, thunk_signature, type_of};
+use crate::engine::Preemption;
 use crate::firmware::{Pure, PureFunction};
 use crate::meter::branch_target;
 use crate::operand::{
@@ -68,6 +69,12 @@ impl Translator<'_, '_> {
     pub(super) fn charge(&mut self, cycles: Count32) {
         if self.defer(cycles.0) {
             return;
+        }
+        if self.translation.preemption == Preemption::Instructions && self.calls.attempt.is_none() {
+            let budget = self.builder.use_var(self.registers.budget);
+            let left = self.builder.ins().iadd_imm_s(budget, -i64::from(cycles.0));
+            self.split(left);
+            return self.spend(cycles.0);
         }
         self.spend(cycles.0);
         if self.calls.attempt.is_some() {

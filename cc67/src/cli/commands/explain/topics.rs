@@ -5,6 +5,7 @@ use super::{Explained, first_sentence};
 /// Name and page.
 const PAGES: &[(&str, &str)] = &[
     ("threads", include_str!("../pages/topics/threads.md")),
+    ("races", include_str!("../pages/topics/races.md")),
     ("time", include_str!("../pages/topics/time.md")),
     ("motion", include_str!("../pages/topics/motion.md")),
     ("paths", include_str!("../pages/topics/paths.md")),

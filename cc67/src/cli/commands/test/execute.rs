@@ -56,6 +56,8 @@ impl Verdict {
 pub(super) enum Executor {
     /// An engine, with the modelled firmware.
     Engine(EngineName),
+    /// The same, with threads switched inside statements.
+    AsBoard(EngineName),
     /// The user's own firmware file.
     Boot(PathBuf),
 }
@@ -68,10 +70,11 @@ impl Executor {
     }
 
     /// Options of `cc67 run` that ask for it.
-    fn options(&self) -> [OsString; 2] {
+    fn options(&self) -> Vec<OsString> {
         match self {
-            Self::Engine(engine) => ["--engine".into(), engine.name().into()],
-            Self::Boot(path) => ["--boot".into(), path.into()],
+            Self::Engine(engine) => vec!["--engine".into(), engine.name().into()],
+            Self::AsBoard(engine) => ["--as", "board", "--engine", engine.name()].map(OsString::from).into(),
+            Self::Boot(path) => vec!["--boot".into(), path.into()],
         }
     }
 
@@ -79,6 +82,9 @@ impl Executor {
     pub(super) fn name(&self) -> &'static str {
         match self {
             Self::Engine(engine) => engine.name(),
+            Self::AsBoard(EngineName::Bytecode) => "bytecode as on the board",
+            Self::AsBoard(EngineName::Native) => "native as on the board",
+            Self::AsBoard(EngineName::Dsp) => "dsp as on the board",
             Self::Boot(_) => "firmware",
         }
     }

@@ -20,6 +20,7 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 
 use crate::cli::args::beside::Project;
+use crate::cli::args::board::RunForm;
 use crate::cli::args::engine::EngineName;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::{output, terminal};
@@ -27,7 +28,7 @@ use execute::{Executor, Verdict};
 use golden::Shown;
 
 /// Options that are the command's own; all others in `[test]` of a project file are those of its programs.
-const OWN_OPTIONS: &[&str] = &["bless", "force", "engine", "boot", "jobs", "json", "junit"];
+const OWN_OPTIONS: &[&str] = &["bless", "force", "engine", "as", "boot", "jobs", "json", "junit"];
 
 /// Arguments of `cc67 test`.
 #[derive(Debug, Args)]
@@ -45,8 +46,11 @@ pub(super) struct TestArguments {
     /// Run only on this engine [default: on all, which must agree]
     #[arg(long, value_enum)]
     engine: Option<EngineName>,
+    /// `board`: run each program also with threads switched inside statements, as on the board; the results must agree
+    #[arg(long = "as", value_name = "FORM", value_enum, default_value_t)]
+    form: RunForm,
     /// Run on your own firmware file; skip tests that need the modelled firmware
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["engine", "bless"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["engine", "bless", "form"])]
     boot: Option<PathBuf>,
     /// Number of simultaneous runs, where a program on two engines counts as two [default: the number of processors]
     #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
@@ -83,6 +87,15 @@ impl TestArguments {
         Ok(project.map(own).unwrap_or_default())
     }
 
+    /// Everything that executes each program.
+    fn executors(&self) -> Vec<Executor> {
+        let engines = self.engines();
+        let as_board = engines.clone().into_iter().map(Executor::AsBoard);
+        let is_wanted = self.form == RunForm::Board;
+        let fast = engines.into_iter().map(Executor::Engine);
+        fast.chain(as_board.filter(|_| is_wanted)).collect()
+    }
+
     fn engines(&self) -> Vec<EngineName> {
         self.engine.map_or_else(EngineName::available, |engine| vec![engine])
     }
@@ -101,7 +114,7 @@ pub(super) fn test(arguments: &TestArguments) -> Result<Exit> {
             cases.iter_mut().for_each(firmware::reduce);
             vec![Executor::firmware(file)?]
         }
-        None => arguments.engines().into_iter().map(Executor::Engine).collect(),
+        None => arguments.executors(),
     };
     let jobs = arguments.jobs.map_or_else(processors, usize::from);
     let (mut verdicts, took) = execute::all(&cases, &executors, &arguments.options, arguments.bless, jobs)?;

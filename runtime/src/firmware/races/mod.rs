@@ -1,0 +1,267 @@
+//! What several threads do to the same memory that can go wrong on the board.
+//!
+//! Not every unordered access is an error here: a word with one writer, a request that one thread sets and another
+//! clears, a last value that wins are what programs for this board are made of. So each rule looks for a loss: an
+//! update that another store can wipe out, a free cell that two threads can take, a value of eight bytes that can be
+//! read half old, an order that is posted before its parameter, locks that can stop each other.
+//!
+//! Two accesses are in order if the first one happened before the second whatever the lengths of slices: by the start
+//! of a thread, by a lock, or because the thread of the second has read what that of the first stored later. What is
+//! read from a cell itself orders no accesses of that cell: two counters meet there all the time. The order is kept in
+//! vector clocks; a thread's own entry grows with each of its stores.
+
+mod cells;
+mod locks;
+pub(crate) mod shared;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use kmotiondef::structs::Persist;
+use kmotiondef::variables::{CHAN, PERSIST, variable_around};
+use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId};
+use vm::firmware::SharedAccess;
+use vm::thread::Threads;
+
+use self::cells::Cell;
+use self::locks::{Lock, Orders};
+use crate::out::{Message, OtherPlace, Out, Speaker};
+
+/// The seven threads, and before them the call-back.
+const CONTEXTS: usize = 1 + ThreadId::MAX as usize;
+
+/// Threads that began as close to each other count as started together: nothing orders what they did before.
+const TOGETHER: Cycles = Cycles::new(10_000_000);
+
+/// The most cycles from the test of a cell to the store that takes it.
+const CLAIM_TIME: Cycles = Cycles::new(18_000);
+
+/// What each context has seen of each.
+type VectorClock = [u32; CONTEXTS];
+
+/// Makes `clock` know what `other` knows.
+fn join(clock: &mut VectorClock, other: &VectorClock) {
+    for (own, other) in clock.iter_mut().zip(other) {
+        *own = (*own).max(*other);
+    }
+}
+
+/// The place of a context in clocks.
+fn index(thread: Option<ThreadId>) -> usize {
+    thread.map_or(0, |thread| usize::from(thread.get()))
+}
+
+/// The context at a place in clocks.
+fn context(index: usize) -> Option<ThreadId> {
+    ThreadId::new(i32::try_from(index).unwrap_or(0))
+}
+
+/// The clock of a context, and what it holds.
+#[derive(Clone, Debug, Default)]
+struct Track {
+    clock: VectorClock,
+    began: Cycles,
+    /// The locks that it holds, and where it took them.
+    held: Vec<(u32, CodeAddr)>,
+    /// What whoever started it knew.
+    starter: VectorClock,
+    /// The order that it has read and not yet cleared: the cell, who posted it, and that one's clock then.
+    order: Option<(u32, usize, u32)>,
+    /// Parameters that were stored after such an order.
+    suspects: Vec<Suspect>,
+}
+
+/// A parameter that was stored after the order that it belongs to.
+#[derive(Clone, Debug)]
+struct Suspect {
+    cell: u32,
+    stored_at: CodeAddr,
+    posted_at: CodeAddr,
+}
+
+/// An access that a later one is compared with.
+#[derive(Clone, Debug)]
+struct AccessMark {
+    at: CodeAddr,
+    epoch: u32,
+    locks: Vec<u32>,
+}
+
+/// The accesses of all contexts, as far as rules need them.
+#[derive(Clone, Debug)]
+pub(crate) struct Races {
+    tracks: [Track; CONTEXTS],
+    cells: BTreeMap<u32, Cell>,
+    locks: BTreeMap<u32, Lock>,
+    orders: Orders,
+    /// Switched outputs of Kanalog, by group of 16.
+    relays: BTreeMap<i32, [Option<AccessMark>; CONTEXTS]>,
+    reported: BTreeSet<(CodeAddr, CodeAddr)>,
+}
+
+impl Default for Races {
+    fn default() -> Self {
+        let mut tracks: [Track; CONTEXTS] = Default::default();
+        // The call-back has no beginning of its own.
+        tracks[0].clock[0] = 1;
+        Self {
+            tracks,
+            cells: BTreeMap::new(),
+            locks: BTreeMap::new(),
+            orders: Orders::new(),
+            relays: BTreeMap::new(),
+            reported: BTreeSet::new(),
+        }
+    }
+}
+
+/// Who does something, where and when.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Actor {
+    pub(crate) thread: Option<ThreadId>,
+    pub(crate) at: CodeAddr,
+    pub(crate) now: Cycles,
+}
+
+impl Races {
+    /// A thread begins: what those did that have ended or began long before comes before it.
+    pub(crate) fn begins(&mut self, thread: ThreadId, threads: &Threads, now: Cycles) {
+        let own = index(Some(thread));
+        let mut clock = self.tracks[own].clock;
+        join(&mut clock, &self.tracks[own].starter);
+        for (other, track) in self.tracks.iter_mut().enumerate() {
+            let is_active = context(other).is_some_and(|other| threads.state(other).is_active());
+            if !is_active || now - track.began > TOGETHER {
+                join(&mut clock, &track.clock);
+                track.clock[other] += 1;
+            }
+        }
+        let track = &mut self.tracks[own];
+        track.clock = clock;
+        track.clock[own] += 1;
+        track.began = now;
+        track.order = None;
+        track.suspects.clear();
+    }
+
+    /// A thread starts another.
+    pub(crate) fn starts(&mut self, actor: Actor, started: ThreadId, threads: &Threads, out: &mut Out) {
+        if actor.thread != Some(started) && threads.state(started).is_active() {
+            self.report(out, actor, actor.at, Message::ThreadRestarted { thread: started });
+        }
+        let own = index(actor.thread);
+        let clock = self.tracks[own].clock;
+        self.tracks[index(Some(started))].starter = clock;
+        self.tracks[own].clock[own] += 1;
+    }
+
+    /// A program has made an access.
+    pub(crate) fn accessed(&mut self, access: &SharedAccess<'_>, out: &mut Out) {
+        let actor = Actor { thread: access.thread, at: access.at, now: access.now };
+        let is_block = access.size > 8;
+        let (size, count) = if !is_block { (access.size, 1) } else { (4, access.size / 4) };
+        for number in 0..count {
+            let address = access.address.get() + 4 * number;
+            if access.is_store {
+                self.stored(actor, (address, size), access.value, access.made_of, out);
+            } else {
+                self.loaded(actor, (address, size), access.value, out);
+            }
+        }
+    }
+
+    /// A function of the firmware changes a word in one step.
+    pub(crate) fn changed_at_once(&mut self, actor: Actor, place: GuestAddr, value: i32, out: &mut Out) {
+        self.stored(actor, (place.get(), 4), u64::from(value.cast_unsigned()), &[], out);
+    }
+
+    /// A call switches an output of Kanalog, which the firmware does by load and store of a word for 16 of them.
+    pub(crate) fn switched(&mut self, actor: Actor, bit: i32, out: &mut Out) {
+        if !(144..=167).contains(&bit) {
+            return;
+        }
+        let own = index(actor.thread);
+        let (clock, mark) = (self.tracks[own].clock, self.mark(actor));
+        let marks = self.relays.entry((bit - 144) / 16).or_default();
+        marks[own] = Some(mark.clone());
+        let conflict = conflict(marks.iter().enumerate(), own, &clock, &mark.locks);
+        if let Some((other, at)) = conflict {
+            let other = OtherPlace { thread: context(other), at };
+            self.report(out, actor, at, Message::RaceRelays { other });
+        }
+    }
+
+    /// The run is over.
+    pub(crate) fn finish(&mut self, threads: &Threads, now: Cycles, out: &mut Out) {
+        for thread in ThreadId::all().filter(|thread| !threads.state(*thread).is_active()) {
+            for (lock, at) in self.tracks[index(Some(thread))].held.clone() {
+                if self.locks.get(&lock).is_some_and(|lock| lock.is_mutex) {
+                    let actor = Actor { thread: Some(thread), at, now };
+                    self.report(out, actor, at, Message::LockKept { lock: name_of(lock, 4) });
+                }
+            }
+        }
+    }
+
+    /// The present access of a context, to compare later ones with.
+    fn mark(&self, actor: Actor) -> AccessMark {
+        let own = index(actor.thread);
+        let track = &self.tracks[own];
+        AccessMark { at: actor.at, epoch: track.clock[own], locks: self.locks_of(own) }
+    }
+
+    fn locks_of(&self, own: usize) -> Vec<u32> {
+        self.tracks[own].held.iter().map(|(lock, _)| *lock).collect()
+    }
+
+    /// Reports something about two places, once.
+    fn report(&mut self, out: &mut Out, actor: Actor, other: CodeAddr, message: Message) {
+        let pair = (actor.at.min(other), actor.at.max(other));
+        if self.reported.insert(pair) {
+            out.remark_of(actor.now, Speaker::from(actor.thread), Some(actor.at), message);
+        }
+    }
+}
+
+/// The first of the marks of other contexts that is not before what `clock` knows and shares no lock with `locks`.
+fn conflict<'a>(
+    marks: impl Iterator<Item = (usize, &'a Option<AccessMark>)>,
+    own: usize,
+    clock: &VectorClock,
+    locks: &[u32],
+) -> Option<(usize, CodeAddr)> {
+    let mut found = marks.filter_map(|(other, mark)| Some((other, mark.as_ref()?)));
+    let is_conflict = |(other, mark): &(usize, &AccessMark)| {
+        *other != own && mark.epoch > clock[*other] && !mark.locks.iter().any(|lock| locks.contains(lock))
+    };
+    found.find(is_conflict).map(|(other, mark)| (other, mark.at))
+}
+
+/// Whether an address is of an axis: what the servo reads, and of which it takes the newest value.
+fn is_of_axis(address: u32) -> bool {
+    variable_around(GuestAddr::new(address)).is_some_and(|variable| variable.address == CHAN.address())
+}
+
+/// What programs call the memory at an address.
+pub(crate) fn name_of(address: u32, size: u32) -> String {
+    let data = PERSIST.field(Persist::USER_DATA).element(0).address().get();
+    let element = address.wrapping_sub(data) / 4;
+    if (element as usize) < kmotiondef::limits::N_USER_DATA_VARS {
+        return match size {
+            8 => format!("persist.UserData[{element}] and [{}]", element + 1),
+            _ => format!("persist.UserData[{element}]"),
+        };
+    }
+    match variable_around(GuestAddr::new(address)) {
+        Some(variable) if variable.address.get() == address => variable.name.to_owned(),
+        Some(variable) => format!("{} + {}", variable.name, address - variable.address.get()),
+        None => GuestAddr::new(address).to_string(),
+    }
+}
+
+/// The code that a program sends to the PC.
+fn is_request(address: u32) -> bool {
+    address == PERSIST.field(Persist::USER_DATA).element(100).address().get()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,63 @@
+//! Calls of the firmware that threads meet at: locks, words changed at once, starts, outputs that share a word.
+
+use kmotiondef::firmware::Function;
+use kmotiondef::{GuestAddr, ThreadId};
+use vm::firmware::{Caller, Outcome, Value};
+
+use super::Actor;
+use crate::firmware::parts::Parts;
+
+/// A call that says something about the order of accesses, before it is made.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum SharedCall {
+    Lock(GuestAddr),
+    Unlock(GuestAddr),
+    TestAndSet(GuestAddr),
+    Change(GuestAddr),
+    Other,
+}
+
+/// Looks at a call that is about to be made.
+pub(crate) fn before(parts: &mut Parts, function: Function, caller: &Caller<'_>) -> SharedCall {
+    let place = || GuestAddr::new(caller.arguments.get(0));
+    let (Parts { races: Some(races), out, .. }, Some(actor)) = (parts, actor(caller)) else {
+        return SharedCall::Other;
+    };
+    match function {
+        Function::MutexLock => SharedCall::Lock(place()),
+        Function::MutexUnlock => SharedCall::Unlock(place()),
+        Function::TestAndSet => SharedCall::TestAndSet(place()),
+        Function::AtomicSet | Function::AtomicClear => SharedCall::Change(place()),
+        Function::StartThread => {
+            if let Some(started) = ThreadId::new(caller.arguments.get(0)) {
+                races.starts(actor, started, caller.threads, out);
+            }
+            SharedCall::Other
+        }
+        Function::SetBit | Function::ClearBit | Function::SetStateBit => {
+            races.switched(actor, caller.arguments.get(0), out);
+            SharedCall::Other
+        }
+        _ => SharedCall::Other,
+    }
+}
+
+/// Takes up what a call has come to.
+pub(crate) fn after(parts: &mut Parts, call: SharedCall, outcome: &Outcome<Value>, caller: &Caller<'_>) {
+    let (Parts { races: Some(races), out, .. }, Some(actor)) = (parts, actor(caller)) else { return };
+    let is_done = matches!(outcome, Outcome::Done(_));
+    match call {
+        SharedCall::Lock(lock) => races.locks(actor, lock, is_done, out),
+        SharedCall::Unlock(lock) => races.unlocks(actor, lock),
+        SharedCall::TestAndSet(lock) if *outcome == Outcome::Done(Value::I32(0)) => races.takes(actor, lock),
+        SharedCall::Change(place) => {
+            races.changed_at_once(actor, place, caller.memory.peek(place), out);
+        }
+        SharedCall::TestAndSet(_) | SharedCall::Other => {}
+    }
+}
+
+/// Who makes a call; `None` for nobody's program.
+fn actor(caller: &Caller<'_>) -> Option<Actor> {
+    Some(Actor { thread: caller.thread, at: caller.at?, now: caller.now() })
+}

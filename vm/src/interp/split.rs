@@ -1,0 +1,31 @@
+//! A segment that is executed in steps because the slice ends in it, or has ended there.
+
+use std::sync::Arc;
+
+use kmotiondef::Cycles;
+
+use crate::access::HighWord;
+use crate::meter;
+use crate::program::Program;
+
+/// The rest of a segment that the budget did not cover.
+#[derive(Clone, Debug)]
+pub(super) struct Split {
+    /// The instructions, and what each takes.
+    pub(super) steps: Arc<[(usize, u32)]>,
+    /// The one that comes next.
+    pub(super) next: usize,
+    /// What the present instruction has still to store.
+    pub(super) high_word: Option<HighWord>,
+}
+
+impl Split {
+    /// The steps of the segment whose charge has just overdrawn the budget: `None` if there are none. The charge is
+    /// given back except what passes before the first step.
+    pub(super) fn begin(program: &Program, charge: usize, budget: &mut Cycles) -> Option<Self> {
+        let meter::Steps { head, steps } = meter::steps(program.ops(), charge);
+        let all = head + steps.iter().map(|(_, cycles)| cycles).sum::<u32>();
+        *budget = *budget + Cycles::new(i64::from(all - head));
+        (!steps.is_empty()).then(|| Self { steps: steps.into(), next: 0, high_word: None })
+    }
+}

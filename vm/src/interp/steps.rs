@@ -1,0 +1,139 @@
+//! Instructions executed one at a time: for a debugger, and up to the end of a slice that comes in the middle of a segment.
+//!
+//! To execute one instruction alone, it is the only one in a text of words at which contexts are held.
+
+use kmotiondef::{Cycles, GuestAddr};
+
+use super::code::{Word, Words};
+use super::context::Context;
+use super::observe::Observer;
+use crate::engine::{Preemption, Slice};
+use crate::firmware::Firmware;
+use crate::kind::{Name, OpKind, Width};
+use crate::op::Op;
+use crate::operand::{Addr, FuncRef, Off, RegF64, RegI32, RegI64};
+use crate::program::Program;
+use crate::trap::TrapKind;
+
+/// A text in which one instruction alone can be executed.
+#[derive(Debug, Default)]
+pub(super) struct SingleText(Vec<Word>);
+
+impl SingleText {
+    /// Does `work` with a text in which only the instruction `pc` of `program` is not held; `words` are the program's.
+    pub(super) fn with<R>(
+        &mut self,
+        program: &Program,
+        words: &Words,
+        pc: usize,
+        work: impl FnOnce(&Words) -> R,
+    ) -> Option<R> {
+        let op = program.ops().get(pc)?;
+        if self.0.len() < words.len() {
+            self.0.resize(words.len(), Word::HELD);
+        }
+        self.0[pc] = Word::plain(op);
+        // A call takes from there what it needs to know of the function.
+        let callee = op.operand::<FuncRef>(Name::Func).map(|function| function.0 as usize);
+        if let Some(callee) = callee {
+            self.0[callee] = words[callee];
+        }
+        let result = work(&self.0);
+        self.0[pc] = Word::HELD;
+        if let Some(callee) = callee {
+            self.0[callee] = Word::HELD;
+        }
+        Some(result)
+    }
+}
+
+/// Where contexts can lose the processor, and what it takes to execute instructions one at a time.
+#[derive(Debug, Default)]
+pub(super) struct Stepping {
+    pub(super) preemption: Preemption,
+    pub(super) single: SingleText,
+    /// There where accesses to shared memory are reported.
+    pub(super) observer: Option<Observer>,
+}
+
+/// What comes next in a segment that is executed in steps.
+pub(super) enum NextStep {
+    /// The slice is over.
+    Preempted,
+    /// A debugger holds the context before the present instruction.
+    Held,
+    /// The slice is over, after the low word of a store.
+    StoredLowWord,
+    /// The present instruction must be executed; its cycles are spent.
+    Execute,
+    /// The present instruction has been executed.
+    Executed,
+}
+
+impl Context {
+    /// Goes on in the segment that is executed in steps, which there is.
+    pub(super) fn next_step<F: Firmware + ?Sized>(
+        &mut self,
+        program: &Program,
+        words: &Words,
+        slice: &mut Slice<'_, F>,
+    ) -> Result<NextStep, TrapKind> {
+        let Some(split) = &mut self.split else { return Ok(NextStep::Execute) };
+        if let Some(word) = split.high_word.take() {
+            slice.store_high_word(word)?;
+            self.end_step();
+            self.calls.pc += 1;
+            return Ok(NextStep::Executed);
+        }
+        if slice.budget <= Cycles::default() {
+            return Ok(NextStep::Preempted);
+        }
+        if words.get(self.calls.pc).is_some_and(Word::is_held) {
+            return Ok(NextStep::Held);
+        }
+        let left = slice.budget;
+        let cycles = split.steps.get(split.next).map_or(0, |(_, cycles)| *cycles);
+        slice.budget = left - Cycles::new(i64::from(cycles));
+        if left == Cycles::new(1)
+            && let Some((address, width, slot)) = self.store_of_two_words(program)
+        {
+            let word = slice.store_low_word(address, width, slot)?;
+            let Some(word) = word else {
+                self.end_step();
+                self.calls.pc += 1;
+                return Ok(NextStep::Executed);
+            };
+            if let Some(split) = &mut self.split {
+                split.high_word = Some(word);
+            }
+            return Ok(NextStep::StoredLowWord);
+        }
+        self.end_step();
+        Ok(NextStep::Execute)
+    }
+
+    /// The present instruction is the last one in steps if none is left.
+    fn end_step(&mut self) {
+        if let Some(split) = &mut self.split {
+            split.next += 1;
+            if split.next == split.steps.len() {
+                self.split = None;
+            }
+        }
+    }
+
+    /// Address, width and value, if the present instruction stores eight bytes.
+    fn store_of_two_words(&self, program: &Program) -> Option<(GuestAddr, Width, u64)> {
+        let op: &Op = program.ops().get(self.calls.pc)?;
+        let OpKind::Store(width @ (Width::I64 | Width::F64)) = op.kind() else { return None };
+        let single = op.operand::<RegI64>(Name::Src).map(|register| register.0);
+        let register = single.or_else(|| op.operand::<RegF64>(Name::Src).map(|register| register.0))?;
+        let address = if let Some(Addr(address)) = op.operand(Name::Addr) {
+            GuestAddr::new(address)
+        } else {
+            let (base, Off(off)) = (op.operand::<RegI32>(Name::Base)?, op.operand(Name::Off)?);
+            GuestAddr::new((self.get(base.0) as u32).wrapping_add_signed(off.into()))
+        };
+        Some((address, width, self.get(register)))
+    }
+}
