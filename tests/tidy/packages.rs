@@ -88,6 +88,17 @@ fn every_manifest_has_the_same_version() {
     }
 }
 
+/// A workspace of its own with other profiles would build every dependency once more.
+#[test]
+fn the_python_package_is_built_with_the_same_profiles() {
+    let sections = |name: &str| {
+        let text = read(name);
+        let at = text.find("\n[profile.release]\n").unwrap_or_else(|| panic!("{name} has no profiles"));
+        text[at..].lines().filter(|line| !line.starts_with('#')).map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(sections("cc67/python/Cargo.toml"), sections("Cargo.toml"));
+}
+
 /// The statements of a source that reach files, each up to its `;` or `{`.
 fn file_statements(code: &str) -> impl Iterator<Item = &str> {
     let statements = code.split([';', '{', '}']).map(str::trim);
