@@ -27,7 +27,7 @@ pub(crate) trait Typed {
 impl Typed for GuestMemory {
     #[inline]
     fn get<T: Scalar>(&self, place: Place<T>) -> T::Value {
-        let address = place.address();
+        let address = self.place_of(place.address());
         T::Value::from_bits(match T::SIZE {
             1 => u64::from(self.peek::<u8>(address)),
             2 => u64::from(self.peek::<u16>(address)),
@@ -38,7 +38,7 @@ impl Typed for GuestMemory {
 
     #[inline]
     fn set<T: Scalar>(&mut self, place: Place<T>, value: T::Value) {
-        let (address, bits) = (place.address(), value.into_bits());
+        let (address, bits) = (self.place_of(place.address()), value.into_bits());
         match T::SIZE {
             1 => self.poke(address, bits as u8),
             2 => self.poke(address, bits as u16),
@@ -59,9 +59,13 @@ impl<'a> AxisView<'a> {
     /// The structure of `axis` in `memory`.
     #[inline(always)]
     pub(crate) fn of(memory: &'a mut GuestMemory, axis: AxisId) -> Self {
-        // All eight, because their address is a constant: where they lie is known while this is compiled.
-        let all: &mut [u8; CHANS_SIZE] =
-            memory.block_mut(CHAN.address()).expect("the axis structures lie in RAM");
+        // All eight, because their address is mostly a constant: where they lie is then known while this is compiled.
+        let all: Option<&mut [u8; CHANS_SIZE]> = if memory.is_by_tables() {
+            memory.block_mut(CHAN.address())
+        } else {
+            memory.block_mut(memory.place_of(CHAN.address()))
+        };
+        let all = all.expect("the axis structures lie in RAM");
         let (chans, _) = all.as_chunks_mut();
         Self(&mut chans[axis.index()])
     }

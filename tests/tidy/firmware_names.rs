@@ -15,6 +15,7 @@ const OTHER_LANGUAGES: &[(&str, &str)] = &[
     ("runtime/src/commands/", "script commands"),
     ("runtime/src/pc/", "G code, and the buttons of the PC's boxes"),
     ("runtime/src/firmware/math.rs", "functions of the engines"),
+    ("runtime/boot/src/rom.rs", "functions of the processor's ROM"),
     ("cc67/compiler/src/watch.rs", "functions of watched expressions"),
     ("cc67/compiler/src/words/", "words of other systems, each with the board's word for it"),
     ("cc67/debug/src/words.rs", "commands of the debugger"),

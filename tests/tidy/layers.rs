@@ -101,6 +101,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
             ("surroundings", &["around"]),
             ("devices", &["control", "flash", "link", "timer"]),
             ("files and reports", &["file", "crash"]),
+            ("functions in ROM", &["rom"]),
         ],
     ),
     (

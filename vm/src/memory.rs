@@ -18,6 +18,7 @@
 )]
 
 mod flash;
+pub mod places;
 pub mod snapshot;
 
 use std::ops::Range;
@@ -27,6 +28,7 @@ use kmotiondef::map::{FLASH, IRAM, REGIONS, ROM_SIZE, RegionKind, SDRAM, silent_
 use kmotiondef::{GuestAddr, ThreadId};
 
 use self::flash::Flash;
+use self::places::Places;
 use self::snapshot::Regions;
 use crate::arith::WordDivision;
 use crate::protection::Protection;
@@ -149,6 +151,7 @@ pub struct GuestMemory {
     is_touched: bool,
     /// What the last snapshot has, for the next one to share.
     last: Option<Regions>,
+    places: Places,
 }
 
 /// What a program can see; not who has written it.
@@ -245,7 +248,27 @@ impl GuestMemory {
             faults: Faults::default(),
             is_touched: true,
             last: None,
+            places: Places::default(),
         }
+    }
+
+    /// Says where the objects of the tables are in this memory.
+    pub fn set_places(&mut self, places: Places) {
+        self.places = places;
+    }
+
+    /// Returns whether all objects are where the tables have them.
+    #[inline(always)]
+    #[must_use]
+    pub const fn is_by_tables(&self) -> bool {
+        self.places.is_by_tables()
+    }
+
+    /// The place of an address of the tables.
+    #[inline(always)]
+    #[must_use]
+    pub fn place_of(&self, address: GuestAddr) -> GuestAddr {
+        self.places.of(address)
     }
 
     /// Chooses what accesses and divisions do that a program should not make.

@@ -161,6 +161,11 @@ pub trait Target {
         Vec::new()
     }
 
+    /// The place in memory of an address of the board's tables: a firmware file may keep its variables elsewhere.
+    fn place_of(&self, address: GuestAddr) -> GuestAddr {
+        address
+    }
+
     /// Reads memory from an address on; where there is none, zeros.
     ///
     /// # Errors

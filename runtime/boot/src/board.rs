@@ -11,6 +11,7 @@ use std::sync::Arc;
 use c67x::Control;
 use chips::changes::BitChange;
 use coff::{Contents, Image};
+use kmotiondef::map::ROM_SIZE;
 use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, GuestAddr, ThreadId};
 use vm::dsp::{Core, Halt};
@@ -22,6 +23,7 @@ use super::bus::Hardware;
 use super::crash::Crash;
 use super::file::{FirmwareError, FirmwareFile};
 use super::loads::Loads;
+use super::rom::RomFunction;
 use super::window::{Window, bit, instant};
 
 /// Cycles of a second.
@@ -244,12 +246,32 @@ impl<A: Around> BootedBoard<A> {
                 self.restart();
                 Ok(Ran::Through)
             }
-            Halt::Left(address) => {
-                Err(self
-                    .crash(format!("it went to 0x{address:08X}, where this board has no memory for code")))
-            }
+            Halt::Left(address) => match self.file.rom_function(address) {
+                Some(function) => {
+                    self.call_rom(function);
+                    Ok(Ran::Through)
+                }
+                None if address < ROM_SIZE => Err(self.crash(format!(
+                    "it went to 0x{address:08X} in the processor's ROM, where the firmware file names no function"
+                ))),
+                None => Err(self
+                    .crash(format!("it went to 0x{address:08X}, where this board has no memory for code"))),
+            },
             Halt::Faulted(kind) => Err(self.crash(kind.to_string())),
         }
+    }
+
+    /// Calls a function of the ROM. Where its interrupt would come, it has not begun: it is called again afterwards, and the
+    /// interrupt is on time.
+    fn call_rom(&mut self, function: &RomFunction) {
+        let Self { core, hardware, .. } = self;
+        let left = hardware.timer.next_match().saturating_sub(core.state.cycle());
+        if left < function.cycles && core.state.is_interruptible() {
+            core.state.wait(left);
+            return;
+        }
+        function.call(&mut core.state);
+        core.state.wait(function.cycles);
     }
 
     /// The timer matches: what is connected moves, then the interrupt is requested.
@@ -434,7 +456,8 @@ impl<A: Around> BootedBoard<A> {
     /// Whether a pin is an output.
     #[must_use]
     pub fn is_output(&self, pin: usize) -> bool {
-        bit(pin).is_some_and(|bit| self.hardware.window.chips.pins.is_output(bit))
+        let group = u32::try_from(pin / 8).unwrap_or(u32::MAX).min(7);
+        self.hardware.window.chips.pins.direction_group(group) >> (pin % 8) & 1 != 0
     }
 
     /// Drives an input pin from outside.
@@ -500,6 +523,7 @@ impl<A: Around> BootedBoard<A> {
     pub fn restore(&mut self, snapshot: &BootedSnapshot<A>) {
         let mut memory = std::mem::take(&mut self.hardware.memory);
         memory.restore(&snapshot.memory);
+        memory.set_places(snapshot.board.file.places());
         *self = snapshot.board.clone();
         self.hardware.memory = memory;
     }

@@ -2,10 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use coff::{Contents, Image, SectionFlags, StorageClass, Target};
+use coff::{Contents, Image, SectionFlags, SectionNumber, StorageClass, Target};
 use kmotiondef::GuestAddr;
-use kmotiondef::map::{IRAM, Region, SDRAM};
+use kmotiondef::map::{IRAM, ROM_SIZE, Region, SDRAM};
+use kmotiondef::variables::FIRMWARE_VARIABLES;
 use vm::memory::GuestMemory;
+use vm::memory::places::Places;
+
+use super::rom::{self, RomFunction};
 
 /// Sections with one of these flags are not loaded; of these one must be there.
 const LEFT_OUT: u32 = 0x12;
@@ -66,6 +70,9 @@ pub struct FirmwareFile {
     symbols: BTreeMap<String, u32>,
     /// Functions by address.
     functions: BTreeMap<u32, String>,
+    /// Functions of the processor's ROM by address.
+    rom: BTreeMap<u32, &'static RomFunction>,
+    places: Places,
 }
 
 impl FirmwareFile {
@@ -90,8 +97,11 @@ impl FirmwareFile {
         {
             return Err(FirmwareError::NoEntry);
         }
-        let functions = functions(&image);
-        Ok(Self { entry, sections, symbols, functions })
+        let rom = rom_functions(&image);
+        let mut functions = functions(&image);
+        functions.extend(rom.iter().map(|(address, function)| (*address, function.name.to_owned())));
+        let places = places(&symbols);
+        Ok(Self { entry, sections, symbols, functions, rom, places })
     }
 
     /// Where execution begins.
@@ -123,6 +133,16 @@ impl FirmwareFile {
     pub fn function_at(&self, address: u32) -> Option<(String, u32)> {
         let (start, name) = self.functions.range(..=address).next_back()?;
         Some((name.clone(), address - start))
+    }
+
+    /// The function of the processor's ROM at an address, if the file names one there.
+    pub(super) fn rom_function(&self, address: u32) -> Option<&'static RomFunction> {
+        self.rom.get(&address).copied()
+    }
+
+    /// Where this firmware keeps the variables of the tables.
+    pub(super) fn places(&self) -> Places {
+        self.places.clone()
     }
 
     /// Puts the sections into memory.
@@ -180,6 +200,26 @@ fn symbols(image: &Image) -> BTreeMap<String, u32> {
         }
     }
     symbols
+}
+
+/// Where the firmware keeps the variables of the tables.
+fn places(symbols: &BTreeMap<String, u32>) -> Places {
+    Places::new(FIRMWARE_VARIABLES.iter().filter_map(|variable| {
+        let place = symbols.get(variable.name)?;
+        Some((variable.address, variable.size, GuestAddr::new(*place)))
+    }))
+}
+
+/// Functions of the processor's ROM by address: absolute symbols inside of it.
+fn rom_functions(image: &Image) -> BTreeMap<u32, &'static RomFunction> {
+    let absolute = image.symbols.iter().filter(|one| {
+        one.class == StorageClass::EXTERNAL && one.section == SectionNumber::ABSOLUTE && one.value < ROM_SIZE
+    });
+    let named = absolute.filter_map(|one| {
+        let name = one.name.to_str();
+        Some((one.value, rom::named(name.strip_prefix('_')?)?))
+    });
+    named.collect()
 }
 
 /// Symbols of code by address: external and static ones of sections with code.

@@ -3,8 +3,8 @@
 //!
 //! The parts are those of the modelled board, without its servo and its firmware functions: inputs and outputs answer
 //! the registers, loads move by what the firmware outputs, switches and encoders show them, the PC serves requests and
-//! files. All of them read the axes from memory at the addresses of the released firmware 4.34, so only a firmware that
-//! has its variables there can be surrounded by them.
+//! files. All of them find the axes and other variables by the addresses of the tables; where a firmware keeps them in other
+//! places, its memory says so ([`place_of`](GuestMemory::place_of)).
 //!
 //! Source: `dsp-board.md` section 8.
 
@@ -13,8 +13,8 @@ use kmotiondef::firmware::row_named;
 use kmotiondef::function::Polled;
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::modes::{InputMode, OutputMode};
-use kmotiondef::structs::Chan;
-use kmotiondef::variables::{ADC_BUFFER_IN, CURRENT_THREAD, HOST_STATUS, KSTEP_PRESENT};
+use kmotiondef::structs::{Chan, TripCoeff};
+use kmotiondef::variables::{ADC_BUFFER_IN, CURRENT_THREAD, HOST_STATUS, KSTEP_PRESENT, TRIP_COEFFS};
 use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use vm::firmware::{ExecutedPacket, TickContext};
 use vm::memory::GuestMemory;
@@ -139,6 +139,13 @@ impl Surroundings {
         memory.set(HOST_STATUS, status);
         // Nothing fills them without a Kanalog: what they hold at power-up is an accident, and this is that of the model.
         (0..ADC_CHANNELS).for_each(|channel| memory.set(ADC_BUFFER_IN.element(channel), ADC_ZERO));
+        // Firmware 5.3.2 loses the first jog of an axis if the mode of its first state happens to be 0.
+        for axis in 0..N_CHANNELS {
+            let first = TRIP_COEFFS.element(axis).element(0).field(TripCoeff::TRAJECTORY_MODE);
+            if memory.get(first) == 0 {
+                memory.set(first, 1);
+            }
+        }
         connect::play(&mut self.parts, machine, memory);
         if !stimulus.is_empty() {
             let (world, mut stage) = self.parts.stage(Cycles::default());

@@ -193,8 +193,9 @@ impl Disk {
 }
 
 fn deliver(memory: &mut GuestMemory, line: &[u8]) {
+    let buffer = memory.place_of(READ_DISK_BUFFER.address());
     for (index, byte) in (0..).zip(line.iter().chain(&[0])) {
-        memory.poke(READ_DISK_BUFFER.address().offset(index), *byte);
+        memory.poke(buffer.offset(index), *byte);
     }
     memory.set(READ_DISK_BUFFER_STATUS, ARRIVED);
 }

@@ -139,14 +139,14 @@ fn data(offset: usize) -> Place<i32> {
 }
 
 /// An element of `UserData` that a parameter names.
-fn named(index: i32, count: usize) -> Option<GuestAddr> {
+fn named(memory: &GuestMemory, index: i32, count: usize) -> Option<GuestAddr> {
     let index = usize::try_from(index).ok().filter(|index| index + count <= N_USER_DATA_VARS)?;
-    Some(PERSIST.field(Persist::USER_DATA).element(index).address())
+    Some(memory.place_of(PERSIST.field(Persist::USER_DATA).element(index).address()))
 }
 
 /// Doubles in `UserData`, by their index as such.
-fn doubles(index: i32, count: usize) -> Option<GuestAddr> {
-    named(index.checked_mul(2)?, count.checked_mul(2)?)
+fn doubles(memory: &GuestMemory, index: i32, count: usize) -> Option<GuestAddr> {
+    named(memory, index.checked_mul(2)?, count.checked_mul(2)?)
 }
 
 /// What the PC does while the primary thread has its slice; whether it has stored an answer.
@@ -345,7 +345,7 @@ fn mdi(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, offset: i3
 
 /// Copies #variables to or from `UserData`.
 fn variables(host: &mut Host, memory: &mut GuestMemory, way: Way, [first, count, index]: [i32; 3]) -> i32 {
-    let Some(place) = usize::try_from(count).ok().and_then(|count| doubles(index, count)) else {
+    let Some(place) = usize::try_from(count).ok().and_then(|count| doubles(memory, index, count)) else {
         return INVALID;
     };
     for (number, offset) in (first..first.saturating_add(count)).zip((0..).step_by(8)) {
@@ -370,7 +370,7 @@ fn tool(
     if !(0..TOOLS).contains(&tool) {
         return BAD_TOOL;
     }
-    let Some(place) = doubles(index, 1) else { return INVALID };
+    let Some(place) = doubles(memory, index, 1) else { return INVALID };
     match way {
         Way::Set => {
             host.answers.tools.insert((kind, tool), memory.peek(place));
@@ -381,7 +381,7 @@ fn tool(
 }
 
 fn store_words(memory: &mut GuestMemory, index: i32, words: &[i32]) -> i32 {
-    let Some(place) = named(index, words.len()) else { return INVALID };
+    let Some(place) = named(memory, index, words.len()) else { return INVALID };
     for (offset, word) in (0..).step_by(4).zip(words) {
         memory.poke(place.offset(offset), *word);
     }
@@ -394,7 +394,7 @@ fn store_floats(memory: &mut GuestMemory, index: i32, floats: &[f32]) -> i32 {
 }
 
 fn store_doubles(memory: &mut GuestMemory, index: i32, values: &[f64]) -> i32 {
-    let Some(place) = doubles(index, values.len()) else { return INVALID };
+    let Some(place) = doubles(memory, index, values.len()) else { return INVALID };
     for (offset, value) in (0..).step_by(8).zip(values) {
         memory.poke(place.offset(offset), *value);
     }
@@ -403,7 +403,7 @@ fn store_doubles(memory: &mut GuestMemory, index: i32, values: &[f64]) -> i32 {
 
 /// The text of a screen cell: "0" where no other was named.
 fn edit_cell(host: &Host, memory: &mut GuestMemory, variable: i32) -> i32 {
-    let Some(place) = named(variable, 1) else { return INVALID };
+    let Some(place) = named(memory, variable, 1) else { return INVALID };
     let offset: u32 = memory.peek(place);
     let address = memory.get(GATHER_BUFFER).offset(offset.wrapping_mul(4));
     let text = host.answers.cells.get(&variable).map_or("0", String::as_str);
@@ -494,7 +494,7 @@ mod tests {
     #[test]
     fn variables_and_tools_are_kept() {
         let mut desk = Desk::new();
-        let place = doubles(5, 1).expect("inside");
+        let place = doubles(&desk.memory, 5, 1).expect("inside");
         desk.memory.poke(place, 2.5);
         for (set, get, parameters) in [(17, 16, [500, 1, 5]), (24, 23, [7, 5, 0]), (31, 30, [7, 5, 0])] {
             assert_eq!(ask(&mut desk, set, &parameters), DONE);
@@ -523,8 +523,9 @@ mod tests {
         assert_eq!(ask(&mut desk, 18, &[100]), DONE);
         assert_eq!(desk.memory.get(data(2)), -3);
         assert_eq!(ask(&mut desk, 16, &[5, 2, 10]), DONE);
-        let variables =
-            [0, 8].map(|offset| desk.memory.peek::<f64>(doubles(10, 1).expect("inside").offset(offset)));
+        let variables = [0, 8].map(|offset| {
+            desk.memory.peek::<f64>(doubles(&desk.memory, 10, 1).expect("inside").offset(offset))
+        });
         assert_eq!(variables, [1.5, -2.0]);
         assert_eq!(ask(&mut desk, 14, &[3]), -7);
         assert_eq!(ask(&mut desk, 53, &[110]), DONE);

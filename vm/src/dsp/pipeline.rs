@@ -227,6 +227,12 @@ impl State {
         self.pc = (self.control[ISTP] & VECTORS) + VECTOR_BYTES * TIMER.trailing_zeros();
     }
 
+    /// Lets everything in flight land, and cycles pass in which nothing is executed.
+    pub fn wait(&mut self, cycles: u64) {
+        self.settle();
+        self.clock.cycle += cycles;
+    }
+
     /// Lets everything in flight land, as the processor does before it handles an interrupt.
     ///
     /// Branches that are on their way are lost; where an interrupt is possible there are none.

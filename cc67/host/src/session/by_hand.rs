@@ -164,6 +164,7 @@ impl<T: Target> Session<T> {
     /// Stores an element of `persist.UserData` at once; `false` beyond the last.
     pub fn set_user_data(&mut self, index: usize, value: i32) -> bool {
         let address = PERSIST.field(Persist::USER_DATA).element(index.min(N_USER_DATA_VARS - 1)).address();
+        let address = self.target.place_of(address);
         let is_stored = index < N_USER_DATA_VARS && self.target.write(address, &value.to_le_bytes()).is_ok();
         if is_stored {
             self.recording.stored(self.target.tick(), index, value);

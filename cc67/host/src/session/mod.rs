@@ -188,6 +188,12 @@ impl<T: Target> Session<T> {
         }
     }
 
+    /// A value in an object of the board's tables, wherever the target has it.
+    #[must_use]
+    pub fn peek_object<S: Scalar>(&self, address: GuestAddr) -> S {
+        self.peek(self.target.place_of(address))
+    }
+
     /// Number of the last tick that is over.
     #[must_use]
     pub fn tick(&self) -> Ticks {
@@ -234,7 +240,8 @@ impl<T: Target> Session<T> {
     #[must_use]
     pub fn user_data(&self, index: usize) -> Option<i32> {
         let data = PERSIST.field(Persist::USER_DATA);
-        (index < N_USER_DATA_VARS).then(|| self.peek::<u32>(data.element(index).address()).cast_signed())
+        (index < N_USER_DATA_VARS)
+            .then(|| self.peek_object::<u32>(data.element(index).address()).cast_signed())
     }
 
     /// What is known about the programs that are loaded, each with its thread.

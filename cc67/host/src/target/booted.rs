@@ -424,6 +424,10 @@ impl Target for BootedTarget {
         self.state.loaded[thread.index()].as_ref().map(|_| true)
     }
 
+    fn place_of(&self, address: GuestAddr) -> GuestAddr {
+        self.board.memory().place_of(address)
+    }
+
     fn read(&self, address: GuestAddr, bytes: &mut [u8]) -> Result<(), HostError> {
         read(self.board.memory(), address, bytes);
         Ok(())

@@ -61,7 +61,7 @@ pub(super) fn frame<T: Target>(
     write_analog(session, &mut out);
     let data = PERSIST.field(Persist::USER_DATA);
     let words = (0..kmotiondef::limits::N_USER_DATA_VARS).map(|index| data.element(index).address());
-    out.extend(words.flat_map(|address| session.peek::<u32>(address).to_le_bytes()));
+    out.extend(words.flat_map(|address| session.peek_object::<u32>(address).to_le_bytes()));
     debug_assert_eq!(out.len(), SAMPLES, "the table above");
     let (rows, next) = samples.write(next_row, &mut out);
     let counts = [samples.generation, samples.names().len() as u32 + 1, rows, 0];
@@ -76,16 +76,16 @@ fn place<T>(axis: AxisId, field: Field<T>) -> GuestAddr {
 }
 
 fn double<T: Target>(session: &Session<T>, address: GuestAddr) -> f64 {
-    f64::from_bits(session.peek(address))
+    f64::from_bits(session.peek_object(address))
 }
 
 fn float<T: Target>(session: &Session<T>, address: GuestAddr) -> f64 {
-    f64::from(f32::from_bits(session.peek(address)))
+    f64::from(f32::from_bits(session.peek_object(address)))
 }
 
 fn write_axis<T: Target>(session: &Session<T>, axis: AxisId, out: &mut Vec<u8>) {
     let load = Item::new(&format!("load{axis}")).map_or(0.0, |item| session.target().value(item));
-    let int = |field: Field<i32>| session.peek::<u32>(place(axis, field)).cast_signed();
+    let int = |field: Field<i32>| session.peek_object::<u32>(place(axis, field)).cast_signed();
     let numbers = [
         double(session, place(axis, Chan::DEST)),
         double(session, place(axis, Chan::POSITION)),
@@ -112,13 +112,13 @@ fn write_bits<T: Target>(session: &Session<T>, out: &mut Vec<u8>) {
         }
     }
     let directions = (0..usize::from(PINS / 32)).map(|word| BIT_DIR_SHADOW.element(word).address());
-    out.extend(directions.flat_map(|word| session.peek::<u32>(word).to_le_bytes()));
+    out.extend(directions.flat_map(|word| session.peek_object::<u32>(word).to_le_bytes()));
 }
 
 fn write_analog<T: Target>(session: &Session<T>, out: &mut Vec<u8>) {
     let inputs =
-        (0..8).map(|index| session.peek::<u32>(ADC_BUFFER_IN.element(index).address()) as i32 - 2048);
-    let outputs = (0..8).map(|index| session.peek::<u16>(DAC_BUFFER.element(index).address()) & 0xfff);
+        (0..8).map(|index| session.peek_object::<u32>(ADC_BUFFER_IN.element(index).address()) as i32 - 2048);
+    let outputs = (0..8).map(|index| session.peek_object::<u16>(DAC_BUFFER.element(index).address()) & 0xfff);
     let outputs = outputs.map(|word| i32::from(word) - 2048);
     out.extend(inputs.chain(outputs).flat_map(|number| (number as i16).to_le_bytes()));
 }

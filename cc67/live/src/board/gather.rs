@@ -29,7 +29,7 @@ pub(super) fn numbers<T: Target>(
         "int" => (Kind::Int, 4),
         _ => return Err(format!("`{kind}` is not double, float or int")),
     };
-    let first = GuestAddr::new(session.peek(GATHER_BUFFER.address()));
+    let first = GuestAddr::new(session.peek_object(GATHER_BUFFER.address()));
     let number = |index: u32| {
         let place = first.offset(from.wrapping_add(index).wrapping_mul(bytes));
         match kind_of {

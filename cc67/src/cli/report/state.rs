@@ -34,7 +34,7 @@ struct AxisState {
 impl FinalState {
     /// The present state.
     pub(crate) fn of<T: Target>(session: &Session<T>) -> Self {
-        // A firmware with its variables in other places shows none of it.
+        // A firmware without the variables of the surroundings shows none of it.
         if !session.can(Capability::Surroundings) {
             return Self::default();
         }
@@ -42,7 +42,7 @@ impl FinalState {
         let bits = (0..=i32::from(Bit::MAX)).filter_map(Bit::new);
         let data = PERSIST.field(Persist::USER_DATA);
         let elements =
-            (0..N_USER_DATA_VARS).map(|index| (index, session.peek(data.element(index).address())));
+            (0..N_USER_DATA_VARS).map(|index| (index, session.peek_object(data.element(index).address())));
         Self {
             axes: AxisId::all().filter_map(|axis| AxisState::of(session, axis)).collect(),
             bits: bits.filter(|bit| value(Item::of_bit(*bit)) != 0.0).map(Bit::get).collect(),
@@ -76,7 +76,7 @@ impl AxisState {
         let value =
             |kind: &str| Item::new(&format!("{kind}{axis}")).map_or(0.0, |item| session.target().value(item));
         let place = CHAN.element(axis.index()).field(Chan::ENABLE);
-        let enabled = session.peek::<u32>(place.address()) != 0;
+        let enabled = session.peek_object::<u32>(place.address()) != 0;
         let state = Self {
             axis: axis.get(),
             enabled,

@@ -50,6 +50,7 @@ impl BootedBoard {
     pub fn new(file: Arc<FirmwareFile>) -> Self {
         let mut hardware = Hardware::default();
         file.load(&mut hardware.memory);
+        hardware.memory.set_places(file.places());
         fill_flash(&mut hardware.memory);
         let mut core = Core::at_power_up(file.entry(), 0, 0);
         core.skip_waits(true);

@@ -57,7 +57,7 @@ fn ask(board: &mut BootedBoard, bytes: &[u8]) -> String {
 }
 
 /// Sends a recorded line, or does what is in its place in parentheses.
-fn exchange(board: &mut BootedBoard, line: &str) -> String {
+pub(super) fn exchange(board: &mut BootedBoard, line: &str) -> String {
     let Some(action) = line.strip_prefix('(').and_then(|line| line.strip_suffix(')')) else {
         return ask(board, format!("\x1b\x01{line}\r").as_bytes());
     };

@@ -217,6 +217,61 @@ fn processor_activity_is_visible_inside_and_outside_the_interrupt() {
     assert!(board.looks() > looks, "it looks for the PC all the while");
 }
 
+/// A firmware that calls `sqrt` in the ROM without end, with 2.25 as argument, and counts the calls.
+fn file_with_rom(address: u32) -> Arc<FirmwareFile> {
+    let (low, high) = (2.25_f64.to_bits() as u32, (2.25_f64.to_bits() >> 32) as u32);
+    let set = start_at(START);
+    let set: Vec<&str> = set.lines().collect();
+    // Without the loop that echoes: one look at the link says that it is ready.
+    let looks = set.iter().position(|line| line.contains("LDBU")).expect("it looks") + 1;
+    let mut text = set[..looks].join("\n") + "\nNOP 4\n";
+    let turn = START + 4 * text.lines().count() as u32;
+    text += &(constant(".S1", low, "A4") + &constant(".S1", high, "A5") + &constant(".S2", address, "B20"));
+    let back = START + 4 * (text.lines().count() as u32 + 4);
+    text += &(constant(".S2", back, "B3") + "B .S2 B20\nNOP 5\n");
+    text += &format!("ADD .L1 1,A10,A10\nMV .L1 A4,A11\nMV .S1 A5,A12\nB .S1 0x{turn:08X}\nNOP 5\n");
+    let mut image = image(&text);
+    image.symbols.push(Symbol {
+        name: Name::from("_sqrt"),
+        value: 0x2D460,
+        section: SectionNumber::ABSOLUTE,
+        ty: SymbolType::default(),
+        class: StorageClass::EXTERNAL,
+        aux: Vec::new(),
+    });
+    let bytes = image.write().expect("it can be written");
+    Arc::new(FirmwareFile::read(&bytes).unwrap_or_else(|error| panic!("{error}")))
+}
+
+#[test]
+fn functions_in_rom_are_computed_and_interrupts_stay_on_time() {
+    let file = file_with_rom(0x2D460);
+    assert_eq!(file.function_at(0x2D460), Some(("sqrt".to_owned(), 0)));
+    let mut board = BootedBoard::booted(file).unwrap_or_else(|crash| panic!("{crash}"));
+    let begun = board.cycle();
+    board.run_to(begun + 20 * 18_000).expect("it runs");
+    let registers = board.registers();
+    let register = |name: &str| registers.iter().find(|one| one.0 == name).expect(name).1;
+    assert_eq!(u64::from(register("A12")) << 32 | u64::from(register("A11")), 1.5_f64.to_bits());
+    // 379 cycles each, some forty around it, and what the interrupt takes.
+    assert!((700..950).contains(&register("A10")), "{} calls", register("A10"));
+    for _ in 0..20 {
+        board.run_to(board.next_tick() + 40).expect("it runs");
+        assert!(board.doing().is_masked, "the interrupt waits for no function");
+    }
+}
+
+#[test]
+fn a_place_in_rom_without_a_function_ends_the_run_with_a_reason() {
+    let Err(Halted::Crashed(crash)) = BootedBoard::booted(file_with_rom(0x2D464)).and_then(|mut board| {
+        let end = board.cycle() + 18_000;
+        board.run_to(end)
+    }) else {
+        panic!("it cannot go on")
+    };
+    assert!(crash.to_string().contains("0x0002D464 in the processor's ROM"), "{crash}");
+}
+
 /// The text of the crash of a firmware that starts so.
 fn crash(start: &str) -> String {
     let Err(Halted::Crashed(crash)) = BootedBoard::booted(file(start)) else { panic!("it starts") };

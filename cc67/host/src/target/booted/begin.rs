@@ -3,10 +3,7 @@
 use std::sync::Arc;
 
 use boot::{BootedBoard, Halted, Sent};
-use kmotiondef::variables::{
-    ADC_BUFFER_IN, CHAN, CURRENT_THREAD, DAC_BUFFER, HOST_STATUS, KSTEP_PRESENT, LAST_PWM, PERSIST,
-    READ_DISK_BUFFER, VIRTUAL_BITS, VIRTUAL_BITS_EX,
-};
+use kmotiondef::variables::PERSIST;
 use kmotiondef::{GuestAddr, ThreadId};
 use runtime::surroundings::Surroundings;
 use runtime::{Config, MachineFile};
@@ -59,7 +56,8 @@ impl BootedTarget {
         let origin = board.next_tick() - TICK;
         let early = board.take_lines().into_iter().filter(|line| line.kind == Sent::Console).collect();
         let machine = std::mem::take(&mut config.machine_file);
-        let attached = if can_be_surrounded(&board) {
+        let missing = missing_variable(&board);
+        let attached = if missing.is_none() {
             let mut surroundings = surroundings(&board, config, &machine);
             surroundings.begin(&machine, stimulus, board.memory_mut());
             surroundings.connect_uart(&uart_input, hears_uart);
@@ -70,10 +68,9 @@ impl BootedTarget {
         } else if stimulus.is_empty() && machine == MachineFile::default() && !is_assisted {
             None
         } else {
-            return Err(HostError::Firmware(
-                "nothing can be connected: this firmware keeps its variables in other places than 4.34"
-                    .to_owned(),
-            ));
+            let name = missing.unwrap_or_default();
+            let message = format!("nothing can be connected: this firmware has no variable `{name}`");
+            return Err(HostError::Firmware(message));
         };
         let state = State {
             loaded,
@@ -171,22 +168,21 @@ fn surroundings(board: &BootedBoard, mut config: Config, machine: &MachineFile) 
     Surroundings::new(config, board.file().address("ThreadActive").unwrap_or_default())
 }
 
-/// Whether this firmware has its variables where the surroundings look for them.
-fn can_be_surrounded(board: &BootedBoard) -> bool {
-    let places = [
-        ("chan", CHAN.address()),
-        ("persist", PERSIST.address()),
-        ("CurrentThread", CURRENT_THREAD.address()),
-        ("HostStatus", HOST_STATUS.address()),
-        ("KStepPresent", KSTEP_PRESENT.address()),
-        ("VirtualBits", VIRTUAL_BITS.address()),
-        ("VirtualBitsEx", VIRTUAL_BITS_EX.address()),
-        ("ADC_BufferIn", ADC_BUFFER_IN.address()),
-        ("DAC_Buffer", DAC_BUFFER.address()),
-        ("LastPWM", LAST_PWM.address()),
-        ("read_disk_buffer", READ_DISK_BUFFER.address()),
+/// The first variable that the surroundings need and this firmware does not have.
+fn missing_variable(board: &BootedBoard) -> Option<&'static str> {
+    const NEEDED: [&str; 12] = [
+        "ThreadActive",
+        "chan",
+        "persist",
+        "CurrentThread",
+        "HostStatus",
+        "KStepPresent",
+        "VirtualBits",
+        "VirtualBitsEx",
+        "ADC_BufferIn",
+        "DAC_Buffer",
+        "LastPWM",
+        "read_disk_buffer",
     ];
-    let file = board.file();
-    file.address("ThreadActive").is_some()
-        && places.iter().all(|(name, address)| file.address(name) == Some(*address))
+    NEEDED.into_iter().find(|name| board.file().address(name).is_none())
 }

@@ -1,0 +1,78 @@
+//! Objects that a memory has in other places than the tables say.
+//!
+//! The tables have the addresses of one firmware. A memory in which another one runs knows where that one keeps the same
+//! objects; whoever has an address of the tables asks for the place before it accesses the memory.
+
+use std::sync::Arc;
+
+use kmotiondef::GuestAddr;
+
+/// An object, where the tables have it, and where it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Object {
+    table: u32,
+    size: u32,
+    place: u32,
+}
+
+/// The places of objects; by default those of the tables.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Places(Option<Arc<[Object]>>);
+
+impl Places {
+    /// Objects by their address in the tables, their size and their place, in any order.
+    #[must_use]
+    pub fn new(objects: impl IntoIterator<Item = (GuestAddr, u32, GuestAddr)>) -> Self {
+        let object = |(table, size, place): (GuestAddr, u32, GuestAddr)| Object {
+            table: table.get(),
+            size,
+            place: place.get(),
+        };
+        let mut objects: Vec<Object> = objects.into_iter().map(object).collect();
+        objects.sort_by_key(|object| (object.table, object.size));
+        let is_moved = objects.iter().any(|object| object.table != object.place);
+        Self(is_moved.then(|| objects.into()))
+    }
+
+    /// Returns whether all objects are where the tables have them.
+    #[inline(always)]
+    #[must_use]
+    pub const fn is_by_tables(&self) -> bool {
+        self.0.is_none()
+    }
+
+    /// The place of an address of the tables; one that belongs to no object stays.
+    #[inline(always)]
+    #[must_use]
+    pub fn of(&self, address: GuestAddr) -> GuestAddr {
+        match &self.0 {
+            None => address,
+            Some(objects) => place_in(objects, address),
+        }
+    }
+}
+
+#[inline(never)]
+fn place_in(objects: &[Object], address: GuestAddr) -> GuestAddr {
+    let next = objects.partition_point(|object| object.table <= address.get());
+    let object = next.checked_sub(1).and_then(|at| objects.get(at));
+    let inside = object.filter(|object| address.get() - object.table < object.size);
+    inside.map_or(address, |object| GuestAddr::new(object.place + (address.get() - object.table)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_moved_object_takes_its_bytes_along_and_others_stay() {
+        let at = GuestAddr::new;
+        let places = Places::new([(at(0x200), 8, at(0x200)), (at(0x100), 16, at(0x900))]);
+        for (address, expect) in
+            [(0xFF, 0xFF), (0x100, 0x900), (0x10F, 0x90F), (0x110, 0x110), (0x204, 0x204)]
+        {
+            assert_eq!(places.of(at(address)), at(expect), "{address:#x}");
+        }
+        assert_eq!(Places::new([(at(0x200), 8, at(0x200))]), Places::default());
+    }
+}
