@@ -1,4 +1,4 @@
-//@ args: check -Wall
+//@ args: check -Wno-fall-through -Wall
 //@ snapshot
 #include "KMotionDef.h"
 

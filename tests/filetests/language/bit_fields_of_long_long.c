@@ -14,7 +14,7 @@ main()
     struct wide w = { 12345678900ULL, -5, 1 };
     struct narrow n = { 31, -1, 0xffffffff };
     printf("%lld %d %d %d\n", (long long)w.low, (int)w.high, (int)w.flag, sizeof(w));
-    printf("%d %d %d\n", n.five - 32, n.five > -1, n.all < 0);
+    printf("%d %d %d\n", n.five - 32, n.five > -1, n.all < 0);  //~ constant-comparison
     w.low = -1;
     w.high++;
     w.high += 4;

@@ -40,7 +40,7 @@ main()
     printf("%d %d\n", parse(2), parse(9));
     switch (setjmp(top)) {
     case 0: longjmp(top, 0);
-    case 1: printf("one\n"); break;
+    case 1: printf("one\n"); break;  //~ fall-through
     default: printf("other\n");
     }
 }

@@ -17,7 +17,7 @@ char *fruit[] = { "pear", "apple", "lemon" };
 
 int find(int key)
 {
-    int *found = bsearch(&key, numbers, 6, sizeof(int), ascending);
+    int *found = bsearch(&key, numbers, 6, sizeof(int), ascending);  //~ vendor-parameter
     return found ? found - numbers : -1;
 }
 

@@ -17,9 +17,10 @@ enum { IDLE, RUN, STOP };
 
 void Halves(double d)
 {
-    int *low = (int *)&d;
-    persist.UserData[0] = ((int *)&d)[0];
-    persist.UserData[1] = ((int *)&d)[1];
+    double copy = d;
+    int *low = (int *)&copy;
+    persist.UserData[0] = ((int *)&copy)[0];
+    persist.UserData[1] = ((int *)&copy)[1];
     persist.UserData[2] = low[1];
 }
 

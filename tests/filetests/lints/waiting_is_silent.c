@@ -55,6 +55,7 @@ main()
         case 1:
             Jog(0, 10);
             state = 2;
+            // fall through
         case 2:
             if (ch0->Position > 100.0) { Jog(0, 0); state = 0; }
             break;

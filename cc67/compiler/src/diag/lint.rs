@@ -114,18 +114,44 @@ macro_rules! for_each_lint {
             VoidMain = "void-main", Extra, pass void_main;
             /// A number is converted to a type that may not be able to represent it.
             Conversion = "conversion", Extra;
-            /// A constant with a fraction is stored in an integer.
-            LostFraction = "lost-fraction", On;
+            /// A fraction is lost: in an integer that stores a constant, or in the argument of `abs`.
+            LostFraction = "lost-fraction", On, pass lost_fraction;
             /// A division of integer constants loses its fraction before it is used as a floating-point number.
             IntegerDivision = "integer-division", On;
             /// An element of `persist.UserData` is used as a pointer where its address is meant: the `&` is missing.
             UserDataPointer = "user-data-pointer", On, pass user_data_pointer;
+            /// A `case` of a `switch` continues into the next one: its `break` is missing.
+            FallThrough = "fall-through", On, pass fall_through;
+            /// Two addresses are compared where the texts at them are meant.
+            TextComparison = "text-comparison", On, pass text_comparison;
+            /// A function returns the address of a variable that ends with it.
+            ReturnedLocal = "returned-local", On, pass returned_local;
+            /// A text is stored in an array that is too small for it.
+            TextOverflow = "text-overflow", On, pass text_overflow;
+            /// One side of `&&` or `||` is a number other than 0 and 1.
+            LogicalConstant = "logical-constant", On;
+            /// A loop that waits for several axes ends with the first one.
+            WaitForAny = "wait-for-any", On, pass wait_for_any;
+            /// The type of a value decides a comparison.
+            ConstantComparison = "constant-comparison", On, pass constant_comparison;
+            /// A loop never begins, or counts away from its end.
+            LoopCondition = "loop-condition", On, pass loop_condition;
+            /// An angle is given in degrees where radians are needed.
+            Degrees = "degrees", On, pass degrees;
+            /// A time is given in milliseconds where seconds are needed.
+            Milliseconds = "milliseconds", On, pass milliseconds;
+            /// A `float` holds the time since power-up.
+            FloatTime = "float-time", On, pass float_time;
+            /// An element of `persist.UserData` is stored as one type and read as another.
+            UserDataType = "user-data-type", On, pass user_data_type;
             /// A loop waits for a variable that nothing in the program changes.
             EndlessWait = "endless-wait", On, pass endless_wait;
             /// A signed and an unsigned value are compared.
             SignCompare = "sign-compare", Extra;
             /// The vendor's compiler accepts the construct and generates wrong code for it.
             Vendor = "vendor", Own, pass vendor;
+            /// The vendor's compiler uses a wrong address for a parameter, or cannot pass it.
+            VendorParameter = "vendor-parameter", On, pass vendor_parameter;
             /// Standard C does not allow the construct, but the vendor's compiler accepts it.
             Extension = "extension", On;
         }

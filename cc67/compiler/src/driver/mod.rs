@@ -180,7 +180,7 @@ pub(crate) fn compile_here(
         sink.report(error);
         Compilation { name, sources: SourceMap::new(), sink, object: None, included_by: Vec::new() }
     };
-    if let Some(what) = files::not_source(&text) {
+    if let Some(what) = files::not_source(path, &text) {
         return refuse(Diagnostic::global_error(format!(
             "{} is not C source text but {what}",
             path.display()

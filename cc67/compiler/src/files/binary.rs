@@ -1,5 +1,7 @@
 //! Telling source text from other files before the preprocessor finds a thousand mistakes in them.
 
+use std::path::Path;
+
 /// How much of a file is looked at.
 const SAMPLE: usize = 4096;
 
@@ -15,11 +17,27 @@ const FORMATS: &[(&[u8], &str)] = &[
     (b"\xfe\xff", "text in UTF-16; save it as UTF-8"),
 ];
 
+/// Text files of the vendor's application, by the suffix of their names.
+const SUFFIXES: &[(&str, &str)] = &[
+    ("ngc", "G code, which the PC application executes and not the board"),
+    ("nc", "G code, which the PC application executes and not the board"),
+    ("tap", "G code, which the PC application executes and not the board"),
+    (
+        "mot",
+        "a motor file of the PC application, with the settings of an axis; a C program sets the fields of `chan[]`",
+    ),
+];
+
 /// What a file is that cannot be C source text; `None` if it may be.
 ///
 /// A single stray byte is left to the preprocessor, which shows where it is.
 #[must_use]
-pub(crate) fn not_source(text: &[u8]) -> Option<&'static str> {
+pub(crate) fn not_source(path: &Path, text: &[u8]) -> Option<&'static str> {
+    let suffix = path.extension().and_then(|suffix| suffix.to_str()).unwrap_or_default();
+    let named = SUFFIXES.iter().find(|(known, _)| known.eq_ignore_ascii_case(suffix));
+    if let Some((_, what)) = named {
+        return Some(what);
+    }
     let sample = text.get(..SAMPLE).unwrap_or(text);
     let control = |byte: &&u8| **byte < 0x20 && !b"\t\n\r\x0b\x0c\x1a".contains(*byte);
     let controls = sample.iter().filter(control).count();
@@ -33,6 +51,16 @@ pub(crate) fn not_source(text: &[u8]) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn not_source(text: &[u8]) -> Option<&'static str> {
+        super::not_source(Path::new("a.c"), text)
+    }
+
+    #[test]
+    fn files_of_the_vendors_application_are_named() {
+        let what = super::not_source(Path::new("part.NGC"), b"G0 X1\n").expect("it is no source");
+        assert!(what.starts_with("G code"), "{what}");
+    }
 
     #[test]
     fn source_may_contain_a_stray_byte_but_not_be_binary() {

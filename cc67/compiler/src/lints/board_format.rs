@@ -13,9 +13,9 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
         for (_, call) in function.calls() {
             let Some((taker, format)) = literal_format(program.unit, function, call) else { continue };
             let span = function.exprs[call.arguments[taker.format]].span;
-            for Finding { spelled, message, help } in findings(taker, format) {
+            for Finding { spelled, message, help, lint } in findings(taker, format) {
                 let message = format!("the board {message}: `{spelled}`");
-                sink.report(Diagnostic::warning(Lint::BoardFormat, span, message).help(help));
+                sink.report(Diagnostic::warning(lint, span, message).help(help));
             }
         }
     }
@@ -30,6 +30,8 @@ struct Finding {
     message: &'static str,
     /// What to write.
     help: &'static str,
+    /// The warning that it belongs to.
+    lint: Lint,
 }
 
 /// What the board does, and what to write.
@@ -46,13 +48,13 @@ fn findings(function: FormatFunction, format: &[u8]) -> Vec<Finding> {
         let spelled = &rest[start..rest.len() - behind.len()];
         rest = behind;
         let quirk = if function.is_scan { conversion.scanned() } else { conversion.printed() };
-        findings.extend(quirk.map(|quirk| finding(spelled, quirk)));
+        findings.extend(quirk.map(|quirk| Finding { lint: conversion.lint(), ..finding(spelled, quirk) }));
     }
     findings
 }
 
 fn finding(spelled: &[u8], (message, help): Quirk) -> Finding {
-    Finding { spelled: String::from_utf8_lossy(spelled).into_owned(), message, help }
+    Finding { spelled: String::from_utf8_lossy(spelled).into_owned(), message, help, lint: Lint::BoardFormat }
 }
 
 /// White space after an ordinary character before a conversion of `scanf`.
@@ -116,6 +118,11 @@ impl<'f> Conversion<'f> {
             behind.iter().skip(first).position(|byte| *byte == b']').map_or(behind.len(), |end| end + first);
         conversion.set = &behind[..end];
         (conversion, behind.get(end + 1..).unwrap_or_default())
+    }
+
+    /// The warning for what the board does with it: `%ld` takes two words, so that everything after it is wrong.
+    fn lint(self) -> Lint {
+        if self.length == b"l" && self.is_integer() { Lint::Format } else { Lint::BoardFormat }
     }
 
     fn is_integer(self) -> bool {

@@ -2,8 +2,9 @@
 //!
 //! `while (x) ;` by itself is how programs for this board wait, and is never reported.
 
-use crate::ast::{Expression, Statement, StatementKind};
+use crate::ast::{Expression, ExpressionKind, Statement, StatementKind};
 use crate::diag::{Diagnostic, Lint};
+use crate::operators::OperatorMeaning;
 use crate::source::{ExpansionId, SourceMap};
 
 /// The message for an `if` with this condition and body.
@@ -40,6 +41,9 @@ pub(crate) fn loop_finding(
     {
         return None;
     }
+    if is_for_next(sources, statement, next) {
+        return Some(loop_warning(keyword, body, next));
+    }
     // A `;` on a line of its own is meant.
     let [Some((_, outer)), None, Some((next_line, inner))] = spans.map(|span| sources.indentation(span))
     else {
@@ -51,10 +55,35 @@ pub(crate) fn loop_finding(
         StatementKind::Empty => false,
         _ => inner.starts_with(outer) && inner.len() > outer.len(),
     };
-    (is_below && looks_like_body).then(|| {
-        Diagnostic::warning(Lint::EmptyBody, body.span, format!("`{keyword}` with an empty body"))
-            .at(format!("this `;` ends the `{keyword}`"))
-            .label(next.span, "so this is executed once, after it")
-            .help("remove the `;`, or move it to a line of its own if the loop is only to wait")
-    })
+    (is_below && looks_like_body).then(|| loop_warning(keyword, body, next))
+}
+
+fn loop_warning(keyword: &str, body: &Statement, next: &Statement) -> Diagnostic {
+    Diagnostic::warning(Lint::EmptyBody, body.span, format!("`{keyword}` with an empty body"))
+        .at(format!("this `;` ends the `{keyword}`"))
+        .label(next.span, "so this is executed once, after it")
+        .help("remove the `;`, or move it to a line of its own if the loop is only to wait")
+}
+
+/// Whether a `for` that only counts is followed, on the same line, by a use of its counter.
+fn is_for_next(sources: &SourceMap, statement: &Statement, next: &Statement) -> bool {
+    let StatementKind::For { condition: Some(condition), body, .. } = &statement.kind else { return false };
+    let ExpressionKind::Binary(operator, left, right) = &condition.kind else { return false };
+    let is_plain =
+        |side: &Expression| matches!(side.kind, ExpressionKind::Identifier(_) | ExpressionKind::Integer(_));
+    if !matches!(operator.meaning(), OperatorMeaning::Compare(_))
+        || !matches!(left.kind, ExpressionKind::Identifier(_))
+        || !is_plain(right)
+        || !matches!(next.kind, StatementKind::Expression(_) | StatementKind::Block(_))
+    {
+        return false;
+    }
+    let line = |span| sources.place(span).map(|place| (place.file, place.line));
+    let (Some((file, end)), Some((next_file, begin))) = (line(body.span), line(next.span)) else {
+        return false;
+    };
+    let counter = sources.text(left.span);
+    let is_word = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
+    let uses_counter = || sources.text(next.span).split(|byte| !is_word(byte)).any(|word| word == counter);
+    file == next_file && begin == end && uses_counter()
 }

@@ -36,7 +36,8 @@ fn may_complete(stmts: &[Stmt]) -> bool {
     stmts.iter().all(completes)
 }
 
-fn completes(stmt: &Stmt) -> bool {
+/// Whether what follows a statement can be reached from it.
+pub(super) fn completes(stmt: &Stmt) -> bool {
     match &stmt.kind {
         StmtKind::Return(_)
         | StmtKind::Goto(_)

@@ -1,7 +1,7 @@
 //! Code that the vendor's compiler translates wrongly, for people who still use it.
 //!
 //! The list is that of `c67-subset.md` section 9; cc67 translates all of it as C says. Partly initialised locals are
-//! found where initialisers are, the rest in the finished tree.
+//! found where initialisers are, parameters in `vendor_parameter.rs`, the rest in the finished tree.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +10,7 @@ use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::{BinaryOp, CompareOp};
 use crate::source::Span;
 use crate::ty::{TypeId, Types};
-use crate::typed::{Expr, ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind, UnaryOp};
+use crate::typed::{Expr, ExprId, ExprKind, Function, PlaceKind, UnaryOp};
 
 /// The first address of RAM that counts as negative when addresses are compared as signed numbers.
 const NEGATIVE: u32 = 0x8000_0000;
@@ -22,13 +22,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
             sink.report(structure_result(program, function));
         }
         let inner = inner_assignments(function);
-        let mut taken = BTreeSet::new();
         for (id, expr) in &function.exprs {
-            if let ExprKind::Address(place) = expr.kind
-                && taken.insert(place)
-            {
-                sink.report_if(address_of_parameter(function, place, expr.span));
-            }
             sink.report_if(signed_comparison(program, function, expr));
             if !inner.contains(&id) {
                 sink.report_if(long_chain(program, function, id));
@@ -52,25 +46,6 @@ fn warning(span: Span, fault: &str) -> Diagnostic {
 fn structure_result(program: &AnalysedProgram<'_>, function: &Function) -> Diagnostic {
     let message = format!("returns the structure of `{}` to a wrong address", program.name(function.symbol));
     warning(function.span, &message).help("pass the address of the result, and store through it")
-}
-
-/// `&a` of a parameter.
-fn address_of_parameter(function: &Function, place: PlaceId, span: Span) -> Option<Diagnostic> {
-    let local = parameter_at(function, place)?;
-    let name = &function.locals[local].name;
-    let finding = warning(span, &format!("takes a wrong address for the parameter `{name}`"));
-    Some(
-        finding
-            .at("an address in the caller's frame")
-            .help(format!("copy it to a local first, and take the address of that: `x = {name}; … &x`")),
-    )
-}
-
-fn parameter_at(function: &Function, place: PlaceId) -> Option<LocalId> {
-    let PlaceKind::Local(local, _) = function.places[place].kind else { return None };
-    let is_written = function.parameters.contains(&local) && !function.locals[local].name.is_empty();
-    // The vendor's compiler refuses structures as parameters.
-    (is_written && !function.locals[local].by_pointer).then_some(local)
 }
 
 /// `<` and the like of unsigned values one of which may have its highest bit set.

@@ -247,12 +247,20 @@ impl Preprocessor<'_> {
             self.sink.report(diagnostic.help("headers of C++ do not exist here; leave it out"));
             return;
         }
+        if VENDOR_HELPERS.iter().any(|name| name.eq_ignore_ascii_case(file_name)) {
+            let help = "it belongs to the vendor's software: copy it from there beside the program, or name its folder with `-I DIR`";
+            self.sink.report_lost_names(diagnostic.help(help));
+            return;
+        }
         self.sink.report_lost_names(match suggest(file_name, near.iter().map(String::as_str)) {
             Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
             None => diagnostic,
         });
     }
 }
+
+/// Files with functions that the vendor's software brings and many programs include.
+const VENDOR_HELPERS: &[&str] = &["KflopToKMotionCNCFunctions.c", "KflopToMach3Functions.c"];
 
 /// The path that a header of the compiler counts as: no directory can hold one with a NUL in it, so that it never meets a
 /// real file.

@@ -251,6 +251,18 @@ impl Sema<'_> {
         let (known_type, first) = (known.ty, known.span);
         if !self.types.compatible(known_type, ty) {
             let (old, new) = (self.spell(known_type), self.spell(ty));
+            if let Some(kept) = self.longer_array(symbol, known_type, ty) {
+                let message = format!("`{}` is declared with two different sizes", self.spelling(name));
+                self.report(
+                    Diagnostic::warning(Lint::Redeclared, span, message)
+                        .at(format!("`{new}` here"))
+                        .label(first, format!("`{old}` here"))
+                        .note("cc67 takes the larger one, the vendor's compiler the first one")
+                        .help("write the size once, or give the arrays different names"),
+                );
+                self.symbols.get_mut(symbol).ty = kept;
+                return Some(symbol);
+            }
             let message = format!("`{}` is redeclared with a different type", self.spelling(name));
             self.report(
                 Diagnostic::error(span, message)
@@ -266,6 +278,16 @@ impl Sema<'_> {
             entry.linkage = Linkage::Internal;
         }
         Some(symbol)
+    }
+
+    /// The longer of two arrays that differ only in their length, if neither has a value yet: the vendor's compiler accepts
+    /// both.
+    fn longer_array(&self, symbol: SymbolId, known: TypeId, new: TypeId) -> Option<TypeId> {
+        let (a, length) = self.types.array(known)?;
+        let (b, new_length) = self.types.array(new)?;
+        let is_open = !matches!(self.symbols.get(symbol).definition, Definition::Data(_));
+        let is_longer = new_length > length;
+        (is_open && self.types.compatible(a.ty, b.ty)).then_some(if is_longer { new } else { known })
     }
 
     /// `_Static_assert`

@@ -5,7 +5,7 @@ use super::constants::Constant;
 use super::operands::Operand;
 use crate::ast::{Expression, ExpressionKind};
 use crate::diag::{Diagnostic, Lint};
-use crate::lints::{assignment_condition, sign_compare};
+use crate::lints::{assignment_condition, logical_constant, sign_compare};
 use crate::operators::{BinaryOp, BinaryOperator, OperatorMeaning};
 use crate::source::Span;
 use crate::ty::{QualifiedType, TypeId, Types, convert};
@@ -204,6 +204,11 @@ impl Sema<'_> {
 
     /// `a && b` (`decides` is false) or `a || b` (true); a constant side is folded where that drops no effect.
     fn logical(&mut self, decides: bool, a: ExprId, b: ExprId, span: Span) -> ExprId {
+        let finding = [a, b].into_iter().find_map(|side| {
+            let number = self.body.as_int(side).filter(|_| self.body.ty(side).is_integer())?;
+            logical_constant::finding(decides, number, self.body.span(side))
+        });
+        self.report_finding(finding);
         match (
             self.body.as_constant(a).map(Constant::is_true),
             self.body.as_constant(b).map(Constant::is_true),

@@ -88,14 +88,24 @@ impl Sema<'_> {
         self.symbols.facts_mut(symbol).is_reported = true;
         // The header that declares it may be the file that was not found.
         if !self.sink.lacks_names() {
-            self.report(
-                Diagnostic::warning(Lint::ImplicitDeclaration, span, format!("`{spelling}` is not declared"))
-                    .at(format!("the firmware's `{prototype}` is used"))
-                    .help(match self.firmware.origin(spelling) == Some(Origin::Header) {
-                        true => "include `KMotionDef.h`, or declare the function".to_owned(),
-                        false => format!("`KMotionDef.h` lacks it; declare it: `{prototype};`"),
+            let is_library = self.firmware.origin(spelling) == Some(Origin::Library);
+            let message = format!("`{spelling}` is not declared");
+            let finding = Diagnostic::warning(Lint::ImplicitDeclaration, span, message);
+            self.report(match (is_library, self.firmware.origin(spelling) == Some(Origin::Header)) {
+                (true, _) => finding
+                    .at(format!("the firmware has no such function; cc67 adds its own `{prototype}`"))
+                    .note("the vendor's compiler reports an undefined symbol")
+                    .help(match stand_in(spelling) {
+                        Some(other) => format!("`{other}` is in the firmware"),
+                        None => format!("declare it, `{prototype};`, or define a function of your own"),
                     }),
-            );
+                (false, true) => finding
+                    .at(format!("the firmware's `{prototype}` is used"))
+                    .help("include `KMotionDef.h`, or declare the function"),
+                (false, false) => finding
+                    .at(format!("the firmware's `{prototype}` is used"))
+                    .help(format!("`KMotionDef.h` lacks it; declare it: `{prototype};`")),
+            });
         }
         Some((Callee::Symbol(symbol), ty))
     }
@@ -243,4 +253,13 @@ fn of_other_board(board: &TargetBoard, name: &str, span: Span) -> Option<Diagnos
 /// Whether a name may be suggested for another: one letter is close to every other, only its case can be meant.
 pub(super) fn is_sensible(spelling: &str, name: &str) -> bool {
     spelling.len() > 1 || name.eq_ignore_ascii_case(spelling)
+}
+
+/// A function of the firmware that does the same as one that it lacks.
+fn stand_in(name: &str) -> Option<&'static str> {
+    match name {
+        "fabs" => Some("fast_fabs"),
+        "fabsf" => Some("fast_fabsf"),
+        _ => None,
+    }
 }

@@ -1,12 +1,13 @@
 //@ prints: 78 12
 #include "KMotionDef.h"
 
-int sum(int a, int b, int c, int d, int e, int f, int g, int h, int i, int j, int k, double l)
+int sum(int a, int b, int c, int d, int e, int f, int g, int h, int i, int j, int k, double l)  //~ vendor-parameter
 {
     return a + b + c + d + e + f + g + h + i + j + k + (int)l;
 }
 
 twelve(a, b, c, d, e, f, g, h, i, j, k, l) { return l; } //~ old-style-definition
+    //~^ vendor-parameter
 
 main()
 {

@@ -5,7 +5,7 @@
 #define ARGUMENT(n) 1##n - 99
 #define SUM10(n) p##n##0 + p##n##1 + p##n##2 + p##n##3 + p##n##4 + p##n##5 + p##n##6 + p##n##7 + p##n##8 + p##n##9
 
-int sum(TEN(PARAMETER, 0), TEN(PARAMETER, 1), TEN(PARAMETER, 2), TEN(PARAMETER, 3), TEN(PARAMETER, 4), TEN(PARAMETER, 5))
+int sum(TEN(PARAMETER, 0), TEN(PARAMETER, 1), TEN(PARAMETER, 2), TEN(PARAMETER, 3), TEN(PARAMETER, 4), TEN(PARAMETER, 5))  //~ vendor-parameter
 {
     last(p59);
     return SUM10(0) + SUM10(1) + SUM10(2) + SUM10(3) + SUM10(4) + SUM10(5);

@@ -10,7 +10,7 @@ static float single_third = 1.0f / 3.0f;
 
 void show(double d, float f)
 {
-    int *halves = (int *)&d;
+    int *halves = (int *)&d;  //~ vendor-parameter
     printf("%x %x %x\n", halves[1], halves[0], *(int *)&f);
 }
 

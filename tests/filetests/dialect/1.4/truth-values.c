@@ -4,7 +4,7 @@
 #include "KMotionDef.h"
 
 int a = 5, b = 7;
-static int c1 = 5 <= 7, c2 = 5 >= 7, c3 = 5 != 7, c4 = !5, c5 = 5 && 7, c6 = 0 || 0;
+static int c1 = 5 <= 7, c2 = 5 >= 7, c3 = 5 != 7, c4 = !5, c5 = 5 && 7, c6 = 0 || 0;  //~ logical-constant
 
 main()
 {

@@ -1,4 +1,5 @@
 //@ prints: moving
+//@ says: Jog: axis 2 has no OutputMode, so its Dest changes but no motor moves
 #include "KMotionDef.h"
 
 main()

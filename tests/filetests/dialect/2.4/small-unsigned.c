@@ -8,7 +8,7 @@ main()
 {
     c = a + b;
     s = -1;
-    printf("%d %d %d %d ", c, a + b, s, s > -1);
+    printf("%d %d %d %d ", c, a + b, s, s > -1);  //~ constant-comparison
     c = 0;
     c--;
     printf("%d\n", c);

@@ -7,7 +7,8 @@ void show(int n)
     switch (n) {
     case 1: printf("a ");
     case 2: printf("b ");
-    case 3: printf("c "); break;
+    case 3: printf("c "); break;  //~ fall-through
+    //~^^ fall-through
     case 10 ... 15: printf("range "); break;
     default: printf("other ");
     }
@@ -21,7 +22,7 @@ main()
     printf("\n");
     switch (5) {
     case 4: printf("wrong\n");
-    case 5:
+    case 5:  //~ fall-through
     }
     goto end;
     printf("wrong\n");

@@ -1,0 +1,126 @@
+//! `for (i = 0; i == 7; i++)`, which never begins, and `for (i = 0; i < 7; i--)`, which counts away from its end.
+
+use super::program::AnalysedProgram;
+use crate::diag::{Diagnostic, Lint, Sink};
+use crate::operators::{BinaryOp, CompareOp};
+use crate::typed::{ExprId, ExprKind, Function, LocalId, LoopTest, PlaceId, PlaceKind, Stmt, StmtKind};
+
+/// Reports `for` loops whose first test fails, or whose step does not lead to the end.
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
+    for function in program.functions() {
+        loops(function, &function.body, sink);
+        function.each_stmt(&mut |stmt| match &stmt.kind {
+            StmtKind::Block(body) | StmtKind::Loop { body, .. } | StmtKind::Switch { body, .. } => {
+                loops(function, body, sink);
+            }
+            StmtKind::If { then, otherwise, .. } => {
+                loops(function, then, sink);
+                loops(function, otherwise, sink);
+            }
+            _ => {}
+        });
+    }
+}
+
+fn loops(function: &Function, stmts: &[Stmt], sink: &mut Sink) {
+    for [before, stmt] in stmts.array_windows() {
+        let StmtKind::Loop { condition: Some(condition), test: LoopTest::Before, step: Some(step), .. } =
+            stmt.kind
+        else {
+            continue;
+        };
+        sink.report_if(
+            never_begins(function, before, condition).or_else(|| goes_away(function, condition, step)),
+        );
+    }
+}
+
+fn local(function: &Function, place: PlaceId) -> Option<LocalId> {
+    match function.places[place].kind {
+        PlaceKind::Local(local, 0) if !function.locals[local].in_memory => Some(local),
+        _ => None,
+    }
+}
+
+fn int(function: &Function, expr: ExprId) -> Option<i64> {
+    match function.exprs[expr].kind {
+        ExprKind::Int(number) => Some(number),
+        _ => None,
+    }
+}
+
+fn loaded(function: &Function, expr: ExprId) -> Option<LocalId> {
+    match function.exprs[expr].kind {
+        ExprKind::Load(place) => local(function, place),
+        ExprKind::Convert(inner) => loaded(function, inner),
+        _ => None,
+    }
+}
+
+/// A loop whose counter starts where its condition is false.
+fn never_begins(function: &Function, before: &Stmt, condition: ExprId) -> Option<Diagnostic> {
+    let StmtKind::Expr(start) = before.kind else { return None };
+    let ExprKind::Assign(place, start) = function.exprs[start].kind else { return None };
+    let ExprKind::Compare(op, tested, end) = function.exprs[condition].kind else { return None };
+    let counter = local(function, place).filter(|counter| loaded(function, tested) == Some(*counter))?;
+    let (start, end) = (int(function, start)?, int(function, end)?);
+    let holds = match op {
+        CompareOp::Equal => start == end,
+        CompareOp::NotEqual => start != end,
+        // A number of turns that is set to 0 switches a loop off on purpose.
+        CompareOp::Less => start <= end,
+        CompareOp::LessEqual => start <= end,
+        CompareOp::Greater => start >= end,
+        CompareOp::GreaterEqual => start >= end,
+    };
+    let name = &function.locals[counter].name;
+    (!holds && !name.is_empty()).then(|| {
+        let span = function.exprs[condition].span;
+        Diagnostic::warning(Lint::LoopCondition, span, "this loop never runs")
+            .at(format!("false at the start, where `{name}` is {start}"))
+            .help("a loop runs while its condition is true: `i < 8` counts to 7")
+    })
+}
+
+/// A loop whose counter moves away from its end.
+fn goes_away(function: &Function, condition: ExprId, step: ExprId) -> Option<Diagnostic> {
+    let ExprKind::Compare(op, tested, _) = function.exprs[condition].kind else { return None };
+    let ExprKind::Update(update) = &function.exprs[step].kind else { return None };
+    let counter =
+        local(function, update.place).filter(|counter| loaded(function, tested) == Some(*counter))?;
+    // Counting an unsigned number down until it wraps is an idiom.
+    if function.locals[counter].ty.is_unsigned() {
+        return None;
+    }
+    let amount = match function.exprs[update.operand].kind {
+        ExprKind::Int(number) => number as f64,
+        ExprKind::Float(number) => number,
+        _ => return None,
+    };
+    let goes_up = match update.op {
+        BinaryOp::Add => amount > 0.0,
+        BinaryOp::Subtract => amount < 0.0,
+        _ => return None,
+    };
+    let is_away = match op {
+        CompareOp::Less | CompareOp::LessEqual => !goes_up,
+        CompareOp::Greater | CompareOp::GreaterEqual => goes_up,
+        CompareOp::Equal | CompareOp::NotEqual => false,
+    };
+    let name = &function.locals[counter].name;
+    (is_away && amount != 0.0 && !name.is_empty()).then(|| {
+        let way = if goes_up { "up" } else { "down" };
+        let span = function.exprs[step].span;
+        Diagnostic::warning(
+            Lint::LoopCondition,
+            span,
+            format!("`{name}` counts {way}, away from the end of the loop"),
+        )
+        .label(function.exprs[condition].span, "stays true until the number overflows")
+        .help(if goes_up {
+            "count down, or compare with `<`"
+        } else {
+            "count up, or compare with `>`"
+        })
+    })
+}

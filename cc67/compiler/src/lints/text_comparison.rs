@@ -1,0 +1,62 @@
+//! `text == "abc"`, which compares addresses.
+
+use super::program::AnalysedProgram;
+use crate::diag::{Diagnostic, Lint, Sink};
+use crate::ty::Type;
+use crate::typed::{ExprId, ExprKind, Function, PlaceId, PlaceKind};
+
+/// An operand that is a text in memory.
+#[derive(Clone, Copy, PartialEq)]
+enum Text {
+    /// Written in quotes.
+    Literal,
+    /// The name of an array of characters.
+    Array,
+}
+
+/// Reports comparisons with a text in quotes, and of two arrays of characters.
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
+    for function in program.functions() {
+        for expr in function.exprs.values() {
+            let ExprKind::Compare(_, a, b) = expr.kind else { continue };
+            let texts = [text(program, function, a), text(program, function, b)];
+            if texts.contains(&Some(Text::Literal)) || texts == [Some(Text::Array); 2] {
+                sink.report(
+                    Diagnostic::warning(
+                        Lint::TextComparison,
+                        expr.span,
+                        "two addresses are compared, not two texts",
+                    )
+                    .at("the same every time, whatever the texts contain")
+                    .help("`strcmp(a, b) == 0` compares the characters"),
+                );
+            }
+        }
+    }
+}
+
+fn text(program: &AnalysedProgram<'_>, function: &Function, mut expr: ExprId) -> Option<Text> {
+    while let ExprKind::Convert(inner) = function.exprs[expr].kind {
+        expr = inner;
+    }
+    let ExprKind::Address(place) = function.exprs[expr].kind else { return None };
+    match function.places[place].kind {
+        PlaceKind::Symbol(symbol, 0) if program.unit.symbols[symbol].is_anonymous() => {
+            is_character_array(program, function, place).then_some(Text::Literal)
+        }
+        PlaceKind::Symbol(_, 0) | PlaceKind::Local(_, 0) => {
+            is_character_array(program, function, place).then_some(Text::Array)
+        }
+        _ => None,
+    }
+}
+
+/// Whether a place is all of an array of characters.
+fn is_character_array(program: &AnalysedProgram<'_>, function: &Function, place: PlaceId) -> bool {
+    let ty = match function.places[place].kind {
+        PlaceKind::Symbol(symbol, _) => program.unit.symbols[symbol].ty,
+        PlaceKind::Local(local, _) => function.locals[local].ty,
+        PlaceKind::Pointer(..) | PlaceKind::Bits(..) => return false,
+    };
+    matches!(program.unit.types.get(ty), Type::Array(element, _) if element.ty.is_character())
+}

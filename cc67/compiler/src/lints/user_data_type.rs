@@ -1,0 +1,150 @@
+//! An element of `persist.UserData` that holds a floating-point number and is read as an integer, and a `double` in the
+//! elements through which a program and the PC exchange requests.
+//!
+//! The types of the PC's elements are those of `gather-persist-console.md` sections 5 and 8.
+
+use std::collections::BTreeMap;
+
+use super::format::literal_format;
+use super::program::AnalysedProgram;
+use super::user_data_index;
+use super::walk::{Extent, Walk};
+use crate::diag::{Diagnostic, Lint, Sink};
+use crate::source::Span;
+use crate::ty::{TypeId, Types};
+use crate::typed::{ExprId, ExprKind, Function, PlaceId, PlaceKind};
+
+/// Elements in which the PC stores a `float`: offset, factor, speed and limit of constant surface speed.
+const PC_FLOATS: std::ops::RangeInclusive<i32> = 111..=114;
+
+/// Elements of requests to the PC: the code, and what belongs to it.
+const MAILBOX: std::ops::RangeInclusive<i32> = 100..=107;
+
+/// Bytes of an element.
+const ELEMENT: i32 = 4;
+
+/// How a program stores in an element.
+#[derive(Clone, Copy, Default)]
+struct Stores {
+    /// Where it first stores a floating-point number, and of which type.
+    floating: Option<(Span, TypeId)>,
+    /// Whether it stores anything else there as well.
+    has_others: bool,
+}
+
+/// Reports elements of one type that are used as another.
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
+    let stores = stores(program, sink);
+    for function in program.functions() {
+        let walk = Walk { function, extent: Extent::All };
+        walk.stmts(&function.body, &mut |expr| {
+            for (value, use_of) in uses(program, function, expr) {
+                let Some(element) = integer_load(program, function, value) else { continue };
+                let stored = stores.get(&element).copied().unwrap_or_default();
+                let span = function.exprs[value].span;
+                let message = format!("`persist.UserData[{element}]` is read as an integer");
+                let finding = Diagnostic::warning(Lint::UserDataType, span, message);
+                let (what, finding) = match stored.floating {
+                    Some((place, ty)) if !stored.has_others => {
+                        let what = program.spell(ty);
+                        let label = format!("a `{what}` is stored here");
+                        (what, finding.label(place, label))
+                    }
+                    None if PC_FLOATS.contains(&element) && use_of == Use::Floating => {
+                        ("float".to_owned(), finding.note("the PC stores a `float` there"))
+                    }
+                    _ => continue,
+                };
+                let even = element - element % 2;
+                let index = if what == "double" { even } else { element };
+                sink.report(
+                    finding
+                        .at("the bits of a floating-point number")
+                        .help(format!("write `*({what} *)&persist.UserData[{index}]`")),
+                );
+            }
+        });
+    }
+}
+
+/// What a value is used for.
+#[derive(Clone, Copy, PartialEq)]
+enum Use {
+    /// It becomes a floating-point number.
+    Floating,
+    /// It is printed, or the like.
+    Argument,
+}
+
+/// The values that an expression takes as numbers.
+fn uses(program: &AnalysedProgram<'_>, function: &Function, expr: ExprId) -> Vec<(ExprId, Use)> {
+    let expr = &function.exprs[expr];
+    match &expr.kind {
+        ExprKind::Convert(inner) if expr.ty.is_floating() => vec![(*inner, Use::Floating)],
+        ExprKind::Call(call) => {
+            // `%x` shows the bits on purpose.
+            let format = literal_format(program.unit, function, call);
+            let shows_bits = format.is_some_and(|(_, text)| text.iter().any(|byte| b"xX".contains(byte)));
+            let values = call.variable.iter().flatten().filter(|_| !shows_bits);
+            values.map(|value| (*value, Use::Argument)).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Every store at a constant index; a `double` in the mailbox is reported.
+fn stores(program: &AnalysedProgram<'_>, sink: &mut Sink) -> BTreeMap<i32, Stores> {
+    let mut stores: BTreeMap<i32, Stores> = BTreeMap::new();
+    for function in program.functions() {
+        Walk { function, extent: Extent::All }.stmts(&function.body, &mut |expr| {
+            let place = match &function.exprs[expr].kind {
+                ExprKind::Assign(place, _) => *place,
+                ExprKind::Update(update) => update.place,
+                _ => return,
+            };
+            let Some(element) = element(program, function, place) else { return };
+            let (ty, span) = (function.places[place].ty, function.exprs[expr].span);
+            let is_double = ty == Types::DOUBLE;
+            if is_double && MAILBOX.contains(&element) {
+                sink.report(mailbox(element, span));
+            }
+            for index in element..=element + i32::from(is_double) {
+                let entry = stores.entry(index).or_default();
+                if ty.is_floating() {
+                    entry.floating.get_or_insert((span, ty));
+                } else {
+                    entry.has_others = true;
+                }
+            }
+        });
+    }
+    stores
+}
+
+fn mailbox(element: i32, span: Span) -> Diagnostic {
+    let message =
+        format!("a `double` is stored in `persist.UserData[{element}]`, which is part of the PC's mailbox");
+    Diagnostic::warning(Lint::UserDataType, span, message)
+        .at(format!("elements {element} and {}", element + 1))
+        .note("elements 100 to 107 hold requests to the PC: it takes what it finds in element 100 as the code of one")
+        .help("use elements outside of 100 to 107: `double` index 50 is element 100")
+}
+
+/// The element that is read as an integer.
+fn integer_load(program: &AnalysedProgram<'_>, function: &Function, value: ExprId) -> Option<i32> {
+    match function.exprs[value].kind {
+        ExprKind::Load(place) if function.places[place].ty == Types::INT => element(program, function, place),
+        _ => None,
+    }
+}
+
+/// The element of `persist.UserData` at which a place begins.
+fn element(program: &AnalysedProgram<'_>, function: &Function, place: PlaceId) -> Option<i32> {
+    let PlaceKind::Symbol(symbol, offset) = function.places[place].kind else { return None };
+    let (first, end) = user_data_index::range();
+    let is_inside = (first..end).contains(&offset) && (offset - first) % ELEMENT == 0;
+    (program.name(symbol) == PERSIST && is_inside).then(|| (offset - first) / ELEMENT)
+}
+
+/// The variable that holds the structure.
+const PERSIST: &str = "persist";

@@ -1,0 +1,51 @@
+//! `while (!CheckDone(0) && !CheckDone(1))`, which ends with the first axis that arrives.
+
+use super::program::AnalysedProgram;
+use crate::diag::{Diagnostic, Lint, Sink};
+use crate::operators::CompareOp;
+use crate::typed::{Callee, ExprId, ExprKind, Function, StmtKind, UnaryOp};
+
+/// The function that says whether the motion of an axis has ended.
+const CHECK_DONE: &str = "CheckDone";
+
+/// Reports loops that wait while no axis has arrived.
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
+    for function in program.functions() {
+        function.each_stmt(&mut |stmt| {
+            let StmtKind::Loop { condition: Some(condition), .. } = stmt.kind else { return };
+            let mut waits = 0;
+            if moving(program, function, condition, &mut waits) && waits > 1 {
+                let span = function.exprs[condition].span;
+                sink.report(
+                    Diagnostic::warning(
+                        Lint::WaitForAny,
+                        span,
+                        "this loop ends when the first axis has arrived",
+                    )
+                    .at("false as soon as one of them has")
+                    .help("write `||` in place of `&&` to wait for all of them"),
+                );
+            }
+        });
+    }
+}
+
+/// Whether a condition asks only whether axes move, with `&&` in between; how many of them.
+fn moving(program: &AnalysedProgram<'_>, function: &Function, condition: ExprId, waits: &mut u32) -> bool {
+    match function.exprs[condition].kind {
+        ExprKind::And(a, b) => moving(program, function, a, waits) && moving(program, function, b, waits),
+        ExprKind::Unary(UnaryOp::Not, call) => asks(program, function, call, waits),
+        ExprKind::Compare(CompareOp::Equal, call, zero) => {
+            matches!(function.exprs[zero].kind, ExprKind::Int(0)) && asks(program, function, call, waits)
+        }
+        ExprKind::Convert(inner) => moving(program, function, inner, waits),
+        _ => false,
+    }
+}
+
+fn asks(program: &AnalysedProgram<'_>, function: &Function, call: ExprId, waits: &mut u32) -> bool {
+    let ExprKind::Call(call) = &function.exprs[call].kind else { return false };
+    let is_it = matches!(call.callee, Callee::Symbol(callee) if program.name(callee) == CHECK_DONE);
+    *waits += u32::from(is_it);
+    is_it
+}
