@@ -420,6 +420,10 @@ macro_rules! for_each_firmware_fn {
             /// system.
             coord::get_nominal_fro_change_time = GetNominalFROChangeTime() -> f32,
                 at 0x1000_31F8, cost 838, header;
+            /// Empties the buffer of coordinated motion and prepares it for new segments, as the command OpenBuf does.
+            coord::open_buf = iOpenBuf(), at 0x8001_3F6C, cost 68, firmware;
+            /// Starts the buffer of coordinated motion, as the command ExecBuf does.
+            coord::exec_buf = iExecBuf(), at 0x8001_4050, cost 1072, firmware;
             /// Ramps the feed override to `FRO` (1.0 real time, 0 stopped, negative backwards).
             coord::set_fro = SetFRO(FRO: f32), at 0x1000_3610, cost 1001, header;
             /// Ramps the rapid override to `FRO`.
@@ -668,6 +672,8 @@ macro_rules! for_each_firmware_fn {
             math::fast_fabsf = fast_fabsf(y: f32) -> f32, at 0x1000_1A30, cost 6, header, pure;
             /// Sine of `x` cycles, 0 to 1; the second phase's sine goes to `*sin2`.
             math::sine_3ph = Sine3PH(x: f32, sin2: *mut f32) -> f32, at 0x1001_3180, cost 27, firmware;
+            /// Real cube root, of negative numbers too.
+            math::cube_root = CubeRoot(v: f64) -> f64, at 0x1000_89AC, cost 580, firmware;
             /// Fractional part of `v`, with its sign.
             math::fractionf = fractionf(v: f64) -> f32, at 0x1000_1970, cost 41, firmware;
             /// Fractional part of `x`; the whole part goes to `*ip`.

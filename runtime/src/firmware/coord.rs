@@ -172,6 +172,14 @@ pub(crate) fn get_nominal_fro_change_time(_: &mut Parts, caller: &mut Caller<'_>
     nominal_change_time(caller.memory)
 }
 
+pub(crate) fn open_buf(_: &mut Parts, caller: &mut Caller<'_>) {
+    buffer::open(caller.memory);
+}
+
+pub(crate) fn exec_buf(_: &mut Parts, caller: &mut Caller<'_>) {
+    buffer::execute(caller.memory);
+}
+
 pub(crate) fn set_fro(_: &mut Parts, caller: &mut Caller<'_>, value: f32) {
     let time = nominal_change_time(caller.memory);
     rate::set_feed(caller.memory, value, time);

@@ -78,6 +78,8 @@ functions! {
     cos(x) -> f64 = libm::cos(x);
     /// Cosine.
     cosf(x) -> f32 = libm::cosf(x);
+    /// Cube root.
+    cube_root(x) -> f64 = libm::cbrt(x);
     /// Tangent.
     tan(x) -> f64 = libm::tan(x);
     /// Tangent.
