@@ -61,11 +61,16 @@ pub(super) struct CompareArguments {
 /// Ticks in which axes of the firmware come to rest after the model has ended.
 const REST: u64 = 22;
 
+/// How a run ends that is cut off by its limit.
+const STILL_RUNNING: &str = "still running";
+
 /// How a program compares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Verdict {
     Equal,
     Unequal,
+    /// Both runs were cut off before anything could be compared.
+    CutOff,
     /// Its source has errors.
     Broken,
 }
@@ -88,15 +93,22 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<Exit> {
     }
     output::print(&format!("{:40} {:>6} {:16} {:>10}\n{table}", "program", "lines", "result", "times, s"))?;
     let count = |verdict| verdicts.iter().filter(|&&found| found == verdict).count();
-    let (unequal, broken) = (count(Verdict::Unequal), count(Verdict::Broken));
-    for (number, what) in [(unequal, "differ"), (broken, "do not compile")] {
+    let (unequal, cut_off, broken) =
+        (count(Verdict::Unequal), count(Verdict::CutOff), count(Verdict::Broken));
+    let rows = [
+        (unequal, "differ"),
+        (cut_off, "are cut off by `--for` before their first line"),
+        (broken, "do not compile"),
+    ];
+    for (number, what) in rows {
         if number > 0 {
             terminal::note(&format!("{number} of {} programs {what}", verdicts.len()));
         }
     }
-    Ok(match (broken, unequal) {
-        (0, 0) => Exit::Success,
-        (0, _) => Exit::Unmet,
+    Ok(match (broken, unequal, cut_off) {
+        (0, 0, 0) => Exit::Success,
+        (0, 0, _) => Exit::StillRunning,
+        (0, ..) => Exit::Unmet,
         _ => Exit::Failure,
     })
 }
@@ -173,10 +185,20 @@ impl CompareArguments {
         if let Some(near) = near.any() {
             output::print(&format!("{name}: {near}\n"))?;
         }
-        let result = if differences.is_empty() { "equal".to_owned() } else { plural(differences.len()) };
+        let is_cut_off = [&model, &firmware].iter().all(|outcome| outcome.end == STILL_RUNNING);
+        let is_unseen = is_cut_off && differences.is_empty() && firmware.lines.is_empty();
+        let result = match differences.len() {
+            0 if is_unseen => "not compared".to_owned(),
+            0 if is_cut_off => format!("equal for {} s", self.limit),
+            0 => "equal".to_owned(),
+            count => plural(count),
+        };
         let times = if late > self.tolerance { "  (times beyond the tolerance)" } else { "" };
         let lines = firmware.lines.len();
         writeln!(table, "{name:40} {lines:6} {result:16} {late:10.6}{times}")?;
+        if is_unseen {
+            return Ok(Verdict::CutOff);
+        }
         let is_equal = differences.is_empty() && !is_late;
         Ok(if is_equal { Verdict::Equal } else { Verdict::Unequal })
     }
@@ -240,7 +262,7 @@ impl CompareArguments {
 const fn ended(end: End) -> &'static str {
     match end {
         End::AllEnded | End::Interrupted => "ended",
-        End::Limit => "still running",
+        End::Limit => STILL_RUNNING,
     }
 }
 

@@ -53,6 +53,7 @@ const PROJECT: &[(&str, &[u8])] = &[
     ("first.c", include_bytes!("project/first.c")),
     ("first.expected", include_bytes!("project/first.expected")),
     ("compile_flags.txt", include_bytes!("project/compile_flags.txt")),
+    (".gitignore", include_bytes!("project/.gitignore")),
     (".vscode/tasks.json", include_bytes!("project/.vscode/tasks.json")),
     (".vscode/launch.json", include_bytes!("project/.vscode/launch.json")),
     (".vscode/extensions.json", include_bytes!("project/.vscode/extensions.json")),

@@ -167,7 +167,7 @@ fn verdict<'a>(
     Ok(match &case.expected {
         Some(expected) if *expected == first.golden => Verdict::Passed,
         _ if bless && matches!(first.code, None | Some(1 | 2)) => Verdict::Refused(first),
-        _ if bless && !first.notes().is_empty() => Verdict::Asked(first),
+        _ if bless && !first.doubts().is_empty() => Verdict::Asked(first),
         _ if bless => {
             write(case, &first)?;
             Verdict::Blessed

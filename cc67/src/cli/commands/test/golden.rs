@@ -24,6 +24,34 @@ impl Shown {
     }
 }
 
+/// How the board words a fault on the console.
+const FAULTS: &[&str] = &[
+    "Following Error Disabled Axis",
+    "Limit Disabled Axis",
+    "Limit Stop Axis",
+    "Soft Limit FeedHold",
+    "Fatal Error",
+];
+
+/// How the message of a run begins that is cut off while threads are still active.
+const CUT_OFF: &[&str] = &["cc67: still running after ", "cc67: at the end, after "];
+
+impl Shown {
+    /// What a person should look at before it is expected from now on: traps, remarks, what is not as expected, and
+    /// faults that the board prints on the console. That a thread has not ended is none of these.
+    pub(super) fn doubts(&self) -> String {
+        let (console, notes) = self.golden.split_at(self.golden.len() - self.notes().len());
+        let faults = console.lines().filter(|line| FAULTS.iter().any(|fault| line.contains(fault)));
+        let is_end = |line: &str| {
+            CUT_OFF.iter().any(|words| line.starts_with(words))
+                || line.starts_with("---- notes")
+                || line == "---- exit 4"
+        };
+        let doubts: Vec<_> = faults.chain(notes.lines().filter(|line| !is_end(line))).collect();
+        doubts.iter().map(|line| format!("{line}\n")).collect()
+    }
+}
+
 /// A golden text without messages: the console, and how the run ended.
 pub(super) fn without_notes(golden: &str) -> String {
     let Some(at) = find(golden, "---- notes\n") else { return golden.to_owned() };
@@ -76,6 +104,20 @@ mod tests {
         check("done\n", "", 0, "done\n", "");
         check("no end", "", 0, "no end\n", "");
         check("", "", 0, "", "");
+    }
+
+    #[test]
+    fn faults_are_doubtful_and_endless_threads_are_not() {
+        let doubts = |stdout: &str, stderr: &str, code| {
+            shown(stdout.as_bytes(), stderr.as_bytes(), Some(code)).doubts()
+        };
+        assert_eq!(
+            doubts("ready\n", "cc67: still running after 60 s of board time; `--for SECONDS`\n", 4),
+            ""
+        );
+        let fault = "Following Error Disabled Axis:0\n";
+        assert_eq!(doubts(&format!("ready\n{fault}"), "", 0), fault);
+        assert_eq!(doubts("", "cc67: thread 1 stopped\n", 3), "cc67: thread 1 stopped\n---- exit 3\n");
     }
 
     #[test]

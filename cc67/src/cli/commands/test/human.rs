@@ -61,10 +61,10 @@ fn failure(case: &Case, verdict: &Verdict, paint: &Paint) -> String {
             )
         }
         Verdict::Asked(shown) => format!(
-            "{}  {name}: not written, as more than a console would become expected; --force writes it\n{}{}",
+            "{}  {name}: not written, as faults or remarks would become expected; --force writes it\n{}{}",
             paint.red("REFUSED"),
             messages(shown),
-            indented(shown.notes())
+            indented(&shown.doubts())
         ),
         Verdict::Unknown => format!(
             "{failed}   {name}: there is no {}; `cc67 test --bless {}` writes it\n",

@@ -138,12 +138,12 @@ pub(super) fn test(arguments: &TestArguments) -> Result<Exit> {
     Ok(if verdicts.iter().any(Verdict::is_bad) { Exit::Failure } else { Exit::Success })
 }
 
-/// Asks whether remarks, traps and an exit code should be expected from now on; without a terminal, they are not.
+/// Asks whether faults, remarks, traps and an exit code should be expected from now on; without a terminal, they are not.
 fn agrees(name: &str, shown: &Shown) -> Result<bool> {
     if !io::stdin().is_terminal() {
         return Ok(false);
     }
-    let notes = human::indented(shown.notes());
+    let notes = human::indented(&shown.doubts());
     terminal::aside(&format!("{name}: this would become the expected output:\n{notes}Write it? [y/N] "));
     let mut answer = String::new();
     io::stdin().read_line(&mut answer).context("cannot read the answer")?;

@@ -19,7 +19,8 @@ void MoveAndReport(double position)
 main()
 {
     ch0->InputMode = NO_INPUT_MODE;
-    ch0->OutputMode = NO_OUTPUT_MODE;
+    ch0->OutputMode = STEP_DIR_MODE;
+    ch0->OutputChan0 = 8;   // step generator 0: pulses on bit 8, direction on bit 9
     ch0->Vel = 1000;        // units a second
     ch0->Accel = 5000;      // units a second squared
     ch0->Jerk = 50000;      // units a second cubed
