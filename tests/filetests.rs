@@ -29,10 +29,13 @@ fn main() -> ExitCode {
     let programs = harness::files(&folder, "c").into_iter().filter(|path| !is_part(path));
     let mut trials: Vec<_> =
         programs.map(|path| Trial::test(name_of(&path), move || check(&path, is_blessed))).collect();
-    trials.push(Trial::test("mistakes: at least 60 programs", {
-        let mistakes = harness::files(&folder.join("mistakes"), "c").len();
-        move || if mistakes < 60 { Err(format!("there are {mistakes}").into()) } else { Ok(()) }
-    }));
+    for (room, least) in [("mistakes", 120), ("twins", 60)] {
+        let programs =
+            harness::files(&folder.join(room), "c").into_iter().filter(|path| !is_part(path)).count();
+        trials.push(Trial::test(format!("{room}: at least {least} programs"), move || {
+            if programs < least { Err(format!("there are {programs}").into()) } else { Ok(()) }
+        }));
+    }
     let tests = harness::files(&folder, "txt");
     for (stage, least) in stages::folders() {
         let count = tests.iter().filter(|path| path.starts_with(folder.join(&stage))).count();

@@ -5,6 +5,7 @@
 use kmotiondef::AccessSize;
 use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, Function, function_at};
 use kmotiondef::function::{Attributes, Polled};
+use kmotiondef::limits::MAX_GATHER_DATA;
 use kmotiondef::map::{FPGA, TIMER0};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::{
@@ -20,6 +21,7 @@ use vm::scheduler::Turn;
 use vm::trap::{Trap, TrapKind};
 
 use crate::commands::Scripts;
+use crate::firmware::calls::WrongWait;
 use crate::firmware::dispatch::{HANDLERS, signatures};
 use crate::firmware::parts::Parts;
 use crate::firmware::races::shared;
@@ -40,6 +42,9 @@ use crate::servo::{Servo, limits};
 use crate::views::Typed;
 use crate::world::Moment;
 use crate::world::trace::{Record, View};
+
+/// The address after the gather buffer. Nothing but a program writes there.
+const GATHER_END: GuestAddr = GuestAddr::new(0x8010_2010 + 8 * MAX_GATHER_DATA as u32);
 
 /// What a register access costs beyond the instruction if time is not the board's: 200 ns, a timer 100 ns.
 const FPGA_CYCLES: Cycles = Cycles::new(40);
@@ -120,6 +125,13 @@ impl Kernel {
         }
         if let Some(races) = races {
             races.finish(context.threads, context.now, out);
+        }
+        if context.memory.peek::<f64>(GATHER_END).to_bits() != 0 {
+            out.remark(context.now, Message::GatherOverrun { most: MAX_GATHER_DATA });
+        }
+        for WrongWait { thread, asked, moving, at } in calls.motions.wrong_waits() {
+            let message = Message::WaitsForOther { asked, moving };
+            out.remark_of(context.now, Speaker::Thread(thread), at, message);
         }
         for thread in ThreadId::all().filter(|thread| context.threads.state(*thread).is_active()) {
             let reads = calls.waits.of(thread).calls.iter().filter(|call| call.polls == Polled::Bit);
@@ -285,6 +297,7 @@ impl Firmware for Kernel {
     }
 
     fn begins(&mut self, thread: ThreadId, context: &mut TickContext<'_>) {
+        self.parts.calls.motions.begins(thread);
         self.parts.calls.globals.restore(thread, context.memory);
         if let Some(races) = &mut self.parts.races {
             races.begins(thread, context.threads, context.now);
@@ -312,6 +325,11 @@ impl Firmware for Kernel {
         let received = serial::tick(parts, context) | parts.exchange(context);
         if acted || received || is_touched {
             parts.servo.cache.invalidate(Change::Memory);
+        }
+        if let Turn::User(thread) = moment.turn
+            && let Some(message) = parts.pc.host.watch(context.memory, thread)
+        {
+            parts.out.remark_of(context.now, Speaker::Thread(thread), None, message);
         }
         let changed = crate::servo::tick(&mut parts.servo_tick(), context.memory, is_touched);
         self.sample(context, 1);

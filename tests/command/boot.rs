@@ -376,3 +376,32 @@ main()
     assert_eq!(calls[..4], of_model[..4]);
     assert!(run("1:one.csv", &["--boot", &file])[1..].iter().all(|row| row[1] == "1"));
 }
+
+/// Mistakes of wiring, which a board shows by what does not move: the model and the firmware come to the same.
+#[test]
+fn wrong_channels_move_as_little_on_the_firmware_as_on_the_model() {
+    let Some(firmware) = firmware() else { return };
+    let folder = harness::root().join("tests/filetests/mistakes");
+    for (machine, program) in [
+        ("parts/slow_motor.toml", "encoder_on_another_input.c"),
+        ("parts/wired.toml", "motor_on_another_dac.c"),
+        ("parts/heavy.toml", "sign_of_the_output_wrong_without_integrator.c"),
+        ("parts/motor.toml", "max_output_0.c"),
+        ("parts/motor.toml", "position_written_while_enabled.c"),
+        ("parts/pushed.toml", "axis_enabled_at_a_place_where_it_is_not.c"),
+        ("parts/disables.toml", "axis_disabled_while_it_is_waited_for.c"),
+    ] {
+        let output = cc67(
+            &folder,
+            ["compare", "--boot", &firmware, "--machine", machine, "--for", "3", "-w", program],
+        );
+        assert_eq!(output.code, 0, "{program}: {output:?}");
+    }
+    let twins = harness::root().join("tests/filetests/twins");
+    let wired = "../mistakes/parts/wired.toml";
+    for program in ["encoder_on_its_own_input.c", "dac_written_by_a_program.c"] {
+        let output =
+            cc67(&twins, ["compare", "--boot", &firmware, "--machine", wired, "--for", "3", program]);
+        assert_eq!(output.code, 0, "{program}: {output:?}");
+    }
+}

@@ -381,8 +381,8 @@ fn an_axis_still_jogging_is_named_when_the_run_is_cut_short() {
     assert_eq!(output.code, 4, "{output:?}");
     assert!(
         output.stderr.contains(
-            "cc67: the programs have ended, but axis 2 still moves after 60 s of board time: what `Jog` begins, \
-             `Jog(2, 0)` or `DisableAxis(2)` ends; `--for SECONDS` ends the run at a time of your choice, with exit code 0\n"
+            "cc67: the programs have ended, but axis 2 still moves after 60 s of board time: `Jog(2, 0)` or \
+             `DisableAxis(2)` ends a motion; `--for SECONDS` ends the run at a time of your choice, with exit code 0\n"
         ),
         "{output:?}"
     );

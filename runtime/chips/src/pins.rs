@@ -47,6 +47,8 @@ pub struct Pins {
     inputs: BitSet,
     /// Inputs that something drives.
     driven: BitSet,
+    /// Inputs whose level is described for as long as nothing drives them.
+    idle: BitSet,
     /// Inputs that carry the phases of an encoder.
     phases: u64,
     /// Pins whose fast signals are told edge by edge, and the levels last reported of them.
@@ -66,6 +68,7 @@ impl Default for Pins {
             written: BitSet::default(),
             inputs: BitSet::default(),
             driven: BitSet::default(),
+            idle: BitSet::default(),
             phases: 0,
             watched: 0,
             shown: 0,
@@ -205,6 +208,7 @@ impl Pins {
 
     /// An input reads 1 as long as nothing drives it.
     pub fn idle_high(&mut self, bit: Bit) {
+        self.idle.set(bit, true);
         if !self.is_driven(bit) {
             self.inputs.set(bit, true);
         }
@@ -213,6 +217,11 @@ impl Pins {
     /// Returns whether something outside of the board drives a bit or is going to.
     pub fn is_declared(&self, bit: Bit) -> bool {
         self.driven.contains(bit)
+    }
+
+    /// Returns whether the level of an input is described for as long as nothing drives it.
+    pub fn is_described(&self, bit: Bit) -> bool {
+        self.idle.contains(bit)
     }
 
     /// Returns whether anything drives an input.

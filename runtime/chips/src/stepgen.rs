@@ -162,6 +162,11 @@ impl StepGenerators {
         (0..self.generators.len()).filter(in_use).any(|generator| self.pins(generator).contains(&Some(bit)))
     }
 
+    /// Returns whether pulses have the length and polarity of power-up.
+    pub fn has_start_pulses(&self) -> bool {
+        self.settings & (LENGTH | INVERTED) == START
+    }
+
     /// The pins of a generator: step and direction.
     pub fn pins(&self, generator: usize) -> [Option<Bit>; 2] {
         let moved = MOVED_PINS.get(generator).filter(|_| self.settings & MOVED != 0);

@@ -8,6 +8,7 @@ use super::machine_file::MachineFile;
 use crate::firmware::parts::Parts;
 use crate::io::konnect::Port;
 use crate::machine::description::{Axis, Encoder, Model};
+use crate::machine::wiring::Wiring;
 use crate::machine::{Mechanics, Plant, connect_snapamp};
 use crate::views::Typed;
 use crate::world::outside::wire::Wire;
@@ -18,6 +19,7 @@ pub(crate) fn install(parts: &mut Parts, machine: &MachineFile) {
     for axis in AxisId::all() {
         connected.loads[axis] = Plant::new(&machine.axes[axis.index()]);
     }
+    connected.wiring = Wiring::new(&machine.axes);
     if let Some(spindle) = machine.connected.spindle {
         // The load of that axis counts as its encoder does.
         let load = Axis { model: Model::None, encoder: Encoder::Connected, ..Axis::default() };

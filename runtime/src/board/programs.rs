@@ -40,6 +40,10 @@ impl<E: Engine> Board<E> {
         details: Arc<[CodeDetail]>,
     ) -> Result<(), LoadError> {
         let prepared = prepare(image, thread, |other| self.is_taken(other, thread))?;
+        if self.thread(thread).is_active() {
+            let (kernel, context) = self.machine.firmware_mut();
+            kernel.parts.out.remark(context.now, Message::ProgramReplaced { thread });
+        }
         self.machine.unload_program(thread);
         self.machine.firmware_mut().0.parts.pc.downloads.forget(thread);
         self.machine.firmware_mut().0.parts.calls.globals.forget(thread);

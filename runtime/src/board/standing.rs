@@ -203,7 +203,7 @@ impl<E: Engine> Board<E> {
             Some(BitDirection::Memory) => Source::Memory,
             _ if range.is_some_and(|range| range.kind == BitKind::KstepInput) && !is_input => Source::NoKstep,
             _ if !is_input => Source::Output,
-            _ if parts.io.pins.is_driven(bit) => Source::Outside,
+            _ if parts.io.pins.is_driven(bit) || parts.io.pins.is_described(bit) => Source::Outside,
             _ => Source::Nothing,
         }
     }

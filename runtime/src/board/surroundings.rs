@@ -25,10 +25,10 @@ use super::machine_file::MachineFile;
 use super::{Config, connect};
 use crate::firmware::parts::Parts;
 use crate::io::bits::bit_state;
-use crate::machine::{COUNTS_PER_TICK, Drive};
+use crate::machine::{COUNTS_PER_TICK, Channel, Drive};
 use crate::out::{Event, EventKind, Message, Remark, Request, Speaker};
 use crate::pc::{Pc, host};
-use crate::servo::driven;
+use crate::servo::{driven, wired};
 use crate::views::{AxisView, Typed};
 use crate::world::stimulus::{Asker, Stimulus};
 use crate::world::{Moment, trace};
@@ -324,25 +324,41 @@ impl Surroundings {
                 plant.note_position(chan.get(Chan::POSITION));
             }
             let mode = OutputMode::new(chan.get(Chan::OUTPUT_MODE));
-            let made = if OutputMode::has_generator(mode) {
-                let generator = generator_of(chan.get(Chan::OUTPUT_CHAN0));
-                let gain = f64::from(chan.get(Chan::OUTPUT_GAIN));
-                let made = instant.steps[generator] - self.steps[generator];
-                if gain == 0.0 { 0.0 } else { made / gain }
-            } else {
-                0.0
+            let wired = self.parts.machine.wiring.drive(axis);
+            let generator = match wired {
+                Some(Channel::Generator(generator)) => Some(generator),
+                Some(Channel::Dac(_) | Channel::Pwm(_) | Channel::Relays(..)) => None,
+                None => OutputMode::has_generator(mode).then(|| generator_of(chan.get(Chan::OUTPUT_CHAN0))),
             };
+            let is_others = |generator: &usize| {
+                self.parts.machine.wiring.motor_on(*generator).is_some_and(|owner| owner != axis)
+            };
+            let gain = f64::from(chan.get(Chan::OUTPUT_GAIN));
+            let made = generator
+                .filter(|generator| gain != 0.0 && !is_others(generator))
+                .map_or(0.0, |generator| (instant.steps[generator] - self.steps[generator]) / gain);
             let is_enabled = chan.get(Chan::ENABLE) != 0;
             let was_enabled = std::mem::replace(&mut self.was_enabled[at], is_enabled);
-            if is_enabled {
+            if let Some(Channel::Generator(_)) = wired {
+                self.parts.machine.loads.push(axis, made);
+                self.parts.machine.loads[axis].drive = Drive::None;
+            } else if let Some(drive) =
+                wired::drive(&self.parts.machine, &self.parts.io, instant.memory, axis)
+            {
+                self.parts.machine.loads[axis].drive = drive;
+            } else if is_enabled {
+                let chan = AxisView::of(instant.memory, axis);
+                let plant = &mut self.parts.machine.loads[axis];
                 self.stepped[at] += made;
                 plant.drive = driven(&chan, self.stepped[at]);
                 if let (Drive::Steps(command), false) = (plant.drive, was_enabled || made != 0.0) {
                     plant.refer_to(command);
                 }
             } else {
-                plant.release();
+                self.parts.machine.loads[axis].release();
             }
+            let chan = AxisView::of(instant.memory, axis);
+            let plant = &mut self.parts.machine.loads[axis];
             let reach = COUNTS_PER_TICK * f64::from(chan.get(Chan::INPUT_GAIN0)).abs();
             plant.advance(&chan, reach, || ANY_STEPS);
             plant.take_stepped();
@@ -366,7 +382,8 @@ impl Surroundings {
             };
             let gain = f64::from(chan.get(Chan::INPUT_GAIN0));
             let last = chan.get(Chan::LAST_ENC);
-            let turned_by = AxisId::new(channel as i32).unwrap_or(axis);
+            let turned_by = self.parts.machine.wiring.turns(instant.memory, axis);
+            let Some(turned_by) = turned_by else { continue };
             let turned_gain = f64::from(instant.memory.axis(turned_by, Chan::INPUT_GAIN0));
             let count = self.parts.machine.loads[turned_by].encoder(turned_gain);
             if instant.encoders[channel] != count.cast_unsigned() {

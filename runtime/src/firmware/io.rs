@@ -117,9 +117,12 @@ pub(crate) fn read_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) -> 
         check_read(parts, caller, bit);
         return i32::from(level);
     }
+    if let Some((axis, width, step)) = parts.machine.index_missed(bit, caller.now()) {
+        parts.out.diagnose(caller, Message::IndexMissed { bit, axis, width, step });
+    }
     if let Some(assist) = &mut parts.world.assist {
         assist.polled(bit, Asker { thread: caller.thread, at: caller.at });
-    } else if !parts.io.pins.is_driven(bit) {
+    } else if !parts.io.pins.is_driven(bit) && !parts.io.pins.is_described(bit) {
         parts.out.diagnose(caller, Message::UndrivenInput { bit, level: level.into() });
     }
     i32::from(level)

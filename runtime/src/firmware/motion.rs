@@ -11,8 +11,8 @@ use vm::memory::GuestMemory;
 use vm::trap::TrapKind;
 
 use super::calls::Continuation;
-use super::costs;
 use super::parts::Parts;
+use super::{axis_check, costs};
 use crate::io::bits;
 use crate::machine::Drive;
 use crate::out::Message;
@@ -41,12 +41,13 @@ fn checked(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: i32
 }
 
 pub(crate) fn enable_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) {
+    axis_check::goes_on(parts, caller);
     let Some(axis) = checked(parts, caller, Function::EnableAxis, axis) else { return };
     let mode = OutputMode::new(caller.memory.axis(axis, Chan::OUTPUT_MODE));
     let keeps_dest = mode.is_some_and(|mode| mode.traits().keeps_dest);
     let field = if keeps_dest { Chan::DEST } else { Chan::POSITION };
     let dest = caller.memory.axis(axis, field);
-    enable(parts, caller, axis, dest);
+    enable(parts, caller, Function::EnableAxis, axis, dest);
 }
 
 /// An axis is enabled: the pins of its step output become outputs, and stay so when it is disabled. Tells which of them
@@ -67,14 +68,16 @@ fn take_pins(parts: &mut Parts, caller: &mut Caller<'_>, axis: AxisId) {
 }
 
 pub(crate) fn enable_axis_dest(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, dest: f64) {
+    axis_check::goes_on(parts, caller);
     match AxisId::new(axis) {
-        Some(axis) => enable(parts, caller, axis, dest),
+        Some(axis) => enable(parts, caller, Function::EnableAxisDest, axis, dest),
         None => invalid(parts, "enable"),
     }
 }
 
 /// Puts an axis at a destination and turns it on.
-fn enable(parts: &mut Parts, caller: &mut Caller<'_>, axis: AxisId, dest: f64) {
+fn enable(parts: &mut Parts, caller: &mut Caller<'_>, function: Function, axis: AxisId, dest: f64) {
+    axis_check::enabled(parts, caller, function, axis, dest);
     switching::enable(&mut parts.servo, &mut parts.machine, caller.memory, axis, dest);
     take_pins(parts, caller, axis);
 }
@@ -86,6 +89,7 @@ pub(crate) fn disable_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32
 }
 
 pub(crate) fn zero(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) {
+    axis_check::goes_on(parts, caller);
     let Some(axis) = AxisId::new(axis) else { return invalid(parts, Function::Zero.name()) };
     switching::zero(&mut parts.servo, &mut parts.machine, caller.memory, axis);
     hold::abort_if_member(caller.memory, axis);
@@ -115,7 +119,7 @@ fn may_move(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Func
         let plays_encoder = memory.axis(axis, Chan::INPUT_MODE) == InputMode::User.get();
         if parts.machine.mechanics.has_contacts(axis) {
             parts.out.diagnose(caller, Message::AxisUndriven { function, axis });
-        } else if !plays_encoder && caller.thread.is_some() && any_output(memory) {
+        } else if !plays_encoder && caller.thread.is_some() {
             parts.out.diagnose(caller, Message::NoOutput { function, axis });
         }
     }
@@ -128,17 +132,29 @@ fn may_move(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Func
     may
 }
 
-/// Whether a program has set up the output of any axis; one that has set up none tries out moves.
-fn any_output(memory: &GuestMemory) -> bool {
-    AxisId::all().any(|axis| memory.axis(axis, Chan::OUTPUT_MODE) != OutputMode::None.get())
-}
-
 /// Whether an axis is beyond a soft limit and a call would lead it further out: the board does not begin that and does
 /// not say so (axes-and-motion.md section 7.3).
-fn is_beyond(memory: &GuestMemory, axis: AxisId, direction: f64) -> bool {
-    let dest = memory.axis(axis, Chan::DEST);
-    direction > 0.0 && dest > f64::from(memory.axis(axis, Chan::SOFT_LIMIT_POS))
-        || direction < 0.0 && dest < f64::from(memory.axis(axis, Chan::SOFT_LIMIT_NEG))
+fn is_beyond(
+    parts: &mut Parts,
+    caller: &Caller<'_>,
+    function: Function,
+    axis: AxisId,
+    direction: f64,
+) -> bool {
+    let dest = caller.memory.axis(axis, Chan::DEST);
+    let (pos, neg) =
+        (caller.memory.axis(axis, Chan::SOFT_LIMIT_POS), caller.memory.axis(axis, Chan::SOFT_LIMIT_NEG));
+    let (name, limit) = if direction > 0.0 && dest > f64::from(pos) {
+        ("SoftLimitPos", pos)
+    } else if direction < 0.0 && dest < f64::from(neg) {
+        ("SoftLimitNeg", neg)
+    } else {
+        return false;
+    };
+    if neg <= pos {
+        parts.out.diagnose(caller, Message::BeyondSoftLimit { function, axis, dest, name, limit });
+    }
+    true
 }
 
 /// Waits for the caller's next slice if the axis is moving: the board plans there; for the planning time of the machine
@@ -197,6 +213,7 @@ struct MoveRequest {
 }
 
 fn request(parts: &mut Parts, caller: &mut Caller<'_>, request: &MoveRequest) -> Outcome<()> {
+    axis_check::goes_on(parts, caller);
     let Some(axis) = checked(parts, caller, request.function, request.axis) else {
         return Outcome::Done(());
     };
@@ -210,13 +227,24 @@ fn request(parts: &mut Parts, caller: &mut Caller<'_>, request: &MoveRequest) ->
     if caller.woken.is_none() {
         notice_replaced(parts, caller, axis, request.function, target);
     }
+    if caller.woken.is_none() {
+        axis_check::moved(parts, caller, request.function, axis);
+        axis_check::planned(
+            parts,
+            caller,
+            request.function,
+            axis,
+            (target - caller.memory.axis(axis, Chan::DEST)).abs(),
+        );
+    }
     if let Some(wake) = planning_wait(parts, caller, axis) {
         parts.calls.keep(caller, Continuation::Target(target));
         return Outcome::Wait(wake);
     }
     // A destination that is not a number makes a relative target another one.
+    let way = target - caller.memory.axis(axis, Chan::DEST);
     if !is_place(parts, caller, request.function, request.target)
-        || is_beyond(caller.memory, axis, target - caller.memory.axis(axis, Chan::DEST))
+        || is_beyond(parts, caller, request.function, axis, way)
     {
         return Outcome::Done(());
     }
@@ -283,6 +311,7 @@ pub(crate) fn move_rel_at_vel(
 }
 
 pub(crate) fn jog(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, velocity: f64) -> Outcome<()> {
+    axis_check::goes_on(parts, caller);
     let Some(axis) = checked(parts, caller, Function::Jog, axis) else { return Outcome::Done(()) };
     let is_enabled = caller.memory.axis(axis, Chan::ENABLE) != 0;
     // To stop an axis that is disabled is no mistake.
@@ -295,13 +324,16 @@ pub(crate) fn jog(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, velocit
     if let Some(wake) = planning_wait(parts, caller, axis) {
         return Outcome::Wait(wake);
     }
-    if is_beyond(caller.memory, axis, velocity) {
+    if is_beyond(parts, caller, Function::Jog, axis, velocity) {
         return Outcome::Done(());
     }
     // At rest there is nothing to stop. What counts is whether a motion is executed, not its speed.
     if velocity == 0.0 && !has_motion(caller.memory, axis) {
         caller.memory.set_axis(axis, Chan::LAST_MOTION_TYPE, LastMotion::Jog.get());
         return Outcome::Done(());
+    }
+    if velocity != 0.0 && caller.woken.is_none() {
+        axis_check::moved(parts, caller, Function::Jog, axis);
     }
     // Any speed will do: only acceleration and jerk limit a jog.
     let Some(limits) = limits(caller.memory, axis, Some(1.0)) else {
@@ -331,6 +363,9 @@ pub(crate) fn move_exp(
     let Some(axis) = checked(parts, caller, Function::MoveExp, axis) else { return Outcome::Done(()) };
     if !may_move(parts, caller, axis, Function::MoveExp) || !is_place(parts, caller, Function::MoveExp, x) {
         return Outcome::Done(());
+    }
+    if caller.woken.is_none() {
+        axis_check::moved(parts, caller, Function::MoveExp, axis);
     }
     if let Some(wake) = planning_wait(parts, caller, axis) {
         return Outcome::Wait(wake);
@@ -375,6 +410,7 @@ pub(crate) fn move_xyzabc(
         if may_move(parts, caller, axis, Function::MoveXYZABC)
             && is_place(parts, caller, Function::MoveXYZABC, target)
         {
+            axis_check::moved(parts, caller, Function::MoveXYZABC, axis);
             match limits(caller.memory, axis, None) {
                 Some(limits) => {
                     start_move_to(caller.memory, axis, target, &limits, LastMotion::Multi);
@@ -392,7 +428,14 @@ fn done(memory: &GuestMemory, axis: AxisId) -> i32 {
 }
 
 pub(crate) fn check_done(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) -> i32 {
-    checked(parts, caller, Function::CheckDone, axis).map_or(-1, |axis| done(caller.memory, axis))
+    let Some(axis) = checked(parts, caller, Function::CheckDone, axis) else { return -1 };
+    let memory = &*caller.memory;
+    let done = done(memory, axis);
+    let is_moving = |axis| has_motion(memory, axis) && memory.axis(axis, Chan::ENABLE) != 0;
+    if let Some(thread) = caller.thread {
+        parts.calls.motions.asked(thread, axis, done, caller.at, is_moving);
+    }
+    done
 }
 
 pub(crate) fn check_done_xyzabc(_: &mut Parts, caller: &mut Caller<'_>) -> i32 {

@@ -52,7 +52,10 @@ pub(crate) fn start_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i
 /// Stops a thread where it is; a thread may name itself.
 pub(crate) fn pause_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i32) -> Outcome<()> {
     match ThreadId::new(thread) {
-        Some(id) if caller.thread == Some(id) => return Outcome::Pause,
+        Some(id) if caller.thread == Some(id) => {
+            parts.out.diagnose(caller, Message::PausesItself { thread: id });
+            return Outcome::Pause;
+        }
         Some(id) => caller.threads.pause(id),
         None => invalid(parts, caller, Function::PauseThread, thread),
     }

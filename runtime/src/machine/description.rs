@@ -47,6 +47,30 @@ pub enum Encoder {
     Absent,
 }
 
+/// An output that drives a motor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Channel {
+    /// An analog output of a Kanalog.
+    Dac(usize),
+    /// A step generator.
+    Generator(usize),
+    /// A PWM channel, from 8 on those of the SnapAmps.
+    Pwm(usize),
+    /// Two outputs, mostly relays: forward, and back.
+    Relays(Bit, Bit),
+}
+
+impl fmt::Display for Channel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Dac(number) => write!(f, "DAC {number}"),
+            Self::Generator(number) => write!(f, "step generator {number}"),
+            Self::Pwm(number) => write!(f, "PWM channel {number}"),
+            Self::Relays(forward, back) => write!(f, "outputs {forward} and {back}"),
+        }
+    }
+}
+
 /// The unit of an axis that has no other.
 const COUNTS: &str = "counts";
 
@@ -63,6 +87,10 @@ pub struct Axis {
     pub counts_per_unit: f64,
     /// Its encoder.
     pub encoder: Encoder,
+    /// The input that the encoder is connected to, if the machine file says it.
+    pub input: Option<usize>,
+    /// The output that drives its motor, if the machine file says it.
+    pub drive: Option<Channel>,
     /// Time constant with which a load of the model `follow` follows, seconds.
     pub lag_s: f64,
     /// Hard stops, machine coordinates.
@@ -95,6 +123,8 @@ impl Default for Axis {
             units: COUNTS.to_owned(),
             counts_per_unit: 1.0,
             encoder: Encoder::Auto,
+            input: None,
+            drive: None,
             lag_s: 0.000_5,
             min: -1e9,
             max: 1e9,
@@ -121,11 +151,13 @@ pub struct Motor {
     pub tau_v_s: f64,
     /// Inertia of motor and load, in inertias of the motor.
     pub inertia: f64,
+    /// Units a second that a constant load such as a weight adds to the speed.
+    pub pull: f64,
 }
 
 impl Default for Motor {
     fn default() -> Self {
-        Self { ku: None, tau_s: 0.02, friction: 0.0, ka: 2000.0, tau_v_s: 0.5, inertia: 1.0 }
+        Self { ku: None, tau_s: 0.02, friction: 0.0, ka: 2000.0, tau_v_s: 0.5, inertia: 1.0, pull: 0.0 }
     }
 }
 

@@ -5,13 +5,13 @@
 
 use kmotiondef::limits::{N_CHANNELS, TIMEBASE};
 use kmotiondef::structs::Chan;
-use kmotiondef::variables::DAC_BUFFER;
 use kmotiondef::{AxisId, Bit, Cycles};
 use vm::memory::GuestMemory;
 
 use super::description::{
     Analog, AnalogSource, Axis, Condition, Handwheel, Probe, Spindle, SpindleDrive, Switch,
 };
+use super::wiring::dac_value;
 use super::{Loads, Machine};
 use crate::io::Io;
 use crate::io::bits::bit_state;
@@ -25,6 +25,8 @@ struct Contact {
     axis: AxisId,
     closes: Closes,
     active: bool,
+    /// When a program last read the bit, and where the load was then.
+    read: Option<(Cycles, f64)>,
 }
 
 /// Where it does.
@@ -72,6 +74,8 @@ pub(crate) struct Mechanics {
     spindle: Option<Spindle>,
     /// Revolutions a second.
     spindle_speed: f64,
+    /// Inputs that a stimulus has taken from their switches.
+    held: Vec<Bit>,
     /// Whether there is anything of all that.
     is_any: bool,
 }
@@ -84,24 +88,26 @@ impl Mechanics {
             axis: switch.axis,
             closes: Closes::Where(switch.when),
             active: switch.active,
+            read: None,
         });
         let probes = described.probes.iter().map(|probe| Contact {
             bit: probe.bit,
             axis: probe.axis,
             closes: Closes::Where(probe.touches),
             active: true,
+            read: None,
         });
         let indexes = AxisId::all().filter_map(|axis| {
             let index = axes[axis.index()].index?;
             let closes = Closes::Every(index.every, index.width, index.offset);
-            Some(Contact { bit: index.bit, axis, closes, active: true })
+            Some(Contact { bit: index.bit, axis, closes, active: true, read: None })
         });
         let contacts: Vec<_> = switches.chain(probes).chain(indexes).collect();
         let (analog, handwheels) = (described.analog.clone(), described.encoders.clone());
         let spindle = described.spindle;
         let is_any =
             !(contacts.is_empty() && analog.is_empty() && handwheels.is_empty() && spindle.is_none());
-        Self { contacts, analog, handwheels, spindle, spindle_speed: 0.0, is_any }
+        Self { contacts, analog, handwheels, spindle, spindle_speed: 0.0, held: Vec::new(), is_any }
     }
 
     /// Whether an axis trips a switch or carries a probe.
@@ -119,6 +125,20 @@ impl Mechanics {
         Some((contact.axis, condition, contact.active))
     }
 
+    /// Takes an input from its switch; whether the switch has driven it so far.
+    pub(crate) fn hold(&mut self, bit: Bit) -> bool {
+        let is_new = !self.held.contains(&bit);
+        if is_new {
+            self.held.push(bit);
+        }
+        is_new
+    }
+
+    /// Gives an input back to its switch.
+    pub(crate) fn let_go(&mut self, bit: Bit) {
+        self.held.retain(|held| *held != bit);
+    }
+
     /// Whether it moves by itself after `time`, so that ticks cannot be skipped.
     fn goes_on(&self, time: f64) -> bool {
         let turns =
@@ -130,6 +150,21 @@ impl Mechanics {
 }
 
 impl Machine {
+    /// A program reads a bit: whether an index pulse on it has passed since it last did so, a moment ago; the axis, the
+    /// width of the pulse and how far the axis has moved since.
+    pub(crate) fn index_missed(&mut self, bit: Bit, now: Cycles) -> Option<(AxisId, f64, f64)> {
+        /// Reads that are further apart do not wait for a pulse.
+        const MOMENT: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 100);
+        let contact = self.mechanics.contacts.iter_mut().find(|contact| contact.bit == bit)?;
+        let Closes::Every(every, width, offset) = contact.closes else { return None };
+        let load = self.loads[contact.axis].load;
+        let (at, before) = contact.read.replace((now, load))?;
+        let turn = |load: f64| libm::floor((load - offset) / every);
+        let is_in_pulse = |load: f64| load - offset - turn(load) * every < width;
+        let passed = turn(load) != turn(before) && !is_in_pulse(load) && !is_in_pulse(before);
+        (passed && now - at < MOMENT).then_some((contact.axis, width, (load - before).abs()))
+    }
+
     /// Whether a machine file connects anything to the board beside the loads themselves.
     #[inline]
     pub(crate) const fn has_mechanics(&self) -> bool {
@@ -188,7 +223,9 @@ impl Machine {
         for (index, contact) in mechanics.contacts.iter().enumerate() {
             let mut others = mechanics.contacts.iter().filter(|other| other.bit == contact.bit);
             // The first contact of a bit speaks for all of them: one that is closed decides.
-            if mechanics.contacts[..index].iter().any(|before| before.bit == contact.bit) {
+            if mechanics.held.contains(&contact.bit)
+                || mechanics.contacts[..index].iter().any(|before| before.bit == contact.bit)
+            {
                 continue;
             }
             let closed = others.find(|other| other.is_closed(&self.loads));
@@ -223,11 +260,7 @@ fn turned(&[start, counts, duration]: &[f64; 3], time: f64) -> f64 {
 /// How far a spindle is driven, −1 to 1.
 fn fraction(io: &Io, memory: &GuestMemory, spindle: &Spindle) -> f64 {
     const FULL: f64 = 2047.0;
-    let dac = |channel: usize| {
-        // The buffer holds the value in offset binary, from the other side.
-        let value = (i32::from(memory.get(DAC_BUFFER.element(channel))) + 2048) & 0xfff;
-        f64::from(if value >= 2048 { value - 4096 } else { value }) / FULL
-    };
+    let dac = |channel: usize| f64::from(dac_value(memory, channel)) / FULL;
     match spindle.drive {
         SpindleDrive::Dac(channel) => dac(channel),
         SpindleDrive::Axis(axis) if memory.axis(axis, Chan::ENABLE) == 0 => 0.0,

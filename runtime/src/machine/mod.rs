@@ -11,6 +11,7 @@ mod motor;
 pub(crate) mod plant;
 #[cfg(test)]
 mod tests;
+pub(crate) mod wiring;
 
 use std::ops::{Index, IndexMut};
 
@@ -20,6 +21,7 @@ use vm::memory::GuestMemory;
 
 pub use mechanics::Connected;
 
+pub(crate) use description::Channel;
 pub(crate) use lines::Lines;
 pub(crate) use mechanics::Mechanics;
 pub(crate) use motor::Applied;
@@ -31,6 +33,7 @@ use crate::io::changes;
 use crate::io::konnect::KonnectBoard;
 use crate::io::snapamp::SnapAmps;
 use crate::machine::attached::{Attached, Outside};
+use crate::machine::wiring::Wiring;
 use crate::out::{EventKind, Message, Out};
 use chips::changes::BitChange;
 use chips::pins::Pins;
@@ -84,6 +87,8 @@ impl IndexMut<AxisId> for Loads {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Machine {
     pub(crate) loads: Loads,
+    /// Where encoders and motors are connected.
+    pub(crate) wiring: Wiring,
     pub(crate) mechanics: Mechanics,
     /// Devices on the board's lines.
     attached: Vec<Box<dyn Attached>>,

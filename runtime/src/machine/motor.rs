@@ -30,6 +30,8 @@ pub(crate) struct Motor {
     /// What is left of a difference of speeds after a tick.
     decay: f64,
     friction: f64,
+    /// What a constant load adds to the speed.
+    pull: f64,
     ka: f64,
     /// What is left of the speed after a tick of viscous friction alone.
     viscous: f64,
@@ -40,16 +42,23 @@ pub(crate) struct Motor {
 impl Motor {
     /// The motor of an axis.
     pub(crate) fn new(axis: &Axis) -> Self {
-        let description::Motor { ku, tau_s, friction, ka, tau_v_s, inertia } = axis.motor;
+        let description::Motor { ku, tau_s, friction, ka, tau_v_s, inertia, pull } = axis.motor;
         Self {
             ku,
             decay: libm::exp(-TIMEBASE / (tau_s * inertia)),
             friction,
+            pull,
             ka: ka / inertia,
             viscous: 1.0 - TIMEBASE / (tau_v_s * inertia),
             cycles_per_unit: axis.rotor.cycles_per_unit,
             rotor_phase: axis.rotor.phase,
         }
+    }
+
+    /// Whether a constant load moves it while nothing drives it.
+    #[inline(always)]
+    pub(crate) fn is_pulled(&self) -> bool {
+        self.pull != 0.0
     }
 
     /// Electrical cycles of a unit, the axis' own if the machine file gives none.
@@ -81,6 +90,7 @@ impl Motor {
 
     /// Speeds up towards `target`, of which friction takes its part.
     fn approach(&self, velocity: f64, target: f64) -> f64 {
+        let target = target + self.pull;
         if velocity == 0.0 && target.abs() <= self.friction {
             return 0.0;
         }
@@ -135,6 +145,17 @@ mod tests {
             velocity == 0.0
         });
         assert!(ticks.is_some_and(|ticks| ticks < 1000), "{ticks:?}");
+    }
+
+    #[test]
+    fn a_constant_load_pulls_unless_friction_holds_it() {
+        let pulled = |friction| {
+            let mut axis = Axis::default();
+            (axis.motor.pull, axis.motor.friction) = (-100.0, friction);
+            after(&Motor::new(&axis), Applied::Pwm(0.0), 1.0)
+        };
+        assert!((pulled(0.0) + 100.0).abs() < 1e-6, "{}", pulled(0.0));
+        assert_eq!(pulled(150.0), 0.0);
     }
 
     #[test]

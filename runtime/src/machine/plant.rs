@@ -30,6 +30,8 @@ pub(crate) enum Drive {
     Steps(f64),
     /// A closed loop with this command, and what it outputs.
     Loop(f64, Applied),
+    /// What an output carries to the motor without an axis that follows a command.
+    Open(Applied),
     /// A vector on the phases of a disabled axis: magnitude, and angle in cycles.
     Vector(f64, f64),
 }
@@ -130,6 +132,8 @@ pub(crate) struct Plant {
     counter: Counter,
     steps: Steps,
     pub(crate) drive: Drive,
+    /// The position before and after a program has written it.
+    rewritten: Option<(f64, f64)>,
     torque: Torque,
 }
 
@@ -176,6 +180,7 @@ impl Plant {
             },
             steps: Steps { origin: start, ..Steps::default() },
             drive: Drive::None,
+            rewritten: None,
             torque: Torque::default(),
         }
     }
@@ -236,6 +241,18 @@ impl Plant {
         self.steps.origin += units;
     }
 
+    /// The position before and after a program has written it since the last time.
+    #[inline(always)]
+    pub(crate) fn take_rewritten(&mut self) -> Option<(f64, f64)> {
+        self.rewritten.take()
+    }
+
+    /// Whether it has a motor that is driven by what the board outputs.
+    #[inline(always)]
+    pub(crate) fn has_motor(&self) -> bool {
+        self.build.model == Model::Motor
+    }
+
     /// The axis is disabled: its amplifier is off, unless a program applies a vector.
     pub(crate) fn release(&mut self) {
         if !matches!(self.drive, Drive::Vector(..)) {
@@ -257,6 +274,7 @@ impl Plant {
         let was_written = position != self.position;
         if was_written {
             self.shift += position - self.position;
+            self.rewritten = Some((self.position, position));
             self.position = position;
         }
         let moves = match self.drive {
@@ -266,7 +284,7 @@ impl Plant {
                 self.stop_hard();
                 self.load != before
             }
-            Drive::None if self.velocity == 0.0 => false,
+            Drive::None if self.velocity == 0.0 && !self.build.motor.is_pulled() => false,
             _ => self.moves(chan, steps_per_tick()),
         };
         was_written | moves
@@ -276,14 +294,20 @@ impl Plant {
     fn moves(&mut self, chan: &AxisView<'_>, steps_per_tick: f64) -> bool {
         let before = self.load;
         match (self.build.model, self.drive) {
-            (Model::None, _) | (Model::Follow, Drive::None | Drive::Loop(..)) => return false,
+            (Model::None, _) | (Model::Follow, Drive::Loop(..)) => return false,
+            (Model::Follow | Model::Motor, Drive::None) => self.run(Applied::Pwm(0.0), chan),
+            (_, Drive::Open(applied)) => self.run(applied, chan),
             (_, Drive::Steps(command)) if command == self.steps.reached => return false,
             (_, Drive::Steps(command)) => {
                 let steps_per_unit = f64::from(chan.get(Chan::OUTPUT_GAIN)).abs();
-                self.step(command, if steps_per_unit > 0.0 { steps_per_tick / steps_per_unit } else { 0.0 });
+                if steps_per_unit == 0.0 {
+                    // Its command is no steps at all.
+                    self.refer_to(command);
+                    return false;
+                }
+                self.step(command, steps_per_tick / steps_per_unit);
             }
             (_, Drive::Vector(magnitude, angle)) => self.turn(magnitude, angle, chan),
-            (Model::Motor, Drive::None) => self.run(Applied::Pwm(0.0), chan),
             (Model::Motor, Drive::Loop(_, applied)) => self.run(applied, chan),
         }
         self.stop_hard();

@@ -106,6 +106,12 @@ impl Key for Bit {
     }
 }
 
+impl Key for ThreadId {
+    fn key(&self) -> u64 {
+        self.get().into()
+    }
+}
+
 impl Key for i32 {
     fn key(&self) -> u64 {
         u64::from(self.cast_unsigned())
@@ -293,6 +299,9 @@ messages! {
     /// A program uses a bit number to which nothing on the board or its option boards is connected.
     BitUnused { function: Function, bit: Bit } = "bit-unused", Warning, [per bit],
         "{function}({bit}): nothing is connected to bit {bit}: it reads 0 and cannot be written";
+    /// A stimulus takes an input from the switch that drives it.
+    SwitchOverridden { bit: Bit, axis: AxisId } = "switch-overridden", Hint, [per bit],
+        "the stimulus takes bit {bit} from the switch of axis {axis}, until `release bit {bit}`";
     /// A program makes a pin an output although a switch, a probe or a wire drives it.
     OutputAgainstInput { bit: Bit } = "output-against-input", Warning, [per bit],
         "SetBitDirection({bit}, 1): the machine drives bit {bit}, so two outputs drive the same pin, and the program can no longer read the input";
@@ -323,6 +332,78 @@ messages! {
     /// A path that is smoothed with a time constant of zero ends.
     KlpWithoutTau { } = "klp-without-tau", Warning, [once],
         "a path ended with KLP set and TauKLP 0, so Dest of its axes is now NaN: set TauKLP = -TIMEBASE / log(KLP) before the path starts";
+    /// Two axes drive the same output.
+    ChannelShared { function: Function, axis: AxisId, other: AxisId, channel: String } = "channel-shared", Warning, [per axis],
+        "{function}: axis {axis} drives {channel}, which axis {other} drives too: give each axis an OutputChan0 of its own";
+    /// Two axes close their loops over the same encoder.
+    InputShared { function: Function, axis: AxisId, other: AxisId, input: i32 } = "input-shared", Warning, [per axis],
+        "{function}: axis {axis} reads encoder input {input}, which axis {other} reads too: give each axis an InputChan0 of its own";
+    /// An axis reads another encoder than the one of its motor.
+    WrongInput { function: Function, axis: AxisId, input: i32, wired: usize } = "wrong-input", Warning, [per axis],
+        "{function}: axis {axis} reads encoder input {input} (InputChan0), but the encoder of its motor is on input {wired}";
+    /// An axis drives another output than the one that its motor is connected to.
+    WrongOutput { function: Function, axis: AxisId, channel: String, wired: String } = "wrong-output", Warning, [per axis],
+        "{function}: axis {axis} drives {channel} (OutputMode, OutputChan0), but its motor is connected to {wired}";
+    /// An axis drives a PWM channel without an amplifier.
+    NoAmplifier { function: Function, axis: AxisId, channel: usize } = "no-amplifier", Warning, [per axis],
+        "{function}: axis {axis} drives PWM channel {channel}, where a KFLOP has no amplifier: a SnapAmp has channels 8 to 15, and an amplifier with an analog input needs DAC_SERVO_MODE";
+    /// An axis is enabled at a place where it is not.
+    Leap { function: Function, axis: AxisId, position: f64, dest: f64 } = "leap", Warning, [per axis],
+        "{function}: axis {axis} is at {position:.0} and is enabled at {dest:.0}, so its motor leaps there: EnableAxis({axis}) begins where the axis is";
+    /// A KStep gets the short pulses of power-up.
+    KstepPulses { function: Function, axis: AxisId } = "kstep-pulses", Warning, [once],
+        "{function}: axis {axis} steps on a KStep with the pulses of power-up, which are too short for it: write FPGA(STEP_PULSE_LENGTH_ADD) = 63 + 0x80 first";
+    /// The soft limits of an axis that moves are swapped.
+    SoftLimitsSwapped { function: Function, axis: AxisId, neg: f32, pos: f32 } = "soft-limits-swapped", Warning, [per axis],
+        "{function}: SoftLimitNeg of axis {axis} is {neg} and SoftLimitPos {pos}: every place is beyond one of them";
+    /// An axis is beyond a soft limit and should move further.
+    BeyondSoftLimit { function: Function, axis: AxisId, dest: f64, name: &'static str, limit: f32 } = "beyond-soft-limit", Warning, [per axis],
+        "{function}: axis {axis} is at {dest:.0}, beyond {name} = {limit}, so it does not move further";
+    /// A setting keeps the output of an axis at 0.
+    NoGain { function: Function, axis: AxisId, field: &'static str } = "no-gain", Warning, [per axis],
+        "{function}: axis {axis} has {field} = 0, so its output stays 0 and its motor does not move";
+    /// The backlash of an axis is never taken up.
+    NoBacklashRate { function: Function, axis: AxisId } = "no-backlash-rate", Warning, [per axis],
+        "{function}: axis {axis} has BACKLASH_LINEAR with BacklashRate = 0, so its backlash is never taken up";
+    /// Most of the time of a move of minutes is acceleration.
+    SlowRamp { function: Function, axis: AxisId, seconds: f64, field: &'static str, value: f64 } = "slow-ramp", Warning, [per axis],
+        "{function}: this move of axis {axis} takes {seconds:.0} s or more, because {field} is only {value}: units are counts and seconds";
+    /// Two threads move the same axis.
+    OtherThreadMoves { function: Function, axis: AxisId, other: ThreadId } = "other-thread-moves", Warning, [per axis],
+        "{function}: axis {axis} is still moved by thread {other}, whose motion ends here";
+    /// An axis was disabled while a thread waited for the end of its motion.
+    DisabledWhileWaiting { axis: AxisId } = "disabled-while-waiting", Warning, [per axis],
+        "CheckDone({axis}) is -1: axis {axis} was disabled before its motion ended, which `while (!CheckDone({axis}))` takes for its end";
+    /// A thread waits for another axis than the one that it moves.
+    WaitsForOther { asked: AxisId, moving: AxisId } = "waits-for-other", Warning, [per moving],
+        "CheckDone({asked}) asks about axis {asked}, but the thread moves axis {moving}, for which it never waits";
+    /// An index pulse has passed between two reads of its bit.
+    IndexMissed { bit: Bit, axis: AxisId, width: f64, step: f64 } = "index-missed", Warning, [per bit],
+        "ReadBit({bit}): an index pulse of axis {axis} has passed between two reads: it is {width} units wide, and the axis moves {step:.1} units from read to read";
+    /// A thread pauses itself.
+    PausesItself { thread: ThreadId } = "pauses-itself", Hint, [per thread],
+        "PauseThread({thread}): the thread pauses itself, until another one calls ResumeThread({thread})";
+    /// A running program is replaced by another one.
+    ProgramReplaced { thread: ThreadId } = "program-replaced", Warning, [always],
+        "the program of thread {thread} is still running and is replaced by another one: what it watched is not watched any more";
+    /// A request to the PC is overwritten before the PC has seen it.
+    RequestOverwritten { code: i32, by: i32 } = "request-overwritten", Warning, [once],
+        "request {code} of another thread is overwritten with {by} before the PC has answered it: threads share persist.UserData[100], so use a mutex";
+    /// A program has stored values after the end of the gather buffer.
+    GatherOverrun { most: usize } = "gather-overrun", Warning, [once],
+        "values are stored after the end of gather_buffer, which has {most} doubles: they overwrite other data of the board";
+    /// The position of an enabled axis is written, and its motor leaps.
+    PositionWritten { axis: AxisId, from: f64, to: f64 } = "position-written", Warning, [per axis],
+        "Position of axis {axis} is changed from {from:.0} to {to:.0} while the axis is enabled, so its motor leaps: disable it first, or use Zero({axis})";
+    /// A loop with a sign that is right overshoots until its following error disables the axis.
+    Overshoots { axis: AxisId, cause: &'static str } = "overshoots", Warning, [per axis],
+        "axis {axis} overshoots until its following error disables it: {cause}";
+    /// An axis does not move although its output drives it.
+    NoResponse { axis: AxisId, output: f32 } = "no-response", Warning, [per axis],
+        "axis {axis} has not moved since it was enabled, although its output is {output:.0}: check that OutputChan0 and InputChan0 name its amplifier and its encoder";
+    /// An axis cannot follow because its output is at its limit.
+    OutputLimit { axis: AxisId, most: f32 } = "output-limit", Warning, [per axis],
+        "axis {axis} cannot follow: its output is at MaxOutput = {most}; lower Vel or Accel, or raise MaxOutput";
     /// An axis in a closed loop goes the wrong way until its following error disables it.
     RunsAway { axis: AxisId } = "runs-away", Warning, [per axis],
         "axis {axis} runs away: its output drives it further from Dest; change the sign of OutputGain or of InputGain0";

@@ -52,6 +52,8 @@ pub(crate) struct Host {
     unanswered: i32,
     /// Since when a request waits for a PC that is not there; `None` once this was reported.
     waits_since: Option<Cycles>,
+    /// The request that waits, and the thread that has made it.
+    pending: Option<(i32, ThreadId)>,
 }
 
 impl Default for Host {
@@ -63,6 +65,7 @@ impl Default for Host {
             jog_overrides: [1.0; 6],
             unanswered: 0,
             waits_since: None,
+            pending: None,
         }
     }
 }
@@ -131,6 +134,20 @@ impl Host {
     pub(crate) fn tick(&mut self) {
         self.until_poll = self.until_poll.saturating_sub(1);
     }
+
+    /// The slice of a thread has ended: whether it has overwritten the request of another one.
+    pub(crate) fn watch(&mut self, memory: &GuestMemory, thread: ThreadId) -> Option<Message> {
+        let code = memory.get(data(0));
+        let before = self.pending;
+        if code <= 0 {
+            self.pending = None;
+        } else if before.is_none_or(|(pending, _)| pending != code) {
+            self.pending = Some((code, thread));
+        }
+        let (lost, by) = before?;
+        (code > 0 && code != lost && by != thread)
+            .then_some(Message::RequestOverwritten { code: lost, by: code })
+    }
 }
 
 /// An element of `UserData`, counted from the request's.
@@ -178,6 +195,7 @@ pub(crate) fn slice(host: &mut Host, out: &mut Out, context: &mut TickContext<'_
         }
     } else {
         host.unanswered = 0;
+        host.pending = None;
         let answer = answer(host, out, context, code);
         context.memory.set(data(0), answer);
         return true;

@@ -14,6 +14,7 @@ use super::duration::duration;
 use super::interrupt::Interrupt;
 use super::plan::AxisPlan;
 use super::still::Stillness;
+use crate::machine::wiring::Wiring;
 
 /// What has changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,10 +103,10 @@ impl Cache {
     }
 
     /// Works the plans out, unless they are known.
-    pub(super) fn make_plans(&mut self, memory: &mut GuestMemory) {
+    pub(super) fn make_plans(&mut self, memory: &mut GuestMemory, wiring: &Wiring) {
         if !self.has_plans {
             for axis in AxisId::all() {
-                self.plans[axis.index()] = AxisPlan::of(memory, axis);
+                self.plans[axis.index()] = AxisPlan::of(memory, wiring, axis);
             }
             self.is_coupled = AxisId::all().any(|axis| self.plans[axis.index()].is_coupled(axis));
             self.has_slaves = self.plans.iter().any(|plan| plan.is_slave);
@@ -114,15 +115,15 @@ impl Cache {
             self.has_plans = true;
         }
         debug_assert!(
-            self.plans_hold(memory) && self.duration == duration(memory),
+            self.plans_hold(memory, wiring) && self.duration == duration(memory),
             "settings have changed unnoticed"
         );
     }
 
     /// Whether the settings still come to what is known.
-    fn plans_hold(&self, memory: &mut GuestMemory) -> bool {
+    fn plans_hold(&self, memory: &mut GuestMemory, wiring: &Wiring) -> bool {
         AxisId::all().zip(&self.plans).all(|(axis, plan)| {
-            let now = AxisPlan::of(memory, axis);
+            let now = AxisPlan::of(memory, wiring, axis);
             // A setting that is no number equals itself in print only.
             *plan == now || format!("{plan:?}") == format!("{now:?}")
         })
@@ -135,9 +136,9 @@ impl Cache {
     }
 
     /// A tick of the axes is computed.
-    pub(super) fn begin(&mut self, memory: &mut GuestMemory) {
+    pub(super) fn begin(&mut self, memory: &mut GuestMemory, wiring: &Wiring) {
         self.still.begin(memory);
-        self.make_plans(memory);
+        self.make_plans(memory, wiring);
     }
 
     /// An axis depends on inputs that are not compared: every tick is computed.

@@ -1,5 +1,6 @@
 //! Protection: limit switches, soft limits, following error. Source: axes-and-motion.md section 7.
 
+use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::CS0_STOPPING_STATE;
 use kmotiondef::{AxisId, Bit, Field};
@@ -89,8 +90,9 @@ pub(crate) fn check(
     }
     let plan = tick.servo.cache.plan(axis);
     if command.is_some_and(|command| follows_badly(&mut AxisView::of(memory, axis), plan, command)) {
-        if runs_away(memory, axis) {
-            tick.out.remark(tick.now, Message::RunsAway { axis });
+        let response = tick.servo.axes[axis.index()].response;
+        if let Some(message) = cause(memory, axis, response) {
+            tick.out.remark(tick.now, message);
         }
         tell(tick, &format!("Following Error Disabled Axis:{axis}"));
         switch_off(tick.servo, tick.machine, memory, axis);
@@ -99,14 +101,32 @@ pub(crate) fn check(
     memory.axis(axis, Chan::ENABLE) != 0
 }
 
-/// Whether an axis has gone further from its destination than it was told to: the error is larger than all motion.
-fn runs_away(memory: &GuestMemory, axis: AxisId) -> bool {
+/// Why the following error of an axis has become too large, as far as what its output did to its position shows it:
+/// `response` is the sum of output times motion since the axis was enabled.
+fn cause(memory: &GuestMemory, axis: AxisId, response: f64) -> Option<Message> {
     let error = memory.axis(axis, Chan::LAST_FOLLOWING_ERROR);
     let (output, velocity) = (memory.axis(axis, Chan::OUTPUT), memory.axis(axis, Chan::LAST_VEL));
-    // An axis that is told to stand, or to go the other way, and is far from there, was driven by its own output.
-    let is_driven = output != 0.0 && (f64::from(output) > 0.0) == (error > 0.0);
-    let is_told = f64::from(velocity) * error > 0.0;
-    is_driven && !is_told
+    let most = memory.axis(axis, Chan::MAX_OUTPUT);
+    let drives = OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE)) != Some(OutputMode::None);
+    let is_encoder = memory.axis(axis, Chan::INPUT_MODE) == InputMode::Encoder.get();
+    if output == 0.0 || !drives || !is_encoder {
+        return None;
+    }
+    if response < 0.0 {
+        return Some(Message::RunsAway { axis });
+    }
+    if response == 0.0 {
+        return Some(Message::NoResponse { axis, output });
+    }
+    // A destination that moves on in the direction of the error leaves the axis behind.
+    if f64::from(velocity) * error > 0.0 {
+        return (output.abs() >= most).then_some(Message::OutputLimit { axis, most });
+    }
+    let cause = match memory.axis(axis, Chan::I) {
+        0.0 => "the loop swings, so lower P or raise D",
+        _ => "its integrator collects too much on the way, so lower I or MaxI, or raise D",
+    };
+    Some(Message::Overshoots { axis, cause })
 }
 
 /// Says that an axis was disabled, unless another message waits for the primary thread.

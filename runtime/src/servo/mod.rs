@@ -38,6 +38,7 @@ mod still;
 mod stop;
 pub(crate) mod switching;
 pub(crate) mod trajectory;
+pub(crate) mod wired;
 
 use kmotiondef::limits::TIMEBASE;
 use kmotiondef::modes::OutputMode;
@@ -92,7 +93,8 @@ fn run_generators(tick: &mut Tick<'_>, memory: &GuestMemory) -> bool {
             OutputMode::has_generator(mode)
                 && generator_of(memory.axis(*axis, Chan::OUTPUT_CHAN0)) == generator
         };
-        let axis = AxisId::all().find(names).or_else(|| AxisId::new(generator as i32));
+        let wired = tick.machine.wiring.motor_on(generator);
+        let axis = wired.or_else(|| AxisId::all().find(names)).or_else(|| AxisId::new(generator as i32));
         let Some(axis) = axis.filter(|_| !is_off || generator >= ON_KSTEP) else { continue };
         let gain = f64::from(memory.axis(axis, Chan::OUTPUT_GAIN));
         if gain != 0.0 {
@@ -118,9 +120,9 @@ fn notice_pushes(tick: &mut Tick<'_>) {
 
 /// One tick of all axes; whether anything changed.
 fn run_axes(tick: &mut Tick<'_>, memory: &mut GuestMemory) -> bool {
-    tick.servo.cache.begin(memory);
+    tick.servo.cache.begin(memory, &tick.machine.wiring);
     let mut changed = false;
-    if tick.machine.needs_enable {
+    if tick.machine.needs_enable || tick.machine.wiring.has_drives() {
         switch_amplifiers(tick, memory);
     }
     let has_path = !tick.servo.coordinated.is_idle(memory);
@@ -160,12 +162,13 @@ fn run_together(tick: &mut Tick<'_>, memory: &mut GuestMemory) -> bool {
     changed
 }
 
-/// Switches the amplifiers of a KStep as their enable signal says.
+/// Switches the amplifiers of a KStep as their enable signal says, and off where the steps move another load.
 fn switch_amplifiers(tick: &mut Tick<'_>, memory: &mut GuestMemory) {
     let is_off = amplifiers_are_off(tick);
     for axis in AxisId::all() {
         let is_on_kstep = generator_of(memory.axis(axis, Chan::OUTPUT_CHAN0)) < ON_KSTEP;
-        tick.machine.loads[axis].set_amplifier(!(is_off && is_on_kstep));
+        let is_own = wired::steps_are_own(tick.machine, memory, axis);
+        tick.machine.loads[axis].set_amplifier(is_own && !(is_off && is_on_kstep));
     }
 }
 
@@ -173,12 +176,21 @@ fn switch_amplifiers(tick: &mut Tick<'_>, memory: &mut GuestMemory) {
 /// changed anything.
 #[inline(always)]
 fn advance(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId) -> bool {
+    if let Some(drive) = wired::drive(tick.machine, tick.io, memory, axis) {
+        tick.machine.loads[axis].drive = drive;
+    }
     let chan = AxisView::of(memory, axis);
     let (plant, plan) = (&mut tick.machine.loads[axis], tick.servo.cache.plan(axis));
     let moved = plant.advance(&chan, plan.reach, || tick.io.stepgens.steps_per_tick(axis));
-    let is_told = chan.get(Chan::ENABLE) != 0 && !chan.get(Chan::PCOEFF).is_null();
+    let is_enabled = chan.get(Chan::ENABLE) != 0;
+    let is_told = is_enabled && !chan.get(Chan::PCOEFF).is_null();
+    let has_run = tick.servo.axes[axis.index()].has_run;
+    let rewritten = plant.take_rewritten().filter(|_| is_enabled && has_run);
     if plant.has_stepped() {
         step(tick, memory, axis);
+    }
+    if let Some((from, to)) = rewritten {
+        note_rewritten(tick, memory, axis, from, to);
     }
     if !is_told {
         return moved;
@@ -189,8 +201,19 @@ fn advance(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId) -> bool 
     true
 }
 
+/// The position of an enabled axis was written: its loop takes it for a following error.
+fn note_rewritten(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, from: f64, to: f64) {
+    const FAR: f64 = 100.0;
+    let plan = tick.servo.cache.plan(axis);
+    let dest = memory.axis(axis, Chan::DEST);
+    let is_loop = matches!(plan.input, Input::Encoder(_)) && !plan.is_open_loop && plan.mode.is_some();
+    if is_loop && plan.mode != Some(OutputMode::None) && (dest - to).abs() > (dest - from).abs() + FAR {
+        tick.out.remark(tick.now, Message::PositionWritten { axis, from, to });
+    }
+}
+
 /// The step generator of an axis has moved its load.
-fn step(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId) {
+fn step(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId) {
     let plant = &mut tick.machine.loads[axis];
     let steps = plant.take_stepped() * f64::from(memory.axis(axis, Chan::OUTPUT_GAIN));
     if plant.take_behind()
@@ -199,6 +222,9 @@ fn step(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId) {
         tick.out.remark(tick.now, Message::StepsTooFast { axis, fastest, length });
     }
     tick.io.stepgens.step(axis, steps, &mut tick.io.pins, tick.now);
+    if tick.machine.wiring.has_drives() {
+        wired::step_other(tick.machine, memory, axis, steps);
+    }
 }
 
 /// Position, protection, compensation and output of one axis; whether it moves or is told something.
@@ -248,11 +274,15 @@ fn run_guarded(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, comm
 #[inline(always)]
 fn put_out(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, command: f64) {
     let mut chan = AxisView::of(memory, axis);
-    let (plan, own) = (tick.servo.cache.plan(axis), &tick.servo.axes[axis.index()]);
+    let own = &mut tick.servo.axes[axis.index()];
+    own.has_run = true;
+    let plan = tick.servo.cache.plan(axis);
     let output = if plan.is_open_loop {
         chan.set(Chan::OUTPUT, 0.0);
         0.0
     } else {
+        let moved = chan.get(Chan::POSITION) - chan.get(Chan::LAST_POSITION);
+        own.response += f64::from(chan.get(Chan::OUTPUT)) * moved;
         compensation::advance(own, &plan.gains, &mut chan, command)
     };
     chan.set(Chan::PREV_DEST, chan.get(Chan::DEST));

@@ -12,6 +12,7 @@ use kmotiondef::structs::{Chan, Iir};
 use vm::memory::GuestMemory;
 
 use crate::machine::COUNTS_PER_TICK;
+use crate::machine::wiring::Wiring;
 use crate::views::AxisView;
 
 /// Where the position of an axis comes from.
@@ -95,8 +96,8 @@ impl AxisPlan {
     }
 
     /// What an axis has set.
-    pub(super) fn of(memory: &mut GuestMemory, axis: AxisId) -> Self {
-        let input = input(memory, axis);
+    pub(super) fn of(memory: &mut GuestMemory, wiring: &Wiring, axis: AxisId) -> Self {
+        let input = input(memory, wiring, axis);
         let chan = AxisView::of(memory, axis);
         if chan.get(Chan::ENABLE) == 0 {
             return Self { input, ..Self::default() };
@@ -124,23 +125,21 @@ fn watches_switches(chan: &AxisView<'_>) -> bool {
     chan.get(Chan::LIMIT_SWITCH_OPTIONS) & WATCHED != 0
 }
 
-fn input(memory: &mut GuestMemory, axis: AxisId) -> Input {
+fn input(memory: &mut GuestMemory, wiring: &Wiring, axis: AxisId) -> Input {
     let chan = AxisView::of(memory, axis);
     match InputMode::new(chan.get(Chan::INPUT_MODE)) {
-        Some(InputMode::Encoder) => encoder(memory, axis).map_or(Input::None, Input::Encoder),
+        Some(InputMode::Encoder) => encoder(memory, wiring, axis).map_or(Input::None, Input::Encoder),
         Some(InputMode::Adc) => Input::Adc,
         Some(InputMode::Resolver) => Input::Resolver,
         Some(InputMode::None | InputMode::User) | None => Input::None,
     }
 }
 
-fn encoder(memory: &mut GuestMemory, axis: AxisId) -> Option<Encoder> {
+fn encoder(memory: &mut GuestMemory, wiring: &Wiring, axis: AxisId) -> Option<Encoder> {
+    let turned_by = wiring.turns(memory, axis)?;
     let chan = AxisView::of(memory, axis);
     let gain = f64::from(chan.get(Chan::INPUT_GAIN0));
     let channel = chan.get(Chan::INPUT_CHAN0);
-    // An axis without a motor watches somebody else's encoder.
-    let watches = channel != i32::from(axis.get()) && chan.get(Chan::OUTPUT_MODE) == OutputMode::None.get();
-    let turned_by = if watches { AxisId::new(channel)? } else { axis };
     let turned_gain = f64::from(AxisView::of(memory, turned_by).get(Chan::INPUT_GAIN0));
     Some(Encoder { gain, channel: u32::try_from(channel).ok(), turned_by, turned_gain })
 }

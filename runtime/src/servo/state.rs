@@ -20,6 +20,11 @@ pub(crate) struct AxisMemory {
     pub(crate) dest: f64,
     /// Its velocity in the last tick, for the feed forward.
     pub(super) velocity: f64,
+    /// Sum of output times motion since the axis was enabled: above 0 if the output moves the position in its own
+    /// direction.
+    pub(super) response: f64,
+    /// Whether the servo has run the axis since it was enabled.
+    pub(super) has_run: bool,
     /// The velocity in the tick before.
     pub(super) last_velocity: f64,
     /// What kind of motion of the axis a feedhold interrupted.

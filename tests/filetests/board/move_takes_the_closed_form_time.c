@@ -2,6 +2,7 @@
 //@ prints: -1
 //@ prints: 2.75
 //@ prints: 100000.0 1
+//@ says: Move: axis 0 has no OutputMode, so its Dest changes but no motor moves
 #include "KMotionDef.h"
 
 main()

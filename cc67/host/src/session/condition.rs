@@ -3,6 +3,8 @@
 //! This is for a person who reads what a thread waits for. It goes by the text alone: what it does not find, it does not
 //! show.
 
+use kmotiondef::variables::variable_named;
+
 /// How many lines before a place its loop may begin.
 const LINES: usize = 8;
 /// Most characters of a condition that is shown.
@@ -59,7 +61,7 @@ impl WaitCondition {
     pub(super) fn writes(text: &str, name: &str) -> bool {
         let base = name.split(['[', '.', '-']).next().unwrap_or(name);
         // What the firmware or the PC changes.
-        if ["persist", "chan", "ch", "CS0", "VirtualBits"].iter().any(|known| base.starts_with(known)) {
+        if variable_named(base).is_some() {
             return true;
         }
         let mut from = 0;

@@ -20,6 +20,7 @@ mod inspect;
 pub mod limits;
 #[cfg(feature = "live")]
 mod live;
+mod machine;
 mod package;
 mod plot;
 mod run;
@@ -106,6 +107,8 @@ subcommands! {
     Test(test::TestArguments) as arguments => test::test(arguments);
     /// Create a project folder, ready for an editor and for CI
     Init(init::InitArguments) as arguments => init::init(arguments);
+    /// Compute keys of a machine file from the data sheets of motor, amplifier and encoder
+    Machine(machine::MachineArguments) as arguments => machine::machine(arguments);
     /// List the example programs, or copy one
     Examples(examples::ExamplesArguments) as arguments => examples::examples(arguments);
     /// Plot saved data over time: columns of numbers, traces (.csv, .vcd)

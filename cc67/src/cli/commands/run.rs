@@ -218,7 +218,7 @@ fn still_running(active: &[u8], moving: &[AxisId]) -> String {
     let numbers = moving.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
     let (axes, verb) = if moving.len() == 1 { ("axis", "moves") } else { ("axes", "move") };
     format!(
-        "the programs have ended, but {axes} {numbers} still {verb} {after}: what `Jog` begins, `Jog({first}, 0)` or \
-         `DisableAxis({first})` ends; `--for SECONDS` ends the run at a time of your choice, with exit code 0"
+        "the programs have ended, but {axes} {numbers} still {verb} {after}: `Jog({first}, 0)` or `DisableAxis({first})` \
+         ends a motion; `--for SECONDS` ends the run at a time of your choice, with exit code 0"
     )
 }

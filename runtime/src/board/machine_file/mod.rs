@@ -17,7 +17,7 @@ use kmotiondef::limits::N_CHANNELS;
 
 pub use crate::machine::Connected;
 pub use crate::machine::description::{
-    Analog, AnalogSource, Axis, Condition, Encoder, Handwheel, Index, Model, Motor, Probe, Spindle,
+    Analog, AnalogSource, Axis, Channel, Condition, Encoder, Handwheel, Index, Model, Motor, Probe, Spindle,
     SpindleDrive, Switch, Wire,
 };
 use crate::out::{REMARKS, RemarkRow};

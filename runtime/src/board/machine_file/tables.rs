@@ -5,8 +5,8 @@ use toml::de::DeTable;
 
 use super::read::{Read, Table, Value, Wrong, keys};
 use super::{
-    Analog, AnalogSource, Axis, Condition, Encoder, Handwheel, Index, MachineFile, MachineFileError, Model,
-    Probe, Spindle, SpindleDrive, Switch, Wire,
+    Analog, AnalogSource, Axis, Channel, Condition, Encoder, Handwheel, Index, MachineFile, MachineFileError,
+    Model, Probe, Spindle, SpindleDrive, Switch, Wire,
 };
 use super::{boards, events, pc};
 use crate::out::REMARKS;
@@ -74,10 +74,15 @@ fn axis(axis: &mut Axis, table: &Table<'_>) -> Read<()> {
         "model" => axis.model = value.choice(Model::NAMED)?;
         "units" => value.text()?.clone_into(&mut axis.units);
         "counts_per_unit" => axis.counts_per_unit = not_zero(&value)?;
-        "encoder" => {
-            let choices = [("auto", Encoder::Auto), ("true", Encoder::Connected), ("false", Encoder::Absent)];
-            axis.encoder = value.choice(&choices)?;
+        "encoder" => match value.table() {
+            Ok(table) => axis.input = Some(encoder_input(&table)?),
+            Err(_) => {
+                let choices =
+                    [("auto", Encoder::Auto), ("true", Encoder::Connected), ("false", Encoder::Absent)];
+                axis.encoder = value.choice(&choices)?;
+            }
         };
+        "drive" => axis.drive = Some(channel(&value.table()?)?);
         "lag_s" => axis.lag_s = value.not_negative()?;
         "min" => axis.min = value.number()?;
         "max" => axis.max = value.number()?;
@@ -88,6 +93,7 @@ fn axis(axis: &mut Axis, table: &Table<'_>) -> Read<()> {
         "ka" => axis.motor.ka = value.number()?;
         "tau_v_s" => axis.motor.tau_v_s = value.positive()?;
         "inertia" => axis.motor.inertia = value.positive()?;
+        "pull" => axis.motor.pull = value.number()?;
         "cycles_per_unit" => axis.rotor.cycles_per_unit = Some(not_zero(&value)?);
         "rotor_phase" => axis.rotor.phase = value.number()?;
         "index" => axis.index = Some(index(&value.table()?)?);
@@ -97,6 +103,38 @@ fn axis(axis: &mut Axis, table: &Table<'_>) -> Read<()> {
         return Err(Wrong::new(table.offset, text));
     }
     Ok(())
+}
+
+/// `{ input = 0 }`
+fn encoder_input(table: &Table<'_>) -> Read<usize> {
+    let mut input = None;
+    keys!(table, |key, value| {
+        "input" => input = Some(value.whole(15)? as usize);
+    });
+    input.ok_or_else(|| table.is_missing("input"))
+}
+
+/// `{ dac = 0 }`, `{ step = 8 }`, `{ pwm = 8 }` or `{ pwm = 0, amplifier = "snapamp" }` with the numbers of `OutputChan0`,
+/// or `{ forward = 152, back = 153 }`.
+fn channel(table: &Table<'_>) -> Read<Channel> {
+    /// PWM channels before those of the SnapAmps.
+    const ON_BOARD: usize = 8;
+    let (mut channel, mut is_snapamp) = (None, false);
+    let (mut forward, mut back) = (None, None);
+    keys!(table, |key, value| {
+        "dac" => channel = Some(Channel::Dac(value.whole(7)? as usize));
+        "step" => channel = Some(Channel::Generator(value.whole(31)? as usize & 7));
+        "pwm" => channel = Some(Channel::Pwm(value.whole(15)? as usize));
+        "forward" => forward = Some(value.output()?);
+        "back" => back = Some(value.output()?);
+        "amplifier" => is_snapamp = value.choice(&[("snapamp", true)])?;
+    });
+    let relays = forward.zip(back).map(|(forward, back)| Channel::Relays(forward, back));
+    match channel.or(relays) {
+        Some(Channel::Pwm(number)) if is_snapamp && number < ON_BOARD => Ok(Channel::Pwm(ON_BOARD + number)),
+        Some(channel) => Ok(channel),
+        None => Err(table.is_missing("dac")),
+    }
 }
 
 fn not_zero(value: &Value<'_>) -> Read<f64> {

@@ -2,6 +2,7 @@
 
 mod globals;
 mod heap;
+mod motions;
 mod notices;
 mod reading;
 mod serial;
@@ -13,6 +14,7 @@ use vm::firmware::Caller;
 
 pub(crate) use globals::Globals;
 pub(crate) use heap::Heap;
+pub(crate) use motions::{EndedWait, Motions, WrongWait};
 pub(crate) use notices::{Named, Notices};
 pub(crate) use reading::Reading;
 pub(crate) use serial::SerialService;
@@ -57,6 +59,8 @@ pub(crate) struct Calls {
     pub(crate) waits: Waits,
     /// What is worth a remark in the light of what follows.
     pub(crate) notices: Notices,
+    /// Which thread moves which axis.
+    pub(crate) motions: Motions,
 }
 
 impl Default for Calls {
@@ -73,6 +77,7 @@ impl Default for Calls {
             hurried_calls: [0; N_CHANNELS],
             waits: Waits::default(),
             notices: Notices::default(),
+            motions: Motions::default(),
         }
     }
 }

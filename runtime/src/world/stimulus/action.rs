@@ -140,6 +140,24 @@ actions! {
         announces lines::announce;
         written { "pulse bit N for TIME" => lines::read_pulse }
     }
+    /// Presses the switch of an input, or closes its contact: the level that it has there.
+    Press(bit: Bit) {
+        does lines::press;
+        announces lines::announce;
+        written { "press bit N" => lines::read_toggle }
+    }
+    /// Gives an input back to its switch, which an earlier action has overridden.
+    Release(bit: Bit) {
+        does lines::release;
+        announces lines::announce;
+        written { "release bit N" => lines::read_toggle }
+    }
+    /// Inverts the level of an input as a contact does that bounces for a time.
+    Bounce(bit: Bit, duration: Cycles) {
+        does lines::bounce;
+        announces lines::announce;
+        written { "bounce bit N for TIME" => lines::read_pulse }
+    }
     /// Lets an analog input take a course.
     Adc(channel: usize, wave: Wave) {
         does lines::adc;

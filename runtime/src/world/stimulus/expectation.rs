@@ -191,6 +191,25 @@ impl Expectation {
     }
 }
 
+impl fmt::Display for Expectation {
+    /// As a statement has it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.sense != Sense::Is {
+            f.write_str("not ")?;
+        }
+        match &self.predicate {
+            Predicate::Value { subject, relation, number, .. } => {
+                write!(f, "{subject} {} {number}", relation.sign())
+            }
+            Predicate::Printed(text) => write!(f, "printed \"{text}\""),
+            Predicate::Enabled(axis, true) => write!(f, "axis {axis} enabled"),
+            Predicate::Enabled(axis, false) => write!(f, "axis {axis} disabled"),
+            Predicate::Active(thread, true) => write!(f, "thread {thread} active"),
+            Predicate::Active(thread, false) => write!(f, "thread {thread} ended"),
+        }
+    }
+}
+
 impl Subject {
     /// Its value; `None` for an expression that nobody has resolved.
     fn value(&self, view: &View<'_>) -> Option<f64> {

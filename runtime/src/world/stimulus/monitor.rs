@@ -20,6 +20,8 @@ pub(super) struct Progress {
     /// When it was due last. Simultaneous repeats count once, so that rules which trigger each other do not
     /// multiply.
     pub(super) last_due: Option<Cycles>,
+    /// Whether the value that it waits for was as it is compared in the last tick.
+    pub(super) was_so: bool,
     /// Whether the text it expects was printed: since the condition, where there is one.
     pub(super) said: bool,
     /// Whether it has done or checked something.
@@ -64,8 +66,24 @@ impl Player {
         self.rules.iter().zip(&self.progress).any(|(rule, progress)| match &rule.trigger {
             Trigger::Always { .. } => !progress.told,
             Trigger::Within { .. } => progress.since.is_some(),
+            Trigger::When { condition: Condition::Becomes(_), .. } => true,
             Trigger::At(_) | Trigger::Every { .. } | Trigger::When { .. } | Trigger::End => false,
         })
+    }
+
+    /// Looks at the values that statements wait for.
+    pub(super) fn watch_values(&mut self, stage: &Stage<'_>, context: &TickContext<'_>) {
+        for index in 0..self.rules.len() {
+            let Some(Condition::Becomes(expectation)) = self.rules[index].trigger.condition() else {
+                continue;
+            };
+            let (is_so, _) = self.look(stage, context, index, expectation);
+            if is_so && !self.progress[index].was_so {
+                let risen = Condition::Becomes(expectation.clone());
+                self.happened(context.now, |condition| *condition == risen);
+            }
+            self.progress[index].was_so = is_so;
+        }
     }
 
     /// Looks at all that is watched.

@@ -21,6 +21,8 @@ pub(super) enum Due {
     Rule(usize),
     /// A pulse ends: the level before it.
     Level(Bit, bool),
+    /// A pulse ends on an input that a switch drives.
+    Release(Bit),
     /// The time has passed within which something had to come.
     Check,
 }
@@ -70,6 +72,11 @@ impl Plans {
     /// A bit goes back to a level.
     pub(crate) fn level(&mut self, at: Cycles, bit: Bit, level: bool) {
         self.add(at, Due::Level(bit, level));
+    }
+
+    /// A bit goes back to its switch.
+    pub(crate) fn release(&mut self, at: Cycles, bit: Bit) {
+        self.add(at, Due::Release(bit));
     }
 
     /// An analog input begins a course.

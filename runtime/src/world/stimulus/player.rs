@@ -7,7 +7,7 @@ use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 use vm::scheduler::ThreadSet;
 
-use super::acts::lines::drive;
+use super::acts::lines::{drive, let_go};
 use super::monitor::Progress;
 use super::plans::{Due, MOST_PLANNED, Plans};
 use super::scene::Scene;
@@ -73,7 +73,7 @@ impl Player {
     pub(crate) fn watched(&self) -> impl Iterator<Item = Bit> {
         self.rules.iter().filter_map(|rule| match rule.trigger.condition()? {
             Condition::Bit(bit, _) => Some(*bit),
-            Condition::Printed(_) | Condition::Starts(_) | Condition::Ends(_) => None,
+            Condition::Printed(_) | Condition::Starts(_) | Condition::Ends(_) | Condition::Becomes(_) => None,
         })
     }
 
@@ -94,7 +94,7 @@ impl Player {
                 let is_endless = matches!(rule.trigger, Trigger::Every { .. });
                 (awaits && !is_endless) || rule.action.keeps_the_run()
             }
-            Due::Level(..) | Due::Check => false,
+            Due::Level(..) | Due::Release(_) | Due::Check => false,
         });
         is_due || (awaits && !(self.is_idle && has_shown_lines))
     }
@@ -125,6 +125,7 @@ impl Player {
         self.watch_bits(changes);
         self.watch_lines();
         self.watch_threads(context);
+        self.watch_values(stage, context);
         if self.plans.limit() {
             stage.out.remark(context.now, Message::TooMuchPlanned { most: MOST_PLANNED });
         }
@@ -134,6 +135,9 @@ impl Player {
             match due {
                 Due::Level(bit, level) => drive(stage, context, bit, level),
                 Due::Rule(index) => self.act(stage, context, index),
+                Due::Release(bit) => {
+                    let_go(stage, bit);
+                }
                 Due::Check => {}
             }
         }
@@ -173,13 +177,13 @@ impl Player {
             self.happened(context.now, |condition| match condition {
                 Condition::Starts(named) => is_active && *named == thread,
                 Condition::Ends(named) => !is_active && *named == thread,
-                Condition::Bit(..) | Condition::Printed(_) => false,
+                Condition::Bit(..) | Condition::Printed(_) | Condition::Becomes(_) => false,
             });
         }
     }
 
     /// Something has happened at `at`: plans the rules that waited for it.
-    fn happened(&mut self, at: Cycles, fits: impl Fn(&Condition) -> bool) {
+    pub(super) fn happened(&mut self, at: Cycles, fits: impl Fn(&Condition) -> bool) {
         self.begin_waiting(at, &fits);
         for index in 0..self.rules.len() {
             let Trigger::When { condition, after, is_once } = &self.rules[index].trigger else { continue };
@@ -226,7 +230,7 @@ impl Player {
         self.watch_threads(context);
         let late = self.plans.take_all().filter_map(|due| match due {
             Due::Rule(index) => Some(index),
-            Due::Level(..) | Due::Check => None,
+            Due::Level(..) | Due::Release(_) | Due::Check => None,
         });
         let mut checked: Vec<usize> = late.collect();
         checked.extend((0..self.rules.len()).filter(|&index| self.rules[index].trigger == Trigger::End));

@@ -149,6 +149,7 @@ impl StatementReader<'_> {
                 })?;
                 Ok(Condition::Bit(bit, edge))
             }
+            Some("axis" | "persist") => expectation::expectation(self).map(Condition::Becomes),
             Some("printed") => {
                 self.advance();
                 self.string().map(Condition::Printed)

@@ -29,7 +29,7 @@ impl Edge {
 }
 
 /// Something that happens on the board.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Condition {
     /// A bit changes.
     Bit(Bit, Edge),
@@ -39,6 +39,8 @@ pub enum Condition {
     Starts(ThreadId),
     /// A thread is no longer active.
     Ends(ThreadId),
+    /// A value of an axis or of `persist.UserData` becomes as it is compared.
+    Becomes(Expectation),
 }
 
 /// When a statement acts.
@@ -89,6 +91,7 @@ impl fmt::Display for Condition {
             Self::Printed(text) => write!(f, "printed \"{text}\""),
             Self::Starts(thread) => write!(f, "thread {thread} starts"),
             Self::Ends(thread) => write!(f, "thread {thread} ends"),
+            Self::Becomes(expectation) => write!(f, "{expectation}"),
         }
     }
 }

@@ -7,6 +7,7 @@ use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
 use crate::io::bits::bit_state;
+use crate::out::Message;
 use crate::views::Typed;
 use crate::world::Stage;
 use crate::world::stimulus::reader::{StatementReader, number};
@@ -60,7 +61,42 @@ pub(crate) fn read_pulse(reader: &mut StatementReader<'_>) -> Result<(Bit, Cycle
 pub(crate) fn pulse(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) {
     let level = level(scene, bit);
     set(scene, bit, !level);
-    scene.plans.level(scene.context.now + duration, bit, level);
+    let end = scene.context.now + duration;
+    if scene.stage.machine.mechanics.contact(bit).is_some() {
+        scene.plans.release(end, bit);
+    } else {
+        scene.plans.level(end, bit, level);
+    }
+}
+
+pub(crate) fn press(scene: &mut Scene<'_, '_, '_>, bit: Bit) {
+    let active = scene.stage.machine.mechanics.contact(bit).is_none_or(|(.., active)| active);
+    set(scene, bit, active);
+}
+
+pub(crate) fn release(scene: &mut Scene<'_, '_, '_>, bit: Bit) {
+    if !let_go(scene.stage, bit) {
+        let idle = scene.stage.io.pins.is_described(bit);
+        set(scene, bit, idle);
+    }
+}
+
+/// Gives an input back to its switch; whether it has one.
+pub(crate) fn let_go(stage: &mut Stage<'_>, bit: Bit) -> bool {
+    stage.machine.mechanics.let_go(bit);
+    stage.machine.mechanics.contact(bit).is_some()
+}
+
+/// When a contact that bounces inverts its level, as parts of the time that it takes.
+const BOUNCES: [f64; 4] = [0.12, 0.3, 0.55, 1.0];
+
+pub(crate) fn bounce(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) {
+    let old = level(scene, bit);
+    set(scene, bit, !old);
+    for (index, part) in BOUNCES.into_iter().enumerate() {
+        let after = Cycles::new((duration.get() as f64 * part) as i64);
+        scene.plans.level(scene.context.now + after, bit, (index % 2 == 0) == old);
+    }
 }
 
 /// What will be driven is not an accident, and a Kanalog whose inputs are driven is there.
@@ -157,6 +193,17 @@ pub(crate) fn drive(stage: &mut Stage<'_>, context: &mut TickContext<'_>, bit: B
     if is_memory(bit) {
         stage.lines().write(context.memory, bit, level);
     } else {
+        hold(stage, bit);
         stage.lines().drive(bit, level);
+    }
+}
+
+/// An action overrides a switch on the same input until it is released.
+fn hold(stage: &mut Stage<'_>, bit: Bit) {
+    if let Some((axis, ..)) = stage.machine.mechanics.contact(bit)
+        && stage.machine.mechanics.hold(bit)
+    {
+        let now = stage.lines().now;
+        stage.out.remark(now, Message::SwitchOverridden { bit, axis });
     }
 }

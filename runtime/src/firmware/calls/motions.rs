@@ -1,0 +1,152 @@
+//! Which thread moves which axis, and which motions it has asked about.
+//!
+//! Two threads that move the same axis at once, a wait for another axis than the one that moves, and an axis that is
+//! disabled while a thread waits for it are mistakes that only several calls together show.
+
+use kmotiondef::limits::N_CHANNELS;
+use kmotiondef::{AxisId, CodeAddr, ThreadId};
+
+/// A thread that asked about one axis while another one, which it moves itself, still moved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct WrongWait {
+    /// The thread.
+    pub(crate) thread: ThreadId,
+    /// The axis that it asked about.
+    pub(crate) asked: AxisId,
+    /// The axis that it moves.
+    pub(crate) moving: AxisId,
+    /// Where it asked.
+    pub(crate) at: Option<CodeAddr>,
+}
+
+/// A thread that was told that an axis is disabled, while it waited for the end of its motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct EndedWait {
+    /// The thread.
+    pub(crate) thread: ThreadId,
+    /// The axis.
+    pub(crate) axis: AxisId,
+    /// Where it asked.
+    pub(crate) at: Option<CodeAddr>,
+}
+
+/// What one thread has done.
+#[derive(Clone, Copy, Debug, Default)]
+struct Thread {
+    /// Axes that it has moved, and axes that it has found in motion; a bit for each.
+    moved: u8,
+    in_motion: u8,
+    wrong_wait: Option<WrongWait>,
+    /// A wait that ended because the axis was disabled; a thread that looks into that asks once more.
+    ended_wait: Option<EndedWait>,
+}
+
+/// What all threads have done.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Motions {
+    /// The thread that last moved each axis.
+    movers: [Option<ThreadId>; N_CHANNELS],
+    threads: [Thread; ThreadId::MAX as usize],
+}
+
+const fn bit(axis: AxisId) -> u8 {
+    1 << axis.get()
+}
+
+impl Motions {
+    /// A program starts in a thread.
+    pub(crate) fn begins(&mut self, thread: ThreadId) {
+        self.threads[thread.index()] = Thread::default();
+        for mover in &mut self.movers {
+            mover.take_if(|mover| *mover == thread);
+        }
+    }
+
+    /// A thread moves an axis; the thread that moved it before, if that was another one.
+    pub(crate) fn moves(&mut self, thread: ThreadId, axis: AxisId) -> Option<ThreadId> {
+        self.threads[thread.index()].moved |= bit(axis);
+        self.movers[axis.index()].replace(thread).filter(|before| *before != thread)
+    }
+
+    /// A thread asks whether the motion of an axis has ended, and is told `done`. `is_moving` says which axes move.
+    pub(crate) fn asked(
+        &mut self,
+        thread: ThreadId,
+        axis: AxisId,
+        done: i32,
+        at: Option<CodeAddr>,
+        is_moving: impl Fn(AxisId) -> bool,
+    ) {
+        let mover = self.movers[axis.index()];
+        let own = &mut self.threads[thread.index()];
+        own.wrong_wait.take_if(|wait| wait.moving == axis);
+        own.ended_wait.take_if(|wait| wait.axis == axis);
+        let was_in_motion = own.in_motion & bit(axis) != 0;
+        own.in_motion = if done == 0 { own.in_motion | bit(axis) } else { own.in_motion & !bit(axis) };
+        let is_others = mover.is_some_and(|mover| mover != thread);
+        if done == 1 && own.moved & bit(axis) == 0 && !is_others && own.wrong_wait.is_none() {
+            let moving = AxisId::all().find(|other| own.moved & bit(*other) != 0 && is_moving(*other));
+            own.wrong_wait = moving.map(|moving| WrongWait { thread, asked: axis, moving, at });
+        }
+        if was_in_motion && done < 0 {
+            own.ended_wait = Some(EndedWait { thread, axis, at });
+        }
+    }
+
+    /// The wait of a thread that ended because its axis was disabled, unless it has looked into that.
+    pub(crate) fn take_ended(&mut self, thread: ThreadId) -> Option<EndedWait> {
+        self.threads[thread.index()].ended_wait.take()
+    }
+
+    /// The waits for another axis than the one that moved, which no later call has made good.
+    pub(crate) fn wrong_waits(&self) -> impl Iterator<Item = WrongWait> + '_ {
+        self.threads.iter().filter_map(|thread| thread.wrong_wait)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn axis(number: i32) -> AxisId {
+        AxisId::new(number).expect("an axis")
+    }
+
+    fn thread(number: i32) -> ThreadId {
+        ThreadId::new(number).expect("a thread")
+    }
+
+    #[test]
+    fn a_wait_for_the_wrong_axis_is_made_good_by_one_for_the_right_one() {
+        let mut motions = Motions::default();
+        motions.moves(thread(1), axis(1));
+        let moves_1 = |other: AxisId| other == axis(1);
+        motions.asked(thread(1), axis(0), 1, None, moves_1);
+        assert_eq!(motions.wrong_waits().map(|wait| wait.moving).collect::<Vec<_>>(), [axis(1)]);
+        motions.asked(thread(1), axis(1), 0, None, moves_1);
+        assert_eq!(motions.wrong_waits().count(), 0);
+    }
+
+    #[test]
+    fn another_threads_axis_may_be_waited_for() {
+        let mut motions = Motions::default();
+        motions.moves(thread(1), axis(1));
+        assert_eq!(motions.moves(thread(2), axis(0)), None);
+        motions.asked(thread(1), axis(0), 1, None, |_| true);
+        assert_eq!(motions.wrong_waits().count(), 0);
+        assert_eq!(motions.moves(thread(1), axis(0)), Some(thread(2)));
+    }
+
+    #[test]
+    fn an_axis_that_stops_moving_by_being_disabled_is_noticed() {
+        let mut motions = Motions::default();
+        let mut ask = |done| {
+            motions.asked(thread(1), axis(0), done, None, |_| false);
+            motions.threads[thread(1).index()].ended_wait.map(|wait| wait.axis)
+        };
+        assert_eq!([-1, 0, -1].map(&mut ask), [None, None, Some(axis(0))]);
+        assert_eq!(ask(-1), None, "a thread that asks again looks into it");
+        assert_eq!([0, -1].map(&mut ask), [None, Some(axis(0))]);
+        assert!(motions.take_ended(thread(1)).is_some() && motions.take_ended(thread(1)).is_none());
+    }
+}

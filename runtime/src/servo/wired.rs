@@ -1,0 +1,113 @@
+//! Motors that the machine file wires to an output: they are driven by what the output carries, whoever writes it.
+//!
+//! The analog outputs and the words of the PWM channels are in guest memory, where the servo and programs write them. A
+//! load with a motor whose axis drives an analog output is driven by that in the same way.
+
+use kmotiondef::AxisId;
+use kmotiondef::limits::{MAX_PWM_VALUE, MAX_PWMC_VALUE, MAX_PWMR_VALUE};
+use kmotiondef::modes::OutputMode;
+use kmotiondef::structs::Chan;
+use kmotiondef::variables::LAST_PWM;
+use vm::memory::GuestMemory;
+
+use super::output::driven;
+use crate::io::Io;
+use crate::io::bits::bit_state;
+use crate::machine::wiring::{channel_of, dac_value};
+use crate::machine::{Applied, Channel, Drive, Machine};
+use crate::views::{AxisView, Typed};
+
+/// What drives the load of an axis in this tick, if not the output of the axis itself.
+#[inline(always)]
+pub(crate) fn drive(machine: &Machine, io: &Io, memory: &mut GuestMemory, axis: AxisId) -> Option<Drive> {
+    let wired = machine.wiring.drive(axis);
+    if wired.is_none() && !machine.loads[axis].has_motor() {
+        return None;
+    }
+    carried_to(io, memory, axis, wired)
+}
+
+/// The same for an axis whose drive is wired, or whose load has a motor.
+fn carried_to(io: &Io, memory: &mut GuestMemory, axis: AxisId, wired: Option<Channel>) -> Option<Drive> {
+    let own = channel_of(memory, axis);
+    match wired.or(own.filter(|channel| matches!(channel, Channel::Dac(_))))? {
+        // The steps of another axis come as pushes; those of its own axis as usual.
+        Channel::Generator(_) if matches!(own, Some(Channel::Generator(_))) => None,
+        Channel::Generator(_) => Some(Drive::None),
+        Channel::Dac(dac) => {
+            let applied = Applied::Dac(f64::from(dac_value(memory, dac)));
+            Some(match driver(memory, Channel::Dac(dac)) {
+                Some(axis) => Drive::Loop(command(memory, axis), applied),
+                None => Drive::Open(applied),
+            })
+        }
+        Channel::Relays(forward, back) => {
+            let level = |bit| f64::from(u8::from(bit_state(io, memory, bit).0));
+            // One count of an analog output: `ku` is the speed.
+            Some(Drive::Open(Applied::Dac(level(forward) - level(back))))
+        }
+        Channel::Pwm(pwm) => Some(match driver(memory, Channel::Pwm(pwm)) {
+            Some(axis) => driven(&AxisView::of(memory, axis), 0.0),
+            None => Drive::Open(decoded(memory.get(LAST_PWM.element(pwm)))),
+        }),
+    }
+}
+
+/// The enabled axis that outputs to a channel.
+fn driver(memory: &GuestMemory, channel: Channel) -> Option<AxisId> {
+    AxisId::all()
+        .find(|axis| memory.axis(*axis, Chan::ENABLE) != 0 && channel_of(memory, *axis) == Some(channel))
+}
+
+fn command(memory: &mut GuestMemory, axis: AxisId) -> f64 {
+    super::command(&AxisView::of(memory, axis))
+}
+
+/// What the word of a PWM channel applies to a motor. A vector turns nothing without the angle that an axis gives it.
+fn decoded(word: i32) -> Applied {
+    let within = |value: i32, limit: i32| (-limit..=limit).contains(&value).then(|| f64::from(value));
+    let current = within(word.wrapping_sub(41_984), MAX_PWMC_VALUE).map(Applied::Current);
+    let antiphase = within(word.wrapping_sub(1280), MAX_PWM_VALUE);
+    let recirculate = within(if word < 512 { word } else { 512_i32.wrapping_sub(word) }, MAX_PWMR_VALUE);
+    current.unwrap_or_else(|| Applied::Pwm(antiphase.or(recirculate.filter(|_| word >= 0)).unwrap_or(0.0)))
+}
+
+/// Whether the steps of an axis move its own load: they are lost to it if a machine file connects the generator or the
+/// motor to something else.
+pub(crate) fn steps_are_own(machine: &Machine, memory: &GuestMemory, axis: AxisId) -> bool {
+    let Some(Channel::Generator(generator)) = channel_of(memory, axis) else { return true };
+    let owner = machine.wiring.motor_on(generator);
+    let wired = machine.wiring.drive(axis);
+    owner.is_none_or(|owner| owner == axis)
+        && wired.is_none_or(|wired| wired == Channel::Generator(generator))
+}
+
+/// Moves the load that a machine file connects to the generator of an axis, if it is that of another one.
+pub(crate) fn step_other(machine: &mut Machine, memory: &GuestMemory, axis: AxisId, steps: f64) {
+    if !OutputMode::has_generator(OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE))) {
+        return;
+    }
+    let Some(Channel::Generator(generator)) = channel_of(memory, axis) else { return };
+    let Some(owner) = machine.wiring.motor_on(generator).filter(|owner| *owner != axis) else { return };
+    let gain = f64::from(memory.axis(owner, Chan::OUTPUT_GAIN));
+    if gain != 0.0 && steps != 0.0 {
+        machine.loads.push(owner, steps / gain);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::amplifiers::{antiphase, current, recirculate};
+
+    #[test]
+    fn words_of_every_kind_are_decoded() {
+        for value in [-100, 0, 100] {
+            let number = f64::from(value);
+            assert_eq!(decoded(antiphase(value)), Applied::Pwm(number));
+            assert_eq!(decoded(recirculate(value)), Applied::Pwm(number));
+            assert_eq!(decoded(current(value)), Applied::Current(number));
+        }
+        assert_eq!(decoded(0x8000_0064_u32.cast_signed()), Applied::Pwm(0.0));
+    }
+}

@@ -1,0 +1,18 @@
+//@ args: --machine parts/motor.toml
+//@ says: thread 1 at all_gains_0.c:16:5 in `main`: Move: axis 0 has P, I, D, FFVel and FFAccel = 0, so its output stays 0 and its motor does not move
+#include "KMotionDef.h"
+
+main()
+{
+    ch0->InputMode = ENCODER_MODE;
+    ch0->OutputMode = DAC_SERVO_MODE;
+    ch0->OutputChan0 = 0;
+    ch0->P = 0;
+    ch0->MaxOutput = 2047;
+    ch0->Vel = 10000;
+    ch0->Accel = 100000;
+    ch0->Jerk = 1e6;
+    EnableAxis(0);
+    Move(0, 1000);
+    while (!CheckDone(0)) WaitNextTimeSlice();
+}

@@ -1,0 +1,20 @@
+//@ args: --machine parts/slow_motor.toml
+//@ says: thread 1 at encoder_on_another_input.c:17:5 in `main`: EnableAxis: axis 0 reads encoder input 3 (InputChan0), but the encoder of its motor is on input 0
+#include "KMotionDef.h"
+
+main()
+{
+    ch0->InputMode = ENCODER_MODE;
+    ch0->InputChan0 = 3;
+    ch0->OutputMode = DAC_SERVO_MODE;
+    ch0->OutputChan0 = 0;
+    ch0->P = 0.3;
+    ch0->MaxOutput = 2047;
+    ch0->Vel = 10000;
+    ch0->Accel = 100000;
+    ch0->Jerk = 1e6;
+    ch0->MaxFollowingError = 1000;
+    EnableAxis(0);
+    MoveAtVel(0, 1000, 1000);
+    while (!CheckDone(0)) WaitNextTimeSlice();
+}

@@ -1,0 +1,12 @@
+//@ args: check
+//@ says: warning[logical-constant]: `||` only asks whether 4 is 0
+//@ says: flags_joined_with_two_bars.c:11:29
+#include "KMotionDef.h"
+
+#define SHOW_BUTTONS 4
+#define SHOW_SIGN 48
+
+main()
+{
+    persist.UserData[102] = SHOW_BUTTONS || SHOW_SIGN;
+}

@@ -1,0 +1,15 @@
+//@ says: thread 1 at output_gain_0.c:13:5 in `main`: Move: axis 0 has OutputGain = 0, so its output stays 0 and its motor does not move
+#include "KMotionDef.h"
+
+main()
+{
+    ch0->InputMode = NO_INPUT_MODE;
+    ch0->OutputMode = STEP_DIR_MODE;
+    ch0->Vel = 10000;
+    ch0->Accel = 100000;
+    ch0->Jerk = 1e6;
+    ch0->OutputGain = 0;
+    EnableAxisDest(0, 0);
+    Move(0, 500);
+    while (!CheckDone(0)) WaitNextTimeSlice();
+}

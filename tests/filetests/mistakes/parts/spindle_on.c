@@ -1,0 +1,6 @@
+#include "KMotionDef.h"
+
+main()
+{
+    printf("spindle on\n");
+}

@@ -1,0 +1,14 @@
+//@ args: --for 1
+#include "KMotionDef.h"
+
+main()
+{
+    ch0->InputMode = NO_INPUT_MODE;
+    ch0->OutputMode = STEP_DIR_MODE;
+    ch0->Vel = 100;
+    ch0->Accel = 100000;
+    ch0->Jerk = 1e6;
+    EnableAxisDest(0, 0);
+    Move(0, 90);
+    while (!CheckDone(0)) WaitNextTimeSlice();
+}

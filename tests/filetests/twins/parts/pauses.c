@@ -1,0 +1,8 @@
+#include "KMotionDef.h"
+
+main()
+{
+    PauseThread(1);
+    Delay_sec(0.2);
+    ResumeThread(1);
+}

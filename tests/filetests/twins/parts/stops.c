@@ -1,0 +1,7 @@
+#include "KMotionDef.h"
+
+main()
+{
+    Delay_sec(0.5);
+    Jog(0, 0);
+}
