@@ -7,7 +7,7 @@ use vm::memory::GuestMemory;
 use super::machine_file::MachineFile;
 use crate::firmware::parts::Parts;
 use crate::io::konnect::Port;
-use crate::machine::description::{Axis, Encoder, Model};
+use crate::machine::description::{Axis, Connection, Encoder, Model};
 use crate::machine::wiring::Wiring;
 use crate::machine::{Mechanics, Plant, connect_snapamp};
 use crate::views::Typed;
@@ -22,7 +22,8 @@ pub(crate) fn install(parts: &mut Parts, machine: &MachineFile) {
     connected.wiring = Wiring::new(&machine.axes);
     if let Some(spindle) = machine.connected.spindle {
         // The load of that axis counts as its encoder does.
-        let load = Axis { model: Model::None, encoder: Encoder::Connected, ..Axis::default() };
+        let connection = Connection { encoder: Encoder::Connected, ..Connection::default() };
+        let load = Axis { model: Model::None, connection, ..Axis::default() };
         connected.loads[spindle.axis] = Plant::new(&load);
     }
     connected.mechanics = Mechanics::new(&machine.axes, &machine.connected);

@@ -1,7 +1,7 @@
 //! Checks of the settings of an axis when a program enables or moves it: what is wired wrong, and what keeps it from
 //! moving.
 //!
-//! The board accepts all of it without a word. Each check is one remark, with the call that made it come to light.
+//! The board accepts all of it silently. Each check is one remark, with the call that made it come to light.
 
 use kmotiondef::firmware::Function;
 use kmotiondef::modes::{BacklashMode, InputMode, OutputMode};
@@ -60,7 +60,7 @@ pub(crate) fn moved(parts: &mut Parts, caller: &Caller<'_>, function: Function, 
     }
 }
 
-/// A thread goes on with an axis after a wait: whether it has taken the end of the axis for that of its motion.
+/// A thread continues after a wait: whether it has taken the end of the axis for that of its motion.
 pub(crate) fn goes_on(parts: &mut Parts, caller: &Caller<'_>) {
     let ended = caller.thread.and_then(|thread| parts.calls.motions.take_ended(thread));
     if let Some(EndedWait { thread, axis, at }) = ended {

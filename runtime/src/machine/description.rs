@@ -47,6 +47,23 @@ pub enum Encoder {
     Absent,
 }
 
+/// What an axis' encoder and motor are connected to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Connection {
+    /// The encoder.
+    pub encoder: Encoder,
+    /// The input that the encoder is connected to, if the machine file says it.
+    pub input: Option<usize>,
+    /// The output that drives the motor, if the machine file says it.
+    pub drive: Option<Channel>,
+}
+
+impl Default for Connection {
+    fn default() -> Self {
+        Self { encoder: Encoder::Auto, input: None, drive: None }
+    }
+}
+
 /// An output that drives a motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channel {
@@ -85,12 +102,8 @@ pub struct Axis {
     pub units: String,
     /// Encoder counts of a unit: the gearing.
     pub counts_per_unit: f64,
-    /// Its encoder.
-    pub encoder: Encoder,
-    /// The input that the encoder is connected to, if the machine file says it.
-    pub input: Option<usize>,
-    /// The output that drives its motor, if the machine file says it.
-    pub drive: Option<Channel>,
+    /// Its encoder and its drive.
+    pub connection: Connection,
     /// Time constant with which a load of the model `follow` follows, seconds.
     pub lag_s: f64,
     /// Hard stops, machine coordinates.
@@ -122,9 +135,7 @@ impl Default for Axis {
             model: Model::Follow,
             units: COUNTS.to_owned(),
             counts_per_unit: 1.0,
-            encoder: Encoder::Auto,
-            input: None,
-            drive: None,
+            connection: Connection::default(),
             lag_s: 0.000_5,
             min: -1e9,
             max: 1e9,

@@ -60,7 +60,7 @@ enum Scale {
 
 impl Scale {
     fn of(axis: &Axis) -> Self {
-        match (axis.encoder, axis.model) {
+        match (axis.connection.encoder, axis.model) {
             (Encoder::Auto, Model::Follow) => Self::Axis,
             (Encoder::Auto | Encoder::Connected, _) => Self::Units(1.0 / axis.counts_per_unit),
             (Encoder::Absent, _) => Self::Absent,

@@ -33,8 +33,8 @@ impl Wiring {
         let mut wiring = Self::default();
         for (index, axis) in axes.iter().enumerate() {
             let by_number = (axis.model == Model::Motor).then_some(index);
-            wiring.inputs[index] = axis.input.or(by_number);
-            wiring.drives[index] = axis.drive;
+            wiring.inputs[index] = axis.connection.input.or(by_number);
+            wiring.drives[index] = axis.connection.drive;
         }
         wiring
     }
@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn an_encoder_is_where_the_machine_file_says() {
         let mut axes: [Axis; N_CHANNELS] = std::array::from_fn(|_| Axis::default());
-        axes[0].input = Some(3);
+        axes[0].connection.input = Some(3);
         axes[1].model = Model::Motor;
         let wiring = Wiring::new(&axes);
         let mut memory = GuestMemory::default();

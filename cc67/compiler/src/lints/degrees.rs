@@ -1,12 +1,21 @@
 //! `sin(90)`: the functions of angles take radians.
 
+use kmotiondef::firmware::Function;
+
 use super::format::called_firmware;
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::ExprKind;
 
 /// Functions that take an angle.
-const FUNCTIONS: &[&str] = &["sin", "cos", "tan", "sinf", "cosf", "tanf"];
+const FUNCTIONS: [&str; 6] = [
+    Function::sin.name(),
+    Function::cos.name(),
+    Function::tan.name(),
+    Function::sinf.name(),
+    Function::cosf.name(),
+    Function::tanf.name(),
+];
 
 /// Reports constant angles of more than a turn.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {

@@ -1,6 +1,6 @@
 //! A `case` that continues into the next one because its `break` is missing.
 //!
-//! No program for this board does so on purpose (`dialect.md` section 4.2); a comment such as `// fall through` silences it.
+//! Programs for this board hardly ever do so on purpose; a comment such as `// fall through` silences it.
 
 use super::missing_return::completes;
 use super::program::AnalysedProgram;

@@ -1,5 +1,7 @@
 //! `float start = Time_sec();`: a `float` has seven digits, and the board's time soon needs more.
 
+use kmotiondef::firmware::Function;
+
 use super::format::called_firmware;
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
@@ -7,7 +9,7 @@ use crate::ty::Types;
 use crate::typed::ExprKind;
 
 /// The function that returns the time since power-up.
-const TIME: &str = "Time_sec";
+const TIME: &str = Function::Time_sec.name();
 
 /// Reports times that become a `float`.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {

@@ -97,10 +97,12 @@ fn goes_away(function: &Function, condition: ExprId, step: ExprId) -> Option<Dia
         ExprKind::Float(number) => number,
         _ => return None,
     };
-    let goes_up = match update.op {
-        BinaryOp::Add => amount > 0.0,
-        BinaryOp::Subtract => amount < 0.0,
-        _ => return None,
+    let goes_up = if update.op == BinaryOp::Add {
+        amount > 0.0
+    } else if update.op == BinaryOp::Subtract {
+        amount < 0.0
+    } else {
+        return None;
     };
     let is_away = match op {
         CompareOp::Less | CompareOp::LessEqual => !goes_up,

@@ -2,13 +2,15 @@
 //!
 //! Constants with a fraction are found where they are converted.
 
+use kmotiondef::firmware::Function;
+
 use super::format::called_firmware;
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::ExprKind;
 
 /// The function that takes an `int` and is used for every number.
-const ABS: &str = "abs";
+const ABS: &str = Function::abs.name();
 
 /// Reports floating-point numbers that are passed to `abs`.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {

@@ -1,12 +1,14 @@
 //! `Delay_sec(500)`: the functions that wait take seconds.
 
+use kmotiondef::firmware::Function;
+
 use super::format::called_firmware;
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::ExprKind;
 
 /// The function that waits for a time.
-const DELAY: &str = "Delay_sec";
+const DELAY: &str = Function::Delay_sec.name();
 
 /// Seconds from which on a constant is probably one of milliseconds.
 const LONG: f64 = 100.0;

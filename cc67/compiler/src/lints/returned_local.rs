@@ -31,7 +31,9 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
 fn addressed(function: &Function, expr: ExprId) -> Option<LocalId> {
     match function.exprs[expr].kind {
         ExprKind::Convert(inner) => addressed(function, inner),
-        ExprKind::Binary(BinaryOp::Add | BinaryOp::Subtract, base, _) => addressed(function, base),
+        ExprKind::Binary(op, base, _) if [BinaryOp::Add, BinaryOp::Subtract].contains(&op) => {
+            addressed(function, base)
+        }
         ExprKind::Address(place) => match function.places[place].kind {
             PlaceKind::Local(local, _) => Some(local),
             _ => None,

@@ -7,7 +7,7 @@ use crate::typed::{ExprId, ExprKind, Function, PlaceId, PlaceKind};
 
 /// An operand that is a text in memory.
 #[derive(Clone, Copy, PartialEq)]
-enum Text {
+enum TextOperand {
     /// Written in quotes.
     Literal,
     /// The name of an array of characters.
@@ -20,7 +20,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
         for expr in function.exprs.values() {
             let ExprKind::Compare(_, a, b) = expr.kind else { continue };
             let texts = [text(program, function, a), text(program, function, b)];
-            if texts.contains(&Some(Text::Literal)) || texts == [Some(Text::Array); 2] {
+            if texts.contains(&Some(TextOperand::Literal)) || texts == [Some(TextOperand::Array); 2] {
                 sink.report(
                     Diagnostic::warning(
                         Lint::TextComparison,
@@ -35,17 +35,17 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-fn text(program: &AnalysedProgram<'_>, function: &Function, mut expr: ExprId) -> Option<Text> {
+fn text(program: &AnalysedProgram<'_>, function: &Function, mut expr: ExprId) -> Option<TextOperand> {
     while let ExprKind::Convert(inner) = function.exprs[expr].kind {
         expr = inner;
     }
     let ExprKind::Address(place) = function.exprs[expr].kind else { return None };
     match function.places[place].kind {
         PlaceKind::Symbol(symbol, 0) if program.unit.symbols[symbol].is_anonymous() => {
-            is_character_array(program, function, place).then_some(Text::Literal)
+            is_character_array(program, function, place).then_some(TextOperand::Literal)
         }
         PlaceKind::Symbol(_, 0) | PlaceKind::Local(_, 0) => {
-            is_character_array(program, function, place).then_some(Text::Array)
+            is_character_array(program, function, place).then_some(TextOperand::Array)
         }
         _ => None,
     }

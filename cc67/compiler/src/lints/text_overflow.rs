@@ -1,9 +1,11 @@
 //! `sprintf` and `strcpy` into an array that is too small for any text that they can store.
 
+use kmotiondef::firmware::Function;
+
 use super::format::{called_firmware, literal_argument};
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
-use crate::typed::{Call, Definition, ExprId, ExprKind, Function, PlaceKind};
+use crate::typed::{self, Call, Definition, ExprId, ExprKind, PlaceKind};
 
 /// Reports calls whose shortest text, with its end, is longer than the array.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
@@ -21,7 +23,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
                     format!("`{name}` stores at least {bytes} bytes in `{array}`, which has {size}");
                 sink.report(
                     Diagnostic::warning(Lint::TextOverflow, expr.span, message)
-                        .at("what lies after the array is overwritten")
+                        .at("the memory after the array is overwritten")
                         .note("the end of a text takes one byte")
                         .help("make the array larger"),
                 );
@@ -31,20 +33,25 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
 }
 
 /// Characters of the shortest text that a call can store.
-fn shortest(program: &AnalysedProgram<'_>, function: &Function, call: &Call, name: &str) -> Option<usize> {
+fn shortest(
+    program: &AnalysedProgram<'_>,
+    function: &typed::Function,
+    call: &Call,
+    name: &str,
+) -> Option<usize> {
     let text = |index| literal_argument(program.unit, function, call, index);
-    match name {
-        "strcpy" | "strcat" => Some(text(1)?.len()),
-        "sprintf" => {
-            let mut values = call.variable.iter().flatten();
-            Some(formatted(text(1)?, &mut || values.next().map(|value| constant(function, *value))))
-        }
-        _ => None,
+    if [Function::strcpy.name(), Function::strcat.name()].contains(&name) {
+        return Some(text(1)?.len());
     }
+    if name != Function::sprintf.name() {
+        return None;
+    }
+    let mut values = call.variable.iter().flatten();
+    Some(formatted(text(1)?, &mut || values.next().map(|value| constant(function, *value))))
 }
 
 /// A value of a call, if it is known.
-fn constant(function: &Function, value: ExprId) -> Option<i64> {
+fn constant(function: &typed::Function, value: ExprId) -> Option<i64> {
     match function.exprs[value].kind {
         ExprKind::Int(number) => Some(number),
         _ => None,
@@ -92,7 +99,11 @@ fn formatted(format: &[u8], next: &mut dyn FnMut() -> Option<Option<i64>>) -> us
 }
 
 /// The array that an address points into, and its bytes from there.
-fn room<'p>(program: &AnalysedProgram<'p>, function: &'p Function, mut to: ExprId) -> Option<(&'p str, u32)> {
+fn room<'p>(
+    program: &AnalysedProgram<'p>,
+    function: &'p typed::Function,
+    mut to: ExprId,
+) -> Option<(&'p str, u32)> {
     while let ExprKind::Convert(inner) = function.exprs[to].kind {
         to = inner;
     }

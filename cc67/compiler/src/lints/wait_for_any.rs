@@ -1,12 +1,14 @@
 //! `while (!CheckDone(0) && !CheckDone(1))`, which ends with the first axis that arrives.
 
+use kmotiondef::firmware::Function;
+
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::CompareOp;
-use crate::typed::{Callee, ExprId, ExprKind, Function, StmtKind, UnaryOp};
+use crate::typed::{self, Callee, ExprId, ExprKind, StmtKind, UnaryOp};
 
 /// The function that says whether the motion of an axis has ended.
-const CHECK_DONE: &str = "CheckDone";
+const CHECK_DONE: &str = Function::CheckDone.name();
 
 /// Reports loops that wait while no axis has arrived.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
@@ -31,7 +33,12 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
 }
 
 /// Whether a condition asks only whether axes move, with `&&` in between; how many of them.
-fn moving(program: &AnalysedProgram<'_>, function: &Function, condition: ExprId, waits: &mut u32) -> bool {
+fn moving(
+    program: &AnalysedProgram<'_>,
+    function: &typed::Function,
+    condition: ExprId,
+    waits: &mut u32,
+) -> bool {
     match function.exprs[condition].kind {
         ExprKind::And(a, b) => moving(program, function, a, waits) && moving(program, function, b, waits),
         ExprKind::Unary(UnaryOp::Not, call) => asks(program, function, call, waits),
@@ -43,7 +50,7 @@ fn moving(program: &AnalysedProgram<'_>, function: &Function, condition: ExprId,
     }
 }
 
-fn asks(program: &AnalysedProgram<'_>, function: &Function, call: ExprId, waits: &mut u32) -> bool {
+fn asks(program: &AnalysedProgram<'_>, function: &typed::Function, call: ExprId, waits: &mut u32) -> bool {
     let ExprKind::Call(call) = &function.exprs[call].kind else { return false };
     let is_it = matches!(call.callee, Callee::Symbol(callee) if program.name(callee) == CHECK_DONE);
     *waits += u32::from(is_it);

@@ -5,7 +5,7 @@
 
 use kmotiondef::CType;
 use kmotiondef::boards::TargetBoard;
-use kmotiondef::firmware::Origin;
+use kmotiondef::firmware::{Function, Origin};
 
 use super::Sema;
 use super::advice::{Advice, HEADER_HELP, is_axis};
@@ -257,9 +257,6 @@ pub(super) fn is_sensible(spelling: &str, name: &str) -> bool {
 
 /// A function of the firmware that does the same as one that it lacks.
 fn stand_in(name: &str) -> Option<&'static str> {
-    match name {
-        "fabs" => Some("fast_fabs"),
-        "fabsf" => Some("fast_fabsf"),
-        _ => None,
-    }
+    let same = [(Function::fabs, Function::fast_fabs), (Function::fabsf, Function::fast_fabsf)];
+    same.into_iter().find(|(lacking, _)| lacking.name() == name).map(|(_, other)| other.name())
 }

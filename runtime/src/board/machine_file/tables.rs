@@ -75,14 +75,14 @@ fn axis(axis: &mut Axis, table: &Table<'_>) -> Read<()> {
         "units" => value.text()?.clone_into(&mut axis.units);
         "counts_per_unit" => axis.counts_per_unit = not_zero(&value)?;
         "encoder" => match value.table() {
-            Ok(table) => axis.input = Some(encoder_input(&table)?),
+            Ok(table) => axis.connection.input = Some(encoder_input(&table)?),
             Err(_) => {
                 let choices =
                     [("auto", Encoder::Auto), ("true", Encoder::Connected), ("false", Encoder::Absent)];
-                axis.encoder = value.choice(&choices)?;
+                axis.connection.encoder = value.choice(&choices)?;
             }
         };
-        "drive" => axis.drive = Some(channel(&value.table()?)?);
+        "drive" => axis.connection.drive = Some(channel(&value.table()?)?);
         "lag_s" => axis.lag_s = value.not_negative()?;
         "min" => axis.min = value.number()?;
         "max" => axis.max = value.number()?;

@@ -75,7 +75,10 @@ snapamp = 0
 fn every_key_of_a_full_file_is_read() {
     let machine = MachineFile::parse(FULL).expect("a good file");
     let axis = &machine.axes[0];
-    assert_eq!((axis.model, axis.encoder, axis.counts_per_unit), (Model::Motor, Encoder::Connected, 400.5));
+    assert_eq!(
+        (axis.model, axis.connection.encoder, axis.counts_per_unit),
+        (Model::Motor, Encoder::Connected, 400.5)
+    );
     assert_eq!((axis.min, axis.max, axis.start), (-10.0, 1000.0, 5.5));
     assert_eq!((axis.motor.ku, axis.motor.inertia), (Some(2.5), 2.0));
     assert_eq!(axis.index.map(|index| index.every), Some(4096.0));

@@ -37,7 +37,7 @@ struct Thread {
     moved: u8,
     in_motion: u8,
     wrong_wait: Option<WrongWait>,
-    /// A wait that ended because the axis was disabled; a thread that looks into that asks once more.
+    /// A wait that ended because the axis was disabled; a thread that looks into that asks again.
     ended_wait: Option<EndedWait>,
 }
 
