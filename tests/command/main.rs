@@ -18,6 +18,7 @@ mod jumps;
 mod keyboard;
 #[cfg(feature = "live")]
 mod live;
+mod options;
 mod plots;
 mod profile;
 mod races;

@@ -22,6 +22,5 @@ mod io;
 mod report;
 mod session;
 
-pub use commands::limits;
-pub use commands::main;
+pub use commands::{description, limits, main};
 pub use io::exit::Exit;

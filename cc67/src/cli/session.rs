@@ -21,7 +21,6 @@ use kmotiondef::Ticks;
 use runtime::stimulus::Stimulus;
 use runtime::{Board, Config, Event};
 use vm::engine::Engine;
-use vm::machine::Config as MachineConfig;
 #[cfg(feature = "native")]
 use vm::native::NativeEngine;
 
@@ -95,7 +94,7 @@ impl Setup {
         board: &BoardArguments,
         compiler: &CompilerArguments,
     ) -> Result<Option<Self>> {
-        Self::compiled(started, board, compiler, CodeFor::Engine(board.engine))
+        Self::compiled(started, board, compiler, CodeFor::Engine(board.engine()))
     }
 
     /// The same for a firmware that has started.
@@ -241,12 +240,7 @@ impl Described {
         loaded.iter_mut().enumerate().for_each(|(index, program)| program.starts = starting.contains(&index));
 
         machine_file.cpu.board_faults |= board.board_faults;
-        let machine = MachineConfig {
-            shortcuts: !board.no_shortcuts,
-            preemption: board.form.preemption(),
-            observed: board.races,
-            ..MachineConfig::default()
-        };
+        let machine = board.machine_config();
         let disk = board.files(&machine_file);
         let flashed = flash.contents();
         let config =

@@ -8,8 +8,10 @@ use clap::{Args, ValueEnum};
 use compiler::words::suggest;
 use runtime::{Directory, HostFiles, MachineFile, Overlay, REMARKS};
 use vm::engine::Preemption;
+use vm::machine::Config as MachineConfig;
 
 use super::engine::EngineName;
+use super::heading;
 use super::pc::PcArguments;
 use super::uart::UartArguments;
 use crate::cli::io::input::read;
@@ -36,50 +38,50 @@ impl RunForm {
 
 /// The options of a board, of every command that has one.
 #[derive(Debug, Args)]
+#[command(next_help_heading = heading::BOARD)]
 pub(crate) struct BoardArguments {
-    /// Load a program without starting it, so that another program can start it
-    #[arg(long, value_name = "N:FILE")]
-    pub(crate) load: Vec<OsString>,
+    /// How closely the board is simulated; `--as firmware FILE` executes your own firmware file
+    #[arg(long = "as", value_name = "HOW", value_enum, default_value_t, overrides_with = "form")]
+    pub(crate) form: RunForm,
+    /// Describe what is connected to the board, such as motors, switches, probes, encoders: a machine file (TOML)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) machine: Option<PathBuf>,
+    /// Let things happen around the board: a stimulus file, or statements such as "t=0.5 bit 136=1"
+    #[arg(long, alias = "stimulus", value_name = "FILE|TEXT")]
+    pub(crate) stim: Vec<String>,
     /// Set a start value, `persist.N=VALUE` (an integer, 0x…, a float f:1.5 or a double d:1.5), or a key of the machine
     /// file
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
-    /// Machine file (TOML): what is connected to the board, such as motors, switches, probes, encoders
-    #[arg(long, value_name = "FILE")]
-    pub(crate) machine: Option<PathBuf>,
-    /// Folder for the files that programs open on the PC [default: that of the machine file, or cc67-files]
-    #[arg(long, value_name = "DIR")]
-    files: Option<PathBuf>,
-    /// Stimulus: what happens around the board, and when; a file, or statements such as "t=0.5 bit 136=1"
-    #[arg(long, alias = "stimulus", value_name = "FILE|TEXT")]
-    pub(crate) stim: Vec<String>,
-    /// Switch a remark off (`-R no-CODE`) or on again (`-R CODE`); `--explain remarks` lists the codes
-    #[arg(short = 'R', value_name = "no-CODE")]
-    remarks: Vec<String>,
     /// Act as an operator: when all programs wait for inputs, toggle those inputs one at a time
     #[arg(long)]
     pub(crate) assist: bool,
-    /// Simulate every tick and every wait in full; slower, with the same results
-    #[arg(long)]
-    pub(crate) no_shortcuts: bool,
-    /// Behave like the board on accesses to ROM, control registers and misaligned addresses, and on integer division by
-    /// zero; without this they stop the thread
-    #[arg(long)]
-    pub(crate) board_faults: bool,
-    /// The engine that executes the programs
-    #[arg(long, value_enum, default_value_t)]
-    pub(crate) engine: EngineName,
-    /// How close the run is to the board: `fast` never switches threads inside a statement, `board` does, between any
-    /// two accesses to memory
-    #[arg(long = "as", value_name = "FORM", value_enum, default_value_t, overrides_with = "form")]
-    pub(crate) form: RunForm,
     /// Watch what threads do to memory that they share, and report what goes wrong on the board: lost updates, cells taken
     /// twice, values read half old, locks in opposite orders; programs are interpreted
     #[arg(long)]
     pub(crate) races: bool,
-    /// Execute your own firmware file in place of the modelled firmware
+    /// Switch a remark off (`-R no-CODE`) or on again (`-R CODE`); `cc67 explain remarks` lists the codes
+    #[arg(short = 'R', value_name = "no-CODE")]
+    remarks: Vec<String>,
+    /// Execute your own firmware file instead of the modelled firmware; same as `--as firmware FILE`
     #[arg(long, value_name = "FILE")]
     pub(crate) boot: Option<PathBuf>,
+    /// Load a program without starting it, so that another program can start it
+    #[arg(long, value_name = "N:FILE", help_heading = heading::PROGRAMS)]
+    pub(crate) load: Vec<OsString>,
+    /// Keep the files that programs open on the PC in DIR [default: that of the machine file, or cc67-files]
+    #[arg(long, value_name = "DIR", help_heading = heading::PC)]
+    files: Option<PathBuf>,
+    /// Execute the programs on this engine
+    #[arg(long, value_enum, help_heading = heading::EXPERTS)]
+    engine: Option<EngineName>,
+    /// Do what the board does on accesses to ROM, control registers and misaligned addresses, and on integer division
+    /// by zero; without this they stop the thread
+    #[arg(long, help_heading = heading::EXPERTS)]
+    pub(crate) board_faults: bool,
+    /// Simulate every tick and every wait in full; slower, with the same results
+    #[arg(long, help_heading = heading::EXPERTS)]
+    no_shortcuts: bool,
     /// Whether what programs write to files is only seen by them.
     #[arg(skip)]
     pub(crate) keeps_files: bool,
@@ -89,10 +91,41 @@ pub(crate) struct BoardArguments {
     pub(crate) pc: PcArguments,
 }
 
+/// Returns the words of a command line with `--boot FILE` for `--as firmware FILE`, the only option with two values.
+pub(crate) fn with_boot(words: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let mut words = words.into_iter().peekable();
+    let mut all = Vec::new();
+    while let Some(word) = words.next() {
+        let is_firmware =
+            word == "--as=firmware" || word == "--as" && words.next_if(|next| next == "firmware").is_some();
+        all.push(match (is_firmware, words.peek()) {
+            (true, Some(_)) => "--boot".into(),
+            (true, None) => "--as=firmware".into(),
+            (false, _) => word,
+        });
+    }
+    all
+}
+
 impl BoardArguments {
+    /// Returns the engine that executes the programs.
+    pub(crate) fn engine(&self) -> EngineName {
+        self.engine.unwrap_or_default()
+    }
+
+    /// Returns how the machine works.
+    pub(crate) fn machine_config(&self) -> MachineConfig {
+        MachineConfig {
+            shortcuts: !self.no_shortcuts,
+            preemption: self.form.preemption(),
+            observed: self.races,
+            ..MachineConfig::default()
+        }
+    }
+
     /// Refuses an option that a firmware file does not know.
     pub(crate) fn refuse_with_boot(&self) -> Result<()> {
-        ensure!(self.engine == EngineName::default(), "`--engine` does not work with `--boot`");
+        ensure!(self.engine.is_none(), "`--engine` does not work with `--boot`");
         ensure!(self.form == RunForm::default(), "`--as` does not work with `--boot`");
         ensure!(!self.races, "`--races` does not work with `--boot`");
         Ok(())
@@ -110,7 +143,7 @@ impl BoardArguments {
                 let near = suggest(code, REMARKS.iter().map(|row| row.code));
                 let near = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
                 anyhow::bail!(
-                    "`-R {switch}`: no such remark: `{code}`{near} (`--explain remarks` lists all)"
+                    "`-R {switch}`: no such remark: `{code}`{near} (`cc67 explain remarks` lists all)"
                 );
             }
         }
@@ -135,5 +168,23 @@ impl BoardArguments {
         let folder = folder.unwrap_or(Path::new("cc67-files"));
         let files = Directory::new(folder).with_names(machine.pc.disk_files.clone());
         if self.keeps_files { Box::new(Overlay::new(files)) } else { Box::new(files) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_firmware_file_is_boot_file() {
+        for (words, expect) in [
+            ("run --as firmware a.out b.c", "run --boot a.out b.c"),
+            ("run --as=firmware a.out", "run --boot a.out"),
+            ("run --as board firmware", "run --as board firmware"),
+            ("run b.c --as firmware", "run b.c --as=firmware"),
+        ] {
+            let words = with_boot(words.split(' ').map(OsString::from));
+            assert_eq!(words.join(std::ffi::OsStr::new(" ")), expect);
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! Options that all commands which compile have in common.
+//! Options that commands which compile have in common.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -17,11 +17,13 @@ use compiler::{Options, pp};
 use kmotiondef::boards::{BOARDS, TargetBoard};
 use kmotiondef::timing::{Timing, WaitStates};
 
+use super::heading;
 use crate::cli::io::input::read;
 
-/// How to compile.
+/// The options of a compilation, of every command that compiles.
 #[derive(Debug, Args)]
-pub(crate) struct CompilerArguments {
+#[command(next_help_heading = heading::COMPILER)]
+pub(crate) struct SourceArguments {
     /// Search DIR for included files
     #[arg(short = 'I', value_name = "DIR")]
     include_dirs: Vec<PathBuf>,
@@ -31,29 +33,22 @@ pub(crate) struct CompilerArguments {
     /// Undefine a predefined macro
     #[arg(short = 'U', value_name = "NAME")]
     undefines: Vec<String>,
-    /// Rules for constants: a C standard (c99, c11, c17) or the vendor's compiler
-    #[arg(long, value_name = "STANDARD", default_value = "vendor", value_parser = standard)]
-    std: Standard,
-    /// Optimisation level: 0 none; 1 for speed; 2 for more speed, with larger code for the controller; s for small code
+    /// Optimise: 0 not at all, 1 for speed, 2 for more speed with larger code for the controller, s for small code
     #[arg(short = 'O', value_name = "LEVEL", default_value = "1", value_parser = level)]
     optimization: Level,
-    /// The code whose execution time the board counts
-    #[arg(long, value_name = "CODE", value_enum, default_value_t)]
-    timing: TimedCode,
-    /// Memory waits of the processor: none, io44 (44 cycles for a register access), io44_sd20 (also 20 for 32 bits of
-    /// SDRAM), or a number of cycles for SDRAM
-    #[arg(long, value_name = "WAITS", value_parser = wait_states)]
-    wait_states: Option<WaitStates>,
-    /// Switch a warning on (NAME) or off (no-NAME), or make it an error (error=NAME); all, extra and error set many at
-    /// once
+    /// Switch a warning on (NAME) or off (no-NAME), or make it an error (error=NAME); `all`, `extra` and `error` switch
+    /// many
     #[arg(short = 'W', value_name = "WARNING")]
     warnings: Vec<String>,
     /// Show no warnings
     #[arg(short = 'w')]
     silent: bool,
-    /// The target of the code: the controller's processor, or only the simulated board
-    #[arg(long, value_name = "TARGET", value_enum)]
-    target: Option<TargetName>,
+    /// Type of constants: as in a C standard (c90, c99, c11, c17) or as in the vendor's compiler
+    #[arg(long, value_name = "STANDARD", default_value = "vendor", value_parser = standard)]
+    std: Standard,
+    /// Format of errors and warnings
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t = FormatName::Human)]
+    message_format: FormatName,
     /// The board and firmware that programs are for: kflop-4.34, kflop-5.3.2 or kogna-5.3.2 [default: kflop-4.34, or
     /// the one with the version of the firmware file]
     #[arg(long, value_name = "NAME", value_parser = board)]
@@ -67,9 +62,30 @@ pub(crate) struct CompilerArguments {
     /// Keep unreachable functions and objects
     #[arg(long, overrides_with = "gc_sections")]
     no_gc_sections: bool,
-    /// Format of the diagnostics
-    #[arg(long, value_name = "FORMAT", value_enum, default_value_t = FormatName::Human)]
-    message_format: FormatName,
+}
+
+/// The options of a compilation for a simulated board.
+#[derive(Debug, Args)]
+pub(crate) struct CompilerArguments {
+    #[command(flatten)]
+    source: SourceArguments,
+    /// Code whose execution time the board counts
+    #[arg(long, value_name = "CODE", value_enum, default_value_t, help_heading = heading::EXPERTS)]
+    timing: TimedCode,
+    /// Memory waits of the processor: none, io44 (44 cycles for a register access), io44_sd20 (also 20 for 32 bits of
+    /// SDRAM), or a number of cycles for SDRAM
+    #[arg(long, value_name = "WAITS", value_parser = wait_states, help_heading = heading::EXPERTS)]
+    wait_states: Option<WaitStates>,
+    #[command(flatten)]
+    target: TargetArguments,
+}
+
+/// The target of a compilation.
+#[derive(Debug, Args)]
+pub(crate) struct TargetArguments {
+    /// Target of the code
+    #[arg(long, value_name = "TARGET", value_enum, help_heading = heading::EXPERTS)]
+    target: Option<TargetName>,
 }
 
 /// The board with a name.
@@ -95,9 +111,9 @@ enum TimedCode {
 /// Targets by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum TargetName {
-    /// The controller's processor; the simulated board executes this code too. The default for `build`
+    /// Code for the controller's processor, which the simulated board executes too; the default of `build`
     C67x,
-    /// Bytecode for the simulated board only. The default for commands that run programs
+    /// Bytecode, for the simulated board only; the default of commands that run programs
     Sim,
 }
 
@@ -114,17 +130,13 @@ enum FormatName {
     Vendor,
 }
 
-impl CompilerArguments {
-    /// The same for the compiler.
-    pub(crate) fn resolve(&self) -> Result<Options> {
+impl SourceArguments {
+    /// Returns how sources are compiled for `target`, with the board's time counted as `timing` says.
+    pub(crate) fn resolve(&self, target: Target, timing: Timing) -> Result<Options> {
         let defines = self.defines.iter().map(|text| define(text)).collect::<Result<_>>()?;
         for name in &self.undefines {
             check_macro_name(name)?;
         }
-        ensure!(
-            (self.timing, self.target) != (TimedCode::Cc67, Some(TargetName::Sim)),
-            "`--timing cc67` counts the cycles of code for the controller: `--target sim` makes none"
-        );
         Ok(Options {
             preprocessor: pp::Options {
                 include_dirs: self.include_dirs.clone(),
@@ -133,33 +145,16 @@ impl CompilerArguments {
                 embedded: kmotiondef::headers::EMBEDDED,
                 standard: self.std,
             },
-            target: self.target().unwrap_or_default(),
+            target,
             level: self.optimization,
-            timing: self.timing(),
+            timing,
             firmware: self.firmware()?,
             gc_sections: self.gc_sections || (self.optimization != Level::None && !self.no_gc_sections),
             addresses: SectionAddresses::default(),
         })
     }
 
-    /// Whose code the board's time is counted for, and with which memory.
-    pub(crate) fn timing(&self) -> Timing {
-        match self.timing {
-            TimedCode::Vendor | TimedCode::Cc67 => self.wait_states.map_or(Timing::VENDOR, Timing::Vendor),
-            TimedCode::Fast => Timing::Fast,
-        }
-    }
-
-    /// What the code is for, if the command line says so: the code of which the cycles are counted has to be there.
-    pub(crate) fn target(&self) -> Option<Target> {
-        match (self.target, self.timing) {
-            (Some(TargetName::C67x), _) | (None, TimedCode::Cc67) => Some(Target::C67x),
-            (Some(TargetName::Sim), _) => Some(Target::Sim),
-            (None, TimedCode::Vendor | TimedCode::Fast) => None,
-        }
-    }
-
-    /// The firmware to link against.
+    /// Returns the firmware to link against.
     fn firmware(&self) -> Result<Firmware> {
         let Some(path) = &self.firmware else {
             return Ok(self.board.map_or_else(Firmware::default, Firmware::Board));
@@ -178,7 +173,7 @@ impl CompilerArguments {
         Ok(Firmware::File(Arc::new(file)))
     }
 
-    /// The form of the diagnostics.
+    /// Returns the format of the diagnostics.
     pub(crate) fn format(&self) -> Format {
         match self.message_format {
             FormatName::Human => Format::Human,
@@ -188,7 +183,7 @@ impl CompilerArguments {
         }
     }
 
-    /// Which warnings are shown.
+    /// Returns the levels of the warnings.
     pub(crate) fn levels(&self) -> Result<Levels> {
         let mut levels = Levels::default();
         if self.silent {
@@ -198,6 +193,53 @@ impl CompilerArguments {
             levels.set(switch).with_context(|| format!("option `-W{switch}`"))?;
         }
         Ok(levels)
+    }
+}
+
+impl CompilerArguments {
+    /// Returns how sources are compiled.
+    pub(crate) fn resolve(&self) -> Result<Options> {
+        ensure!(
+            (self.timing, self.target.named()) != (TimedCode::Cc67, Some(Target::Sim)),
+            "`--timing cc67` counts the cycles of code for the controller: `--target sim` makes none"
+        );
+        self.source.resolve(self.target().unwrap_or_default(), self.timing())
+    }
+
+    /// Returns the code that the board's time is counted for, and the waits of its memory.
+    pub(crate) fn timing(&self) -> Timing {
+        match self.timing {
+            TimedCode::Vendor | TimedCode::Cc67 => self.wait_states.map_or(Timing::VENDOR, Timing::Vendor),
+            TimedCode::Fast => Timing::Fast,
+        }
+    }
+
+    /// Returns the target, if the command line decides it: code whose cycles are counted has to be there.
+    pub(crate) fn target(&self) -> Option<Target> {
+        match (self.target.named(), self.timing) {
+            (None, TimedCode::Cc67) => Some(Target::C67x),
+            (target, _) => target,
+        }
+    }
+
+    /// Returns the format of the diagnostics.
+    pub(crate) fn format(&self) -> Format {
+        self.source.format()
+    }
+
+    /// Returns the levels of the warnings.
+    pub(crate) fn levels(&self) -> Result<Levels> {
+        self.source.levels()
+    }
+}
+
+impl TargetArguments {
+    /// Returns the target that was named.
+    pub(crate) fn named(&self) -> Option<Target> {
+        self.target.map(|name| match name {
+            TargetName::C67x => Target::C67x,
+            TargetName::Sim => Target::Sim,
+        })
     }
 }
 

@@ -1,7 +1,8 @@
 //! What executes the programs, by name.
 
 use anyhow::{Result, ensure};
-use clap::ValueEnum;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Arg, ValueEnum};
 use compiler::Options;
 use compiler::target::Target;
 
@@ -10,11 +11,11 @@ use super::compiler::CompilerArguments;
 /// Engines by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum EngineName {
-    /// The interpreter
+    /// Interpret bytecode
     Bytecode,
-    /// Machine code of the host
+    /// Translate to machine code of this computer; the default where that is possible
     Native,
-    /// Code for the controller's processor, executed in its true cycles; sources are compiled for it
+    /// Execute code for the controller's processor in its true cycles; sources are compiled for it
     Dsp,
 }
 
@@ -37,6 +38,13 @@ impl EngineName {
             "`--engine dsp` executes code for the controller's processor, `--target sim` makes none: leave one out"
         );
         Ok(Options { target: Target::C67x, ..options })
+    }
+
+    /// Restricts the argument of an engine to those that a debugger can stop anywhere.
+    pub(crate) fn debuggable(argument: Arg) -> Arg {
+        let names = [Self::Bytecode, Self::Dsp].iter().filter_map(Self::to_possible_value);
+        let parser = PossibleValuesParser::new(names).try_map(|name| Self::from_str(&name, true));
+        argument.value_parser(parser)
     }
 
     /// Those that this command is built with and that take the same board time.

@@ -7,6 +7,7 @@ pub(crate) mod beside;
 pub(crate) mod board;
 pub(crate) mod compiler;
 pub(crate) mod engine;
+pub(crate) mod heading;
 pub(crate) mod pc;
 pub(crate) mod program;
 pub(crate) mod setting;

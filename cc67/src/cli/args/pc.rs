@@ -7,14 +7,16 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use runtime::{Answers, MachineFile};
 
+use super::heading;
 use super::setting::{self, Setting};
 use crate::cli::io::input::read;
 
 /// Options about the PC.
 #[derive(Debug, Args)]
+#[command(next_help_heading = heading::PC)]
 pub(crate) struct PcArguments {
-    /// File of the PC's answers to programs: lines of `key=value`, as for `--answer`; for `live` also an address to
-    /// listen on
+    /// Take the PC's answers to programs from FILE: lines of `key=value`, as for `--answer`; for `live` also an address
+    /// to listen on
     #[arg(long = "host", value_name = "FILE")]
     host: Option<PathBuf>,
     /// Set one answer of the PC, such as msgbox=no, input=1.5, mdi=0, request.14=-1, var.500=2; `help` lists the keys

@@ -5,8 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use kmotiondef::ThreadId;
 
+use super::heading;
+
 /// What to trace.
 #[derive(Debug, Args)]
+#[command(next_help_heading = heading::TRACES)]
 pub(crate) struct TraceArguments {
     /// Write a trace to FILE: .vcd for waveform viewers, .json for Perfetto, otherwise CSV
     #[arg(long, value_name = "FILE")]

@@ -5,10 +5,13 @@ use std::path::PathBuf;
 use clap::Args;
 use runtime::MachineFile;
 
+use super::heading;
+
 /// What the serial port is connected to.
 #[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = heading::PC)]
 pub(crate) struct UartArguments {
-    /// File of characters for the serial port to receive, once the program first looks for them
+    /// Let the serial port receive the characters of FILE, once the program first looks for them
     #[arg(long, value_name = "FILE", conflicts_with = "uart")]
     pub(crate) uart_input: Option<PathBuf>,
     /// Write the serial port's output to FILE

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use clap::Args;
 use kmotiondef::ThreadId;
+use kmotiondef::timing::Timing;
 
-use crate::cli::args::compiler::CompilerArguments;
+use crate::cli::args::compiler::SourceArguments;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::input::read;
 use crate::cli::io::output;
@@ -26,15 +27,13 @@ pub(super) struct CheckArguments {
     #[arg(long)]
     stack: bool,
     #[command(flatten)]
-    compiler: CompilerArguments,
+    compiler: SourceArguments,
 }
 
 /// Compiles every program and reports what is wrong with it.
 pub(super) fn check(arguments: &CheckArguments) -> Result<Exit> {
-    let mut options = arguments.compiler.resolve()?;
-    if arguments.stack {
-        options.target = arguments.compiler.target().unwrap_or(Target::C67x);
-    }
+    let target = if arguments.stack { Target::C67x } else { Target::default() };
+    let options = arguments.compiler.resolve(target, Timing::VENDOR)?;
     let levels = arguments.compiler.levels()?;
     let mut has_errors = false;
     for path in &arguments.files {

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use kmotiondef::ThreadId;
+use kmotiondef::timing::Timing;
 
 use super::build::thread;
 use super::inspect::Folder;
-use crate::cli::args::compiler::CompilerArguments;
+use crate::cli::args::compiler::SourceArguments;
 use crate::cli::compile::units;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::input::read;
@@ -16,7 +17,7 @@ use crate::cli::io::output;
 use crate::cli::report::diagnostics;
 use compiler::inspect::Inspection;
 use compiler::target::Target;
-use compiler::{Options, image, link_units};
+use compiler::{image, link_units};
 
 /// Arguments of `cc67 cycles`.
 #[derive(Debug, Args)]
@@ -31,7 +32,7 @@ pub(super) struct CyclesArguments {
     #[arg(long, value_name = "FUNCTION", num_args = 0..=1, require_equals = true)]
     asm: Option<Option<String>>,
     #[command(flatten)]
-    compiler: CompilerArguments,
+    compiler: SourceArguments,
 }
 
 /// Prints the cycles of functions and loops.
@@ -64,9 +65,7 @@ pub(super) fn cycles(arguments: &CyclesArguments) -> Result<Exit> {
 impl CyclesArguments {
     /// The program of the sources; `None` after errors.
     fn build(&self) -> Result<Option<Inspection>> {
-        let target = self.compiler.target().unwrap_or(Target::C67x);
-        ensure!(target == Target::C67x, "`--target sim`: bytecode has no cycles of the processor");
-        let options = Options { target, ..self.compiler.resolve()? };
+        let options = self.compiler.resolve(Target::C67x, Timing::VENDOR)?;
         let mut units = units::compile(&self.files, &options)?;
         let linked = link_units(&mut units, self.thread, &options);
         let has_errors = diagnostics::report_all(&units, &self.compiler.levels()?, self.compiler.format());

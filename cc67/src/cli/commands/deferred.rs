@@ -3,7 +3,9 @@
 //! Twenty subcommands have some three hundred options; a start of the command needs those of one.
 
 use clap::builder::Resettable;
-use clap::{ArgMatches, Args, Command, Error, FromArgMatches};
+use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches};
+
+use crate::cli::args::heading;
 
 /// The arguments `T` of a subcommand.
 #[derive(Debug)]
@@ -47,8 +49,25 @@ impl<T: Args> Args for Deferred<T> {
     }
 }
 
-/// The subcommand with its arguments; its row describes it, not their type.
+/// Returns the subcommand with its arguments under their headings; its row describes it, not their type.
 fn described<T: Args>(command: Command) -> Command {
     let (about, long) = (command.get_about().cloned(), command.get_long_about().cloned());
-    T::augment_args(command).about(Resettable::from(about)).long_about(Resettable::from(long))
+    let own = T::augment_args(Command::default());
+    let command = if own.has_subcommands() { T::augment_args(command) } else { in_order(command, &own) };
+    command.about(Resettable::from(about)).long_about(Resettable::from(long))
+}
+
+/// Returns `command` with the arguments of `own` in the order of their headings: help lists headings as they first occur,
+/// and structures that share arguments occur in any order.
+fn in_order(command: Command, own: &Command) -> Command {
+    let place = |argument: &&Arg| {
+        argument.get_help_heading().and_then(|at| heading::ORDER.iter().position(|known| *known == at))
+    };
+    let mut arguments: Vec<&Arg> = own.get_arguments().collect();
+    // Without a heading comes first, as `None` is less than any place.
+    arguments.sort_by_key(place);
+    command
+        .args(arguments.into_iter().cloned())
+        .groups(own.get_groups().cloned())
+        .after_help(Resettable::from(own.get_after_help().cloned()))
 }

@@ -1,4 +1,4 @@
-//! `--explain NAME`: what the tables say of a name, and the pages on subjects.
+//! `cc67 explain NAME`, and `--explain NAME`: what the tables say of a name, and the pages on subjects.
 //!
 //! A name may be a firmware function, a variable, a field, a constant, a bit, a script command, a warning, a remark, a
 //! limit or a topic; an answer has every one of these that it is. Nothing is listed here: each room turns the rows of a
@@ -15,6 +15,7 @@ mod words;
 use std::fmt::Write as _;
 
 use anyhow::{Result, bail};
+use clap::Args;
 use compiler::diag::{Lint, Preset};
 use compiler::words::suggest;
 use runtime::{REMARKS, RemarkRow};
@@ -30,6 +31,14 @@ type List = (&'static str, fn() -> String);
 struct Explained {
     name: &'static str,
     about: String,
+}
+
+/// Arguments of `cc67 explain`.
+#[derive(Debug, Args)]
+pub(super) struct ExplainArguments {
+    /// Name such as EnableAxis, Dest, bit46, Jog, fraction-lost or homing; `topics` lists topics and lists of names
+    #[arg(value_name = "NAME", default_value = "topics", allow_hyphen_values = true)]
+    pub(super) name: String,
 }
 
 /// Prints what there is to say of a name that a message, a switch or the user's memory has.
@@ -104,7 +113,7 @@ fn everything() -> String {
     ] {
         let _ = writeln!(text, "  {name:<12}{about}");
     }
-    text.push_str("\nEach name in these lists is explained as well, such as `cc67 --explain EnableAxis`.\n");
+    text.push_str("\nEach name in these lists is explained as well, such as `cc67 explain EnableAxis`.\n");
     text
 }
 

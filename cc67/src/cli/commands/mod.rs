@@ -33,21 +33,23 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, anyhow};
-use clap::error::{ContextKind, ContextValue};
+use clap::builder::{StyledStr, Styles};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser, Subcommand};
 use compiler::words::suggest;
 
 use self::deferred::Deferred;
 use super::args::beside::Beside;
+use super::args::board::with_boot;
 use super::io::exit::Exit;
 use super::io::{output, terminal};
 
 /// C compiler, linker and simulated KFLOP board.
 #[derive(Debug, Parser)]
-#[command(name = "cc67", version = VERSION, about, max_term_width = 100, arg_required_else_help = true, args_override_self = true)]
+#[command(name = "cc67", version = VERSION, about, max_term_width = 100, arg_required_else_help = true, args_override_self = true, override_help = overview())]
 struct Arguments {
-    /// Explain a function, field, bit, script command, warning, remark or topic; `topics` lists the topics
-    #[arg(long, value_name = "NAME", global = true, allow_hyphen_values = true)]
+    /// Explain a name, as `cc67 explain NAME` does
+    #[arg(long, value_name = "NAME", global = true, allow_hyphen_values = true, hide = true)]
     explain: Option<String>,
     #[command(subcommand)]
     command: Option<Command>,
@@ -57,72 +59,122 @@ struct Arguments {
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (models KFLOP firmware 4.34)");
 
 macro_rules! subcommands {
-    ($(
-        $(#[doc = $doc:literal])+
+    ($($group:literal {$(
+        #[doc = $doc:literal]
         $(#[cfg($condition:meta)])?
         $name:ident($kind:ty) as $arguments:ident => $run:expr;
-    )*) => {
+    )*})*) => {
         #[derive(Debug, Subcommand)]
         enum Command {
-            $($(#[doc = $doc])+ $(#[cfg($condition)])? $name(Deferred<$kind>),)*
+            $($(#[doc = $doc] $(#[cfg($condition)])? $name(Deferred<$kind>),)*)*
         }
 
         impl Command {
             fn run(&self) -> Result<Exit> {
                 match self {
-                    $($(#[cfg($condition)])? Self::$name($arguments) => $run,)*
+                    $($($(#[cfg($condition)])? Self::$name($arguments) => $run,)*)*
                 }
             }
         }
+
+        /// The subcommands by group, each with its description.
+        const GROUPS: &[(&str, &[(&str, &str)])] =
+            &[$(($group, &[$($(#[cfg($condition)])? (stringify!($name), $doc),)*])),*];
     };
 }
 
 subcommands! {
-    /// Compile programs, run them in threads of the simulated board and print the console
-    Run(run::RunArguments) as arguments => run::run(arguments);
-    /// Compile and link a program into an image for one thread, FILE(N).out
-    Build(build::BuildArguments) as arguments => build::build(arguments);
-    /// Compile programs and report mistakes
-    Check(check::CheckArguments) as arguments => check::check(arguments);
-    /// Talk to a simulated board, interactively or from a script: send script commands, run programs
-    Console(console::ConsoleArguments) as arguments => console::console(arguments);
-    /// Serve a simulated board to programs that use the vendor's client library; replaces the vendor's server
-    Serve(serve::ServeArguments) as arguments => serve::serve(arguments);
-    /// Show a simulated board in the browser: axes, inputs and outputs, console, threads, signals
-    #[cfg(feature = "live")]
-    Live(live::LiveArguments) as arguments => live::live(arguments);
-    /// Debug programs, forwards and backwards: in the terminal, from a script, or from an editor (--dap)
-    Debug(debug::DebugArguments) as arguments => debug::debug(arguments);
-    /// Show the contents of an image: headers, symbols, lines, instructions, calls, stack
-    Inspect(inspect::InspectArguments) as arguments => inspect::inspect(arguments);
-    /// Show the cycles of functions and loops on the controller's processor, computed from their code
-    Cycles(cycles::CyclesArguments) as arguments => cycles::cycles(arguments);
-    /// Run programs on the modelled firmware and on your own firmware file, and show where they differ
-    Compare(compare::CompareArguments) as arguments => compare::compare(arguments);
-    /// Show how two images differ
-    Diff(diff::DiffArguments) as arguments => diff::diff(arguments);
-    /// List the simulated firmware's names, or export them as a file to link against
-    Firmware(firmware::FirmwareArguments) as arguments => firmware::firmware(arguments);
-    /// Run programs and compare their output with the expected output
-    Test(test::TestArguments) as arguments => test::test(arguments);
-    /// Create a project folder, ready for an editor and for CI
-    Init(init::InitArguments) as arguments => init::init(arguments);
-    /// Compute keys of a machine file from the data sheets of motor, amplifier and encoder
-    Machine(machine::MachineArguments) as arguments => machine::machine(arguments);
-    /// List the example programs, or copy one
-    Examples(examples::ExamplesArguments) as arguments => examples::examples(arguments);
-    /// Plot saved data over time: columns of numbers, traces (.csv, .vcd)
-    Plot(plot::PlotArguments) as arguments => plot::plot(arguments);
-    /// Run programs for many combinations of parameters (FILE.toml) and write a table; needs the Python package
-    Sweep(package::PackageArguments) as arguments => package::run("sweep", arguments);
-    /// Measure step and frequency response, following error or tolerance of a program; needs the Python package
-    Study(package::PackageArguments) as arguments => package::run("study", arguments);
-    /// Show what is installed: command, engines, examples, editors, Python, controllers; for reports of faults
-    Doctor(doctor::DoctorArguments) as arguments => doctor::doctor(arguments);
-    /// Print the completion script for a shell
-    Completions(shell::CompletionArguments) as arguments => shell::completions(arguments, Arguments::command());
-    /// Write manual pages
-    Man(shell::ManArguments) as arguments => shell::man(arguments, Arguments::command());
+    "Start" {
+        /// Create a project folder, ready for an editor and for CI
+        Init(init::InitArguments) as arguments => init::init(arguments);
+        /// List the example programs, or copy one
+        Examples(examples::ExamplesArguments) as arguments => examples::examples(arguments);
+        /// Compute keys of a machine file from the data sheets of motor, amplifier and encoder
+        Machine(machine::MachineArguments) as arguments => machine::machine(arguments);
+        /// Explain a function, field, bit, script command, warning, remark or topic
+        Explain(explain::ExplainArguments) as arguments => explain::explain(&arguments.name);
+    }
+    "Build and check" {
+        /// Compile programs and report mistakes
+        Check(check::CheckArguments) as arguments => check::check(arguments);
+        /// Compile and link a program into an image for one thread, FILE(N).out
+        Build(build::BuildArguments) as arguments => build::build(arguments);
+    }
+    "Run and watch" {
+        /// Compile programs, run them in threads of a simulated board, print the console
+        Run(run::RunArguments) as arguments => run::run(arguments);
+        /// Run programs and compare their output with the expected output
+        Test(test::TestArguments) as arguments => test::test(arguments);
+        /// Debug programs, forwards and backwards: in the terminal, by a script, in an editor
+        Debug(debug::DebugArguments) as arguments => debug::debug(arguments);
+        /// Show a simulated board in the browser: axes, inputs and outputs, console, signals
+        #[cfg(feature = "live")]
+        Live(live::LiveArguments) as arguments => live::live(arguments);
+        /// Plot saved data over time: columns of numbers, traces (.csv, .vcd)
+        Plot(plot::PlotArguments) as arguments => plot::plot(arguments);
+    }
+    "Boards and PCs" {
+        /// Send script commands to a simulated board, interactively or from a script
+        Console(console::ConsoleArguments) as arguments => console::console(arguments);
+        /// Serve a simulated board to programs that use the vendor's client library
+        Serve(serve::ServeArguments) as arguments => serve::serve(arguments);
+        /// Run programs on the modelled firmware and on your firmware file, show differences
+        Compare(compare::CompareArguments) as arguments => compare::compare(arguments);
+        /// List the simulated firmware's names, or export them as a file to link against
+        Firmware(firmware::FirmwareArguments) as arguments => firmware::firmware(arguments);
+    }
+    "Analyse" {
+        /// Show the contents of an image: headers, symbols, lines, instructions, calls, stack
+        Inspect(inspect::InspectArguments) as arguments => inspect::inspect(arguments);
+        /// Show how two images differ
+        Diff(diff::DiffArguments) as arguments => diff::diff(arguments);
+        /// Compute the cycles of functions and loops on the controller's processor
+        Cycles(cycles::CyclesArguments) as arguments => cycles::cycles(arguments);
+        /// Run programs for many combinations of parameters (needs the Python package)
+        Sweep(package::PackageArguments) as arguments => package::run("sweep", arguments);
+        /// Measure step and frequency response, following error (needs the Python package)
+        Study(package::PackageArguments) as arguments => package::run("study", arguments);
+    }
+    "More" {
+        /// Show what is installed, for reports of faults: command, engines, editors, controllers
+        Doctor(doctor::DoctorArguments) as arguments => doctor::doctor(arguments);
+        /// Print the completion script for a shell
+        Completions(shell::CompletionArguments) as arguments => shell::completions(arguments, Arguments::command());
+        /// Write manual pages
+        Man(shell::ManArguments) as arguments => shell::man(arguments, Arguments::command());
+    }
+}
+
+/// Returns the description of the whole command line: options and subcommands with theirs.
+#[must_use]
+pub fn description() -> clap::Command {
+    let mut command = Arguments::command();
+    command.build();
+    command
+}
+
+/// The help of the whole command: the subcommands by group.
+fn overview() -> StyledStr {
+    let styles = Styles::styled();
+    let (heading, word) = (styles.get_header(), styles.get_literal());
+    let mut text = format!(
+        "Compile, run, test and debug C programs for KFLOP motion controllers\n\n\
+         {heading}Usage:{heading:#} {word}cc67{word:#} COMMAND [OPTION]... [FILE]...\n"
+    );
+    for (group, commands) in GROUPS {
+        text.push_str(&format!("\n{heading}{group}:{heading:#}\n"));
+        for (name, about) in *commands {
+            text.push_str(&format!("  {word}{:<13}{word:#}{}\n", name.to_ascii_lowercase(), about.trim()));
+        }
+    }
+    text.push_str(&format!(
+        "\n{heading}Options:{heading:#}\n  {word}-h{word:#}, {word}--help{word:#}     Print help; \
+         `cc67 COMMAND --help` describes the options of a command\n  {word}-V{word:#}, \
+         {word}--version{word:#}  Print version; with --verbose also how it was built\n\n\
+         `cc67 explain topics` lists subjects with a page each. The book, with a tutorial, is the folder\n\
+         cc67/book of the sources.\n"
+    ));
+    text.into()
 }
 
 /// `-std=c99`, as other compilers take it, is `--std=c99` here.
@@ -140,7 +192,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         return drop_in::main(&arguments);
     }
     let arguments = serve::home::called_as_server(&arguments).unwrap_or(arguments);
-    let words: Vec<OsString> = arguments.into_iter().map(as_long_option).collect();
+    let words = with_boot(arguments.into_iter().map(as_long_option));
     if asks_for_version_in_full(&words) {
         return output::print(&doctor::version()).map_or(Exit::WrongInput, |()| Exit::Success).into();
     }
@@ -152,7 +204,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
                 return Exit::WrongInput.into();
             }
         },
-        Err(error) => match advice(&error) {
+        Err(error) => match advice(&error, &words) {
             Some(advice) => {
                 terminal::note(&advice);
                 return Exit::WrongInput.into();
@@ -188,6 +240,10 @@ impl Arguments {
             // Each of its programs has its own.
             arguments.words = words.to_vec();
         }
+        if let Some(Command::Debug(arguments)) = &mut self.command {
+            let words = words.iter().skip_while(|word| *word != "debug").skip(1);
+            arguments.words = words.cloned().collect();
+        }
         let (name, programs) = match &self.command {
             Some(Command::Run(arguments)) => ("run", arguments.with_sidecars()),
             #[cfg(feature = "live")]
@@ -210,7 +266,8 @@ impl Arguments {
         }
         let at = words.iter().position(|word| word == name).context("the subcommand is among the words")? + 1;
         let (before, given) = words.split_at(at);
-        let arguments = Self::try_parse_from([before, &beside.options, given, &beside.also].concat());
+        let arguments =
+            Self::try_parse_from(with_boot([before, &beside.options, given, &beside.also].concat()));
         let arguments = arguments.map_err(|error| {
             let text = error.to_string();
             let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
@@ -223,9 +280,11 @@ impl Arguments {
 
 /// Whether a subcommand has an option, by its long or short name.
 fn knows(subcommand: &str, option: &str) -> bool {
-    let mut command = Arguments::command();
-    command.build();
-    let Some(subcommand) = command.find_subcommand(subcommand) else { return false };
+    description().find_subcommand(subcommand).is_some_and(|subcommand| has_option(subcommand, option))
+}
+
+/// Returns whether a subcommand has an option, by its long or short name.
+fn has_option(subcommand: &clap::Command, option: &str) -> bool {
     subcommand.get_arguments().any(|argument| {
         let long = argument.get_long_and_visible_aliases().unwrap_or_default();
         let aliases = argument.get_all_aliases().unwrap_or_default();
@@ -237,8 +296,14 @@ fn knows(subcommand: &str, option: &str) -> bool {
     })
 }
 
-/// What to type in place of a word that is not a subcommand: a program needs `run`, and another word may be misspelt.
-fn advice(error: &clap::Error) -> Option<String> {
+/// Returns what to type instead of a word that is not a subcommand or an option of it: a program needs `run`, an option
+/// may belong to other subcommands, and another word may be misspelt.
+fn advice(error: &clap::Error, words: &[OsString]) -> Option<String> {
+    if let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg)
+        && error.kind() == ErrorKind::UnknownArgument
+    {
+        return elsewhere(option, words);
+    }
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else { return None };
     let path = Path::new(word);
     let suffix = path.extension().unwrap_or_default();
@@ -248,4 +313,22 @@ fn advice(error: &clap::Error) -> Option<String> {
     let command = Arguments::command();
     let similar = suggest(word, command.get_subcommands().map(clap::Command::get_name))?;
     Some(format!("`{word}` is not a subcommand; did you mean `{similar}`?"))
+}
+
+/// Returns which subcommands have an option that the one among `words` lacks.
+fn elsewhere(option: &str, words: &[OsString]) -> Option<String> {
+    let command = description();
+    let is_subcommand = |word: &&OsString| command.get_subcommands().any(|known| **word == *known.get_name());
+    let used = words.iter().skip(1).find(is_subcommand)?.to_str()?;
+    let option = option.split('=').next().unwrap_or(option);
+    let have = command.get_subcommands().filter(|known| has_option(known, option));
+    let have: Vec<_> = have.map(|known| format!("`cc67 {}`", known.get_name())).collect();
+    let (last, others) = have.split_last()?;
+    let have = if others.is_empty() { last.clone() } else { format!("{} and {last}", others.join(", ")) };
+    let after = if used == "test" && have.contains("`cc67 run`") {
+        format!("; `cc67 test … -- {option}` passes it to the programs of the tests")
+    } else {
+        String::new()
+    };
+    Some(format!("`{option}` has no effect in `cc67 {used}`; it is an option of {have}{after}"))
 }

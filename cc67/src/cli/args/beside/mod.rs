@@ -16,6 +16,8 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use clap::Args;
 
+use super::heading;
+
 /// Files beside a program that it is run with, and the options that take them.
 pub(crate) const BESIDE: &[(&str, &str)] = &[("toml", "--machine"), ("stim", "--stim")];
 
@@ -40,6 +42,7 @@ const FILES: &[&str] = &[
 
 /// Which programs come first, and whether what is beside them is used.
 #[derive(Debug, Args)]
+#[command(next_help_heading = heading::PROGRAMS)]
 pub(crate) struct BesideArguments {
     /// Run an initialisation program to its end before the others start
     #[arg(long, value_name = "[N:]FILE")]

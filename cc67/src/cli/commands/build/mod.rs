@@ -8,9 +8,10 @@ use anyhow::{Context, Result, bail, ensure};
 use clap::{Args, ValueEnum};
 use coff::Image;
 use kmotiondef::ThreadId;
+use kmotiondef::timing::Timing;
 
 use super::inspect::Folder;
-use crate::cli::args::compiler::CompilerArguments;
+use crate::cli::args::compiler::{SourceArguments, TargetArguments};
 use crate::cli::compile::units;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::output;
@@ -21,7 +22,7 @@ use compiler::inspect::Inspection;
 use compiler::link::Linked;
 use compiler::object::Object;
 use compiler::target::Target;
-use compiler::{Compilation, Options, link_units};
+use compiler::{Compilation, link_units};
 
 /// Arguments of `cc67 build`.
 #[derive(Debug, Args)]
@@ -51,7 +52,9 @@ pub(super) struct BuildArguments {
     #[arg(long, value_name = "KIND", value_enum, value_delimiter = ',')]
     emit: Vec<Emit>,
     #[command(flatten)]
-    compiler: CompilerArguments,
+    compiler: SourceArguments,
+    #[command(flatten)]
+    target: TargetArguments,
 }
 
 /// What can be written.
@@ -78,7 +81,7 @@ pub(super) fn thread(text: &str) -> Result<ThreadId, String> {
 
 /// Compiles, links, writes.
 pub(super) fn build(arguments: &BuildArguments) -> Result<Exit> {
-    let options = Options { target: arguments.target(), ..arguments.compiler.resolve()? };
+    let options = arguments.compiler.resolve(arguments.target(), Timing::VENDOR)?;
     let levels = arguments.compiler.levels()?;
     let emit = arguments.emit();
     arguments.check_target(&emit)?;
@@ -103,7 +106,7 @@ pub(super) fn build(arguments: &BuildArguments) -> Result<Exit> {
 
 impl BuildArguments {
     fn target(&self) -> Target {
-        self.compiler.target().unwrap_or(Target::C67x)
+        self.target.named().unwrap_or(Target::C67x)
     }
 
     /// What the controller's code cannot be made into.

@@ -16,8 +16,9 @@ use kmotiondef::Ticks;
 use kmotiondef::limits::TIMEBASE;
 
 use crate::cli::args::beside::{Beside, BesideArguments};
-use crate::cli::args::board::BoardArguments;
+use crate::cli::args::board::{BoardArguments, with_boot};
 use crate::cli::args::compiler::CompilerArguments;
+use crate::cli::args::engine::EngineName;
 use crate::cli::args::time::seconds;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::input::read;
@@ -29,6 +30,7 @@ const LIMIT: f64 = 3600.0;
 
 /// Arguments of `cc67 debug`.
 #[derive(Debug, Args)]
+#[command(mut_arg("engine", EngineName::debuggable))]
 pub(super) struct DebugArguments {
     /// Sources or images: FILE runs in the lowest free thread, N:FILE in thread N
     #[arg(required_unless_present_any = ["explain", "dap", "listen"], value_name = "[N:]FILE")]
@@ -51,6 +53,9 @@ pub(super) struct DebugArguments {
     board: BoardArguments,
     #[command(flatten)]
     compiler: CompilerArguments,
+    /// The words after `debug` on the command line.
+    #[arg(skip)]
+    pub(super) words: Vec<OsString>,
 }
 
 impl DebugArguments {
@@ -62,7 +67,7 @@ impl DebugArguments {
 
 /// The same arguments as a client of the protocol gives them.
 #[derive(Debug, Parser)]
-#[command(name = "launch", no_binary_name = true)]
+#[command(name = "launch", no_binary_name = true, args_override_self = true)]
 struct LaunchArguments {
     #[command(flatten)]
     debug: DebugArguments,
@@ -83,13 +88,18 @@ impl LaunchArguments {
 
 /// Debugs programs.
 pub(super) fn debug(arguments: &DebugArguments) -> Result<Exit> {
+    anyhow::ensure!(
+        arguments.programs.is_empty() || arguments.dap.is_none() && arguments.listen.is_none(),
+        "with `--dap` and `--listen` the editor names the programs: leave them out"
+    );
     match (arguments.dap, arguments.listen) {
         (Some(0), _) => {
+            let mut launch = |request: &Launch| launch(arguments, request);
             dap::serve(BufReader::new(io::stdin()), io::stdout(), &mut launch)?;
             return Ok(Exit::Success);
         }
-        (Some(port), _) => return listen(port, true),
-        (None, Some(port)) => return listen(port, false),
+        (Some(port), _) => return listen(arguments, port, true),
+        (None, Some(port)) => return listen(arguments, port, false),
         (None, None) => {}
     }
     let Some(debugger) = debugger(arguments)? else { return Ok(Exit::Failure) };
@@ -142,13 +152,14 @@ fn show(text: &str) {
 }
 
 /// Serves clients of a port on this computer.
-fn listen(port: u16, is_once: bool) -> Result<Exit> {
+fn listen(arguments: &DebugArguments, port: u16, is_once: bool) -> Result<Exit> {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))
         .with_context(|| format!("cannot listen on port {port}"))?;
     screen::note(&format!("debugger: waiting for an editor on {}", listener.local_addr()?));
     loop {
         let (stream, _) = listener.accept().context("debugger")?;
         stream.set_nodelay(true)?;
+        let mut launch = |request: &Launch| launch(arguments, request);
         let served = dap::serve(BufReader::new(stream.try_clone()?), stream, &mut launch);
         if let Err(error) = served {
             screen::note(&format!("debugger: {error}"));
@@ -159,10 +170,12 @@ fn listen(port: u16, is_once: bool) -> Result<Exit> {
     }
 }
 
-/// What a client wants to debug: the programs, and the options of a board under their long names.
-fn launch(request: &Launch) -> Result<Debugger<AnyTarget>, String> {
+/// Returns a debugger of what a client asks for: programs, and the options of a board under their long names. Options of
+/// the command line apply where the client names none.
+fn launch(arguments: &DebugArguments, request: &Launch) -> Result<Debugger<AnyTarget>, String> {
     let line = request.command_line().map_err(|error| error.to_string())?;
-    let arguments = LaunchArguments::with_sidecars(&line).map_err(|error| format!("{error:#}"))?;
+    let words = with_boot([&arguments.words, line.as_slice()].concat());
+    let arguments = LaunchArguments::with_sidecars(&words).map_err(|error| format!("{error:#}"))?;
     let debugger = debugger(&arguments.debug).map_err(|error| format!("{error:#}"))?;
     debugger.ok_or_else(|| "a program has errors; `cc67 check` shows them".to_owned())
 }

@@ -13,7 +13,7 @@ use std::process::{Command, Stdio};
 use anyhow::{Context, Result, bail};
 use cc67_host::Target;
 use cc67_live::{ListenError, Program, Server, Show, TestOption, TimeControl};
-use clap::{Args, Parser};
+use clap::{Arg, Args, Parser};
 
 use crate::cli::args::attach::AttachArguments;
 use crate::cli::args::beside::BesideArguments;
@@ -31,6 +31,7 @@ const PORT: u16 = 8067;
 
 /// Arguments of `cc67 live`.
 #[derive(Debug, Args)]
+#[command(mut_args(hide_serial_port))]
 pub(super) struct LiveArguments {
     /// Programs to load and start: FILE runs in the lowest free thread, N:FILE in thread N
     #[arg(value_name = "[N:]FILE")]
@@ -60,9 +61,9 @@ pub(super) struct LiveArguments {
     #[arg(long = "for", alias = "until", value_name = "SECONDS", value_parser = seconds)]
     limit: Option<f64>,
     #[command(flatten)]
-    beside: BesideArguments,
-    #[command(flatten)]
     attach: AttachArguments,
+    #[command(flatten)]
+    beside: BesideArguments,
     #[command(flatten)]
     board: BoardArguments,
     #[command(flatten)]
@@ -74,6 +75,12 @@ impl LiveArguments {
     pub(super) fn with_sidecars(&self) -> Option<&[OsString]> {
         (!self.beside.no_sidecar).then_some(&self.programs)
     }
+}
+
+/// Leaves an option of the serial port out of the help: [`live`] refuses it.
+fn hide_serial_port(argument: Arg) -> Arg {
+    let is_hidden = argument.get_id().as_str().starts_with("uart");
+    if is_hidden { argument.hide(true) } else { argument }
 }
 
 /// A factor of time.

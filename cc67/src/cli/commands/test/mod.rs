@@ -66,15 +66,15 @@ pub(super) struct TestArguments {
     options: Vec<String>,
 }
 
+/// Lines are wrapped to the width of the terminal.
 const HELP: &str = "\
-A test is a program NAME.c with NAME.expected beside it, which holds the expected console lines, then `---- notes`
-and the remarks of the board, if any, then `---- exit N` unless the run succeeds.
-The first line of the program may say how to run it; words may be quoted as in a shell:
-    // cc67: run --for 2.5 --stim door.stim also 2:watchdog.c
-NAME.toml, if it exists, is its machine file, and NAME.stim its stimulus; cc67.toml in its folder or above sets
-defaults.
-With --boot, console and exit code must be as expected, numbers within 0.001 and times within 1 ms; remarks are not
-compared, because they come from the modelled firmware.
+A test is a program NAME.c with NAME.expected beside it, which holds the expected console lines, then `---- notes` and \
+the remarks of the board, if any, then `---- exit N` unless the run succeeds. The first line of the program may say how \
+to run it; words may be quoted as in a shell:\n
+    // cc67: run --for 2.5 --stim door.stim also 2:watchdog.c\n
+NAME.toml, if it exists, is its machine file, and NAME.stim its stimulus; cc67.toml in its folder or above sets defaults. \
+With --boot, console and exit code must be as expected, numbers within 0.001 and times within 1 ms; remarks are not \
+compared, because they come from the modelled firmware.\n
 Exit code: 0 all tests passed, 1 some failed, 2 wrong usage.";
 
 impl TestArguments {
