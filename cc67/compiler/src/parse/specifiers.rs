@@ -259,7 +259,7 @@ impl Parser<'_> {
         };
         let token = self.next();
         if words.base.replace(base).is_some() {
-            let message = format!("`{}` is one type too many", self.text(token.span));
+            let message = format!("two types in one declaration; `{}` is the second", self.text(token.span));
             return self
                 .fail(Diagnostic::error(token.span, message).help("is a `;` or `,` missing before it?"));
         }
@@ -294,7 +294,7 @@ impl Parser<'_> {
             Some(ty) => Ok(ty),
             None => {
                 let message = format!("`{}` is not a type", self.text(span));
-                self.fail(Diagnostic::error(span, message).at("these words do not go together"))
+                self.fail(Diagnostic::error(span, message).at("no type is named by these keywords together"))
             }
         }
     }
@@ -388,7 +388,7 @@ impl Parser<'_> {
     #[inline(never)]
     fn two_types<T>(&mut self, specifiers: &Specifiers) -> Parsed<T> {
         let token = self.peek();
-        let message = format!("`{}` is one type too many", self.text(token.span));
+        let message = format!("two types in one declaration; `{}` is the second", self.text(token.span));
         let diagnostic =
             Diagnostic::error(token.span, message).label(specifiers.span, "the declaration begins here");
         self.fail(diagnostic.help("is a `;` or `,` missing before it?"))

@@ -248,7 +248,7 @@ fn specifiers() {
     unit("va_list a; int va_list;", "(var (typeof char *) a)\n(var int va_list)");
     errors("unsigned double a;", &["1:1: `unsigned double` is not a type"]);
     errors("static extern int a;", &["1:8: two storage classes in one declaration"]);
-    errors("int double a;", &["1:5: `double` is one type too many"]);
+    errors("int double a;", &["1:5: two types in one declaration; `double` is the second"]);
     errors("asm(\"nop\");", &["1:1: inline assembly is not supported"]);
 }
 
