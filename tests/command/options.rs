@@ -261,7 +261,10 @@ fn an_option_of_other_commands_is_refused_with_their_names() {
     let scratch = Scratch::new("options-elsewhere");
     scratch.write("a.c", "main() {}\n");
     for (words, expect) in [
-        (&["check", "--timing", "fast", "a.c"][..], "`--timing` has no effect in `cc67 check`; it is an option of `cc67 run`"),
+        (
+            &["check", "--timing", "fast", "a.c"][..],
+            "`--timing` has no effect in `cc67 check`; it is an option of `cc67 run`",
+        ),
         (&["build", "--wait-states=none", "a.c"], "`--wait-states` has no effect in `cc67 build`"),
         (&["test", "--stim", "x", "a.c"], "`cc67 test … -- --stim` passes it to the programs of the tests"),
         (&["debug", "--engine", "native", "a.c"], "invalid value 'native' for '--engine <ENGINE>'"),
@@ -288,13 +291,15 @@ fn help_lists_commands_and_options_in_groups() {
     }
     assert!(overview.lines().all(|line| line.len() <= 100), "a line of `cc67 --help` is too long");
 
-    let headings = ["Options:", "Programs:", "Board:", "Traces and plots:", "PC, files", "Compiler:", "For experts:"];
+    let headings =
+        ["Options:", "Programs:", "Board:", "Traces and plots:", "PC, files", "Compiler:", "For experts:"];
     for command in ["run", "debug", "live", "serve", "console", "compare"] {
         let help = cc67(&scratch, [command, "--help"]).stdout;
         if help.is_empty() {
             continue;
         }
-        let places: Vec<_> = headings.iter().filter_map(|heading| help.find(&format!("\n{heading}"))).collect();
+        let places: Vec<_> =
+            headings.iter().filter_map(|heading| help.find(&format!("\n{heading}"))).collect();
         assert!(places.len() >= headings.len() - 1 && places.is_sorted(), "cc67 {command}: {places:?}");
     }
     assert!(!cc67(&scratch, ["check", "--help"]).stdout.contains("For experts"));
