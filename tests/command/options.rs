@@ -101,6 +101,7 @@ const SAMPLES: &[(&str, &[&str], &[&str])] = &[
     ("--no-sidecar", &["--no-sidecar"], &[]),
     // The board.
     ("--as", &["--as=board"], &[]),
+    ("--races", &["--races"], &["--load=3:q.c"]),
     ("--machine", &["--machine=m.toml"], &[]),
     ("--stim", &["--stim=at 0.01s bit 48 = 1"], &[]),
     ("--set", &["--set=persist.5=7"], &[]),
@@ -132,6 +133,7 @@ const SAMPLES: &[(&str, &[&str], &[&str])] = &[
     ("-w", &["-w"], &["-DW"]),
     ("--std", &["--std=c99"], &[]),
     ("--message-format", &["--message-format=short"], &["-DW"]),
+    ("--board", &["--board=missing"], &[]),
     ("--firmware", &["--firmware=missing.out"], &[]),
     ("--gc-sections", &["--gc-sections"], &["-O0"]),
     ("--no-gc-sections", &["--no-gc-sections"], &[]),
@@ -269,7 +271,7 @@ fn an_option_of_other_commands_is_refused_with_their_names() {
         (&["test", "--stim", "x", "a.c"], "`cc67 test … -- --stim` passes it to the programs of the tests"),
         (&["debug", "--engine", "native", "a.c"], "invalid value 'native' for '--engine <ENGINE>'"),
         (&["debug", "a.c", "--dap"], "with `--dap` and `--listen` the editor names the programs"),
-        (&["run", "a.c", "--as", "firmware"], "`--as firmware` needs a file: `--as firmware FILE`"),
+        (&["run", "a.c", "--as", "firmware"], "invalid value 'firmware' for '--as <HOW>'"),
         (&["run", "--as", "firmware", "none.out", "a.c"], "cannot read none.out"),
     ] {
         let output = cc67(&scratch, words);

@@ -4,9 +4,8 @@ use std::ffi::{c_char, c_int};
 use std::path::{Path, PathBuf};
 use std::ptr;
 
-use cc67_host::{Board, BootedFirmware, fill};
-use compiler::Options;
-use runtime::{Config, Directory, MachineFile};
+use cc67_host::runtime::{Config, Directory, MachineFile};
+use cc67_host::{Board, BootedFirmware, Options, fill};
 
 use crate::border::{buffer, guarded_or, optional_text};
 use crate::handle::{Client, board};

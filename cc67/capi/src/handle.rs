@@ -1,7 +1,6 @@
 //! The client that C holds a pointer to.
 
-use cc67_host::Board;
-use compiler::Options;
+use cc67_host::{Board, Options};
 
 use crate::border::Outcome;
 

@@ -2,8 +2,8 @@
 
 use std::ffi::{c_int, c_void};
 
-use kmotiondef::Bit;
-use kmotiondef::limits::TIMEBASE;
+use cc67_host::kmotiondef::Bit;
+use cc67_host::kmotiondef::limits::TIMEBASE;
 
 use crate::border::{guarded, guarded_or, store};
 use crate::handle::board;

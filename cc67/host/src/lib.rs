@@ -65,6 +65,8 @@ pub use target::{
     AnyTarget, BootedFirmware, BootedTarget, CONSOLE_LINES, EventSink, FirmwareError, Target, TargetSnapshot,
 };
 pub use user_program::UserProgram;
+/// The crates whose types are in this interface, for programs that depend on no other crate of ours.
+pub use {kmotiondef, runtime};
 
 /// The programs in the book are tests, too.
 #[cfg(doctest)]
