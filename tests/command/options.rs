@@ -48,8 +48,9 @@ const WITHOUT_TRIALS: &[(&str, &str)] = &[
     ("serve", "what it shows is on a socket; `command/serve` tests it there"),
     ("compare", "it needs a firmware file; `command/boot.rs` tests it"),
     ("firmware", "its subcommands have the options; `images/build.rs` tests them"),
+    ("diff", "its option names the board of two images"),
     ("doctor", "what it shows depends on the computer; `command/doctor.rs` tests it"),
-    ("machine", "its options are numbers of data sheets, each tested where it is computed"),
+    ("machine", "its subcommands have the options"),
     ("sweep", "its options are those of the Python package"),
     ("study", "its options are those of the Python package"),
 ];
@@ -100,8 +101,6 @@ const SAMPLES: &[(&str, &[&str], &[&str])] = &[
     ("--load", &["--load=3:q.c"], &[]),
     ("--no-sidecar", &["--no-sidecar"], &[]),
     // The board.
-    ("--as", &["--as=board"], &[]),
-    ("--races", &["--races"], &["--load=3:q.c"]),
     ("--machine", &["--machine=m.toml"], &[]),
     ("--stim", &["--stim=at 0.01s bit 48 = 1"], &[]),
     ("--set", &["--set=persist.5=7"], &[]),
@@ -151,6 +150,8 @@ const THE_SAME: &[(&str, &str)] = &[
     ("--no-shortcuts", "the results are the same without shortcuts"),
     ("--realtime", "the results are the same in real time"),
     ("console --fast", "the default from a script"),
+    ("--as", "it matters to programs that race; `command/races.rs` tests it"),
+    ("--races", "it reports only what is wrong; `command/races.rs` tests it"),
     ("test --jobs", "the results are the same with any number of processes"),
 ];
 

@@ -113,6 +113,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
             ("link", &["link"]),
             ("object", &["object"]),
             ("back ends", &["bytecode", "c67x"]),
+            ("relocations", &["relocation"]),
             ("lower and passes", &["lower", "passes"]),
             ("sema", &["sema"]),
             ("lints", &["lints"]),

@@ -73,7 +73,7 @@ fn stages(c: &mut Criterion) {
         });
         for (level, level_name) in [(Level::None, "O0"), (Level::Full, "O1")] {
             group.bench_function(format!("generate/{level_name}/{name}"), |b| {
-                b.iter(|| driver::generate(&typed, &sources, (level, Timing::default()), &mut Sink::new()));
+                b.iter(|| driver::generate(&typed, &sources, level, Timing::default(), &mut Sink::new()));
             });
         }
         group.finish();

@@ -16,26 +16,23 @@
 //!
 //! | room | holds |
 //! |---|---|
-//! | [`watch`], [`debug`], [`stages`] | built on the driver: watched expressions, debug information; each stage
-//! separately, as text, for tests |
+//! | [`watch`], [`debug`], [`stages`] | built on the driver: watched expressions, debug information, stages as text |
 //! | [`driver`] | [`compile`], [`link_units`], the C library, the programs that include a file without `main` |
 //! | [`image`], [`inspect`], [`render`] | writing and showing images; diagnostics for people and tools |
-//! | [`link`], [`object`], [`target`] | units to a program; a unit's code and data, also as a file; the target
-//! processor |
-//! | [`bytecode`], `c67x` | the two back ends |
+//! | [`link`], [`object`], [`target`] | units to a program; a unit's code and data, also as a file; the processor |
+//! | [`bytecode`], `c67x`, [`relocation`] | the two back ends; words that the linker completes |
 //! | [`lower`], [`passes`] | typed tree to IR, IR to better IR |
 //! | [`sema`], [`lints`], [`firmware`] | types and meaning; searches for mistakes; what the firmware declares |
 //! | [`ir`], [`typed`], [`ty`] | the two middle forms, and the types of C; IR prints and parses |
 //! | [`parse`], [`pp`], [`ast`], [`operators`] | the front end; the operators of C and their meanings |
-//! | [`diag`], [`words`], [`names`], [`files`], [`source`], `index` | messages, spelling, interned names, positions in
-//! texts, typed indexes |
+//! | [`diag`], [`words`], [`names`], [`files`], [`source`], `index` | messages, spelling, names, positions, indexes |
 //!
 //! A room uses only rooms in its own row or in rows below it (`tests/tidy/layers.rs`).
 //!
 //! Invariants:
 //! - This crate knows no board: the image is the interface to the machine.
-//! - Only [`bytecode`] knows the instructions of the machine, only `c67x` those of the controller's processor, only
-//!   [`parse`] the grammar of C.
+//! - Only [`bytecode`] and `c67x` select instructions, only [`parse`] knows the grammar of C. [`inspect`] reads the
+//!   instructions of finished code, [`link`] and [`object`] complete its words.
 //! - Analysis continues after a diagnostic; nothing is written for a program with errors.
 //! - No input makes the compiler panic: source text, options and images are checked.
 //! - Compiling needs no crate for terminals, pictures, web or command lines.
@@ -67,6 +64,7 @@ pub mod operators;
 pub mod parse;
 pub mod passes;
 pub mod pp;
+pub mod relocation;
 pub mod render;
 pub mod sema;
 pub mod source;

@@ -8,13 +8,10 @@ use std::path::Path;
 use kmotiondef::timing::Timing;
 
 use crate::bytecode::{Generator, show};
-use crate::diag::Sink;
-use crate::driver::{self, Options};
+use crate::driver::{self, CompileContext, CompileRequest, Options};
 use crate::ir::function::{Function, Signatures};
 use crate::ir::text::{self, SymbolNames};
 use crate::ir::{parse, verify};
-use crate::names::Names;
-use crate::source::SourceMap;
 use crate::{lower, passes, pp};
 
 /// C to IR, as it is before any pass; `path` is where includes are looked for.
@@ -23,11 +20,11 @@ use crate::{lower, passes, pp};
 /// The first error of the program.
 pub fn lower(path: &Path, source: Vec<u8>, files: &(dyn pp::Files + Sync)) -> Result<String, String> {
     driver::on_large_stack(|| {
-        let (mut sources, mut names, mut sink) = (SourceMap::new(), Names::new(), Sink::new());
-        let main = sources.add_file(path.to_string_lossy(), Some(path), source, None);
-        let unit = driver::front(main, &Options::default(), files, &mut sources, &mut names, &mut sink);
+        let mut context = CompileContext::default();
+        let unit =
+            CompileRequest { path, options: &Options::default(), files }.front(source, &mut context).unit;
         if let Some(error) =
-            sink.diagnostics().iter().find(|found| found.severity == crate::diag::Severity::Error)
+            context.sink.diagnostics().iter().find(|found| found.severity == crate::diag::Severity::Error)
         {
             return Err(error.message.clone());
         }

@@ -9,14 +9,12 @@ use std::path::Path;
 
 use kmotiondef::GuestAddr;
 
-use crate::diag::{Diagnostic, Lint, Severity, Sink};
-use crate::driver::{Options, front, on_large_stack};
+use crate::diag::{Diagnostic, Lint, Severity};
+use crate::driver::{CompileContext, CompileRequest, Front, Options, on_large_stack};
 use crate::firmware::{FirmwareKind, FirmwareSymbols};
 use crate::lints;
-use crate::names::Names;
 use crate::pp::{Disk, Files};
 use crate::sema::constants::{self, Constant};
-use crate::source::SourceMap;
 use crate::ty::{BitRange, TypeId, Types};
 use crate::typed::{
     Call, Callee, ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind, StmtKind, SymbolId, UnaryOp, Unit,
@@ -108,15 +106,16 @@ pub fn compile(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Exp
 }
 
 fn compile_here(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Expression, String> {
-    let (mut sources, mut names, mut sink) = (SourceMap::new(), Names::new(), Sink::new());
+    let mut context = CompileContext::default();
     let mut text = scope.text.to_vec();
     for item in items {
         text.extend(format!("\nextern double {item};").bytes());
     }
     let before = text.len() as u32;
     text.extend(format!("\ndouble {FUNCTION}(void) {{ return (\n{expression}\n); }}\n").bytes());
-    let main = sources.add_file(scope.path.to_string_lossy(), Some(scope.path), text, None);
-    let mut unit = front(main, scope.options, scope.files, &mut sources, &mut names, &mut sink);
+    let request = CompileRequest { path: scope.path, options: scope.options, files: scope.files };
+    let Front { main, mut unit } = request.front(text, &mut context);
+    let CompileContext { sources, names, mut sink } = context;
     let error = sink.diagnostics().iter().find(|diagnostic| diagnostic.severity == Severity::Error);
     if let Some(error) = error {
         return Err(in_one_line(error));
@@ -131,8 +130,8 @@ fn compile_here(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Ex
     let doubt = sink.diagnostics().iter().skip(known).find(is_here).map(in_one_line);
     let is_ours = |function: &Function| unit.symbols[function.symbol].name == FUNCTION;
     let function = unit.functions.iter().position(is_ours).map(|index| unit.functions.swap_remove(index));
-    let Some(function) = function else { return Err("it is no expression".to_owned()) };
-    let [statement] = function.body.as_slice() else { return Err("it is no expression".to_owned()) };
+    let Some(function) = function else { return Err("not an expression".to_owned()) };
+    let [statement] = function.body.as_slice() else { return Err("not an expression".to_owned()) };
     let StmtKind::Return(Some(value)) = statement.kind else { return Err("it has no value".to_owned()) };
     let mut check = Check {
         unit: &unit,
@@ -174,11 +173,12 @@ pub(crate) fn meanings(
     unit: &Unit,
     function: usize,
     value: ExprId,
-    (symbols, options): (&BTreeMap<String, GuestAddr>, &Options),
+    symbols: &BTreeMap<String, GuestAddr>,
+    options: &Options,
     items: &[&str],
 ) -> Result<BTreeMap<SymbolId, Meaning>, String> {
     let scope = Scope { path: Path::new(""), text: &[], symbols, options, files: &Disk };
-    let function = unit.functions.get(function).ok_or("it is no expression")?;
+    let function = unit.functions.get(function).ok_or("not an expression")?;
     let mut check = Check { unit, scope, items, function, meanings: BTreeMap::new(), count: 0, locals: true };
     check.expr(value)?;
     Ok(check.meanings)
@@ -254,7 +254,7 @@ impl Check<'_> {
                 return self.expr(*argument);
             }
         }
-        Err(format!("of functions it may call {}; `bit46` is the level of a bit", known()))
+        Err(format!("an expression can call only {}; `bit46` is the level of a bit", known()))
     }
 }
 
@@ -531,7 +531,9 @@ main() { int local; }
         check("persist.UserData[200]", Err("it reads beyond the end of `persist`"));
         check(
             "Move(0, 1)",
-            Err("of functions it may call fabs, sqrt, floor, ceil, sin, cos; `bit46` is the level of a bit"),
+            Err(
+                "an expression can call only fabs, sqrt, floor, ceil, sin, cos; `bit46` is the level of a bit",
+            ),
         );
         check("text[0]", Err("`text` is not in the linked program, as nothing uses it"));
     }

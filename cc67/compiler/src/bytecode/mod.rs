@@ -3,7 +3,7 @@
 //! A function passes four stages: [`legalize`] leaves only instructions that the machine has,
 //! [`registers`] gives every value a register, [`select`] writes the words, [`meter`] inserts
 //! the charges. [`Generator`] does so for all functions of a unit. What comes in is IR, what goes out is [`Text`],
-//! [`Relocation`]s and constants; [`references`] says what a program's instructions refer to.
+//! [relocations](crate::relocation) and constants; [`references`] says what a program's instructions refer to.
 
 pub(crate) mod head;
 mod legalize;
@@ -27,39 +27,14 @@ pub(crate) use vm::op::WORD;
 
 use vm::verify::MAX_REGISTERS;
 
-use crate::c67x::text::FixupKind;
 use crate::diag::Diagnostic;
 use crate::ir::function::Function;
-use crate::ir::inst::SignatureId;
 use crate::source::Span;
-use crate::typed::SymbolId;
 use pool::ConstantPool;
 use text::Added;
 
 /// Bytes of guest frame that a function can have: 16 bits of units of eight bytes.
 pub const MAX_FRAME: u32 = u16::MAX as u32 * WORD as u32;
-
-/// A word of the text that the linker completes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Relocation {
-    /// Index of the word.
-    pub word: u32,
-    /// What is put there.
-    pub kind: RelocationKind,
-    /// Whose address.
-    pub symbol: SymbolId,
-}
-
-/// How a word is completed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RelocationKind {
-    /// The symbol's address is added to the last four bytes of the word.
-    Address,
-    /// The word calls the firmware; it calls a function of the program if the symbol is one.
-    Call(SignatureId),
-    /// A word of the controller's code.
-    Processor(FixupKind),
-}
 
 /// A function in words.
 #[derive(Debug)]

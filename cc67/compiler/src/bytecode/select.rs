@@ -16,13 +16,13 @@ use super::legalize::FrameLayout;
 use super::operators;
 use super::pool::ConstantPool;
 use super::registers::Registers;
-use super::{Relocation, RelocationKind};
 use crate::ir::function::{Function, table};
 use crate::ir::inst::{
     Address, ArgumentRange, Base, BlockId, Callee, Class, CodeOrigin, Constant, InlineId, InstKind, Operand,
     SignatureId, Terminator, ValueId,
 };
 use crate::ir::operators::{BinaryOp, CompareOp, ConvertOp, UnaryOp, Width};
+use crate::relocation::{Relocation, RelocationKind};
 use crate::source::Span;
 use crate::typed::SymbolId;
 

@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 
 use super::legalize;
-use super::{Generated, Relocation, RelocationKind, Text};
+use super::{Generated, Text};
 use crate::ir::function::{Block, Function, Signatures};
 use crate::ir::inst::{CodeOrigin, Terminator};
 use crate::ir::text::{self, SymbolNames};
+use crate::relocation::{Relocation, RelocationKind};
 
 /// A function whose instructions the machine has: its frame as a comment, what is computed once as a block of its own
 /// in front of the first.

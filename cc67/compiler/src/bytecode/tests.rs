@@ -70,7 +70,7 @@ impl Firmware for Nothing {
 fn build(source: &str, level: Level) -> Linked {
     let (unit, sources) = testing::unit(source);
     let mut sink = Sink::new();
-    let object = generate(&unit, &sources, (level, Timing::Fast), &mut sink);
+    let object = generate(&unit, &sources, level, Timing::Fast, &mut sink);
     assert!(!sink.has_errors(), "{:?}", sink.diagnostics());
     let thread = ThreadId::new(1).expect("a thread");
     let options = link::Options {
@@ -266,7 +266,7 @@ fn line_numbers_are_those_of_the_statements() {
 fn a_stack_frame_too_large_for_the_machine_is_refused() {
     let (unit, sources) = testing::unit("int f(void) { char a[600000]; a[0] = 1; return a[0]; }");
     let mut sink = Sink::new();
-    let _ = generate(&unit, &sources, (Level::Full, Timing::Fast), &mut sink);
+    let _ = generate(&unit, &sources, Level::Full, Timing::Fast, &mut sink);
     let message = sink.diagnostics().first().map(|diagnostic| diagnostic.message.as_str());
     assert_eq!(message, Some("the local variables of `f` are too large"));
 }

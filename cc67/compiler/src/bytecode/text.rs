@@ -10,11 +10,12 @@ use vm::op::{Op, WORD};
 use vm::operand::{Addr, Classes, Count, FuncRef, Label, Pool, SigRef};
 use vm::patch::{self, Patch};
 
+use super::head;
 use super::registers::Registers;
 use super::select::Code;
-use super::{Relocation, head};
 use crate::ir::function::Signature;
 use crate::ir::inst::SignatureId;
+use crate::relocation::Relocation;
 use crate::source::Span;
 
 /// The words of a unit's functions.

@@ -7,7 +7,8 @@ use c67x::{FETCH_PACKET, Inst, Op, Operand, Side};
 
 use super::code::Value;
 use super::packets::{FETCH, Issued, LONGEST, Scheduled};
-use super::text::{Fixup, FixupKind};
+use super::text::Fixup;
+use crate::relocation::FixupKind;
 use crate::source::Span;
 
 /// A function in words.

@@ -6,21 +6,9 @@ use c67x::assemble;
 use c67x::{Inst, Op, Operand, Pred, Side};
 
 use super::abi;
+use crate::relocation::FixupKind;
 use crate::source::Span;
 use crate::typed::SymbolId;
-
-/// How a word is completed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FixupKind {
-    /// The low half of an address, plus an offset, into the constant of an `MVK`.
-    Low(i32),
-    /// The high half into that of an `MVKH`.
-    High(i32),
-    /// The displacement of a branch.
-    Near,
-    /// A whole word: the function's own address plus an offset.
-    Own(i32),
-}
 
 /// A word that the linker completes.
 #[derive(Clone, Copy, Debug)]

@@ -10,8 +10,8 @@ use kmotiondef::GuestAddr;
 use super::scope;
 use super::value::{Data, DebugValue, Displayed};
 use super::{LocalModel, Model};
-use crate::diag::{Severity, Sink};
-use crate::driver::{front, on_large_stack};
+use crate::diag::Severity;
+use crate::driver::{CompileContext, CompileRequest, Front, on_large_stack};
 use crate::inspect::EntryKind;
 use crate::names::Names;
 use crate::pp::Disk;
@@ -113,7 +113,7 @@ impl Model {
                 (from, text.len(), name, [].as_slice())
             }
         };
-        self.compile(text, from as u32..until as u32, (name, locals), items, is_address)
+        self.compile(text, from as u32..until as u32, name, locals, items, is_address)
     }
 
     /// Where to insert an expression that is about a line of a function.
@@ -129,13 +129,15 @@ impl Model {
         &self,
         text: Vec<u8>,
         inserted: std::ops::Range<u32>,
-        (name, locals): (&str, &[LocalModel]),
+        name: &str,
+        locals: &[LocalModel],
         items: &[&str],
         is_address: bool,
     ) -> Result<Probe, String> {
-        let (mut sources, mut names, mut sink) = (SourceMap::new(), Names::new(), Sink::new());
-        let main = sources.add_file(self.path.to_string_lossy(), Some(&self.path), text, None);
-        let mut unit = front(main, &self.options, &Disk, &mut sources, &mut names, &mut sink);
+        let mut context = CompileContext::default();
+        let request = CompileRequest { path: &self.path, options: &self.options, files: &Disk };
+        let Front { main, mut unit } = request.front(text, &mut context);
+        let CompileContext { sources, names, sink } = context;
         let error = sink.diagnostics().iter().find(|diagnostic| diagnostic.severity == Severity::Error);
         if let Some(error) = error {
             return Err(watch::in_one_line(error));
@@ -143,7 +145,7 @@ impl Model {
         let start = sources.file(main).start;
         let range = start + inserted.start..start + inserted.end;
         let index = unit.functions.iter().position(|function| unit.symbols[function.symbol].name == name);
-        let index = index.ok_or("it is no expression")?;
+        let index = index.ok_or("not an expression")?;
         let function = &unit.functions[index];
         let mut found = None;
         function.each_stmt(&mut |stmt| {
@@ -153,7 +155,7 @@ impl Model {
                 found.get_or_insert(id);
             }
         });
-        let mut value = found.ok_or("it is no expression")?;
+        let mut value = found.ok_or("not an expression")?;
         while let ExprKind::Convert(inner) = function.exprs[value].kind {
             if function.exprs[value].ty != Types::VOID {
                 break;
@@ -163,7 +165,7 @@ impl Model {
         let locals = locals_of(locals, function, &sources, start);
         let symbols = self.image.symbols.iter().filter(|entry| entry.kind == EntryKind::Object);
         let symbols = symbols.map(|entry| (entry.name.clone(), GuestAddr::new(entry.address))).collect();
-        let meanings = watch::meanings(&unit, index, value, (&symbols, &self.options), items)?;
+        let meanings = watch::meanings(&unit, index, value, &symbols, &self.options, items)?;
         let function = unit.functions.swap_remove(index);
         let expression = Expression::new(function, value, meanings);
         Ok(Probe { unit, names, expression, value, is_address, locals })

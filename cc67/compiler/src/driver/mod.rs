@@ -9,6 +9,7 @@ mod library;
 mod no_main;
 
 use std::borrow::Cow;
+use std::fmt;
 use std::hint::black_box;
 use std::panic::resume_unwind;
 use std::path::Path;
@@ -150,9 +151,10 @@ pub(crate) fn front_and_object(
     options: &Options,
     files: &dyn pp::Files,
 ) -> (Unit, Compilation, Names) {
-    let (mut sources, mut names, mut sink) = (SourceMap::new(), Names::new(), Sink::new());
-    let main = sources.add_file(path.to_string_lossy(), Some(path), text, None);
-    let unit = front(main, options, files, &mut sources, &mut names, &mut sink);
+    let mut context = CompileContext::default();
+    let request = CompileRequest { path, options, files };
+    let unit = request.front(text, &mut context).unit;
+    let CompileContext { sources, names, mut sink } = context;
     let object = (!sink.has_errors()).then(|| object_of(&unit, &sources, options, &mut sink));
     let object = object.filter(|_| !sink.has_errors());
     let name = path.to_string_lossy().into_owned();
@@ -162,7 +164,7 @@ pub(crate) fn front_and_object(
 /// The object of a unit, for the machine that the options name.
 fn object_of(unit: &Unit, sources: &SourceMap, options: &Options, sink: &mut Sink) -> Object {
     match options.target {
-        Target::Sim => generate(unit, sources, (options.level, options.timing), sink),
+        Target::Sim => generate(unit, sources, options.level, options.timing, sink),
         Target::C67x => generate_code(unit, sources, options.level, sink),
     }
 }
@@ -190,23 +192,18 @@ pub(crate) fn compile_here(
         let most = pp::limits::FILE_BYTES;
         return refuse(Diagnostic::global_error(format!("{} is larger than {most} bytes", path.display())));
     }
-    let text = Arc::new(text);
-    let (compilation, is_final) = compile_text(path, &text, Headers::AsNeeded, options, files);
-    if is_final { compilation } else { compile_text(path, &text, Headers::Whole, options, files).0 }
+    let (text, request) = (Arc::new(text), CompileRequest { path, options, files });
+    let (compilation, is_final) = compile_text(request, &text, Headers::AsNeeded);
+    if is_final { compilation } else { compile_text(request, &text, Headers::Whole).0 }
 }
 
-/// Compiles a text, and says whether the result would be the same if it had read all of the headers.
-fn compile_text(
-    path: &Path,
-    text: &Arc<Vec<u8>>,
-    headers: Headers,
-    options: &Options,
-    files: &dyn pp::Files,
-) -> (Compilation, bool) {
-    let (mut sources, mut names, mut sink) = (SourceMap::new(), Names::new(), Sink::new());
+/// Compiles a text; the second result is whether the first would be the same if it had read all of the headers.
+fn compile_text(request: CompileRequest<'_>, text: &Arc<Vec<u8>>, headers: Headers) -> (Compilation, bool) {
+    let CompileRequest { path, options, files } = request;
+    let mut context = CompileContext::default();
+    let (Front { unit, .. }, read) = request.front_with(headers, Arc::clone(text), &mut context);
+    let CompileContext { sources, names, mut sink } = context;
     let name = path.to_string_lossy().into_owned();
-    let main = sources.add_file(path.to_string_lossy(), Some(path), Arc::clone(text), None);
-    let (unit, read) = front_with(headers, main, options, files, &mut sources, &mut names, &mut sink);
     // What was said so far may name any declaration; what comes now names those that the program does.
     let is_final = match read {
         HeadersRead::Whole => true,
@@ -225,34 +222,73 @@ fn compile_text(
     (Compilation { name, sources, sink, object, included_by }, is_final)
 }
 
-/// The typed tree of the text with number `main`; complete even after errors.
-pub fn front(
-    main: FileId,
-    options: &Options,
-    files: &dyn pp::Files,
-    sources: &mut SourceMap,
-    names: &mut Names,
-    sink: &mut Sink,
-) -> Unit {
-    front_with(Headers::Whole, main, options, files, sources, names, sink).0
+/// A request to compile a text.
+#[derive(Clone, Copy)]
+pub struct CompileRequest<'a> {
+    /// The file of the text, for messages and for the search of its includes.
+    pub path: &'a Path,
+    /// The options.
+    pub options: &'a Options,
+    /// The files that it may include.
+    pub files: &'a dyn pp::Files,
 }
 
-/// The same with the declarations of the headers that are needed, or all of them.
-fn front_with(
-    headers: Headers,
-    main: FileId,
-    options: &Options,
-    files: &dyn pp::Files,
-    sources: &mut SourceMap,
-    names: &mut Names,
-    sink: &mut Sink,
-) -> (Unit, HeadersRead) {
-    let preprocessor = options.preprocessor_of_board();
-    let (tokens, read) = pp::preprocess_as(headers, main, &preprocessor, files, sources, names, sink);
-    let tree = parse::parse(&tokens, sources, names, sink);
-    drop(tokens);
-    let standard = options.preprocessor.standard;
-    (sema::analyze_as(standard, &tree, names, sources, &options.firmware, sink), read)
+impl fmt::Debug for CompileRequest<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("CompileRequest").field("path", &self.path).finish_non_exhaustive()
+    }
+}
+
+/// What the stages of a compilation share.
+#[derive(Debug)]
+pub struct CompileContext {
+    /// The texts.
+    pub sources: SourceMap,
+    /// The names in them.
+    pub names: Names,
+    /// The diagnostics.
+    pub sink: Sink,
+}
+
+impl Default for CompileContext {
+    fn default() -> Self {
+        Self { sources: SourceMap::new(), names: Names::new(), sink: Sink::new() }
+    }
+}
+
+/// The result of the front end.
+#[derive(Debug)]
+pub struct Front {
+    /// The number of the text among the sources.
+    pub main: FileId,
+    /// The typed tree; complete even after errors.
+    pub unit: Unit,
+}
+
+impl CompileRequest<'_> {
+    /// Preprocesses, parses and checks a text.
+    pub fn front(self, text: Vec<u8>, context: &mut CompileContext) -> Front {
+        self.front_with(Headers::Whole, Arc::new(text), context).0
+    }
+
+    /// The same with the declarations of the headers that are needed, or all of them.
+    fn front_with(
+        self,
+        headers: Headers,
+        text: Arc<Vec<u8>>,
+        context: &mut CompileContext,
+    ) -> (Front, HeadersRead) {
+        let CompileContext { sources, names, sink } = context;
+        let preprocessor = self.options.preprocessor_of_board();
+        let main = sources.add_file(self.path.to_string_lossy(), Some(self.path), text, None);
+        let (tokens, read) =
+            pp::preprocess_as(headers, main, &preprocessor, self.files, sources, names, sink);
+        let tree = parse::parse(&tokens, sources, names, sink);
+        drop(tokens);
+        let firmware = &self.options.firmware;
+        let unit = sema::analyze_as(preprocessor.standard, &tree, names, sources, firmware, sink);
+        (Front { main, unit }, read)
+    }
 }
 
 /// How often the calls of a function in itself are replaced in the controller's code, which should be small.
@@ -262,12 +298,7 @@ const CODE_LEVELS: usize = 1;
 ///
 /// Functions that are too large for the machine are reported to `sink`.
 #[must_use]
-pub fn generate(
-    unit: &Unit,
-    sources: &SourceMap,
-    (level, timing): (Level, Timing),
-    sink: &mut Sink,
-) -> Object {
+pub fn generate(unit: &Unit, sources: &SourceMap, level: Level, timing: Timing, sink: &mut Sink) -> Object {
     let mut builder = UnitBuilder::new(unit, sources);
     let mut generator = Generator::default();
     let definitions = lower::Definitions::new(unit, builder.signatures());

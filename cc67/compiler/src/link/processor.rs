@@ -9,10 +9,10 @@ use kmotiondef::GuestAddr;
 use super::error::{LinkError, LinkErrorKind};
 use super::reach::{Reached, Target};
 use super::text::{Addresses, TextLayout};
-use crate::bytecode::RelocationKind;
 use crate::c67x::ALIGN;
-use crate::c67x::text::{FixupKind, branch, far_jump, half};
+use crate::c67x::text::{branch, far_jump, half};
 use crate::object::Object;
+use crate::relocation::{FixupKind, RelocationKind};
 use crate::target;
 
 /// Bytes of a word.

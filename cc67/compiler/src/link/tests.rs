@@ -34,7 +34,7 @@ impl FirmwareSymbols for Fake {
 
 fn object(source: &str) -> Object {
     let (unit, sources) = testing::unit(source);
-    generate(&unit, &sources, (Level::Full, Timing::Fast), &mut Sink::new())
+    generate(&unit, &sources, Level::Full, Timing::Fast, &mut Sink::new())
 }
 
 fn try_link(sources: &[&str], thread: i32, gc: bool) -> Result<Linked, Vec<LinkError>> {

@@ -13,10 +13,11 @@ use super::processor;
 use super::reach::{Reached, Target};
 use super::{LinkedFunction, LinkedLine};
 use crate::bytecode::text::{Numbers, call, call_firmware};
-use crate::bytecode::{Relocation, RelocationKind, WORD, head};
+use crate::bytecode::{WORD, head};
 use crate::ir::function::{Signature, Signatures};
 use crate::ir::inst::SignatureId;
 use crate::object::{Object, ObjectFunction, SourceLine};
+use crate::relocation::{Relocation, RelocationKind};
 
 /// The order of the text and the numbers that objects share in it.
 #[derive(Debug, Default)]

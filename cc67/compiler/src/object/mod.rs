@@ -21,10 +21,11 @@ use std::ops::Range;
 
 use cranelift_entity::PrimaryMap;
 
+use crate::bytecode::Text;
 pub use crate::bytecode::{InlinedPlaces, Location, VariablePlaces};
-use crate::bytecode::{Relocation, Text};
 use crate::ir::function::Signatures;
 use crate::ir::inst::SignatureId;
+use crate::relocation::Relocation;
 use crate::source::Span;
 use crate::target::Target;
 use crate::typed::{Linkage, SymbolId};

@@ -12,10 +12,11 @@ use super::write::{ADDRESS, BSS, CALL, CODE_WORD, DATA, HIGH, LOW, NEAR, OWN, TE
 use super::{
     DataRelocation, Definition, Initialized, Line, Object, ObjectFunction, SourceLine, Symbol, kind_of,
 };
-use crate::bytecode::{Relocation, RelocationKind, Text, WORD, head};
-use crate::c67x::text::{FixupKind, constant};
+use crate::bytecode::{Text, WORD, head};
+use crate::c67x::text::constant;
 use crate::ir::function::Signature;
 use crate::ir::inst::SignatureId;
+use crate::relocation::{FixupKind, Relocation, RelocationKind};
 use crate::typed::{Linkage, SymbolId};
 
 /// Largest alignment of an object.

@@ -6,11 +6,12 @@ use super::{
     DataRelocation, Definition, Initialized, Line, Object, ObjectFunction, SourceLine, Symbol, SymbolKind,
 };
 use crate::bytecode::text::Added;
-use crate::bytecode::{Generated, Relocation, RelocationKind, Text};
+use crate::bytecode::{Generated, Text};
 use crate::c67x::text::Words;
 use crate::c67x::{Externs, externs};
 use crate::ir::function::Signatures;
 use crate::ir::inst::SignatureId;
+use crate::relocation::{Relocation, RelocationKind};
 use crate::source::{Place, SourceMap, Span};
 use crate::ty::{ParameterTypes, Type, TypeId, Types};
 use crate::typed::{self, Linkage, SymbolId, Unit};

@@ -29,8 +29,9 @@ use super::{
     Definition, Object, ObjectFunction, SourceLine, base_type, class, function_type, statement, to_u16,
     whole_lines,
 };
-use crate::bytecode::{RelocationKind, WORD, head};
-use crate::c67x::text::{FixupKind, half};
+use crate::bytecode::{WORD, head};
+use crate::c67x::text::half;
+use crate::relocation::{FixupKind, RelocationKind};
 use crate::typed::{Linkage, SymbolId};
 
 /// The symbol's address is added to the 32 bits.

@@ -103,7 +103,7 @@ impl Firmware for Stopwatch {
 fn spent(source: &str, level: Level, waits: WaitStates) -> i64 {
     let (unit, sources) = testing::unit(source);
     let mut sink = Sink::new();
-    let object = generate(&unit, &sources, (level, Timing::Vendor(waits)), &mut sink);
+    let object = generate(&unit, &sources, level, Timing::Vendor(waits), &mut sink);
     assert!(!sink.has_errors(), "{:?}", sink.diagnostics());
     let thread = ThreadId::new(1).expect("a thread");
     let addresses = link::SectionAddresses::default();
