@@ -141,7 +141,8 @@ fn programs_compile_the_same_with_only_the_declarations_they_need() {
         let text = Arc::new(fs::read(&path).expect("it can be read"));
         for target in [Target::Sim, Target::C67x] {
             let options = Options { target, ..Options::default() };
-            let compile = |headers| compile_text(&path, &text, headers, &options, &Disk);
+            let request = CompileRequest { path: &path, options: &options, files: &Disk };
+            let compile = |headers| compile_text(request, &text, headers);
             let (needed, is_final) = compile(Headers::AsNeeded);
             if !is_final {
                 again += 1;
@@ -194,7 +195,9 @@ fn headers_are_read_whole_where_a_partial_read_would_be_visible() {
     }
     let own = pp::MemoryFiles::new().with("PC-DSP.h", "#define N_CHANNELS 2\n");
     let text = Arc::new(format!("{INCLUDE}int a[sizeof chan / sizeof *chan];\n").into_bytes());
-    let compile = |headers| compile_text(Path::new("main.c"), &text, headers, &Options::default(), &own);
+    let options = Options::default();
+    let request = CompileRequest { path: Path::new("main.c"), options: &options, files: &own };
+    let compile = |headers| compile_text(request, &text, headers);
     let ((needed, is_final), (whole, _)) = (compile(Headers::AsNeeded), compile(Headers::Whole));
     assert!(is_final);
     assert_eq!(needed.diagnostics(), whole.diagnostics());
