@@ -38,7 +38,7 @@ fn run(scratch: &Scratch, arguments: &[&str]) -> Output {
 fn plot(name: &str, picture: &str, more: &[&str]) -> (Scratch, Vec<u8>) {
     let scratch = Scratch::new(&format!("plot-{name}"));
     let output = run(&scratch, &[&["run", "--plot", picture, "a.c"], more].concat());
-    assert_eq!((output.code, output.stderr.as_str()), (0, ""));
+    assert_eq!(output.code, 0, "{}", output.stderr);
     let bytes = fs::read(scratch.path().join(picture)).expect("it was written");
     (scratch, bytes)
 }
@@ -55,7 +55,7 @@ fn axes_have_the_names_and_units_of_the_machine_file() {
     let scratch = Scratch::new("plot-names");
     scratch.write("m.toml", "[axis.0]\nname = \"X\"\nunits = \"mm\"\n");
     let output = run(&scratch, &["run", "--machine", "m.toml", "--plot", "a.svg", "a.c"]);
-    assert_eq!((output.code, output.stderr.as_str()), (0, ""));
+    assert_eq!(output.code, 0, "{}", output.stderr);
     let texts = texts(&fs::read(scratch.path().join("a.svg")).expect("it was written"));
     for expect in ["axis 0 (X): Dest and load (mm)", "Dest X", "load X", "axis 0 (X): velocity (mm/s)"] {
         assert!(texts.iter().any(|text| text == expect), "{expect}: {texts:?}");
@@ -86,7 +86,7 @@ fn a_measured_axis_is_drawn_at_its_measured_position() {
     let scratch = Scratch::new("plot-measured");
     scratch.write("b.c", PROGRAM.replace("NO_INPUT_MODE", "ENCODER_MODE"));
     let output = cc67(&scratch, ["run", "--plot", "b.svg", "--trace", "b.csv", "b.c"]);
-    assert_eq!((output.code, output.stderr.as_str()), (0, ""));
+    assert_eq!(output.code, 0, "{}", output.stderr);
     let texts = texts(&fs::read(scratch.path().join("b.svg")).expect("it was written"));
     for expect in ["axis 0: Dest and Position (units)", "Position 0", "axis 0: following error (units)"] {
         assert!(texts.iter().any(|text| text == expect), "`{expect}` is not among {texts:?}");

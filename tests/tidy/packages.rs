@@ -88,7 +88,7 @@ fn every_manifest_has_the_same_version() {
     }
 }
 
-/// A workspace of its own with other profiles would build every dependency once more.
+/// A workspace of its own with other profiles would build every dependency a second time.
 #[test]
 fn the_python_package_is_built_with_the_same_profiles() {
     let sections = |name: &str| {

@@ -63,7 +63,11 @@ pub(crate) fn bits_of(texts: &[String]) -> BTreeMap<Bit, Used> {
     let macros: BTreeMap<&str, &str> =
         texts.iter().flat_map(|text| text.lines().filter_map(defined)).collect();
     let mut bits: BTreeMap<Bit, Used> = BTreeMap::new();
-    let accesses = FIRMWARE_FUNCTIONS.iter().filter_map(|row| Some((row.name, row.attributes.bit_access?)));
+    // A bit that is read and written has the name with which it is read.
+    let accesses = [BitAccess::Read, BitAccess::Write].into_iter().flat_map(|access| {
+        let rows = FIRMWARE_FUNCTIONS.iter().filter(move |row| row.attributes.bit_access == Some(access));
+        rows.map(move |row| (row.name, access))
+    });
     for (function, access) in accesses {
         for argument in texts.iter().flat_map(|text| arguments(text, function)) {
             // Of a sum with a variable, the base is shown: it is where the bits begin.

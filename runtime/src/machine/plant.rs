@@ -300,7 +300,7 @@ impl Plant {
             (_, Drive::Steps(command)) if command == self.steps.reached => return false,
             (_, Drive::Steps(command)) => {
                 let steps_per_unit = f64::from(chan.get(Chan::OUTPUT_GAIN)).abs();
-                if steps_per_unit == 0.0 {
+                if steps_per_unit == 0.0 || !steps_per_unit.is_finite() {
                     // Its command is no steps at all.
                     self.refer_to(command);
                     return false;

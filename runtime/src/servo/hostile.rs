@@ -44,6 +44,12 @@ fn motions_with_nonsense_limits_or_targets_end() {
     }
 }
 
+/// The diagnostics but the hint that the axis has no output.
+fn without_hints(mut texts: Vec<String>) -> Vec<String> {
+    texts.retain(|text| !text.contains("has no OutputMode"));
+    texts
+}
+
 #[test]
 fn invalid_targets_and_limits_move_nothing_and_are_reported() {
     let nan = f64::NAN.to_bits();
@@ -60,7 +66,7 @@ fn invalid_targets_and_limits_move_nothing_and_are_reported() {
         desk.memory.set(kmotiondef::variables::CS0_AXIS_Z, -1);
         desk.memory.set(kmotiondef::variables::CS0_AXIS_A, -1);
         desk.call_in_slices(name, &arguments);
-        let told = desk.diagnostics();
+        let told = without_hints(desk.diagnostics());
         assert!(
             matches!(&told[..], [text] if text.contains("is not a valid position, so nothing moves")),
             "{told:?}"
@@ -126,7 +132,7 @@ fn invalid_pointers_end_a_motion() {
         desk.run(100);
         assert_eq!(desk.call_i32("CheckDone", &[0]), 1, "{pointer:#x}");
         let told = "axis 0: pcoeff does not point to a list of states; its motion has ended";
-        let found = desk.diagnostics();
+        let found = without_hints(desk.diagnostics());
         assert!(!found.is_empty() && found.iter().all(|text| text == told), "{pointer:#x}: {found:?}");
     }
 }

@@ -25,7 +25,7 @@ impl Split {
     pub(super) fn begin(program: &Program, charge: usize, budget: &mut Cycles) -> Option<Self> {
         let meter::Steps { head, steps } = meter::steps(program.ops(), charge);
         let all = head + steps.iter().map(|(_, cycles)| cycles).sum::<u32>();
-        *budget = *budget + Cycles::new(i64::from(all - head));
+        *budget += Cycles::new(i64::from(all - head));
         (!steps.is_empty()).then(|| Self { steps: steps.into(), next: 0, high_word: None })
     }
 }

@@ -211,7 +211,7 @@ impl Inst {
 
 /// What a call calls.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Target {
+pub(super) enum CallTarget {
     /// A function by name.
     Symbol(SymbolId),
     /// The address in a register: the argument for [`super::abi::TARGET`].
@@ -221,7 +221,7 @@ pub(super) enum Target {
 /// A call.
 #[derive(Clone, Debug)]
 pub(super) struct Call {
-    pub(super) target: Target,
+    pub(super) target: CallTarget,
     /// The registers that it takes, and where they must be (of a pair the even register).
     pub(super) arguments: Vec<(VReg, Reg)>,
     /// The registers that it changes, a bit each.

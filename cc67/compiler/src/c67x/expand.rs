@@ -8,7 +8,7 @@ use cranelift_entity::SecondaryMap;
 
 use super::abi;
 use super::allocate::Assignment;
-use super::code::{Arg, Base, Call, Code, End, Inst, MemoryPlace, Target, Value};
+use super::code::{Arg, Base, Call, CallTarget, Code, End, Inst, MemoryPlace, Value};
 use super::forms::Kind;
 use super::frame::{self, Frame};
 use super::moves;
@@ -333,8 +333,8 @@ impl Expander<'_> {
         self.plain(Kind::Mvk, link, back, Final::None);
         self.plain(Kind::Mvkh, link, back, Final::None);
         let target = match call.target {
-            Target::Symbol(symbol) => Final::Value(Value::Symbol(symbol, 0)),
-            Target::Register => Final::Reg(abi::TARGET),
+            CallTarget::Symbol(symbol) => Final::Value(Value::Symbol(symbol, 0)),
+            CallTarget::Register => Final::Reg(abi::TARGET),
         };
         let branch = self.branch(target, Pred::Always);
         let passed = call.arguments.iter();

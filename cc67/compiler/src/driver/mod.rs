@@ -78,8 +78,7 @@ impl Options {
     /// The options of the preprocessor, with the headers of the board that the firmware belongs to.
     fn preprocessor_of_board(&self) -> Cow<'_, pp::Options> {
         let board = self.firmware.board();
-        let has_defaults = std::ptr::eq(self.preprocessor.embedded, TargetBoard::default_board().headers());
-        if board.is_default() || !has_defaults {
+        if board.is_default() || self.preprocessor.embedded != TargetBoard::default_board().headers() {
             return Cow::Borrowed(&self.preprocessor);
         }
         Cow::Owned(pp::Options { embedded: board.headers(), ..self.preprocessor.clone() })
@@ -416,8 +415,10 @@ pub fn link_units(units: &mut [Compilation], thread: ThreadId, options: &Options
     }
     let mut objects: Vec<Object> = units.iter_mut().filter_map(|unit| unit.object.take()).collect();
     let target = objects.first().map_or(options.target, Object::target);
+    // The library was written for the default board, where its functions are preferred.
+    let has_own = !options.firmware.board().is_default();
     let is_in_firmware =
-        |name: &str| options.firmware.origin(name).is_some_and(|origin| origin != Origin::Library);
+        |name: &str| has_own && options.firmware.origin(name).is_some_and(|origin| origin != Origin::Library);
     let compile = |member: &library::Member<'_>| compile_library(member, target, options.timing).object;
     library::add_needed(&mut objects, is_in_firmware, compile);
     if target == Target::C67x && library::uses(&objects, &JumpFunction::ALL.map(JumpFunction::name)) {

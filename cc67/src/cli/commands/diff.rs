@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::Args;
@@ -41,7 +41,7 @@ pub(super) fn diff(arguments: &DiffArguments) -> Result<Exit> {
     Ok(Exit::Failure)
 }
 
-fn of_images(first: &PathBuf, second: &PathBuf) -> Result<String> {
+fn of_images(first: &Path, second: &Path) -> Result<String> {
     let first = Inspection::new(inspect::read_image(first)?);
     let second = Inspection::new(inspect::read_image(second)?);
     Ok(compare(&first, &second).into_iter().map(|line| line + "\n").collect())

@@ -184,7 +184,7 @@ mod tests {
         fs::create_dir_all(nodes.join("001")).expect("folders can be made");
         fs::write(&node, "").expect("files can be written");
         assert_eq!(controllers(&devices, &nodes), [format!("KFLOP at {}: may be used", node.display())]);
-        fs::remove_dir_all(&devices.join("1-1")).expect("folders can be removed");
+        fs::remove_dir_all(devices.join("1-1")).expect("folders can be removed");
         assert_eq!(controllers(&devices, &nodes), ["none connected by USB"]);
         fs::remove_dir_all(&folder).expect("folders can be removed");
     }

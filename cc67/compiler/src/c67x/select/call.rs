@@ -3,7 +3,7 @@
 use super::{Selector, is_pair};
 use crate::c67x::Externs;
 use crate::c67x::abi;
-use crate::c67x::code::{Arg, Base, Call, Inst, MemoryPlace, Target, VReg};
+use crate::c67x::code::{Arg, Base, Call, CallTarget, Inst, MemoryPlace, VReg};
 use crate::c67x::forms::Kind;
 use crate::ir::inst::{ArgumentRange, Callee, Class, Operand, SignatureId, ValueId};
 
@@ -40,10 +40,10 @@ impl Selector<'_> {
             arguments.push((area, abi::REST));
         }
         let target = match callee {
-            Callee::Symbol(symbol) => Target::Symbol(symbol),
+            Callee::Symbol(symbol) => CallTarget::Symbol(symbol),
             Callee::Pointer(pointer) => {
                 arguments.push((self.operand(pointer), abi::TARGET));
-                Target::Register
+                CallTarget::Register
             }
         };
         // What a function returns comes in its registers, wanted or not.
@@ -88,10 +88,10 @@ impl Selector<'_> {
     pub(super) fn helper(&mut self, name: &'static str, arguments: &[VReg], result: VReg) {
         let symbol = self.externs.symbol(name);
         let arguments = arguments.iter().copied().zip(abi::ARGUMENTS).collect();
-        self.emit_call(Target::Symbol(symbol), arguments, Some(result));
+        self.emit_call(CallTarget::Symbol(symbol), arguments, Some(result));
     }
 
-    fn emit_call(&mut self, target: Target, arguments: Vec<(VReg, c67x::Reg)>, result: Option<VReg>) {
+    fn emit_call(&mut self, target: CallTarget, arguments: Vec<(VReg, c67x::Reg)>, result: Option<VReg>) {
         for (reg, at) in &arguments {
             let info = &mut self.code.regs[*reg];
             info.hint = info.hint.or(Some(*at));
@@ -113,8 +113,8 @@ impl Selector<'_> {
         let mut inst = Inst::new(Kind::Call, dst, Arg::None, Arg::None, self.span);
         inst.number = self.code.calls.len() as u32;
         let is_late = match target {
-            Target::Symbol(symbol) => self.externs.is_late(symbol),
-            Target::Register => true,
+            CallTarget::Symbol(symbol) => self.externs.is_late(symbol),
+            CallTarget::Register => true,
         };
         self.code.calls.push(Call { target, arguments, changes, is_late });
         self.out.push(inst);

@@ -51,9 +51,9 @@ fn pointer_arithmetic_is_scaled_to_bytes() {
     expression("gi = ga[i]", "@gi = *(&@ga + (i * 4))");
     expression("gi = s[i]", "@gi = (int)[*(s + i)]");
     expression("gi = &ga[5] - ga", "@gi = (((int)[&@ga{20:int}] - (int)[&@ga]) / 4)");
-    expression("gi = q - &d", "@gi = (((int)[q] - (int)[&d]) / 8)");
+    expression("gi = q - &gd", "@gi = (((int)[q] - (int)[&@gd]) / 8)");
     expression("gd = *(float *)&ga[2]", "@gd = (double)[@ga{8:float}]");
-    expression("gi = ((int *)&d)[1]", "@gi = d{4:int}");
+    expression("gi = ((int *)&gd)[1]", "@gi = @gd{4:int}");
     expression("gi = *(char *)0x91000000", "@gi = (int)[*2432696320:char *]");
     expression("p = (int *)i + 1", "p = ((int *)[i] + 4)");
     expression("gi = p == 0 || !s", "@gi = ((p == 0:int *) || !s)");
