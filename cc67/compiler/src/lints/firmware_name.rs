@@ -27,6 +27,10 @@ fn lint_for(program: &AnalysedProgram<'_>, symbol: &Symbol) -> Option<Lint> {
     if matches!(symbol.definition, Definition::None) || symbol.linkage == Linkage::Internal {
         return None;
     }
+    // The entry of a firmware has this name, too, and no program is linked against it.
+    if symbol.name == "main" {
+        return None;
+    }
     match program.firmware.origin(&symbol.name) {
         Some(Origin::Header) => Some(Lint::Redeclared),
         None if program.firmware.is_variable(&symbol.name) => Some(Lint::Redeclared),
