@@ -438,7 +438,7 @@ macro_rules! for_each_firmware_fn {
             /// SetFROTemp with `DecelTime` seconds for the whole way from 1.0 to 0.0.
             coord::set_fro_w_rate_temp = SetFROwRateTemp(FRO: f32, DecelTime: f32),
                 at 0x1000_33FC, cost 124, header;
-            /// Call after writing ParametricCoeffs[ParametricIndex]: advances the index and accounts for
+            /// Call after writing `ParametricCoeffs[ParametricIndex]`: advances the index and accounts for
             /// the time.
             coord::inc_parametric_index = IncParametricIndex(), at 0x8001_3D08, cost 77, header;
 

@@ -20,7 +20,7 @@
 //! call that overdraws the budget loses the processor directly after itself.
 //!
 //! Where threads lose the processor as on the board ([`Preemption::Instructions`](crate::engine::Preemption)), a
-//! segment that the budget does not cover is executed in [steps](steps) up to the cycle in which the slice ends.
+//! segment that the budget does not cover is executed in [steps] up to the cycle in which the slice ends.
 
 use std::ops::Range;
 

@@ -1,7 +1,7 @@
 //! From source texts to a linked program: the stages in their order.
 //!
-//! [`front`] makes the typed tree of a text, [`generate`] an object of the tree; [`compile`] and [`link_units`] are
-//! what commands call. Expressions that are watched take the same [`front`].
+//! [`CompileRequest::front`] makes the typed tree of a text, [`generate`] an object of the tree; commands call [`compile`]
+//! and [`link_units`]. Watched expressions take the same [`CompileRequest::front`].
 
 mod includers;
 mod jumps;

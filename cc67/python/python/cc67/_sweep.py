@@ -330,21 +330,24 @@ def _fingerprint(
     until: Condition | float | None,
 ) -> str:
     """Return what identifies a sweep in its log: all that can change the result of a run, except its timeout."""
-    arguments = sorted((name, repr(_content(name, value))) for name, value in board.items())
+    boot = board.get("boot")
+    arguments = sorted((name, repr(_content(name, value, boot))) for name, value in board.items())
     # A function decides by itself when its run ends.
     end = until if isinstance(measure, Mapping) else None
     parts = (programs.images(inputs), list(inputs), arguments, _identity(measure), _identity(end))
     return hashlib.sha256(repr(parts).encode()).hexdigest()
 
 
-def _content(name: str, value: Any) -> Any:
+def _content(name: str, value: Any, boot: str | None) -> Any:
     """Return an argument of `Board` with the content of the files that it names."""
     if name == "machine" and isinstance(value, (str, os.PathLike)):
         return _machine(value)
     if name == "stim":
         return _stimuli(value)
+    if name == "boot" and value is not None:
+        return Path(value).read_bytes()
     if name == "load":
-        return [(thread, program.image(thread)) for thread, program, _ in _assign((), value)]
+        return [(thread, program.image(thread)) for thread, program, _ in _assign((), value, boot)]
     return value
 
 
