@@ -179,7 +179,10 @@ fn a_run_on_the_real_firmware_is_traced_and_drawn_as_on_the_model() {
     assert!(changes.lines().any(|line| line.ends_with(",45,1,1")), "{changes}");
     assert!(read(&scratch, "a.svg").contains("<svg"));
     let command = ["run", "--boot", &file, "--trace", "c.csv", "--watch", "konnect3", "move.c"];
-    assert_refused(&cc67(&scratch, command), "`konnect3` belongs to an option board that is not served");
+    assert_refused(
+        &cc67(&scratch, command),
+        "`konnect3` belongs to an option board that the firmware file does not have",
+    );
 }
 
 #[test]

@@ -79,8 +79,8 @@ print persist.5
     let Some(output) = session("breaks", commands) else { return };
     let lines = lines(&output);
     let expect = [
-        "Breakpoint 1 at twice, twice.c:5",
-        "Breakpoint 2 at main, twice.c:25",
+        "Breakpoint 1 at twice, twice.c:5 (thread 1)",
+        "Breakpoint 2 at main, twice.c:25 (thread 1)",
         "Breakpoint 1, twice at twice.c:5 [thread 1]",
         "5\t    int i, sum = 0;",
         "#0  twice () at twice.c:5",
@@ -91,7 +91,7 @@ print persist.5
     for part in [
         "main at twice.c:19 [thread 1]",
         "Breakpoint 1, twice at twice.c:5 [thread 1]\n5\t    int i, sum = 0;\n$1 = 2",
-        "1    twice, twice.c:5, hits 2\n2    main, twice.c:25, hits 0",
+        "1    y breakpoint  twice, twice.c:5\n\tbreakpoint already hit 2 times\n2    y breakpoint  main, twice.c:25",
         "2\n6\n12\nBreakpoint 2, main at twice.c:25 [thread 1]",
         "$2 = 0\n$3 = 1\n[All threads have ended]\n$4 = 12",
     ] {
@@ -150,7 +150,7 @@ print calls
 ";
     let Some(output) = session("past", commands) else { return };
     let text = lines(&output).join("\n");
-    let pictures: Vec<_> = text.split("next packet").skip(1).collect();
+    let pictures: Vec<_> = text.split("\nA0=").skip(1).collect();
     let [first, second] = pictures.as_slice() else { panic!("{text}") };
     let registers = |part: &str| -> String {
         part.lines().take_while(|line| !line.starts_with('$')).map(|line| format!("{line}\n")).collect()
@@ -170,7 +170,7 @@ fn threads_that_wait_in_the_real_firmware_are_shown_there() {
     let Some(output) = session("threads", commands) else { return };
     let text = lines(&output).join("\n");
     for part in [
-        "* 1    active      Delay_sec () of the firmware from main () at twice.c:23",
+        "* 1    running     Delay_sec () of the firmware from main () at twice.c:23",
         "Breakpoint 1, count at twice.c:12 [call-back]",
         "$1 = 100",
     ] {

@@ -162,8 +162,8 @@ impl Model {
         program: &[u8],
     ) -> Result<Self, String> {
         on_large_stack(|| {
-            let (mut model, _, _) = Self::here(path, text, options, files, thread, program)?;
-            model.functions = model.functions_of_image();
+            let (mut model, object, _) = Self::here(path, text, options, files, thread, program)?;
+            model.functions = model.functions_of_image(&object);
             Ok(model)
         })
     }
@@ -196,16 +196,20 @@ impl Model {
         Ok((model, object, compilation.sources))
     }
 
-    /// Functions with their lines as the image has them.
-    fn functions_of_image(&self) -> Vec<FunctionModel> {
+    /// Functions with their statements as the image has them.
+    fn functions_of_image(&self, object: &Object) -> Vec<FunctionModel> {
         let entries = self.image.symbols.iter().filter(|entry| entry.kind == EntryKind::Function);
         let mut functions: Vec<_> = entries
             .map(|entry| {
                 let addresses = entry.address..entry.address + entry.size.unwrap_or(0).max(4);
                 let lines = self.image.lines.iter().filter(|line| addresses.contains(&line.address));
                 let statements: Vec<_> = lines.map(|line| (line.address, line.line)).collect();
-                let lines = statements.iter().map(|(_, line)| *line);
-                let lines = lines.clone().min().unwrap_or(0)..lines.max().unwrap_or(0);
+                let named = |function: &&ObjectFunction| object.symbols[function.symbol].name == entry.name;
+                let lines = object.functions.iter().find(named).map(|function| lines_of(object, function));
+                let lines = lines.unwrap_or_else(|| {
+                    let lines = statements.iter().map(|(_, line)| *line);
+                    lines.clone().min().unwrap_or(0)..lines.max().unwrap_or(0)
+                });
                 FunctionModel {
                     name: entry.name.clone(),
                     addresses,

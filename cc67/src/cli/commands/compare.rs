@@ -10,10 +10,10 @@ use std::ffi::OsString;
 use std::fmt::Write as _;
 
 use anyhow::{Context, Result, bail};
-use cc67_host::{BootedFirmware, BootedTarget, End, Target};
+use cc67_host::{BootedFirmware, BootedTarget, End, Session, Target};
 use clap::{Args, Parser};
-use kmotiondef::Ticks;
 use kmotiondef::limits::TIMEBASE;
+use kmotiondef::{ThreadId, Ticks};
 use runtime::{Event, EventKind};
 
 use crate::cli::args::beside::{Beside, BesideArguments};
@@ -252,17 +252,19 @@ impl CompareArguments {
         let end = rig.run(self.ticks(), None, &mut |event| note(&mut outcome, &event));
         outcome.last_axes = axes(&rig);
         rig.finish(&mut |event| note(&mut outcome, &event))?;
-        outcome.end = crash.unwrap_or_else(|| ended(end).to_owned());
+        outcome.end = crash.unwrap_or_else(|| ended(&rig.session, end).to_owned());
         outcome.look_at_firmware(&rig.session);
         Ok(Some(outcome))
     }
 }
 
-/// How a run ended.
-const fn ended(end: End) -> &'static str {
+/// Says how the programs of a run ended. An axis that still creeps towards its target keeps no program running: after
+/// `MoveExp` the boards do not agree on the tick in which it is there.
+fn ended<T: Target>(session: &Session<T>, end: End) -> &'static str {
+    let is_active = |thread| session.target().thread(thread).is_active();
     match end {
-        End::AllEnded | End::Interrupted => "ended",
-        End::Limit => STILL_RUNNING,
+        End::Limit if ThreadId::all().any(is_active) => STILL_RUNNING,
+        End::Limit | End::AllEnded | End::Interrupted => "ended",
     }
 }
 
@@ -290,7 +292,7 @@ impl Work for Model<'_> {
         })?;
         outcome.end = match (traps.first(), end) {
             (Some(trap), _) => trap.clone(),
-            (None, end) => ended(end).to_owned(),
+            (None, end) => ended(&rig.session, end).to_owned(),
         };
         outcome.look_at_model(&rig);
         Ok(Exit::Success)
