@@ -4,21 +4,22 @@
 //! too. A function that is called by its address may have some. Where a function with variable arguments was put in place
 //! of its call, others may read its arguments there; then all stays as it is.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::c67x::Externs;
 use crate::ir::function::{Block, Function};
 use crate::ir::inst::{Base, Callee, InstKind, Operand, ValueId};
 
-/// The numbers of a block's instructions in the order in which they are selected.
-pub(super) fn order(function: &Function, block: &Block, externs: &Externs) -> Vec<usize> {
-    if is_area_shared(function, externs) {
+/// The numbers of a block's instructions in the order in which they are selected; none may move if the area is shared.
+pub(super) fn order(function: &Function, block: &Block, externs: &Externs, is_shared: bool) -> Vec<usize> {
+    if is_shared || function.outgoing.is_none() {
         return (0..block.insts.len()).collect();
     }
+    let calls = Calls::of(function, block, externs);
     let mut followers: Vec<Vec<usize>> = vec![Vec::new(); block.insts.len()];
     let mut is_moved = vec![false; block.insts.len()];
     for (index, is_moved) in is_moved.iter_mut().enumerate() {
-        if let Some(maker) = maker(function, block, externs, index) {
+        if let Some(maker) = maker(function, block, &calls, index) {
             followers[maker].push(index);
             *is_moved = true;
         }
@@ -27,37 +28,65 @@ pub(super) fn order(function: &Function, block: &Block, externs: &Externs) -> Ve
     kept.flat_map(|index| std::iter::once(index).chain(followers[index].iter().copied())).collect()
 }
 
+/// The calls before each instruction of a block, and the last instruction before it that makes what it stores.
+struct Calls {
+    /// How many calls, and how many of what uses the area: those with variable arguments, and loads from it.
+    counts: Vec<[usize; 2]>,
+    makers: Vec<Option<usize>>,
+    /// Whether an instruction is a call with variable arguments.
+    has_variable: Vec<bool>,
+}
+
+impl Calls {
+    fn of(function: &Function, block: &Block, externs: &Externs) -> Self {
+        let mut last: BTreeMap<ValueId, usize> = BTreeMap::new();
+        let (mut counts, mut makers, mut variable) = (vec![[0, 0]], Vec::new(), Vec::new());
+        let mut count = [0, 0];
+        for (index, inst) in block.insts.iter().enumerate() {
+            makers.push(match inst.kind {
+                InstKind::Store { src: Operand::Value(value), .. } => last.get(&value).copied(),
+                _ => None,
+            });
+            let mut is_variable = false;
+            if let InstKind::Call { callee, .. } = inst.kind {
+                is_variable = has_variable(callee, externs);
+                count[0] += 1;
+            }
+            let is_load = matches!(inst.kind, InstKind::Load { address, .. }
+                if function.outgoing.is_some_and(|outgoing| address.base == Base::Slot(outgoing)));
+            count[1] += usize::from(is_variable || is_load);
+            variable.push(is_variable);
+            counts.push(count);
+            if let Some(value) = inst.kind.dst() {
+                last.insert(value, index);
+            }
+        }
+        Self { counts, makers, has_variable: variable }
+    }
+}
+
 /// The instruction that makes what a store of a variable argument stores, if it can follow that one and calls are
 /// between them.
-fn maker(function: &Function, block: &Block, externs: &Externs, index: usize) -> Option<usize> {
+fn maker(function: &Function, block: &Block, calls: &Calls, index: usize) -> Option<usize> {
     let outgoing = function.outgoing?;
-    let InstKind::Store { src: Operand::Value(value), address, .. } = block.insts[index].kind else {
+    let InstKind::Store { src: Operand::Value(_), address, .. } = block.insts[index].kind else {
         return None;
     };
     if address.base != Base::Slot(outgoing) {
         return None;
     }
-    let maker = block.insts[..index].iter().rposition(|inst| inst.kind.dst() == Some(value))?;
-    let mut calls = 0;
-    for inst in &block.insts[maker + 1..index] {
-        if let InstKind::Call { callee, .. } = inst.kind {
-            if has_variable(callee, externs) {
-                return None;
-            }
-            calls += 1;
-        } else if matches!(inst.kind, InstKind::Load { address, .. } if address.base == Base::Slot(outgoing))
-        {
-            return None;
-        }
+    let maker = calls.makers[index]?;
+    let [before, uses_before] = calls.counts[maker + 1];
+    let [after, uses_after] = calls.counts[index];
+    if uses_after > uses_before {
+        return None;
     }
     // The result of such a call is stored where the source says.
-    let is_own =
-        matches!(block.insts[maker].kind, InstKind::Call { callee, .. } if has_variable(callee, externs));
-    (calls > 0 && !is_own).then_some(maker)
+    (after > before && !calls.has_variable[maker]).then_some(maker)
 }
 
 /// Whether anything but calls with variable arguments has the address of their area.
-fn is_area_shared(function: &Function, externs: &Externs) -> bool {
+pub(super) fn is_area_shared(function: &Function, externs: &Externs) -> bool {
     let insts = || function.layout.iter().flat_map(|block| &function.blocks[*block].insts);
     let addresses: BTreeSet<ValueId> = insts()
         .filter_map(|inst| {

@@ -127,13 +127,14 @@ impl Selector<'_> {
         let function = self.function;
         self.parameters();
         let depths = depths(function);
+        let is_shared = early::is_area_shared(function, self.externs);
         for (id, depth) in function.layout.iter().zip(depths) {
             self.depth = depth;
             self.constants.clear();
             let block = &function.blocks[*id];
             let fused = terminate::fused_compare(function, block, &self.uses);
             let count = block.insts.len() - usize::from(fused.is_some());
-            let order = early::order(function, block, self.externs);
+            let order = early::order(function, block, self.externs, is_shared);
             for inst in order.into_iter().filter(|index| *index < count).map(|index| &block.insts[index]) {
                 self.span = inst.origin.span;
                 self.inst(&inst.kind);
