@@ -61,7 +61,7 @@ words! {
     // Directives and names of the preprocessor.
     DEFINE = "define", UNDEF = "undef", INCLUDE = "include", IFDEF = "ifdef", IFNDEF = "ifndef",
     ELIF = "elif", ENDIF = "endif", ERROR = "error", WARNING = "warning", PRAGMA = "pragma", LINE = "line",
-    DEFINED = "defined", VA_ARGS = "__VA_ARGS__", ONCE = "once", TI_COMPILER = "TI_COMPILER",
+    DEFINED = "defined", VA_ARGS = "__VA_ARGS__", VA_OPT = "__VA_OPT__", ONCE = "once", TI_COMPILER = "TI_COMPILER",
     MACRO_FILE = "__FILE__", MACRO_LINE = "__LINE__", MACRO_COUNTER = "__COUNTER__",
     MAIN = "main",
 }

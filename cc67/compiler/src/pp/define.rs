@@ -19,6 +19,7 @@ impl Preprocessor<'_> {
         let body = self.body(parameters.as_ref())?;
         let is_operator = |token: &Token| {
             matches!(token.kind, TokenKind::Parameter | TokenKind::Stringize | TokenKind::Paste)
+                || token.kind == TokenKind::Identifier && token.name == word::VA_OPT
         };
         let is_plain = !body.iter().any(is_operator);
         if let Some(old) = self.find_macro(name.name) {
@@ -123,7 +124,47 @@ impl Preprocessor<'_> {
             self.sink.report(Diagnostic::error(paste.span, message));
             return None;
         }
+        if parameters.is_some_and(|list| list.is_variadic) {
+            self.check_optional(&body)?;
+        }
         Some(body)
+    }
+
+    /// Checks that each `__VA_OPT__` has its parentheses and is not in another one.
+    fn check_optional(&mut self, body: &[Token]) -> Option<()> {
+        let is_optional = |token: &Token| token.kind == TokenKind::Identifier && token.name == word::VA_OPT;
+        let mut depth = None;
+        for (index, token) in body.iter().enumerate() {
+            let is_opened = body.get(index + 1).is_some_and(|next| next.kind == TokenKind::LeftParen);
+            let problem = match (token.kind, depth) {
+                _ if is_optional(token) && depth.is_some() => Some("`__VA_OPT__` is inside another one"),
+                _ if is_optional(token) && !is_opened => Some("`__VA_OPT__` is not followed by `(`"),
+                _ if is_optional(token) => {
+                    depth = Some(0_usize);
+                    None
+                }
+                (TokenKind::LeftParen, Some(open)) => {
+                    depth = Some(open + 1);
+                    None
+                }
+                (TokenKind::RightParen, Some(open)) => {
+                    depth = (open > 1).then(|| open - 1);
+                    None
+                }
+                _ => None,
+            };
+            if let Some(message) = problem {
+                self.sink.report(Diagnostic::error(token.span, message));
+                return None;
+            }
+        }
+        if depth.is_some()
+            && let Some(open) = body.iter().rev().find(|token| is_optional(token))
+        {
+            self.sink.report(Diagnostic::error(open.span, "the `(` of `__VA_OPT__` is never closed"));
+            return None;
+        }
+        Some(())
     }
 
     /// Warns if the new definition is another one.

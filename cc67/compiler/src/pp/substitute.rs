@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::names::word;
 use crate::source::ExpansionId;
 
 use super::engine::Preprocessor;
@@ -42,31 +43,91 @@ impl Preprocessor<'_> {
             definition.parameters.as_ref().filter(|list| list.is_variadic).map(|list| list.names.len() - 1);
         let mut arguments = MacroArguments { raw, ranges, expanded: vec![None; ranges.len()] };
         let mut output = Vec::with_capacity(body.len());
-        let mut at = body.start;
-        while at < body.end && !self.work.is_stopped {
-            let Some(token) = self.macros.body_token(at) else { break };
-            let next = self.macros.body_token(at + 1).filter(|_| at + 1 < body.end);
-            if token.kind == TokenKind::Paste {
-                if let Some(operand) = next {
-                    let is_rest =
-                        operand.kind == TokenKind::Parameter && Some(operand.parameter()) == variadic;
-                    self.paste_operand(&mut output, operand, is_rest, &mut arguments, expansion);
-                }
-                at += 2;
-                continue;
-            }
-            let is_pasted = next.is_some_and(|next| next.kind == TokenKind::Paste);
-            self.append(&mut output, token, is_pasted, &mut arguments, expansion);
-            at += 1;
-            if self.work.expanded + output.len() > limits::EXPANDED_TOKENS {
-                self.count(output.len(), self.sources.expansion(expansion).map_or(token.span, |it| it.call));
-            }
-        }
+        self.replace(&mut output, body, variadic, &mut arguments, expansion);
         output.retain(|token| token.kind != PLACEMARKER);
         if let Some(first) = output.first_mut() {
             first.flags = first.flags.without(Flags::SPACE).with(spacing);
         }
         output
+    }
+
+    /// Appends what a part of the body stands for; `variadic` is the parameter for the rest of the arguments.
+    fn replace(
+        &mut self,
+        output: &mut Vec<Token>,
+        body: Range<usize>,
+        variadic: Option<usize>,
+        arguments: &mut MacroArguments<'_>,
+        expansion: ExpansionId,
+    ) {
+        let mut at = body.start;
+        while at < body.end && !self.work.is_stopped {
+            let Some(token) = self.macros.body_token(at) else { break };
+            let next = self.macros.body_token(at + 1).filter(|_| at + 1 < body.end);
+            let after = at + usize::from(token.kind == TokenKind::Paste);
+            if let Some(rest) = variadic
+                && let Some(inner) = self.optional(after, body.end)
+            {
+                at = inner.end + 1;
+                let mut part = Vec::new();
+                if self.has_rest(rest, arguments) {
+                    self.replace(&mut part, inner, variadic, arguments, expansion);
+                }
+                if part.is_empty() {
+                    part.push(Token { kind: PLACEMARKER, ..token });
+                }
+                if token.kind == TokenKind::Paste {
+                    self.join(output, part, expansion);
+                } else {
+                    if let Some(first) = part.first_mut() {
+                        first.flags = first.flags.without(Flags::SPACE).with(token.flags);
+                    }
+                    output.append(&mut part);
+                }
+                continue;
+            }
+            if token.kind == TokenKind::Paste {
+                if let Some(operand) = next {
+                    let is_rest =
+                        operand.kind == TokenKind::Parameter && Some(operand.parameter()) == variadic;
+                    self.paste_operand(output, operand, is_rest, arguments, expansion);
+                }
+                at += 2;
+                continue;
+            }
+            let is_pasted = next.is_some_and(|next| next.kind == TokenKind::Paste);
+            self.append(output, token, is_pasted, arguments, expansion);
+            at += 1;
+            if self.work.expanded + output.len() > limits::EXPANDED_TOKENS {
+                self.count(output.len(), self.sources.expansion(expansion).map_or(token.span, |it| it.call));
+            }
+        }
+    }
+
+    /// The tokens between the parentheses of `__VA_OPT__(…)`, if that is at this place of a body.
+    fn optional(&self, at: usize, end: usize) -> Option<Range<usize>> {
+        let token = self.macros.body_token(at).filter(|_| at < end)?;
+        if token.kind != TokenKind::Identifier || token.name != word::VA_OPT {
+            return None;
+        }
+        let mut depth = 0_usize;
+        for index in at + 1..end {
+            match self.macros.body_token(index)?.kind {
+                TokenKind::LeftParen => depth += 1,
+                TokenKind::RightParen if depth == 1 => return Some(at + 2..index),
+                TokenKind::RightParen => depth = depth.checked_sub(1)?,
+                _ if depth == 0 => return None,
+                _ => {}
+            }
+        }
+        None
+    }
+
+    /// Whether the rest of the arguments has tokens once its macros are expanded.
+    fn has_rest(&mut self, rest: usize, arguments: &mut MacroArguments<'_>) -> bool {
+        let mut tokens = Vec::new();
+        self.append_expanded(&mut tokens, rest, arguments);
+        !tokens.is_empty()
     }
 
     /// Appends what a token of the body stands for.
@@ -153,6 +214,11 @@ impl Preprocessor<'_> {
         }
         let mut right = Vec::new();
         self.append(&mut right, operand, true, arguments, expansion);
+        self.join(output, right, expansion);
+    }
+
+    /// Joins the last token of `output` with the first of the list, and appends the others.
+    fn join(&mut self, output: &mut Vec<Token>, right: Vec<Token>, expansion: ExpansionId) {
         let mut right = right.into_iter();
         let Some(second) = right.next() else { return };
         match output.last().copied() {

@@ -126,6 +126,17 @@ fn function_like_macros() {
     check("#define f(a,b) a##b\nf(x,y) f(,y) f(x,) f(1,e3) [f(,)] f(+,+)", "xy y x 1e3 [] ++");
     check("#define f(...) g(__VA_ARGS__)\nf() f(1) f(1,2)", "g() g(1) g(1,2)");
     check("#define f(a,...) g(a,##__VA_ARGS__)\nf(1) f(1,2) f(1,2,3)", "g(1) g(1,2) g(1,2,3)");
+    check(
+        "#define f(a,...) g(a __VA_OPT__(,) __VA_ARGS__)\nf(1) f(1,2) f(1,2,3)",
+        "g(1) g(1 , 2) g(1 , 2,3)",
+    );
+    check(
+        "#define f(a,...) [__VA_OPT__(a(a),) x]\n#define E\nf(1) f(1,) f(1,E) f(1,2)",
+        "[ x] [ x] [ x] [1(1), x]",
+    );
+    check("#define f(a,...) a##__VA_OPT__(b c)##d\nf(x) f(x,y)", "xd xb cd");
+    check("#define f(r...) __VA_OPT__(<r>)\nf() f(1,2)", "<1,2>");
+    check("#define f(x) __VA_OPT__(x)\nf(1)", "__VA_OPT__(1)");
     check("#define f(a,r...) g(a, ## r)\nf(1) f(1,2,3)", "g(1) g(1, 2,3)");
     check("#define s(x) #x\n#define t(x) s(x)\n#define A 1\ns(A) t(A)", "\"A\" \"1\"");
     check("#define A 1\n#define f(x) x##A\nf(A)", "AA");
