@@ -166,6 +166,21 @@ main()
 }
 
 #[test]
+fn a_loop_that_is_too_much_work_to_pipeline_is_built_without_and_the_listing_says_so() {
+    let scratch = Scratch::new("inspect-exceeded");
+    let section = |n: usize| format!("        y = y * 0.5 + x[{n}];\n        x[{n}] = y;\n");
+    let sections: String = (0..10).map(section).collect();
+    let source = format!(
+        "double x[20], y;\nint n;\nmain()\n{{\n    int i;\n    for (i = 0; i < n; i++) {{\n{sections}    }}\n}}\n"
+    );
+    scratch.write("filter.c", &source);
+    succeed(&scratch, &["build", "-O2", "filter.c", "--asm"]);
+    let listing = std::fs::read_to_string(scratch.path().join("filter(1).asm")).expect("it is written");
+    let line = "filter.c:6: loop scheduled without pipelining: the search exceeded its work limit\n";
+    assert!(listing.contains(line), "{listing}");
+}
+
+#[test]
 fn a_firmware_file_is_shown_with_its_28_sections() {
     let scratch = Scratch::new("inspect-firmware");
     scratch.write("DSPKFLOP.out", vendor::board_firmware());

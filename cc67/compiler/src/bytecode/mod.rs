@@ -47,6 +47,8 @@ pub(crate) struct Generated {
     pub(crate) variables: Vec<VariablePlaces>,
     /// The inlined calls.
     pub(crate) inlined: Vec<InlinedPlaces>,
+    /// The loops that are scheduled without overlap because the search for it exceeded its limit of work.
+    pub(crate) exceeded: Vec<Span>,
 }
 
 /// Writes the functions of a unit, one after another.
@@ -82,7 +84,7 @@ impl Generator {
         let places = variables::PlacedWords::take(&mut code);
         let added = self.text.append(ir.signature, &registers, size, code);
         let (variables, inlined) = places.collect(&ir, &frame, &registers, &added.words);
-        Ok(Generated { added, frame: size, variables, inlined })
+        Ok(Generated { added, frame: size, variables, inlined, exceeded: Vec::new() })
     }
 
     /// The words of all functions so far.

@@ -137,7 +137,8 @@ impl Generator {
         self.words.extend(&laid.words);
         let end = self.words.len() as u32;
         let spans = laid.spans.into_iter().map(|(word, span)| (start + word, span)).collect();
-        Ok(Words { words: start..end, fixups: laid.fixups, spans, frame })
+        let exceeded = regions.iter().filter(|region| region.is_exceeded).map(|region| region.span).collect();
+        Ok(Words { words: start..end, fixups: laid.fixups, spans, frame, exceeded })
     }
 
     /// The packets of a function. At the level that makes code larger, short loops are tried with several turns as one

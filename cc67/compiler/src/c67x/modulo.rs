@@ -6,6 +6,8 @@
 //! are in the slots of one branch, where no interrupt is taken (`c67x.md` 2.5); so an interrupt changes nothing. The branch
 //! has its place: six cycles before the next turn begins.
 
+use std::ops::Range;
+
 use c67x::Inst;
 
 use super::graph::{self, BRANCH};
@@ -17,6 +19,8 @@ use super::step::Step;
 pub(super) const MOST_STAGES: u32 = 4;
 /// How often each step may be placed, on average.
 const TRIES: usize = 8;
+/// The work that a loop may take: cycles that were tried for forms and waits that were looked at.
+const WORK: u32 = 600_000;
 
 /// When the steps of a turn issue.
 #[derive(Debug)]
@@ -56,53 +60,133 @@ struct Wait {
 
 /// Finds the shortest period below `limit`. The last of the steps is the branch; `is_certain` says what must not happen
 /// before it is known that the turn does.
-pub(super) fn search(steps: &[Step], is_certain: impl Fn(usize) -> bool, limit: u32) -> Option<Overlap> {
-    let waits = waits(steps);
+///
+/// # Errors
+/// [`Exceeded`] if that takes more than [`WORK`].
+pub(super) fn search(
+    steps: &[Step],
+    is_certain: impl Fn(usize) -> bool,
+    limit: u32,
+) -> Result<Option<Overlap>, Exceeded> {
+    let waits = Waits::new(steps);
     let is_certain: Vec<bool> = (0..steps.len()).map(is_certain).collect();
     let least = (steps.len() as u32).div_ceil(8).max(BRANCH);
     // Waits that count everywhere lead to a place with fewer tries.
-    let exposed: Vec<Wait> = waits.iter().map(|wait| Wait { sheltered: wait.cycles, ..*wait }).collect();
-    (least..limit).find_map(|period| {
-        let ways = [(0, false), (1, false), (0, true), (1, true)];
-        ways.into_iter().find_map(|(commit, is_sheltered)| {
-            let waits = if is_sheltered { &waits } else { &exposed };
-            let search = Finder { steps, waits, is_certain: &is_certain, period, commit };
-            let places = search.run()?;
-            Some(Overlap { period, commit, places, is_sheltered })
-        })
-    })
+    let exposed = waits.exposed();
+    let mut work = Work(WORK);
+    for period in least..limit {
+        for (waits, is_sheltered) in [(&exposed, false), (&waits, true)] {
+            let Some(heights) = waits.heights(steps, period, &mut work)? else { continue };
+            for commit in 0..2 {
+                let search =
+                    Finder { steps, waits, is_certain: &is_certain, period, commit, heights: &heights };
+                if let Some(places) = search.run(&mut work)? {
+                    return Ok(Some(Overlap { period, commit, places, is_sheltered }));
+                }
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// A search that took more work than a loop is worth.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Exceeded;
+
+/// The work that is left.
+struct Work(u32);
+
+impl Work {
+    fn spend(&mut self, amount: usize) -> Result<(), Exceeded> {
+        let left = u32::try_from(amount).ok().and_then(|amount| self.0.checked_sub(amount));
+        self.0 = left.ok_or(Exceeded)?;
+        Ok(())
+    }
 }
 
 /// The waits within a turn and from one to the next.
-fn waits(steps: &[Step]) -> Vec<Wait> {
-    let count = steps.len();
-    let two: Vec<Step> = steps.iter().chain(steps).cloned().collect();
-    let graph = graph::build(&two, &[]);
-    let mut waits = Vec::new();
-    for (from, edges) in graph.after.iter().take(count).enumerate() {
-        for edge in edges {
-            let to = edge.to as usize;
-            let turns = i64::from(to >= count);
-            let (cycles, sheltered) = (edge.cycles.into(), edge.sheltered.into());
-            waits.push(Wait { from, to: to % count, cycles, turns, sheltered });
+struct Waits {
+    /// In the order of the steps that are waited for.
+    all: Vec<Wait>,
+    /// Where in `all` those of each step begin.
+    starts: Vec<usize>,
+    /// The waits of each step for others.
+    before: Vec<Vec<Wait>>,
+}
+
+impl Waits {
+    fn new(steps: &[Step]) -> Self {
+        let count = steps.len();
+        let two: Vec<Step> = steps.iter().chain(steps).cloned().collect();
+        let graph = graph::build(&two, &[]);
+        let mut all = Vec::new();
+        for (from, edges) in graph.after.iter().take(count).enumerate() {
+            for edge in edges {
+                let to = edge.to as usize;
+                let turns = i64::from(to >= count);
+                let (cycles, sheltered) = (edge.cycles.into(), edge.sheltered.into());
+                all.push(Wait { from, to: to % count, cycles, turns, sheltered });
+            }
         }
+        Self::sorted(all, count)
     }
-    waits
+
+    fn sorted(all: Vec<Wait>, count: usize) -> Self {
+        let starts = (0..=count).map(|step| all.partition_point(|wait| wait.from < step)).collect();
+        let mut before = vec![Vec::new(); count];
+        for wait in all.iter().filter(|wait| wait.to != wait.from) {
+            before[wait.to].push(*wait);
+        }
+        Self { all, starts, before }
+    }
+
+    /// The same waits if an interrupt may come everywhere.
+    fn exposed(&self) -> Self {
+        let all = self.all.iter().map(|wait| Wait { sheltered: wait.cycles, ..*wait }).collect();
+        Self::sorted(all, self.before.len())
+    }
+
+    /// What waits for a step.
+    fn after(&self, step: usize) -> &[Wait] {
+        &self.all[self.starts[step]..self.starts[step + 1]]
+    }
+
+    /// Cycles from each step to the end of its turn; `None` if a turn waits too long for the one before.
+    fn heights(&self, steps: &[Step], period: u32, work: &mut Work) -> Result<Option<Vec<i64>>, Exceeded> {
+        let landing = |step: &Step| step.forms.first().map_or(1, graph::landing);
+        let mut heights: Vec<i64> = steps.iter().map(|step| landing(step).into()).collect();
+        for _ in 0..=steps.len() {
+            work.spend(self.all.len())?;
+            let mut is_changed = false;
+            // Most waits lead forward, so one way back settles most heights.
+            for wait in self.all.iter().rev() {
+                let height = heights[wait.to] + wait.sheltered - wait.turns * i64::from(period);
+                if height > heights[wait.from] {
+                    heights[wait.from] = height;
+                    is_changed = true;
+                }
+            }
+            if !is_changed {
+                return Ok(Some(heights));
+            }
+        }
+        Ok(None)
+    }
 }
 
 struct Finder<'a> {
     steps: &'a [Step],
-    waits: &'a [Wait],
+    waits: &'a Waits,
     is_certain: &'a [bool],
     period: u32,
     commit: u32,
+    heights: &'a [i64],
 }
 
 /// Steps that have their places.
 struct Slots {
     places: Vec<Option<(u32, Inst)>>,
     resources: Resources,
-    period: u32,
 }
 
 impl Slots {
@@ -112,55 +196,35 @@ impl Slots {
     }
 
     fn remove(&mut self, step: usize) {
-        self.places[step] = None;
-        self.resources = Resources::periodic(self.period);
-        for (cycle, inst) in self.places.iter().flatten() {
-            self.resources.take(inst, *cycle);
+        if let Some((cycle, inst)) = self.places[step].take() {
+            self.resources.release(&inst, cycle);
         }
     }
 }
 
 impl Finder<'_> {
-    fn run(&self) -> Option<Vec<(u32, Inst)>> {
-        let heights = self.heights()?;
+    /// The places of all steps, if there are some with few enough tries.
+    fn run(&self, work: &mut Work) -> Result<Option<Vec<(u32, Inst)>>, Exceeded> {
         let branch = self.steps.len() - 1;
         let is_before = self.before_branch();
         let mut order: Vec<usize> = (0..branch).collect();
-        order.sort_by_key(|step| (!is_before[*step], -heights[*step], *step));
-        let mut placed = Slots {
-            places: vec![None; self.steps.len()],
-            resources: Resources::periodic(self.period),
-            period: self.period,
-        };
+        order.sort_by_key(|step| (!is_before[*step], -self.heights[*step], *step));
+        let mut placed =
+            Slots { places: vec![None; self.steps.len()], resources: Resources::periodic(self.period) };
         let at = (self.commit + 1) * self.period - BRANCH;
-        placed.take(branch, at, *self.steps[branch].forms.first()?);
+        let Some(inst) = self.steps[branch].forms.first() else { return Ok(None) };
+        placed.take(branch, at, *inst);
         let mut tried: Vec<Option<u32>> = vec![None; self.steps.len()];
         let mut budget = TRIES * self.steps.len();
         while let Some(step) = order.iter().copied().find(|step| placed.places[*step].is_none()) {
-            budget = budget.checked_sub(1)?;
-            self.place(step, &mut placed, &mut tried)?;
-        }
-        placed.places.into_iter().collect()
-    }
-
-    /// Cycles from each step to the end of its turn; `None` if a turn waits too long for the one before.
-    fn heights(&self) -> Option<Vec<i64>> {
-        let landing = |step: &Step| step.forms.first().map_or(1, graph::landing);
-        let mut heights: Vec<i64> = self.steps.iter().map(|step| landing(step).into()).collect();
-        for _ in 0..=self.steps.len() {
-            let mut is_changed = false;
-            for wait in self.waits {
-                let height = heights[wait.to] + wait.sheltered - wait.turns * i64::from(self.period);
-                if height > heights[wait.from] {
-                    heights[wait.from] = height;
-                    is_changed = true;
-                }
-            }
-            if !is_changed {
-                return Some(heights);
+            work.spend(self.steps.len())?;
+            let is_left = budget > 0;
+            budget = budget.saturating_sub(1);
+            if !is_left || self.place(step, &mut placed, &mut tried, work)?.is_none() {
+                return Ok(None);
             }
         }
-        None
+        Ok(placed.places.into_iter().collect())
     }
 
     /// What the branch of a turn depends on.
@@ -170,7 +234,7 @@ impl Finder<'_> {
             *last = true;
         }
         // Waits within a turn lead forward, so one way back through them is enough.
-        for wait in self.waits.iter().rev().filter(|wait| wait.turns == 0) {
+        for wait in self.waits.all.iter().rev().filter(|wait| wait.turns == 0) {
             is_before[wait.from] |= is_before[wait.to];
         }
         is_before
@@ -179,8 +243,7 @@ impl Finder<'_> {
     /// The first cycle of a step, if what it waits for counts as `cycles` says.
     fn earliest(&self, step: usize, placed: &Slots, cycles: impl Fn(&Wait) -> i64) -> u32 {
         let first = if self.is_certain[step] { self.commit * self.period } else { 0 };
-        let waits = self.waits.iter().filter(|wait| wait.to == step && wait.from != step);
-        let after = waits.filter_map(|wait| {
+        let after = self.waits.before[step].iter().filter_map(|wait| {
             let (at, _) = placed.places[wait.from]?;
             Some(i64::from(at) + cycles(wait) - wait.turns * i64::from(self.period))
         });
@@ -203,35 +266,60 @@ impl Finder<'_> {
 
     /// Whether a step can have this cycle after all that it waits for.
     fn is_after(&self, step: usize, cycle: u32, placed: &Slots) -> bool {
-        let mut waits = self.waits.iter().filter(|wait| wait.to == step && wait.from != step);
+        let mut waits = self.waits.before[step].iter();
         waits.all(|wait| placed.places[wait.from].is_none_or(|(from, _)| self.is_met(wait, from, cycle)))
     }
 
-    fn place(&self, step: usize, placed: &mut Slots, tried: &mut [Option<u32>]) -> Option<()> {
+    fn place(
+        &self,
+        step: usize,
+        placed: &mut Slots,
+        tried: &mut [Option<u32>],
+        work: &mut Work,
+    ) -> Result<Option<()>, Exceeded> {
         let earliest = self.earliest(step, placed, |wait| wait.sheltered);
         let exposed = self.earliest(step, placed, |wait| wait.cycles);
-        let forms = &self.steps[step].forms;
-        let free = (earliest..exposed + self.period).find_map(|cycle| {
-            let inst = forms.iter().copied().find(|inst| placed.resources.fits(inst, cycle))?;
-            self.is_after(step, cycle, placed).then_some((cycle, inst))
-        });
+        let found = self.free(step, earliest..exposed + self.period, placed, work)?;
+        let free =
+            found.filter(|(cycle, _)| tried[step].is_none_or(|last| *cycle > last || *cycle == earliest));
         let (cycle, inst) = match free {
-            Some((cycle, inst)) if tried[step].is_none_or(|last| cycle > last || cycle == earliest) => {
-                (cycle, inst)
-            }
-            _ => {
+            Some(free) => free,
+            None => {
                 let cycle = tried[step].map_or(exposed, |last| exposed.max(last + 1));
-                let inst = *forms.first()?;
-                self.make_room(&inst, cycle, placed)?;
-                (cycle, inst)
+                let Some(inst) = self.steps[step].forms.first() else { return Ok(None) };
+                work.spend(self.steps.len())?;
+                if self.make_room(inst, cycle, placed).is_none() {
+                    return Ok(None);
+                }
+                (cycle, *inst)
             }
         };
         if cycle >= (self.commit + MOST_STAGES) * self.period {
-            return None;
+            return Ok(None);
         }
         tried[step] = Some(cycle);
         placed.take(step, cycle, inst);
-        self.remove_broken(step, cycle, placed)
+        Ok(self.remove_broken(step, cycle, placed))
+    }
+
+    /// The first of some cycles in which a step can issue beside those that have their places.
+    fn free(
+        &self,
+        step: usize,
+        cycles: Range<u32>,
+        placed: &mut Slots,
+        work: &mut Work,
+    ) -> Result<Option<(u32, Inst)>, Exceeded> {
+        let forms = &self.steps[step].forms;
+        for cycle in cycles {
+            work.spend(forms.len())?;
+            let Some(inst) = forms.iter().find(|inst| placed.resources.fits(inst, cycle)) else { continue };
+            work.spend(self.waits.before[step].len())?;
+            if self.is_after(step, cycle, placed) {
+                return Ok(Some((cycle, *inst)));
+            }
+        }
+        Ok(None)
     }
 
     /// Removes what an instruction meets in its cycle; the branch stays.
@@ -240,11 +328,11 @@ impl Finder<'_> {
         let mut alone = Resources::periodic(self.period);
         for step in 0..branch {
             let Some((at, own)) = placed.places[step] else { continue };
-            alone.clear();
             alone.take(&own, at);
             if !alone.fits(inst, cycle) {
                 placed.remove(step);
             }
+            alone.release(&own, at);
         }
         // What several together took is still missing: the last ones in the same cycle go.
         for step in (0..branch).rev() {
@@ -260,7 +348,7 @@ impl Finder<'_> {
 
     /// Removes what a new place comes too late for.
     fn remove_broken(&self, step: usize, cycle: u32, placed: &mut Slots) -> Option<()> {
-        for wait in self.waits.iter().filter(|wait| wait.from == step) {
+        for wait in self.waits.after(step) {
             let Some((at, _)) = placed.places[wait.to] else { continue };
             if !self.is_met(wait, cycle, at) {
                 if wait.to == self.steps.len() - 1 || wait.to == step {

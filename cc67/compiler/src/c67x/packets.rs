@@ -31,4 +31,6 @@ pub(super) struct Scheduled {
     /// How often it happens, as far as one can guess.
     pub(super) weight: f32,
     pub(super) span: Span,
+    /// A loop for whose overlap the search exceeded its work.
+    pub(super) is_exceeded: bool,
 }

@@ -15,7 +15,7 @@ use super::abi;
 use super::code::Value;
 use super::expand::Region;
 use super::graph::BRANCH;
-use super::modulo::{self, Overlap};
+use super::modulo::{self, Exceeded, Overlap};
 use super::packets::{Issued, Scheduled};
 use super::refine;
 use super::schedule::{self, Order, Tail};
@@ -36,9 +36,11 @@ pub(super) fn schedule(regions: Vec<Region>, labels: u32) -> Vec<Scheduled> {
     let mut ends = Vec::new();
     let (mut labels, mut at) = (labels, 0);
     for region in regions {
-        let plain = schedule::schedule(region.clone(), Order::Early, at);
+        let mut plain = schedule::schedule(region.clone(), Order::Early, at);
         let found = back(&region).and_then(|back| {
-            let mut turns = Loop::new(&region, back, &entering, plain.cycles)?;
+            let found = Loop::new(&region, back, &entering, plain.cycles);
+            plain.is_exceeded = found.is_err();
+            let mut turns = found.ok().flatten()?;
             turns.label = labels;
             let (parts, after) = turns.parts()?;
             Some((parts, after, turns.label))
@@ -132,11 +134,16 @@ struct Instance {
 }
 
 impl<'a> Loop<'a> {
-    fn new(region: &'a Region, back: &Step, entering: &[(u32, u64)], cycles: u32) -> Option<Self> {
+    fn new(
+        region: &'a Region,
+        back: &Step,
+        entering: &[(u32, u64)],
+        cycles: u32,
+    ) -> Result<Option<Self>, Exceeded> {
         let outside = match region.branches.iter().find(|step| step.value != back.value) {
             Some(step) => match step.value {
                 Some(Value::Block(label)) => label,
-                _ => return None,
+                _ => return Ok(None),
             },
             None => region.label + 1,
         };
@@ -148,8 +155,8 @@ impl<'a> Loop<'a> {
             let writes = |inst: &Inst| inst.writes().any(|write| read_after & abi::bit(write.reg) != 0);
             step.access != Access::None || step.forms.first().is_none_or(writes)
         };
-        let plan = modulo::search(&steps, is_certain, cycles)?;
-        Some(Self { region, steps, plan, outside, label: 0 })
+        let Some(plan) = modulo::search(&steps, is_certain, cycles)? else { return Ok(None) };
+        Ok(Some(Self { region, steps, plan, outside, label: 0 }))
     }
 
     /// The regions that replace the loop, and those that go to the end of the function.
@@ -299,6 +306,7 @@ impl<'a> Loop<'a> {
             cycles: self.plan.period,
             weight: self.region.weight,
             span: self.region.span,
+            is_exceeded: false,
         }
     }
 

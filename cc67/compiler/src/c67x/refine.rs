@@ -15,6 +15,8 @@ use super::step::{Access, Step};
 const GAP: u32 = 3;
 /// How far a step moves out of a packet that is too long.
 const FAR: u32 = 6;
+/// How far before an empty cycle what fills it may be.
+const REACH: u32 = 1024;
 
 /// A step with its cycle.
 #[derive(Debug)]
@@ -63,7 +65,14 @@ pub(super) fn run(items: &mut [Item<'_>], graph: &Graph, cycles: u32, at: u32) {
     let has_late = items.iter().any(|item| item.node.is_none());
     let accesses = items.iter().filter(|item| item.step.access != Access::None);
     let last_access = accesses.map(|item| item.issued.cycle).max().filter(|_| has_late);
-    let mut refiner = Refiner { items, graph, nodes, cycles, last_access };
+    let mut resources = Resources::default();
+    let mut cells = vec![Vec::new(); cycles as usize];
+    for (index, item) in items.iter().enumerate() {
+        resources.take(&item.issued.inst, item.issued.cycle);
+        cells[item.issued.cycle as usize].push(index);
+    }
+    let mut refiner =
+        Refiner { items, graph, nodes, cycles, last_access, resources, cells, before: Vec::new() };
     refiner.fill();
     refiner.shorten(at);
 }
@@ -76,11 +85,17 @@ struct Refiner<'a, 'b> {
     cycles: u32,
     /// The last cycle for loads and stores, if the stack pointer moves after it.
     last_access: Option<u32>,
+    /// Everything that the items take.
+    resources: Resources,
+    /// The items of each cycle, ascending.
+    cells: Vec<Vec<usize>>,
+    /// Where the items that moved were before, since the last attempt began.
+    before: Vec<(usize, u32, Inst)>,
 }
 
 impl Refiner<'_, '_> {
     fn count(&self, cycle: u32) -> usize {
-        self.items.iter().filter(|item| item.issued.cycle == cycle).count()
+        self.cells[cycle as usize].len()
     }
 
     /// The last cycle in which an item may issue.
@@ -100,19 +115,33 @@ impl Refiner<'_, '_> {
     }
 
     /// The form in which an item can issue in a cycle.
-    fn form(&self, index: usize, cycle: u32) -> Option<Inst> {
-        let mut others = Resources::whole();
-        for (other, item) in self.items.iter().enumerate() {
-            if other != index && item.issued.cycle.abs_diff(cycle) < 16 {
-                others.take(&item.issued.inst, item.issued.cycle);
-            }
-        }
-        self.items[index].step.forms.iter().copied().find(|inst| others.fits(inst, cycle))
+    fn form(&mut self, index: usize, cycle: u32) -> Option<Inst> {
+        let Item { step, issued, .. } = &self.items[index];
+        self.resources.release(&issued.inst, issued.cycle);
+        let form = step.forms.iter().copied().find(|inst| self.resources.fits(inst, cycle));
+        self.resources.take(&issued.inst, issued.cycle);
+        form
     }
 
+    /// Moves an item.
     fn set(&mut self, index: usize, cycle: u32, inst: Inst) {
-        self.items[index].issued.cycle = cycle;
-        self.items[index].issued.inst = inst;
+        let issued = &mut self.items[index].issued;
+        let from = std::mem::replace(&mut issued.cycle, cycle);
+        let old = std::mem::replace(&mut issued.inst, inst);
+        self.resources.release(&old, from);
+        self.resources.take(&inst, cycle);
+        self.cells[from as usize].retain(|other| *other != index);
+        let to = &mut self.cells[cycle as usize];
+        to.insert(to.partition_point(|other| *other < index), index);
+        self.before.push((index, from, old));
+    }
+
+    /// Puts what moved since the last attempt began back, last ones first.
+    fn undo(&mut self) {
+        while let Some((index, cycle, inst)) = self.before.pop() {
+            self.set(index, cycle, inst);
+            self.before.pop();
+        }
     }
 
     /// Fills short runs of empty cycles with what shares a packet before them, or leaves them as they are.
@@ -121,11 +150,9 @@ impl Refiner<'_, '_> {
         while cycle < self.cycles {
             let gap = (cycle..self.cycles).take_while(|cycle| self.count(*cycle) == 0).count() as u32;
             if gap > 0 && gap <= GAP {
-                let before: Vec<(usize, u32, Inst)> = (self.items.iter().enumerate())
-                    .map(|(index, item)| (index, item.issued.cycle, item.issued.inst))
-                    .collect();
+                self.before.clear();
                 if !(cycle..cycle + gap).all(|cycle| self.fill_cycle(cycle)) {
-                    before.into_iter().for_each(|(index, cycle, inst)| self.set(index, cycle, inst));
+                    self.undo();
                 }
             }
             cycle += gap.max(1);
@@ -133,16 +160,17 @@ impl Refiner<'_, '_> {
     }
 
     fn fill_cycle(&mut self, cycle: u32) -> bool {
-        let mut found: Vec<usize> = (0..self.items.len())
-            .filter(|index| self.items[*index].issued.cycle < cycle && self.latest(*index) >= cycle)
-            .collect();
-        found.sort_by_key(|index| std::cmp::Reverse(self.items[*index].issued.cycle));
-        for index in found {
-            if self.count(self.items[index].issued.cycle) > 1
-                && let Some(inst) = self.form(index, cycle)
-            {
-                self.set(index, cycle, inst);
-                return true;
+        for from in (cycle.saturating_sub(REACH)..cycle).rev() {
+            if self.count(from) < 2 {
+                continue;
+            }
+            for index in self.cells[from as usize].clone() {
+                if self.latest(index) >= cycle
+                    && let Some(inst) = self.form(index, cycle)
+                {
+                    self.set(index, cycle, inst);
+                    return true;
+                }
             }
         }
         false
@@ -171,21 +199,18 @@ impl Refiner<'_, '_> {
 
     /// Moves some steps of a packet to later ones, or none.
     fn move_out(&mut self, cycle: u32, excess: u32) {
-        let before: Vec<(usize, u32, Inst)> = (self.items.iter().enumerate())
-            .map(|(index, item)| (index, item.issued.cycle, item.issued.inst))
-            .collect();
+        self.before.clear();
         for _ in 0..excess {
             if !self.move_one(cycle) {
-                before.into_iter().for_each(|(index, cycle, inst)| self.set(index, cycle, inst));
+                self.undo();
                 return;
             }
         }
     }
 
     fn move_one(&mut self, cycle: u32) -> bool {
-        let mut found: Vec<(u32, usize)> = (0..self.items.len())
-            .filter(|index| self.items[*index].issued.cycle == cycle)
-            .map(|index| (self.latest(index), index))
+        let mut found: Vec<(u32, usize)> = (self.cells[cycle as usize].iter())
+            .map(|index| (self.latest(*index), *index))
             .filter(|(latest, _)| *latest > cycle)
             .collect();
         found.sort_by_key(|(latest, index)| (std::cmp::Reverse(*latest), *index));

@@ -18,17 +18,17 @@ struct Cycle {
 }
 
 /// The cycles of a region, or of one turn of a loop, whose cycles repeat.
+///
+/// What instructions take is exclusive: each is taken only where it fits, so it can be given back alone.
 #[derive(Debug, Default)]
 pub(super) struct Resources {
     cycles: Vec<Cycle>,
     /// The long products: unit, name, cycle.
     products: Vec<(u8, Mnemonic, u32)>,
-    /// Registers that are read in a cycle: cycle, register.
-    reads: Vec<(u32, Reg)>,
+    /// The operands that are read in each cycle.
+    reads: Vec<Vec<Reg>>,
     /// After how many cycles everything repeats; 0 for never.
     period: u32,
-    /// Steps come in any order.
-    is_whole: bool,
 }
 
 /// Cycles that must lie between different long products of one unit.
@@ -41,18 +41,6 @@ impl Resources {
     /// The cycles of a turn, where the next one begins `period` cycles later.
     pub(super) fn periodic(period: u32) -> Self {
         Self { period, ..Self::default() }
-    }
-
-    /// A region whose steps come in any order.
-    pub(super) fn whole() -> Self {
-        Self { is_whole: true, ..Self::default() }
-    }
-
-    /// Forgets everything taken.
-    pub(super) fn clear(&mut self) {
-        self.cycles.clear();
-        self.products.clear();
-        self.reads.clear();
     }
 
     /// The cycle as it is counted.
@@ -115,12 +103,13 @@ impl Resources {
     }
 
     fn reads_fit(&self, inst: &Inst, cycle: u32) -> bool {
+        let Some(others) = self.reads.get(self.counted(cycle) as usize).filter(|others| !others.is_empty())
+        else {
+            return inst.reads().all(|read| inst.reads().filter(|own| own.reg == read.reg).count() <= READS);
+        };
         inst.reads().all(|read| {
             let own = inst.reads().filter(|other| other.reg == read.reg).count();
-            let recent = if self.period == 0 && !self.is_whole { 32 } else { usize::MAX };
-            let others = self.reads.iter().rev().take(recent);
-            let cycle = self.counted(cycle);
-            others.filter(|(at, reg)| *at == cycle && *reg == read.reg).count() + own <= READS
+            others.iter().filter(|reg| **reg == read.reg).count() + own <= READS
         })
     }
 
@@ -144,8 +133,43 @@ impl Resources {
         if is_product(inst.mnemonic()) {
             self.products.push((unit.index() as u8, inst.mnemonic(), cycle));
         }
-        let cycle = self.counted(cycle);
-        self.reads.extend(inst.reads().map(|read| (cycle, read.reg)));
+        let index = self.counted(cycle) as usize;
+        if index >= self.reads.len() {
+            self.reads.resize(index + 12, Vec::new());
+        }
+        self.reads[index].extend(inst.reads().map(|read| read.reg));
+    }
+
+    /// Gives back what an instruction took in a cycle.
+    pub(super) fn release(&mut self, inst: &Inst, cycle: u32) {
+        let Some(unit) = inst.unit() else { return };
+        let bit = 1 << unit.index();
+        self.at(cycle).count -= 1;
+        self.at(cycle).paths &= !inst.data_path().map_or(0, path);
+        let cross = inst.cross_path().map_or(0, path);
+        for held in 0..u32::from(inst.unit_cycles()) {
+            let later = self.at(cycle + held);
+            later.units &= !bit;
+            later.crosses &= !cross;
+        }
+        if unit.kind != UnitKind::D {
+            for write in inst.writes() {
+                self.at(cycle + u32::from(write.stage)).ports &= !bit;
+            }
+        }
+        if is_product(inst.mnemonic()) {
+            let own = (unit.index() as u8, inst.mnemonic(), cycle);
+            if let Some(index) = self.products.iter().position(|product| *product == own) {
+                self.products.swap_remove(index);
+            }
+        }
+        let index = self.counted(cycle) as usize;
+        for read in inst.reads() {
+            let reads = &mut self.reads[index];
+            if let Some(index) = reads.iter().position(|reg| *reg == read.reg) {
+                reads.swap_remove(index);
+            }
+        }
     }
 }
 

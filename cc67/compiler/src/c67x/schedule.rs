@@ -38,7 +38,7 @@ pub(super) fn schedule(region: Region, order: Order, at: u32) -> Scheduled {
     }
     let mut insts: Vec<Issued> = items.into_iter().map(|item| item.issued).collect();
     insts.sort_by_key(|issued| issued.cycle);
-    Scheduled { label, insts, cycles, weight, span }
+    Scheduled { label, insts, cycles, weight, span, is_exceeded: false }
 }
 
 /// Steps that issued before a region and may have results in flight when it begins, and the cycle when it does.
@@ -66,7 +66,7 @@ pub(super) fn schedule_after(tail: &Tail, region: Region) -> Scheduled {
     let mut insts: Vec<Issued> = list.issued.into_iter().map(|item| item.issued).collect();
     insts.iter_mut().for_each(|issued| issued.cycle -= tail.cycles);
     insts.sort_by_key(|issued| issued.cycle);
-    Scheduled { label, insts, cycles, weight, span }
+    Scheduled { label, insts, cycles, weight, span, is_exceeded: false }
 }
 
 struct List<'a> {

@@ -30,6 +30,8 @@ pub(crate) struct Words {
     pub(crate) spans: Vec<(u32, Span)>,
     /// Bytes of its frame.
     pub(crate) frame: u32,
+    /// Its loops that are scheduled without overlap because the search exceeded its work.
+    pub(crate) exceeded: Vec<Span>,
 }
 
 /// The word of an `MVK` or `MVKH` with another constant of 16 bits.

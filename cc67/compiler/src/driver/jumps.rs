@@ -101,6 +101,7 @@ fn add(object: &mut Object, function: JumpFunction) {
         end: place,
         variables: Vec::new(),
         inlined: Vec::new(),
+        exceeded: Vec::new(),
     });
 }
 

@@ -145,6 +145,8 @@ pub struct LinkedFunction {
     pub frame: u32,
     /// The line of its closing brace.
     pub end: SourceLine,
+    /// The loops that are scheduled without overlap because the search for it exceeded its limit of work.
+    pub exceeded: Vec<SourceLine>,
 }
 
 /// From this address on the code belongs to this place.

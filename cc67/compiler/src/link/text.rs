@@ -313,7 +313,9 @@ pub(super) fn functions(objects: &[Object], layout: &TextLayout) -> Vec<LinkedFu
         let count = (function.lines.end - function.lines.start) as usize;
         let lines = first_line..first_line + count;
         first_line += count;
-        LinkedFunction { lines, frame: function.frame, end: layout.place(*object, function.end) }
+        let place = |place: &SourceLine| layout.place(*object, *place);
+        let exceeded = function.exceeded.iter().map(place).collect();
+        LinkedFunction { lines, frame: function.frame, end: place(&function.end), exceeded }
     };
     layout.functions.iter().map(describe).collect()
 }

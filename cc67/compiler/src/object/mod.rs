@@ -184,6 +184,9 @@ pub struct ObjectFunction {
     pub variables: Vec<VariablePlaces>,
     /// The inlined calls; unknown in an object that comes from a file.
     pub inlined: Vec<InlinedPlaces>,
+    /// The loops that are scheduled without overlap because the search for it exceeded its limit of work; unknown in an
+    /// object that comes from a file.
+    pub exceeded: Vec<SourceLine>,
 }
 
 /// One initialised object.

@@ -275,6 +275,7 @@ impl<'a> ObjectReader<'a> {
                 end,
                 variables: Vec::new(),
                 inlined: Vec::new(),
+                exceeded: Vec::new(),
             });
         }
         relocations.next().map_or(Ok(()), |left| Err(misplaced(".text", left.address)))

@@ -57,9 +57,10 @@ impl<'a> UnitBuilder<'a> {
 
     /// Adds a function that was generated.
     pub(crate) fn function(&mut self, about: About, generated: Generated) {
-        let Generated { added, frame, variables, inlined } = generated;
+        let Generated { added, frame, variables, inlined, exceeded } = generated;
         let file = self.object.symbols[about.symbol].place.file;
         let end = self.place(about.end);
+        let exceeded = exceeded.into_iter().map(|span| self.place(span)).collect();
         let (relocations, lines) = (self.object.relocations.len() as u32, self.object.lines.len() as u32);
         self.object.relocations.extend(added.relocations);
         self.lines(file, &added.spans);
@@ -75,6 +76,7 @@ impl<'a> UnitBuilder<'a> {
             end,
             variables,
             inlined,
+            exceeded,
         });
     }
 
@@ -100,7 +102,7 @@ impl<'a> UnitBuilder<'a> {
 
     /// Adds a function of the controller's code.
     pub(crate) fn words(&mut self, about: About, words: Words) {
-        let Words { words, fixups, spans, frame } = words;
+        let Words { words, fixups, spans, frame, exceeded } = words;
         let start = words.start;
         let relocations = fixups.into_iter().map(|fixup| Relocation {
             word: start + fixup.word,
@@ -108,7 +110,7 @@ impl<'a> UnitBuilder<'a> {
             symbol: fixup.symbol.unwrap_or(about.symbol),
         });
         let added = Added { words, relocations: relocations.collect(), spans };
-        let generated = Generated { added, frame, variables: Vec::new(), inlined: Vec::new() };
+        let generated = Generated { added, frame, variables: Vec::new(), inlined: Vec::new(), exceeded };
         self.function(about, generated);
     }
 

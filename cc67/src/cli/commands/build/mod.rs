@@ -20,7 +20,7 @@ use compiler::diag::levels::Levels;
 use compiler::image::{self, download, map};
 use compiler::inspect::Inspection;
 use compiler::link::Linked;
-use compiler::object::Object;
+use compiler::object::{Object, SourceLine};
 use compiler::target::Target;
 use compiler::{Compilation, link_units};
 
@@ -199,7 +199,10 @@ impl BuildArguments {
                 Emit::Asm => {
                     let inspection = Inspection::read(&bytes).context("the image that was just made")?;
                     let folder = Folder::new(first.parent().unwrap_or(Path::new("")));
-                    let text = inspection.cycles() + "\n" + &inspection.assembly(&folder, None);
+                    let text = inspection.cycles()
+                        + "\n"
+                        + &without_overlap(linked)
+                        + &inspection.assembly(&folder, None);
                     output::write(&names::beside(&program, "asm"), text.as_bytes())?;
                 }
                 Emit::Bytecode => {
@@ -221,6 +224,19 @@ impl BuildArguments {
 /// How many warnings the user has seen.
 fn warnings(units: &[Compilation], levels: &Levels) -> usize {
     units.iter().map(|unit| diagnostics::warnings(unit, levels)).sum()
+}
+
+/// The loops that took too much work to overlap, a line each.
+fn without_overlap(linked: &Linked) -> String {
+    let loops = linked.functions.iter().flat_map(|function| &function.exceeded);
+    let line = |place: &SourceLine| {
+        let file = linked.files.get(place.file as usize).map_or("", String::as_str);
+        format!(
+            "{file}:{}: loop scheduled without pipelining: the search exceeded its work limit\n",
+            place.line
+        )
+    };
+    loops.map(line).collect()
 }
 
 /// The line that the vendor's editor shows after a compilation: the sizes of the sections, and
