@@ -203,6 +203,57 @@ fn a_flashed_board_boots_with_its_programs_and_keeps_what_was_flashed() {
     assert!(output.render().contains("count 6, data 77"), "{}", output.render());
 }
 
+/// A console with a file of the flash whose input stays open, under a shell script that starts it.
+#[cfg(unix)]
+fn flashing_console(scratch: &Scratch, script: &str) -> std::process::Child {
+    use std::io::Write;
+    use std::process::{Command, Stdio};
+
+    let mut child = Command::new("sh")
+        .args(["-c", script, "sh", harness::command(), "console", "--flash", "board.flash"])
+        .current_dir(scratch.path())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("a shell starts");
+    let input = child.stdin.as_mut().expect("it is piped");
+    input.write_all(b"SetPersistDec 7 77\nFlash\nwait 0.1\nGetPersistDec 7\n").expect("it reads");
+    child
+}
+
+#[test]
+#[cfg(unix)]
+fn flash_that_the_console_acknowledged_is_in_the_file_whatever_ends_it() {
+    use std::io::{BufRead, BufReader};
+    use std::process::Command;
+
+    for signal in ["INT", "TERM", "HUP", "KILL"] {
+        let scratch = Scratch::new(&format!("console-flash-{signal}"));
+        let mut child = flashing_console(&scratch, "exec \"$@\"");
+        let output = BufReader::new(child.stdout.take().expect("it is piped"));
+        let line = output.lines().map_while(Result::ok).find(|line| line == "Program Flash Image Complete");
+        assert!(line.is_some(), "SIG{signal}: the board acknowledges");
+        let killed = Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]).status();
+        assert!(killed.is_ok_and(|status| status.success()));
+        child.wait().expect("it ends");
+        let output = cc67_with_input(&scratch, ["console", "--flash", "board.flash"], "GetPersistDec 7\n");
+        assert_eq!(output.render(), "77\n---- exit 0\n", "after SIG{signal}");
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn the_console_does_not_acknowledge_flash_that_a_full_disk_does_not_take() {
+    let scratch = Scratch::new("console-full-flash");
+    let child = flashing_console(&scratch, "trap '' XFSZ; ulimit -f 1; exec \"$@\"");
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(String::from_utf8_lossy(&output.stdout), "77\n");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(errors.contains("the flash is not kept: cannot write board.flash"), "{errors}");
+    assert!(!output.status.success() && !scratch.path().join("board.flash").exists());
+}
+
 #[test]
 fn blocks_of_the_users_flash_outlive_the_run() {
     let scratch = Scratch::new("console-user-flash");

@@ -35,7 +35,8 @@ use super::compile::images;
 use super::io::exit::Exit;
 use super::io::input::read;
 use super::io::pace::Pace;
-use flash::Flash;
+use super::io::terminal;
+use flash::{Flash, Held};
 use line::SerialLine;
 
 /// Everything that the arguments ask for, read and compiled.
@@ -177,7 +178,7 @@ impl Setup {
         make: impl FnOnce(cc67_host::Setup, &CodeFor) -> Result<Session<T>, HostError>,
     ) -> Result<Rig<T>> {
         let Self { session, code, uart, mut flash } = self;
-        let session = make(session, &code).map_err(|error| match (&error, flash.held()) {
+        let session = make(session, &code).map_err(|error| match (&error, flash.file()) {
             (HostError::Flash(why), Some((path, _))) => {
                 anyhow::anyhow!("the flash {} does not work with `--boot`: {why}", path.display())
             }
@@ -350,7 +351,10 @@ impl<T: Target> Rig<T> {
 
     /// Runs until everything has ended, or to the limit; at the pace of a clock, if there is one.
     pub(crate) fn run(&mut self, limit: Ticks, pace: Option<&Pace>, sink: &mut dyn FnMut(Event)) -> End {
-        self.line.run(&mut self.session, limit, pace, sink)
+        let mut held = self.flash.held();
+        let end = self.line.run(&mut self.session, limit, pace, &mut |event| held.pass(event, sink));
+        self.acknowledge(held, sink);
+        end
     }
 
     /// Runs to the end of a tick, also when everything has ended.
@@ -361,19 +365,34 @@ impl<T: Target> Rig<T> {
     /// The same with somebody who may stop the board; `idle` is what is done meanwhile.
     pub(crate) fn advance_attended(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event), idle: Idle<'_, T>) {
         let attendant = &mut self.attendant;
-        self.line.advance(&mut self.session, limit, sink, &mut |session, part, sink| match attendant {
+        let mut held = self.flash.held();
+        let pass = &mut |event| held.pass(event, sink);
+        self.line.advance(&mut self.session, limit, pass, &mut |session, part, sink| match attendant {
             Some(attendant) => attendant.advance(session, part, sink, idle),
             None => session.advance(part, sink),
         });
+        self.acknowledge(held, sink);
+    }
+
+    /// Writes flash to its file and hands on what waits for that.
+    fn acknowledge(&mut self, held: Held, sink: &mut dyn FnMut(Event)) {
+        if held.is_empty() {
+            return;
+        }
+        let kept = self.keep_flash();
+        let kept = kept.map_err(|error| terminal::error(&error.context("the flash is not kept")));
+        self.flash.is_lost(kept.is_err());
+        held.hand_on(kept.is_ok(), sink);
     }
 
     /// Sends a line to the board, and lets pass the time it takes.
     pub(crate) fn exchange(&mut self, bytes: &[u8], sink: &mut dyn FnMut(Event)) {
-        let line = &mut self.line;
+        let (line, mut held) = (&mut self.line, self.flash.held());
         self.session.exchange(bytes, &mut |event| {
             line.note(&event);
-            sink(event);
+            held.pass(event, sink);
         });
+        self.acknowledge(held, sink);
     }
 
     /// Keeps what flash memory holds now in its file.

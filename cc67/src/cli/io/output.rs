@@ -1,7 +1,7 @@
 //! Files that commands write: under a temporary name first, so that there is never half a file.
 //!
 //! A process that is killed leaves the old file or the new one. The disk is not waited for, as by
-//! any compiler: it would take longer than the compilation.
+//! any compiler: it would take longer than the compilation. Only what a board says that it has kept is on the disk.
 
 use std::fs::{self, File};
 use std::io::{self, BufReader, BufWriter, Seek, Write};
@@ -16,6 +16,22 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     let mut draft = Draft::new(path)?;
     draft.write_all(bytes).map_err(|error| cannot_write(path, &error))?;
     draft.commit()
+}
+
+/// The same, and returns only when it is on the disk.
+pub(crate) fn write_durably(path: &Path, bytes: &[u8]) -> Result<()> {
+    let mut draft = Draft::new(path)?;
+    let written = draft.write_all(bytes).and_then(|()| draft.writer.flush());
+    written.and_then(|()| draft.writer.get_ref().sync_all()).map_err(|error| cannot_write(path, &error))?;
+    draft.commit()?;
+    // A new name is the folder's; where a folder cannot be opened as a file, the system keeps it itself.
+    #[cfg(unix)]
+    {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let synced = File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
+        synced.map_err(|error| cannot_write(path, &error))?;
+    }
+    Ok(())
 }
 
 /// Writes several files.

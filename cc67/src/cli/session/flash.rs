@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
-use runtime::FLASH_SIZE;
+use runtime::{Event, EventKind, FLASH_SIZE};
 
 use crate::cli::io::input::read;
 use crate::cli::io::output;
@@ -14,12 +14,59 @@ pub(crate) struct Flash {
     path: Option<PathBuf>,
     /// What it held at the start, or was written to it since; nothing if it was not there.
     before: Option<Vec<u8>>,
+    /// Whether what was written last could not be kept.
+    is_lost: bool,
+}
+
+/// The reply of the board to a command that writes flash.
+const COMPLETE: &[u8] = b"Program Flash Image Complete";
+/// What it prints after that.
+const VERIFIED: &[u8] = b"Verify Complete";
+
+/// Events that wait until the file has what the first of them acknowledges.
+#[derive(Debug, Default)]
+pub(super) struct Held {
+    events: Vec<Event>,
+    /// Whether there is a file to wait for.
+    is_kept: bool,
+    /// Whether what was written last could not be kept.
+    is_lost: bool,
+}
+
+impl Held {
+    /// Hands an event on, or holds it, and all after it, if it acknowledges that flash is written.
+    pub(super) fn pass(&mut self, event: Event, sink: &mut dyn FnMut(Event)) {
+        let is_complete = matches!(&event.kind, EventKind::Reply(line) if line == COMPLETE);
+        let is_verified = matches!(&event.kind, EventKind::ConsoleLine(line) if line == VERIFIED);
+        if self.events.is_empty() && !(is_complete && self.is_kept) {
+            if !(is_verified && self.is_lost) {
+                sink(event);
+            }
+        } else {
+            self.events.push(event);
+        }
+    }
+
+    /// Whether none is held.
+    pub(super) const fn is_empty(&self) -> bool {
+        self.events.is_empty()
+    }
+
+    /// Hands on what was held; without the acknowledgement if flash is not kept.
+    pub(super) fn hand_on(self, is_kept: bool, sink: &mut dyn FnMut(Event)) {
+        let is_acknowledgement = |event: &Event| match &event.kind {
+            EventKind::Reply(line) => line == COMPLETE,
+            EventKind::ConsoleLine(line) => line == VERIFIED,
+            _ => false,
+        };
+        self.events.into_iter().filter(|event| is_kept || !is_acknowledgement(event)).for_each(sink);
+    }
 }
 
 impl Flash {
     /// Reads the file, if it is there.
     pub(super) fn read(path: Option<PathBuf>) -> Result<Self> {
-        let Some(path) = path else { return Ok(Self { path: None, before: None }) };
+        let Some(path) = path else { return Ok(Self::default()) };
         let before = if path.exists() { Some(read(&path)?) } else { None };
         if let Some(bytes) = before.as_ref().filter(|bytes| bytes.len() != FLASH_SIZE) {
             bail!(
@@ -28,7 +75,17 @@ impl Flash {
                 bytes.len()
             );
         }
-        Ok(Self { path: Some(path), before })
+        Ok(Self { path: Some(path), before, is_lost: false })
+    }
+
+    /// What holds the events that come next.
+    pub(super) fn held(&self) -> Held {
+        Held { events: Vec::new(), is_kept: self.path.is_some(), is_lost: self.is_lost }
+    }
+
+    /// Says whether what was written last could be kept.
+    pub(super) const fn is_lost(&mut self, is_lost: bool) {
+        self.is_lost = is_lost;
     }
 
     /// What a board begins with.
@@ -44,7 +101,7 @@ impl Flash {
     }
 
     /// The file and what it holds, if it is there.
-    pub(super) fn held(&self) -> Option<(&Path, &[u8])> {
+    pub(super) fn file(&self) -> Option<(&Path, &[u8])> {
         self.path.as_deref().zip(self.before.as_deref())
     }
 
@@ -54,7 +111,7 @@ impl Flash {
         let now = now();
         let is_erased = || now.iter().all(|byte| *byte == 0xFF);
         if self.before.as_ref().map_or_else(|| !is_erased(), |before| before != now) {
-            output::write(path, now)?;
+            output::write_durably(path, now)?;
             self.before = Some(now.to_vec());
         }
         Ok(())

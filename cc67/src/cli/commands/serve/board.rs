@@ -16,10 +16,6 @@ use crate::cli::io::terminal;
 use crate::cli::report::seen::Seen;
 use crate::cli::report::trace::Trace;
 
-/// What the board answers when flash is written.
-const FLASH_COMPLETE: &[u8] = b"Program Flash Image Complete";
-/// What it prints after that.
-const FLASH_VERIFIED: &[u8] = b"Verify Complete";
 /// Ticks in which the board takes a line at the latest.
 const TAKEN_WITHIN: u64 = 11_111;
 
@@ -38,8 +34,6 @@ pub(super) struct ServedBoard<'a, T: Target> {
     is_for_page: bool,
     /// Whether programs that print wait, as too much waits for the console.
     is_held_back: bool,
-    /// Whether the flash could not be kept when it was last written.
-    has_lost_flash: bool,
 }
 
 impl<'a, T: Target> ServedBoard<'a, T> {
@@ -57,7 +51,6 @@ impl<'a, T: Target> ServedBoard<'a, T> {
             has_told_replies: false,
             is_for_page: false,
             is_held_back: false,
-            has_lost_flash: false,
         })
     }
 
@@ -176,19 +169,11 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         }
         match &event.kind {
             EventKind::Reply(line) => {
-                if line == FLASH_COMPLETE {
-                    self.has_lost_flash = !self.keep_flash();
-                }
-                if line == FLASH_COMPLETE && self.has_lost_flash {
-                    // Whoever waits for the line is not to believe that it is kept.
-                    return;
-                }
                 if !self.is_for_page {
                     self.link.reply(line);
                 }
             }
             EventKind::Echo(bytes) => self.link.echo(bytes),
-            EventKind::ConsoleLine(line) if line == FLASH_VERIFIED && self.has_lost_flash => {}
             EventKind::ConsoleLine(line) => self.link.console(line.clone(), self.is_heard),
             EventKind::Aborted | EventKind::UartSent(_) | EventKind::Trace(_) | EventKind::Loaded(..) => {}
             EventKind::Remark(_)
@@ -204,12 +189,6 @@ impl<'a, T: Target> ServedBoard<'a, T> {
                 }
             }
         }
-    }
-
-    /// Keeps what flash memory holds; whether that could be done.
-    fn keep_flash(&mut self) -> bool {
-        let kept = self.board.keep_flash();
-        kept.map_err(|error| terminal::error(&error.context("the flash is not kept"))).is_ok()
     }
 
     /// The board is served no more: files are written, and the exit code says how its programs fared.

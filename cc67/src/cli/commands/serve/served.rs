@@ -128,11 +128,6 @@ impl<T: Target> Served<T> {
         self.rig.session.debug().into_iter().map(|(_, debug)| debug).collect()
     }
 
-    /// Keeps what flash memory holds in its file.
-    pub(super) fn keep_flash(&mut self) -> Result<()> {
-        self.rig.keep_flash()
-    }
-
     /// It is served no more.
     pub(super) fn finish(&mut self, sink: &mut dyn FnMut(Event)) -> Result<()> {
         #[cfg(feature = "live")]
