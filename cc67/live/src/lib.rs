@@ -35,8 +35,9 @@ pub use server::{ListenError, Server};
 
 use std::path::PathBuf;
 
+use cc67_host::{Session, Target};
 use kmotiondef::ThreadId;
-use runtime::MachineFile;
+use runtime::{Event, MachineFile};
 
 /// A program of the board.
 #[derive(Clone, Debug)]
@@ -56,6 +57,12 @@ pub enum TestOption {
     Text(String),
     /// An option and its file, which a test in another folder calls by another name.
     File(&'static str, PathBuf),
+}
+
+/// Somebody who sees what happens on a board before its pages do.
+pub trait Keeper<T: Target>: std::fmt::Debug {
+    /// Does what events demand; returns those that pages may show.
+    fn keep(&mut self, session: &Session<T>, events: Vec<Event>) -> Vec<Event>;
 }
 
 /// What a board is shown with.

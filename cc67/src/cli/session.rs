@@ -35,7 +35,6 @@ use super::compile::images;
 use super::io::exit::Exit;
 use super::io::input::read;
 use super::io::pace::Pace;
-use super::io::terminal;
 use flash::{Flash, Held};
 use line::SerialLine;
 
@@ -376,13 +375,13 @@ impl<T: Target> Rig<T> {
 
     /// Writes flash to its file and hands on what waits for that.
     fn acknowledge(&mut self, held: Held, sink: &mut dyn FnMut(Event)) {
-        if held.is_empty() {
-            return;
-        }
-        let kept = self.keep_flash();
-        let kept = kept.map_err(|error| terminal::error(&error.context("the flash is not kept")));
-        self.flash.is_lost(kept.is_err());
-        held.hand_on(kept.is_ok(), sink);
+        self.flash.acknowledge(held, || self.session.target().flash().unwrap_or_default(), sink);
+    }
+
+    /// Keeps the flash for whoever runs the session itself.
+    #[cfg(feature = "live")]
+    pub(crate) fn flash_keeper(&self) -> Flash {
+        self.flash.clone()
     }
 
     /// Sends a line to the board, and lets pass the time it takes.

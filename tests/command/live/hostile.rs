@@ -122,3 +122,27 @@ fn nonsense_floods_and_disconnects_do_not_stop_the_board() {
     let said = live.end();
     assert_eq!(said.lines().filter(|line| line.contains("what is not a request")).count(), 1, "{said}");
 }
+
+#[test]
+#[cfg(unix)]
+fn flash_that_a_page_was_told_of_is_in_the_file_when_the_board_is_killed() {
+    let folder = Scratch::new("live-flash");
+    fs::write(folder.path().join("a.c"), PROGRAM).expect("files can be written");
+    let live = Live::start(&folder, &["--flash", "board.flash", "a.c"]);
+    let (mut socket, _) = tungstenite::connect(live.socket()).expect("a page may come");
+    for line in ["SetPersistDec 7 77", "Flash"] {
+        let request = serde_json::json!({"do": "command", "line": line}).to_string();
+        socket.send(Message::text(request)).expect("it listens");
+    }
+    loop {
+        if let Message::Text(text) = socket.read().expect("it goes on")
+            && text.contains("Program Flash Image Complete")
+        {
+            break;
+        }
+    }
+    live.end();
+    let arguments = ["console", "--flash", "board.flash"];
+    let output = harness::cc67_with_input(&folder, arguments, "GetPersistDec 7\n");
+    assert!(output.render().starts_with("77\n"), "{}", output.render());
+}

@@ -34,7 +34,7 @@ use vm::scheduler::Turn;
 
 use crate::desk::{Desk, Incoming, Mailbox, PageId};
 use crate::request::PageRequest;
-use crate::{Show, TimeControl};
+use crate::{Keeper, Show, TimeControl};
 use clock::{Clock, now};
 use frame::Moment;
 use log::{Log, Voice};
@@ -64,12 +64,13 @@ const ROTATION: u64 = 30;
 pub(crate) fn run<T: Target>(
     session: &mut Session<T>,
     show: Show,
-    attendant: Option<Box<dyn Attendant<T>>>,
+    (attendant, keeper): (Option<Box<dyn Attendant<T>>>, Box<dyn Keeper<T>>),
     (desk, requests): (&Arc<Desk>, &Receiver<Incoming>),
 ) {
     let limit = show.limit.map(|seconds| session.tick_after(seconds));
     let mut stage = Stage::new(session, show, desk);
     stage.attendant = attendant;
+    stage.keeper = Some(keeper);
     while limit.is_none_or(|limit| session.tick() < limit) {
         stage.take(session, requests, BEAT);
         stage.advance(session, limit);
@@ -122,6 +123,8 @@ struct Stage<T: Target> {
     wishes: Wishes,
     /// Who may stop the board.
     attendant: Option<Box<dyn Attendant<T>>>,
+    /// Who sees events before pages do.
+    keeper: Option<Box<dyn Keeper<T>>>,
 }
 
 impl<T: Target> Stage<T> {
@@ -154,6 +157,7 @@ impl<T: Target> Stage<T> {
             open_box: None,
             wishes: Wishes::default(),
             attendant: None,
+            keeper: None,
         }
     }
 
@@ -340,6 +344,10 @@ impl<T: Target> Stage<T> {
         } else {
             self.turns.advance(session, tick, looks, &mut |event| events.push(event));
         }
+        let events = match &mut self.keeper {
+            Some(keeper) => keeper.keep(session, events),
+            None => events,
+        };
         self.note(session, events);
     }
 

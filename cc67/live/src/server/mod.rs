@@ -15,9 +15,9 @@ use std::time::Duration;
 
 use cc67_host::{Attendant, Session, Target};
 
-use crate::Show;
 use crate::board::{self, LiveView};
 use crate::desk::{Desk, Incoming};
+use crate::{Keeper, Show};
 use gate::Gate;
 use http::{Head, HttpAnswer};
 
@@ -74,14 +74,15 @@ impl Server {
         &self.url
     }
 
-    /// Runs a board and shows it, until its time has passed; an attendant may stop it.
+    /// Runs a board and shows it, until its time has passed; an attendant may stop it, a keeper sees its events first.
     pub fn run<T: Target>(
         self,
         session: &mut Session<T>,
         show: Show,
         attendant: Option<Box<dyn Attendant<T>>>,
+        keeper: Box<dyn Keeper<T>>,
     ) {
-        board::run(session, show, attendant, (&self.desk, &self.requests));
+        board::run(session, show, (attendant, keeper), (&self.desk, &self.requests));
     }
 
     /// Shows a board that somebody else runs.

@@ -6,10 +6,10 @@ use anyhow::{Result, bail};
 use runtime::{Event, EventKind, FLASH_SIZE};
 
 use crate::cli::io::input::read;
-use crate::cli::io::output;
+use crate::cli::io::{output, terminal};
 
 /// A file of flash memory, if there is one, and what it holds.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Flash {
     path: Option<PathBuf>,
     /// What it held at the start, or was written to it since; nothing if it was not there.
@@ -47,13 +47,8 @@ impl Held {
         }
     }
 
-    /// Whether none is held.
-    pub(super) const fn is_empty(&self) -> bool {
-        self.events.is_empty()
-    }
-
     /// Hands on what was held; without the acknowledgement if flash is not kept.
-    pub(super) fn hand_on(self, is_kept: bool, sink: &mut dyn FnMut(Event)) {
+    fn hand_on(self, is_kept: bool, sink: &mut dyn FnMut(Event)) {
         let is_acknowledgement = |event: &Event| match &event.kind {
             EventKind::Reply(line) => line == COMPLETE,
             EventKind::ConsoleLine(line) => line == VERIFIED,
@@ -83,9 +78,19 @@ impl Flash {
         Held { events: Vec::new(), is_kept: self.path.is_some(), is_lost: self.is_lost }
     }
 
-    /// Says whether what was written last could be kept.
-    pub(super) const fn is_lost(&mut self, is_lost: bool) {
-        self.is_lost = is_lost;
+    /// Writes the flash to its file if events are held for that, and hands them on.
+    pub(super) fn acknowledge<'m>(
+        &mut self,
+        held: Held,
+        now: impl FnOnce() -> &'m [u8],
+        sink: &mut dyn FnMut(Event),
+    ) {
+        if held.events.is_empty() {
+            return;
+        }
+        let kept = self.keep(now).map_err(|error| terminal::error(&error.context("the flash is not kept")));
+        self.is_lost = kept.is_err();
+        held.hand_on(kept.is_ok(), sink);
     }
 
     /// What a board begins with.
@@ -115,5 +120,17 @@ impl Flash {
             self.before = Some(now.to_vec());
         }
         Ok(())
+    }
+}
+
+#[cfg(feature = "live")]
+impl<T: cc67_host::Target> cc67_live::Keeper<T> for Flash {
+    fn keep(&mut self, session: &cc67_host::Session<T>, events: Vec<Event>) -> Vec<Event> {
+        let (mut held, mut shown) = (self.held(), Vec::new());
+        events.into_iter().for_each(|event| held.pass(event, &mut |event| shown.push(event)));
+        self.acknowledge(held, || session.target().flash().unwrap_or_default(), &mut |event| {
+            shown.push(event)
+        });
+        shown
     }
 }

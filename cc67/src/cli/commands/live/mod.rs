@@ -133,7 +133,8 @@ impl Work for &LiveArguments {
         let server = listen(self.port, &self.board)?;
         announce(&server, &self.board, !self.no_open)?;
         let attendant = rig.attendant.take();
-        server.run(&mut rig.session, show, attendant);
+        let keeper = Box::new(rig.flash_keeper());
+        server.run(&mut rig.session, show, attendant, keeper);
         rig.finish(&mut |_| ())?;
         Ok(Exit::Success)
     }
