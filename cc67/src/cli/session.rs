@@ -35,7 +35,7 @@ use super::compile::images;
 use super::io::exit::Exit;
 use super::io::input::read;
 use super::io::pace::Pace;
-use flash::{Flash, Held};
+use flash::{Flash, Unacknowledged};
 use line::SerialLine;
 
 /// Everything that the arguments ask for, read and compiled.
@@ -374,7 +374,7 @@ impl<T: Target> Rig<T> {
     }
 
     /// Writes flash to its file and hands on what waits for that.
-    fn acknowledge(&mut self, held: Held, sink: &mut dyn FnMut(Event)) {
+    fn acknowledge(&mut self, held: Unacknowledged, sink: &mut dyn FnMut(Event)) {
         self.flash.acknowledge(held, || self.session.target().flash().unwrap_or_default(), sink);
     }
 

@@ -64,13 +64,12 @@ const ROTATION: u64 = 30;
 pub(crate) fn run<T: Target>(
     session: &mut Session<T>,
     show: Show,
-    (attendant, keeper): (Option<Box<dyn Attendant<T>>>, Box<dyn Keeper<T>>),
+    company: Company<T>,
     (desk, requests): (&Arc<Desk>, &Receiver<Incoming>),
 ) {
     let limit = show.limit.map(|seconds| session.tick_after(seconds));
     let mut stage = Stage::new(session, show, desk);
-    stage.attendant = attendant;
-    stage.keeper = Some(keeper);
+    stage.company = company;
     while limit.is_none_or(|limit| session.tick() < limit) {
         stage.take(session, requests, BEAT);
         stage.advance(session, limit);
@@ -121,10 +120,17 @@ struct Stage<T: Target> {
     open_box: Option<OpenBox>,
     /// For whoever else runs the session.
     wishes: Wishes,
+    /// Who else is with the board.
+    company: Company<T>,
+}
+
+/// Who is with a board besides its pages.
+#[derive(Debug)]
+pub(crate) struct Company<T: Target> {
     /// Who may stop the board.
-    attendant: Option<Box<dyn Attendant<T>>>,
+    pub(crate) attendant: Option<Box<dyn Attendant<T>>>,
     /// Who sees events before pages do.
-    keeper: Option<Box<dyn Keeper<T>>>,
+    pub(crate) keeper: Option<Box<dyn Keeper<T>>>,
 }
 
 impl<T: Target> Stage<T> {
@@ -156,8 +162,7 @@ impl<T: Target> Stage<T> {
             turns: Turns::default(),
             open_box: None,
             wishes: Wishes::default(),
-            attendant: None,
-            keeper: None,
+            company: Company { attendant: None, keeper: None },
         }
     }
 
@@ -320,7 +325,7 @@ impl<T: Target> Stage<T> {
 
     /// Runs to the tick that is due, or as far as there is time for.
     fn advance(&mut self, session: &mut Session<T>, limit: Option<Ticks>) {
-        if self.attendant.is_some() {
+        if self.company.attendant.is_some() {
             self.run_to(session, session.tick());
         }
         let begin = now();
@@ -335,16 +340,16 @@ impl<T: Target> Stage<T> {
     fn run_to(&mut self, session: &mut Session<T>, tick: Ticks) {
         let mut events = Vec::new();
         let looks = !self.pages.is_empty() && self.told.1.elapsed() >= THREADS;
-        if let Some(mut attendant) = self.attendant.take() {
+        if let Some(mut attendant) = self.company.attendant.take() {
             attendant.advance(session, tick, &mut |event| events.push(event), &mut |session| {
                 self.tell(session);
                 ControlFlow::Continue(())
             });
-            self.attendant = Some(attendant);
+            self.company.attendant = Some(attendant);
         } else {
             self.turns.advance(session, tick, looks, &mut |event| events.push(event));
         }
-        let events = match &mut self.keeper {
+        let events = match &mut self.company.keeper {
             Some(keeper) => keeper.keep(session, events),
             None => events,
         };

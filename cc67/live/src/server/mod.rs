@@ -15,7 +15,7 @@ use std::time::Duration;
 
 use cc67_host::{Attendant, Session, Target};
 
-use crate::board::{self, LiveView};
+use crate::board::{self, Company, LiveView};
 use crate::desk::{Desk, Incoming};
 use crate::{Keeper, Show};
 use gate::Gate;
@@ -82,7 +82,8 @@ impl Server {
         attendant: Option<Box<dyn Attendant<T>>>,
         keeper: Box<dyn Keeper<T>>,
     ) {
-        board::run(session, show, (attendant, keeper), (&self.desk, &self.requests));
+        let company = Company { attendant, keeper: Some(keeper) };
+        board::run(session, show, company, (&self.desk, &self.requests));
     }
 
     /// Shows a board that somebody else runs.

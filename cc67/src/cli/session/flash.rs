@@ -25,7 +25,7 @@ const VERIFIED: &[u8] = b"Verify Complete";
 
 /// Events that wait until the file has what the first of them acknowledges.
 #[derive(Debug, Default)]
-pub(super) struct Held {
+pub(super) struct Unacknowledged {
     events: Vec<Event>,
     /// Whether there is a file to wait for.
     is_kept: bool,
@@ -33,7 +33,7 @@ pub(super) struct Held {
     is_lost: bool,
 }
 
-impl Held {
+impl Unacknowledged {
     /// Hands an event on, or holds it, and all after it, if it acknowledges that flash is written.
     pub(super) fn pass(&mut self, event: Event, sink: &mut dyn FnMut(Event)) {
         let is_complete = matches!(&event.kind, EventKind::Reply(line) if line == COMPLETE);
@@ -74,14 +74,14 @@ impl Flash {
     }
 
     /// What holds the events that come next.
-    pub(super) fn held(&self) -> Held {
-        Held { events: Vec::new(), is_kept: self.path.is_some(), is_lost: self.is_lost }
+    pub(super) fn held(&self) -> Unacknowledged {
+        Unacknowledged { events: Vec::new(), is_kept: self.path.is_some(), is_lost: self.is_lost }
     }
 
     /// Writes the flash to its file if events are held for that, and hands them on.
     pub(super) fn acknowledge<'m>(
         &mut self,
-        held: Held,
+        held: Unacknowledged,
         now: impl FnOnce() -> &'m [u8],
         sink: &mut dyn FnMut(Event),
     ) {
@@ -129,7 +129,7 @@ impl<T: cc67_host::Target> cc67_live::Keeper<T> for Flash {
         let (mut held, mut shown) = (self.held(), Vec::new());
         events.into_iter().for_each(|event| held.pass(event, &mut |event| shown.push(event)));
         self.acknowledge(held, || session.target().flash().unwrap_or_default(), &mut |event| {
-            shown.push(event)
+            shown.push(event);
         });
         shown
     }

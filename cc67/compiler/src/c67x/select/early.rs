@@ -15,11 +15,11 @@ pub(super) fn order(function: &Function, block: &Block, externs: &Externs, is_sh
     if is_shared || function.outgoing.is_none() {
         return (0..block.insts.len()).collect();
     }
-    let calls = Calls::of(function, block, externs);
+    let uses = AreaUses::of(function, block, externs);
     let mut followers: Vec<Vec<usize>> = vec![Vec::new(); block.insts.len()];
     let mut is_moved = vec![false; block.insts.len()];
     for (index, is_moved) in is_moved.iter_mut().enumerate() {
-        if let Some(maker) = maker(function, block, &calls, index) {
+        if let Some(maker) = maker(function, block, &uses, index) {
             followers[maker].push(index);
             *is_moved = true;
         }
@@ -29,7 +29,7 @@ pub(super) fn order(function: &Function, block: &Block, externs: &Externs, is_sh
 }
 
 /// The calls before each instruction of a block, and the last instruction before it that makes what it stores.
-struct Calls {
+struct AreaUses {
     /// How many calls, and how many of what uses the area: those with variable arguments, and loads from it.
     counts: Vec<[usize; 2]>,
     makers: Vec<Option<usize>>,
@@ -37,16 +37,18 @@ struct Calls {
     has_variable: Vec<bool>,
 }
 
-impl Calls {
+impl AreaUses {
     fn of(function: &Function, block: &Block, externs: &Externs) -> Self {
         let mut last: BTreeMap<ValueId, usize> = BTreeMap::new();
         let (mut counts, mut makers, mut variable) = (vec![[0, 0]], Vec::new(), Vec::new());
         let mut count = [0, 0];
         for (index, inst) in block.insts.iter().enumerate() {
-            makers.push(match inst.kind {
-                InstKind::Store { src: Operand::Value(value), .. } => last.get(&value).copied(),
-                _ => None,
-            });
+            let stored = if let InstKind::Store { src: Operand::Value(value), .. } = inst.kind {
+                last.get(&value).copied()
+            } else {
+                None
+            };
+            makers.push(stored);
             let mut is_variable = false;
             if let InstKind::Call { callee, .. } = inst.kind {
                 is_variable = has_variable(callee, externs);
@@ -67,7 +69,7 @@ impl Calls {
 
 /// The instruction that makes what a store of a variable argument stores, if it can follow that one and calls are
 /// between them.
-fn maker(function: &Function, block: &Block, calls: &Calls, index: usize) -> Option<usize> {
+fn maker(function: &Function, block: &Block, uses: &AreaUses, index: usize) -> Option<usize> {
     let outgoing = function.outgoing?;
     let InstKind::Store { src: Operand::Value(_), address, .. } = block.insts[index].kind else {
         return None;
@@ -75,14 +77,14 @@ fn maker(function: &Function, block: &Block, calls: &Calls, index: usize) -> Opt
     if address.base != Base::Slot(outgoing) {
         return None;
     }
-    let maker = calls.makers[index]?;
-    let [before, uses_before] = calls.counts[maker + 1];
-    let [after, uses_after] = calls.counts[index];
+    let maker = uses.makers[index]?;
+    let [before, uses_before] = uses.counts[maker + 1];
+    let [after, uses_after] = uses.counts[index];
     if uses_after > uses_before {
         return None;
     }
     // The result of such a call is stored where the source says.
-    (after > before && !calls.has_variable[maker]).then_some(maker)
+    (after > before && !uses.has_variable[maker]).then_some(maker)
 }
 
 /// Whether anything but calls with variable arguments has the address of their area.
