@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from pathlib import Path
 from typing import Any
 
@@ -188,7 +190,7 @@ def test_persist_has_integers_floats_and_doubles() -> None:
 def test_axes_have_numbers_and_names(write: Write) -> None:
     board = cc67.Board(programs=[write(MOVE)], machine=MACHINE)
     axis = board.axes["Slide"]
-    assert axis is board.axes[0] and axis.units == "mm" and not axis.enabled
+    assert axis == board.axes[0] != board.axes[1] and axis.units == "mm" and not axis.enabled
     board.run()
     assert axis.dest == 2000 and axis.position == pytest.approx(2000, abs=1) and axis.enabled
     assert axis.Vel == 1000 and axis.velocity == 1000 and axis.done
@@ -378,3 +380,26 @@ def test_wrong_types_are_type_errors() -> None:
         board.step(1.5)  # type: ignore[arg-type]
     with pytest.raises(cc67.InputError, match="back"):
         board.step(-1)
+
+
+def test_boards_are_freed_without_the_collector_and_can_be_closed(write: Write) -> None:
+    program = cc67.compile(write("main() {}\n"))
+    gc.collect()
+    gc.disable()
+    try:
+        gone = []
+        for _ in range(2000):
+            board = cc67.Board(programs=[program])
+            board.persist[0] = 1
+            gone.append(weakref.ref(board))
+        assert sum(reference() is not None for reference in gone) == 1
+    finally:
+        gc.enable()
+    with cc67.Board(programs=[program]) as board:
+        bits = board.bits
+        assert board.time == 0
+    assert repr(board) == "<cc67.Board, closed>"
+    for use in (lambda: board.time, lambda: bits[0], lambda: board.run(1)):
+        with pytest.raises(cc67.Error, match="the board is closed"):
+            use()
+    board.close()

@@ -69,6 +69,13 @@ class Snapshot:
         return f"<cc67.Snapshot at {self.time:.6f} s>"
 
 
+class _Closed:
+    """The place of a board that was closed."""
+
+    def __getattr__(self, name: str) -> Any:
+        raise Error("the board is closed")
+
+
 class Board:
     """A simulated KFLOP board with its programs and the machine around it.
 
@@ -151,13 +158,8 @@ class Board:
             "uart_input": bytes(uart_input),
             "boot": self._boot,
         }
-        self._native = _native.Board(request, engine)
+        self._native: Any = _native.Board(request, engine)
         self._programs = {thread: program for thread, program, _ in assigned}
-        self._bits = Bits(self)
-        self._adc = Adc(self)
-        self._dac = Dac(self)
-        self._axes = Axes(self)
-        self._persist = Persist(self)
         if on_fault == "keep":
             self._native.stop_at_faults(False)
             self._native.release()
@@ -350,32 +352,33 @@ class Board:
             raise InputError("a command must be one line, without line ends")
         return "\n".join(self._native.command(line.encode("latin-1", "replace")))
 
-    # Inputs, outputs, axes and variables.
+    # Inputs, outputs, axes and variables. They refer to the board, so the board does not keep them: its memory is free
+    # when the last reference to it goes.
 
     @property
     def bits(self) -> Bits:
         """The input and output bits: `board.bits[136] = True` closes a switch."""
-        return self._bits
+        return Bits(self)
 
     @property
     def adc(self) -> Adc:
         """The analog inputs, in counts from -2048 to 2047."""
-        return self._adc
+        return Adc(self)
 
     @property
     def dac(self) -> Dac:
         """The analog outputs, in counts from -2048 to 2047."""
-        return self._dac
+        return Dac(self)
 
     @property
     def axes(self) -> Axes:
         """The eight axes, by number or by the name in the machine file."""
-        return self._axes
+        return Axes(self)
 
     @property
     def persist(self) -> Persist:
         """The elements of `persist.UserData` as integers; also as `persist.float` and `persist.double`."""
-        return self._persist
+        return Persist(self)
 
     def act(self, statement: str) -> None:
         """Execute a statement of a stimulus, `"pulse bit 137 for 50ms"`, at the beginning of the next servo tick.
@@ -453,14 +456,26 @@ class Board:
             raise InputError(f"every must be a number of ticks, at least 1, not {every!r}")
         names = _split(items) if isinstance(items, str) else [str(item) for item in items]
         time, columns = self._native.trace(names, seconds, every)
-        units = {f"{kind}{axis.index}": axis.units for axis in self._axes for kind in ("dest", "pos", "load")}
+        units = {f"{kind}{axis.index}": axis.units for axis in self.axes for kind in ("dest", "pos", "load")}
         return Trace(time, dict(columns), {name: units.get(name, "") for name, _ in columns})
 
     def release(self) -> None:
         """Give up the board; it then belongs to the Python thread that uses it next."""
         self._native.release()
 
+    def close(self) -> None:
+        """Free the memory of the board now; using the board afterwards raises `Error`. `with` does this at its end."""
+        self._native = _Closed()
+
+    def __enter__(self) -> Board:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
     def __repr__(self) -> str:
+        if isinstance(self._native, _Closed):
+            return "<cc67.Board, closed>"
         programs = ", ".join(f"{thread}: {program.path.name}" for thread, program in self._programs.items())
         return f"<cc67.Board {self._native.number}: {programs or 'no program'}>"
 

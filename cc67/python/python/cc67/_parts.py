@@ -265,6 +265,12 @@ class Axis:
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *_FIELDS]
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Axis) and self.index == other.index and self._board is other._board
+
+    def __hash__(self) -> int:
+        return hash((self.index, id(self._board)))
+
     def __repr__(self) -> str:
         name = f" {self.name!r}" if self.name else ""
         return f"<cc67.Axis {self.index}{name}: dest {self.dest:g}, position {self.position:g}>"
@@ -340,8 +346,16 @@ class Persist:
 
     def __init__(self, board: Board) -> None:
         self._board = board
-        self.float = PersistFloats(self)
-        self.double = PersistDoubles(self)
+
+    @property
+    def float(self) -> PersistFloats:
+        """The elements as floats."""
+        return PersistFloats(self)
+
+    @property
+    def double(self) -> PersistDoubles:
+        """The pairs of elements as doubles."""
+        return PersistDoubles(self)
 
     def __getitem__(self, index: SupportsIndex) -> int:
         value = self._board._native.user_data(_index(index, "element of persist", 200))
