@@ -4,7 +4,7 @@
 
 use crate::ids::Bit;
 
-/// What answers the bits of a range.
+/// The hardware or variable behind the bits of a range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BitKind {
     /// A pin of the FPGA whose direction programs choose.
@@ -35,10 +35,10 @@ pub enum BitKind {
     VirtualEx,
 }
 
-/// Which way the bits of a range go.
+/// The direction of the bits of a range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BitDirection {
-    /// As programs choose; inputs at power-up.
+    /// Chosen by programs; inputs at power-up.
     Programmable,
     /// Inputs for good: a write is ignored.
     Input,
@@ -55,13 +55,13 @@ pub struct BitRange {
     pub first: u16,
     /// The last number.
     pub last: u16,
-    /// What a user calls it.
+    /// The name in messages.
     pub name: &'static str,
-    /// What answers.
+    /// The hardware or variable behind its bits.
     pub kind: BitKind,
-    /// Which way its bits go.
+    /// The direction of its bits.
     pub direction: BitDirection,
-    /// What its bits are for.
+    /// The purpose of its bits.
     pub doc: &'static str,
 }
 

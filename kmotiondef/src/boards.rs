@@ -53,7 +53,7 @@ pub struct TargetBoard {
     pub time_stamp: Option<u32>,
     /// The number of axes.
     pub axes: u32,
-    /// Whether programs for the board were compared with its firmware in execution.
+    /// True if programs for the board were compared with its firmware in execution.
     pub is_proven: bool,
     programs: ProgramSpaces,
     /// The differences from the default board; `None` for that board.
@@ -147,7 +147,7 @@ pub struct BoardFunction {
     pub address: GuestAddr,
     /// Its type.
     pub ty: FunctionType,
-    /// Where it comes from.
+    /// The origin: firmware or library.
     pub origin: Origin,
 }
 
@@ -213,7 +213,7 @@ impl TargetBoard {
         BOARDS.iter().find(|other| has(other)).filter(|_| !has(self))
     }
 
-    /// Whether it is the default board.
+    /// Reports whether it is the default board.
     #[must_use]
     pub const fn is_default(&self) -> bool {
         self.facts.is_none()
@@ -296,7 +296,7 @@ impl TargetBoard {
         }
     }
 
-    /// Whether the firmware has the name for itself: neither function nor variable for programs.
+    /// Reports whether the firmware uses the name internally: neither a function nor a variable for programs.
     #[must_use]
     pub fn is_hidden(&self, name: &str) -> bool {
         match &self.facts {
@@ -309,7 +309,7 @@ impl TargetBoard {
         }
     }
 
-    /// Whether a program can use the name of a function or variable.
+    /// Reports whether the firmware has a function or variable of this name for programs.
     #[must_use]
     pub fn has(&self, name: &str) -> bool {
         self.function(name).is_some_and(|function| function.origin != Origin::Library)
@@ -327,7 +327,7 @@ impl TargetBoard {
             .filter(|name| self.function(name).is_some() || self.variable(name).is_some())
     }
 
-    /// Whether the header defines a constant or macro of this name.
+    /// Reports whether the header defines a constant or macro of this name.
     #[must_use]
     pub fn defines(&self, name: &str) -> bool {
         self.headers().iter().any(|(_, text)| header::defines(text, name))

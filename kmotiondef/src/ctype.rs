@@ -49,9 +49,9 @@ pub enum CType {
     Array(&'static CType, u32),
     /// A function.
     Function {
-        /// What it returns.
+        /// The type of its result.
         result: &'static CType,
-        /// What it takes.
+        /// The types of its parameters.
         params: &'static [CType],
     },
 }
@@ -90,7 +90,7 @@ impl CType {
         }
     }
 
-    /// How a value of the type is passed; `None` for `void`, structures, arrays and functions.
+    /// The class in which a value of the type is passed; `None` for `void`, structures, arrays and functions.
     #[must_use]
     pub fn class(self) -> Option<ValueClass> {
         match self.resolved() {

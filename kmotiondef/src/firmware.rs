@@ -27,7 +27,7 @@ use crate::ids::Cycles;
 use crate::limits::{MAX_PWM_VALUE, MAX_PWMC_VALUE, MAX_PWMR_VALUE};
 use crate::structs::Chan;
 
-/// Where a function comes from.
+/// The origin of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
     /// In the firmware, and the header declares it.
@@ -38,7 +38,7 @@ pub enum Origin {
     Library,
 }
 
-/// One parameter of a firmware function.
+/// A parameter of a firmware function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Parameter {
     /// Its name.
@@ -49,29 +49,29 @@ pub struct Parameter {
     pub role: Role,
 }
 
-/// One firmware function.
+/// A firmware function.
 #[derive(Clone, Copy, Debug)]
 pub struct FirmwareFunction {
     /// The name that programs use.
     pub name: &'static str,
-    /// Where programs find it.
+    /// The address at which programs call it.
     pub address: GuestAddr,
     /// Its named parameters.
     pub params: &'static [Parameter],
-    /// Whether more arguments may follow.
+    /// True if more arguments may follow.
     pub is_variadic: bool,
-    /// What it returns.
+    /// The type of its result.
     pub result: CType,
-    /// What a call costs, apart from waiting and from what depends on its arguments (costs.md section 2: the released
-    /// firmware, 44 cycles for each access to the FPGA).
+    /// The cycles of a call, apart from waiting and from the part that depends on its arguments (costs.md section 2:
+    /// the released firmware, 44 cycles for each access to the FPGA).
     pub cost: Cycles,
-    /// Where it comes from.
+    /// Its origin: firmware or library.
     pub origin: Origin,
     /// The group it belongs to, a file of the runtime.
     pub group: &'static str,
     /// Its name in the runtime.
     pub rust_name: &'static str,
-    /// What it does.
+    /// A description in one line.
     pub doc: &'static str,
     /// Facts beside signature and cost.
     pub attributes: Attributes,
@@ -97,7 +97,7 @@ impl FirmwareFunction {
         self.params.iter().position(|param| is_meant(param.role))
     }
 
-    /// How the arguments are passed. The address of the variable part, if there is one, follows them.
+    /// The class of each named parameter. The address of the variable part, if there is one, follows them.
     pub fn param_classes(&self) -> impl Iterator<Item = ValueClass> {
         self.params.iter().filter_map(|param| param.ty.class())
     }
@@ -106,7 +106,7 @@ impl FirmwareFunction {
 /// Declared by the header, but not in firmware 4.34: a use does not link.
 pub const ABSENT: &[&str] = &["MainStatus", "WriteDAC"];
 
-/// Where the addresses of [`Origin::Library`] begin; the next function is 8 further on.
+/// The first address for functions of [`Origin::Library`]; each takes 8.
 pub const LIBRARY_BASE: GuestAddr = GuestAddr::new(0x7000_0000);
 
 macro_rules! functions {
@@ -213,7 +213,7 @@ const fn by_name() -> [u16; FIRMWARE_FUNCTIONS.len()] {
     table
 }
 
-/// Whether a name comes before another one.
+/// Reports whether a name comes before another one.
 const fn is_before(name: &str, other: &str) -> bool {
     let (name, other) = (name.as_bytes(), other.as_bytes());
     let mut at = 0;

@@ -88,9 +88,9 @@ pub enum Polled {
 /// The effect of a function on the bit that its first argument names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BitAccess {
-    /// It reads the level.
+    /// Reads the level.
     Read,
-    /// It drives the bit, or makes it an output.
+    /// Drives the bit, or makes it an output.
     Write,
 }
 
@@ -127,25 +127,25 @@ pub struct Attributes {
     pub waits: Option<&'static str>,
     /// The state that a program polls with it.
     pub polls: Option<Polled>,
-    /// Whether it sets the axis of its first argument to work.
+    /// True if it makes the axis of its first argument work.
     pub drives_axis: bool,
     /// The effect on the bit of its first argument.
     pub bit_access: Option<BitAccess>,
-    /// Whether it computes its result from its arguments and does nothing else.
+    /// True if it computes its result from its arguments and has no effect.
     pub is_pure: bool,
     /// Bytes of the thread's stack that it was measured to need at most, with the caller's part (`c67x.md` section 6.3).
     pub stack: Option<u32>,
     /// The registers of the processor that a call changes, A0 in bit 0, B0 in bit 32 (`c67-subset.md` section 7,
     /// `c67x.md` section 5.2). A compiler keeps values in the others across a call.
     pub changed_registers: u64,
-    /// Whether its last result is written in the cycle after its return.
+    /// True if its last result is written in the cycle after its return.
     pub returns_early: bool,
     /// The work after a wait (`costs.md` sections 3 and 5).
     pub resumption: Option<Resumption>,
 }
 
 impl Attributes {
-    /// Those of a function whose row has none.
+    /// The attributes of a function whose row has none.
     pub(crate) const NONE: Self = Self {
         waits: None,
         polls: None,

@@ -5,7 +5,7 @@
 //!
 //! Source: table `api/reserved-names.csv` of the specification.
 
-/// Whether the firmware has a symbol of this name that no table describes.
+/// Reports whether the firmware has a symbol of this name that no table describes.
 #[must_use]
 pub fn is_hidden(name: &str) -> bool {
     HIDDEN_NAMES.binary_search(&name).is_ok()

@@ -36,7 +36,7 @@ impl GuestAddr {
         Self(self.0.wrapping_add(bytes))
     }
 
-    /// Whether this is the null pointer.
+    /// Reports whether this is the null pointer.
     #[must_use]
     #[inline]
     pub const fn is_null(self) -> bool {
@@ -75,7 +75,7 @@ impl CodeAddr {
         self.0
     }
 
-    /// The same address as data would name it.
+    /// Converts it to the address of the data.
     #[must_use]
     #[inline]
     pub const fn as_guest_addr(self) -> GuestAddr {

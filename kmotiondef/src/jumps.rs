@@ -6,7 +6,7 @@
 use crate::GuestAddr;
 use crate::ids::Cycles;
 
-/// One of the two.
+/// `setjmp` or `longjmp`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JumpFunction {
     /// `int setjmp(jmp_buf place)`
@@ -16,7 +16,7 @@ pub enum JumpFunction {
 }
 
 impl JumpFunction {
-    /// Both.
+    /// Both functions.
     pub const ALL: [Self; 2] = [Self::Set, Self::Long];
 
     /// The function of this name.
@@ -40,7 +40,7 @@ impl JumpFunction {
         }
     }
 
-    /// Where bytecode calls it.
+    /// The address at which bytecode calls it.
     #[must_use]
     pub const fn address(self) -> GuestAddr {
         GuestAddr::new(match self {
@@ -58,7 +58,7 @@ impl JumpFunction {
         }
     }
 
-    /// Whether it returns a word.
+    /// Reports whether it returns a word.
     #[must_use]
     pub const fn has_result(self) -> bool {
         match self {
@@ -67,7 +67,7 @@ impl JumpFunction {
         }
     }
 
-    /// What the processor's code for it takes.
+    /// The cycles that the processor's code for it takes.
     #[must_use]
     pub const fn cost(self) -> Cycles {
         Cycles::new(match self {

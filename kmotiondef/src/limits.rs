@@ -4,7 +4,7 @@ macro_rules! limits {
     ($($(#[$doc:meta])+ $name:ident: $ty:ty = $value:literal;)*) => {
         $($(#[$doc])+ pub const $name: $ty = $value;)*
 
-/// What the firmware answers to `Version`, as it holds it.
+/// The answer of the firmware to `Version`, with its line end.
 pub const VERSION: &str = "KFLOP 4.34 Build 16:07:06 Aug 14 2018\n";
 /// The version stamp of images that are linked against firmware 4.34: the linker writes it, the loader compares it.
 pub const VERSION_STAMP: i16 = 434;

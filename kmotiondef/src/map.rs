@@ -4,7 +4,7 @@
 
 use crate::{GuestAddr, ThreadId};
 
-/// What answers an address range.
+/// The kind of an address range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegionKind {
     /// Memory that is read and written.
@@ -15,7 +15,7 @@ pub enum RegionKind {
     Device,
 }
 
-/// One range of the guest address space.
+/// A range of the guest address space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Region {
     /// Name for messages.
@@ -24,7 +24,7 @@ pub struct Region {
     pub base: GuestAddr,
     /// Size in bytes.
     pub size: u32,
-    /// What is there.
+    /// Its kind.
     pub kind: RegionKind,
 }
 
@@ -103,7 +103,7 @@ pub const INTERRUPT_STACK: u32 = 256;
 /// Bytes of it for the functions of a thread: without those of the interrupts and the 16 above the first frame.
 pub const THREAD_STACK: u32 = BOARD_STACK_SIZE - 16 - INTERRUPT_STACK;
 
-/// Where thread `thread`'s program starts.
+/// The start address of the program of thread `thread`.
 #[must_use]
 pub fn program_base(thread: ThreadId) -> GuestAddr {
     GuestAddr::new(PROGRAM_BASE + u32::from(thread.get() - 1) * PROGRAM_SIZE)

@@ -40,7 +40,7 @@ macro_rules! modes {
 }
 
 modes! {
-    /// Where an axis' position comes from: `CHAN.InputMode`.
+    /// The source of an axis' position: `CHAN.InputMode`.
     InputMode {
         /// Nowhere.
         None = NO_INPUT_MODE 0,
@@ -54,7 +54,7 @@ modes! {
         User = USER_INPUT_MODE 4,
     }
 
-    /// What an axis drives: `CHAN.OutputMode`.
+    /// The output that an axis drives: `CHAN.OutputMode`.
     OutputMode {
         /// Nothing.
         None = NO_OUTPUT_MODE 0,
@@ -76,17 +76,17 @@ modes! {
         ClosedLoopMicrostep = CL_MICROSTEP_MODE 8,
     }
 
-    /// How backlash is compensated: `CHAN.BacklashMode`.
+    /// The compensation of backlash: `CHAN.BacklashMode`.
     BacklashMode {
-        /// Not at all.
+        /// No compensation.
         Off = BACKLASH_OFF 0,
         /// At a constant rate.
         Linear = BACKLASH_LINEAR 1,
     }
 
-    /// What an entry of a profile or of the coordinated-motion buffer does: `trajectory_mode`.
+    /// The action of an entry of a profile or of the coordinated-motion buffer: `trajectory_mode`.
     TrajectoryMode {
-        /// It ends the list.
+        /// The end of the list.
         Off = TRAJECTORY_OFF 0,
         /// A third-order profile of one axis.
         Independent = TRAJECTORY_INDEPENDENT 1,
@@ -112,7 +112,7 @@ modes! {
         Exp = LAST_MOTION_EXP 3,
     }
 
-    /// What the data recorder samples: `GATHER_VALUE_DEF.type`.
+    /// The quantity that the data recorder samples: `GATHER_VALUE_DEF.type`.
     GatherType {
         /// Nothing: the list ends here.
         End = GATHER_END_TYPE 0,
@@ -133,7 +133,7 @@ modes! {
     }
 }
 
-/// What goes to zero when an axis is switched off.
+/// The outputs that go to zero when an axis is switched off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AtRest {
     /// Nothing: steps stay where they are.
@@ -148,18 +148,18 @@ pub enum AtRest {
     Analog,
 }
 
-/// What a mode of an output means for the servo.
+/// The properties of an output mode for the servo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutputTraits {
-    /// Nothing is compensated: the output goes where it is told.
+    /// True if nothing is compensated: the output goes where it is told.
     pub is_open_loop: bool,
-    /// It drives a step generator, which other axes may name too.
+    /// True if it drives a step generator, which other axes may name too.
     pub has_generator: bool,
-    /// It corrects the commanded place by its output, and slaves follow both.
+    /// True if it corrects the commanded position by its output, and slaves follow both.
     pub corrects_command: bool,
     /// Enabling keeps the destination, as the position says nothing of the motor.
     pub keeps_dest: bool,
-    /// What goes to zero when the axis is switched off.
+    /// The outputs that go to zero when the axis is switched off.
     pub at_rest: AtRest,
     /// Cycles of the servo interrupt for an enabled axis, as measured.
     pub cycles: i64,
@@ -178,7 +178,7 @@ impl OutputTraits {
 }
 
 impl OutputMode {
-    /// What the mode means for the servo: one row a mode.
+    /// The properties of the mode for the servo: one row a mode.
     #[must_use]
     pub const fn traits(self) -> OutputTraits {
         const LOOP: OutputTraits = OutputTraits::LOOP;
@@ -205,13 +205,13 @@ impl OutputMode {
         }
     }
 
-    /// Whether a number names a mode that drives a step generator.
+    /// Reports whether a number names a mode that drives a step generator.
     #[must_use]
     pub const fn has_generator(mode: Option<Self>) -> bool {
         matches!(mode, Some(mode) if mode.traits().has_generator)
     }
 
-    /// Whether nothing is compensated in a mode; a number without a meaning compensates nothing either.
+    /// Reports whether nothing is compensated in a mode; a number without a meaning compensates nothing either.
     #[must_use]
     pub const fn is_open_loop(mode: Option<Self>) -> bool {
         match mode {

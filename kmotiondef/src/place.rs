@@ -63,7 +63,7 @@ impl<T> Place<T> {
         Self { address, ty: PhantomData }
     }
 
-    /// Where it is.
+    /// The address.
     #[must_use]
     #[inline]
     pub const fn address(self) -> GuestAddr {

@@ -1,8 +1,8 @@
-//! What the board puts into its variables when it starts.
+//! The initial values of the board's variables.
 
 use crate::GuestAddr;
 
-/// What is in a variable or field at power-up.
+/// The value of a variable or field at power-up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Start {
     /// Zeros.
@@ -25,14 +25,14 @@ pub enum Start {
     PerAxis {
         /// The value for axis 0.
         first: u32,
-        /// From one axis to the next.
+        /// The difference from one axis to the next.
         step: u32,
     },
-    /// What the fields of its structure say.
+    /// The values that the fields of its structure state.
     Fields,
 }
 
-/// When the start value is stored.
+/// The power-ups at which the start value is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stored {
     /// At every power-up.

@@ -12,7 +12,7 @@ use crate::place::Field;
 use crate::start::Start::{self, Double, Fields, Float, Int, PerAxis, Zero};
 use crate::start::Stored;
 
-/// One structure.
+/// A structure.
 #[derive(Clone, Copy, Debug)]
 pub struct Structure {
     /// Its name in C.
@@ -25,7 +25,7 @@ pub struct Structure {
     pub fields: &'static [StructureField],
 }
 
-/// One field of a structure.
+/// A field of a structure.
 #[derive(Clone, Copy, Debug)]
 pub struct StructureField {
     /// Its name.
@@ -36,11 +36,11 @@ pub struct StructureField {
     pub offset: u32,
     /// Its size in bytes.
     pub size: u32,
-    /// What is in it at power-up.
+    /// Its value at power-up.
     pub start: Start,
-    /// When that is stored.
+    /// The power-ups at which it is stored.
     pub stored: Stored,
-    /// What it means, with its unit and range.
+    /// Its meaning, with unit and range.
     pub doc: &'static str,
 }
 
@@ -124,7 +124,7 @@ pub const STRUCTURES: &[Structure] = &[
 ];
 
 guest_struct! {
-    /// What the board reports to the PC.
+    /// The status record that the board sends to the PC.
     MainStatus = MAIN_STATUS, size 464, align 8;
 
     /// STAT_VERSION, and in the lower half the words of the record.
@@ -203,7 +203,7 @@ guest_struct! {
 
     /// GATHER_ ... _TYPE; 0 ends the list.
     TYPE = type: i32, at 0;
-    /// What is sampled at each servo tick.
+    /// The address that is sampled at each servo tick.
     ADDR = addr: *mut Void, at 4;
 }
 
@@ -220,7 +220,7 @@ guest_struct! {
     DEST = Dest: f64, at 8;
     /// Nonzero: `list[0]` is set from bufptr, recording begins at `list[1]`.
     INJECT = Inject: i32, at 16;
-    /// What is recorded at each tick, ended by type 0.
+    /// The quantities that are recorded at each tick, ended by type 0.
     LIST = list: [GatherValueDef; 32], at 20;
 }
 

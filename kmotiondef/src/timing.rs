@@ -1,9 +1,9 @@
-//! How long programs and the firmware take: the choice that the compiler and the board share.
+//! The time that programs and the firmware take: the choice that the compiler and the board share.
 
-/// Whose code the board's time is counted for.
+/// The code whose cycles count as the board's time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Timing {
-    /// What the vendor's compiler makes of the source takes on the board (`spec/costs.md`).
+    /// The cycles of the vendor compiler's code for the source, on the board (`spec/costs.md`).
     Vendor(WaitStates),
     /// A cycle or two for each instruction, whatever the board would take.
     Fast,
@@ -16,7 +16,7 @@ impl Default for Timing {
 }
 
 impl Timing {
-    /// As on the board, with what is certain of its memory.
+    /// The board's timing, with the known wait states of its memory.
     pub const VENDOR: Self = Self::Vendor(WaitStates::REGISTERS);
 
     /// The wait states that are counted; `None` if time is not the board's.
@@ -45,7 +45,7 @@ pub struct WaitStates {
 impl WaitStates {
     /// Memory that never waits.
     pub const NONE: Self = Self { register: 0, sdram: 0 };
-    /// What the firmware programs into the bus.
+    /// The wait states that the firmware programs into the bus.
     pub const REGISTERS: Self = Self { register: 44, sdram: 0 };
 
     /// The wait states of a name: `none`, `io44`, `io44_sd20` and the like, or the cycles of SDRAM alone.

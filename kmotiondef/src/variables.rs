@@ -16,31 +16,31 @@ use crate::start::Start::{self, Address, Double, Each, Fields, Float, Int, Text,
 use crate::start::Stored;
 use crate::structs::{Chan, Gather, ParametricCoeff, Persist, Spindle, TripCoeff};
 
-/// One firmware variable.
+/// A firmware variable.
 #[derive(Clone, Copy, Debug)]
 pub struct FirmwareVariable {
     /// The name that programs use.
     pub name: &'static str,
     /// Its C type.
     pub ty: CType,
-    /// Where it is.
+    /// Its address.
     pub address: GuestAddr,
     /// Its size in bytes.
     pub size: u32,
-    /// What is in it at power-up.
+    /// Its value at power-up.
     pub start: Start,
-    /// When that is stored.
+    /// The power-ups at which it is stored.
     pub stored: Stored,
-    /// What it means.
+    /// Its meaning.
     pub doc: &'static str,
 }
 
-/// Where the UART's receive ring is.
+/// The address of the UART's receive ring.
 const RECEIVE_RING: GuestAddr = RS232_REC_BUF.address();
-/// Where the UART's transmit ring is.
+/// The address of the UART's transmit ring.
 const TRANSMIT_RING: GuestAddr = RS232_TX_BUF.address();
 
-/// Where an axis' structure is.
+/// The address of an axis' structure.
 const fn axis(number: usize) -> GuestAddr {
     CHAN.element(number).address()
 }
@@ -188,7 +188,7 @@ macro_rules! for_each_firmware_var {
             CS0_TIME_BASE = CS0_TimeBase: f64, at 0x1001_7E38, starts Double(9e-5);
             /// Largest change of CS0_TimeBase in a tick, seconds.
             CS0_TIME_BASE_DELTA = CS0_TimeBaseDelta: f64, at 0x1001_7E40, starts Zero;
-            /// What CS0_TimeBase is being ramped to, seconds a tick.
+            /// The value that CS0_TimeBase is being ramped to, seconds a tick.
             CS0_TIME_BASE_DESIRED = CS0_TimeBaseDesired: f64, at 0x1001_7E58, starts Double(9e-5);
             /// Seconds to a stop, computed when a feedhold begins.
             CS0_DECEL_TIME = CS0_DecelTime: f32, at 0x1001_7E7C, starts Float(1.0);

@@ -62,7 +62,7 @@ pub(super) fn of_board(facts: &BoardFacts, version: (&str, &str)) -> Vec<Header>
     EMBEDDED.iter().zip(texts).map(|((name, _), text)| (*name, leak(text))).collect()
 }
 
-/// Whether a header defines a macro.
+/// Reports whether a header defines a macro.
 pub(super) fn defines(text: &[u8], name: &str) -> bool {
     str::from_utf8(text).is_ok_and(|text| definition(text, name).is_some())
 }

@@ -10,19 +10,19 @@ pub struct FunctionType {
     pub result: CType,
     /// The types of its parameters.
     pub params: Vec<CType>,
-    /// Whether more arguments may follow.
+    /// True if more arguments may follow.
     pub is_variadic: bool,
 }
 
 impl FunctionType {
-    /// That of a row of the table.
+    /// Returns the type of a row of the table.
     #[must_use]
     pub fn of_row(row: &FirmwareFunction) -> Self {
         let params = row.params.iter().map(|param| param.ty).collect();
         Self { result: row.result, params, is_variadic: row.is_variadic }
     }
 
-    /// That of a prototype; `None` if a type of it is not one of [`CType`].
+    /// Parses the type of a prototype; `None` if a type of it is not one of [`CType`].
     pub(super) fn parse(prototype: &'static str) -> Option<Self> {
         let (head, params) = prototype.split_once('(')?;
         let params = params.strip_suffix(')')?;
