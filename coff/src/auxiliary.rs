@@ -1,4 +1,4 @@
-//! What the first auxiliary entry of a symbol means.
+//! The meaning of a symbol's first auxiliary entry.
 //!
 //! The format does not say; it follows from the storage class, the type and the name of the
 //! symbol it belongs to.
@@ -10,17 +10,17 @@ use crate::raw;
 /// An auxiliary entry with its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Auxiliary {
-    /// Of a function: its size and its lines.
+    /// For a function: its size and its lines.
     Function(raw::FunctionAux),
-    /// Of `.bf`, `.ef`, `.bb` or `.eb`: the line where a function or block begins or ends.
+    /// For `.bf`, `.ef`, `.bb` or `.eb`: the line where a function or block begins or ends.
     Boundary(raw::BoundaryAux),
-    /// Of a symbol that names a section.
+    /// For a symbol that names a section.
     Section(raw::SectionAux),
-    /// Of a structure, union or enumeration tag.
+    /// For a structure, union or enumeration tag.
     Tag(raw::TagAux),
-    /// Of an array.
+    /// For an array.
     Array(raw::ArrayAux),
-    /// Of anything else that has a size.
+    /// For other symbols with a size.
     Object(raw::ObjectAux),
 }
 

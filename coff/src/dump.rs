@@ -121,7 +121,7 @@ fn section_name(image: &Image, number: SectionNumber) -> String {
     }
 }
 
-/// What the first auxiliary entry adds; the vendor's compiler writes one without content.
+/// Describes the first auxiliary entry; the vendor's compiler writes one without content.
 fn describe_aux(out: &mut String, symbol: &Symbol) -> fmt::Result {
     match symbol.auxiliary() {
         Some(Auxiliary::Function(aux)) => write!(out, ", {:#x} bytes", aux.size.get()),

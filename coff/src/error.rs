@@ -1,4 +1,4 @@
-//! What can be wrong with an image, and where.
+//! Errors in an image, each with its position in the file.
 
 use std::fmt;
 
@@ -8,11 +8,11 @@ use std::fmt;
 pub struct Error {
     /// Offset in the file.
     pub at: u64,
-    /// What is wrong there.
+    /// The kind of error.
     pub kind: ErrorKind,
 }
 
-/// What is wrong.
+/// A kind of error in an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ErrorKind {
     /// The file begins with something else.
@@ -29,7 +29,7 @@ pub enum ErrorKind {
         /// Its size in bytes.
         size: u64,
     },
-    /// Parts share more bytes than a file of this size can have by itself.
+    /// Parts share more bytes than a file of this size can contain.
     #[error("{0} overlaps with others")]
     Overlap(Part),
     /// A name lies outside the string table.
@@ -43,15 +43,15 @@ pub enum ErrorKind {
     /// The auxiliary entries of a symbol go beyond the symbol table.
     #[error("{count} auxiliary entries where {left} entries are left")]
     Auxiliary {
-        /// How many the symbol has.
+        /// Number of auxiliary entries that the symbol claims.
         count: u8,
-        /// How many entries follow it.
+        /// Number of entries after the symbol.
         left: u32,
     },
     /// A name to be written contains a NUL.
     #[error("a name contains a NUL character")]
     NulInName,
-    /// There is more of something than the format can count.
+    /// A count exceeds the range of its field.
     #[error("{0} exceeds what the format can count")]
     TooLarge(Part),
 }

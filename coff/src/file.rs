@@ -62,13 +62,13 @@ impl<'a> File<'a> {
         Target(self.header.target.get())
     }
 
-    /// When it was made, in Unix seconds.
+    /// The creation time, in Unix seconds.
     #[must_use]
     pub fn timestamp(&self) -> u32 {
         self.header.timestamp.get()
     }
 
-    /// What has been stripped, and whether it is complete.
+    /// The flags: which parts have been stripped, and whether the image is complete.
     #[must_use]
     pub fn flags(&self) -> FileFlags {
         FileFlags(self.header.flags.get())
@@ -132,7 +132,7 @@ impl<'a> File<'a> {
         Ok(SymbolView { index, at, name: self.name(&entry.name, at)?, entry, aux })
     }
 
-    /// Where each section header is in the file.
+    /// The file offset of each section header.
     fn section_offsets(&self) -> impl Iterator<Item = u64> + use<> {
         let start = self.sections_at;
         (0..).map(move |index| start + index * size::<raw::SectionHeader>())
@@ -174,13 +174,13 @@ impl<'a> SectionView<'a> {
         self.header
     }
 
-    /// Where its header is in the file.
+    /// The file offset of its header.
     #[must_use]
     pub const fn offset(&self) -> u64 {
         self.at
     }
 
-    /// What it is.
+    /// The flags: its kind and alignment.
     #[must_use]
     pub fn flags(&self) -> SectionFlags {
         SectionFlags(self.header.flags.get())
@@ -241,7 +241,7 @@ impl<'a> SectionView<'a> {
 pub struct SymbolView<'a> {
     /// Its index as the format counts, auxiliary entries included.
     pub index: u32,
-    /// Where its entry is in the file.
+    /// The file offset of its entry.
     pub at: u64,
     /// Its name.
     pub name: &'a [u8],
@@ -257,7 +257,7 @@ impl SymbolView<'_> {
         self.entry.value.get()
     }
 
-    /// Where the value lies.
+    /// The section that the value lies in.
     #[must_use]
     pub fn section(&self) -> SectionNumber {
         SectionNumber(self.entry.section.get())
@@ -269,7 +269,7 @@ impl SymbolView<'_> {
         SymbolType(self.entry.ty.get())
     }
 
-    /// What it is.
+    /// Its storage class.
     #[must_use]
     pub fn class(&self) -> StorageClass {
         StorageClass(self.entry.class)

@@ -1,4 +1,4 @@
-//! What reader and writer agree on: an image as values.
+//! The image as values, which reader and writer share.
 //!
 //! Names are bytes, for a file may hold any; counts and file offsets do not appear, the
 //! writer finds them. Auxiliary entries stay as they are in the file, because what they mean
@@ -19,9 +19,9 @@ use crate::raw;
 pub struct Image {
     /// The processor it is for.
     pub target: Target,
-    /// When it was made, in Unix seconds; 0 in images of compilers.
+    /// The creation time, in Unix seconds; 0 in images of compilers.
     pub timestamp: u32,
-    /// What has been stripped, and whether it is complete.
+    /// Flags: which parts have been stripped, and whether the image is complete.
     pub flags: FileFlags,
     /// Entry point and sizes; `None` if the file has no optional header of the usual size.
     pub program: Option<Program>,
@@ -31,7 +31,7 @@ pub struct Image {
     pub symbols: Vec<Symbol>,
 }
 
-/// What the optional header says about the program.
+/// The part of the optional header that describes the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Program {
     /// Version of the tool that wrote the image.
@@ -40,13 +40,13 @@ pub struct Program {
     pub text_size: u32,
     /// Size of initialised data.
     pub data_size: u32,
-    /// Size of uninitialised data; in an image of the vendor's compiler nothing else tells it.
+    /// Size of uninitialised data; in an image of the vendor's compiler the only place that has it.
     pub bss_size: u32,
-    /// Where execution begins.
+    /// Address of the entry point.
     pub entry: u32,
-    /// Where `.text` begins.
+    /// Start address of `.text`.
     pub text_start: u32,
-    /// Where `.data` begins.
+    /// Start address of `.data`.
     pub data_start: u32,
 }
 
@@ -59,13 +59,13 @@ pub struct Section {
     pub physical: u32,
     /// Address at run time, where the loader puts it.
     pub address: u32,
-    /// What it is, and its alignment.
+    /// Its kind and alignment.
     pub flags: SectionFlags,
     /// Memory page.
     pub page: u16,
     /// Its bytes.
     pub contents: Contents,
-    /// What a linker has to complete in its bytes; none in a linked image.
+    /// Its relocations, for a linker; none in a linked image.
     pub relocations: Vec<Relocation>,
     /// Its line numbers.
     pub lines: Vec<Line>,
@@ -92,7 +92,7 @@ impl Section {
     }
 }
 
-/// What a section holds.
+/// The contents of a section.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Contents {
     /// Bytes in the file.
@@ -110,7 +110,7 @@ pub struct Relocation {
     pub symbol: u32,
     /// Further information that the kind needs.
     pub displacement: u16,
-    /// How the bytes are completed; the target decides.
+    /// The kind of relocation; its meaning depends on the target.
     pub kind: u16,
 }
 
@@ -135,13 +135,13 @@ pub struct Symbol {
     pub name: Name,
     /// Its value, mostly an address.
     pub value: u32,
-    /// Where the value lies.
+    /// The section that the value lies in.
     pub section: SectionNumber,
     /// The type of what it names.
     pub ty: SymbolType,
-    /// What it is.
+    /// Its storage class.
     pub class: StorageClass,
-    /// What else there is to say about it.
+    /// Its auxiliary entries.
     pub aux: Vec<Aux>,
 }
 

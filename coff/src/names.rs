@@ -11,7 +11,7 @@ macro_rules! newtype_names {
         newtype_names!(@type [$(#[$doc])+] $name($repr) { $($rows)* });
 
         impl $name {
-            /// Whether all bits of `other` are set.
+            /// Reports whether all bits of `other` are set.
             #[must_use]
             pub const fn contains(self, other: Self) -> bool {
                 self.0 & other.0 == other.0
@@ -79,7 +79,7 @@ newtype_names! {
         LITTLE_ENDIAN = 0x0100 "LITTLE";
         /// The target is big endian.
         BIG_ENDIAN = 0x0200 "BIG";
-        /// What the vendor's tools write into every linked image.
+        /// The flags that the vendor's tools write into every linked image.
         LINKED = 0x1143 "LINKED";
     }
 }
@@ -107,7 +107,7 @@ newtype_names! {
 }
 
 impl SectionFlags {
-    /// Where the logarithm of the alignment is.
+    /// Position of the logarithm of the alignment, in bits.
     const ALIGN_SHIFT: u32 = 8;
 
     /// The alignment in bytes.
@@ -116,7 +116,7 @@ impl SectionFlags {
         1 << (self.0 >> Self::ALIGN_SHIFT & 0xF)
     }
 
-    /// The same flags with the alignment `align`, a power of two of at most 32768.
+    /// Returns the flags with the alignment `align`, a power of two of at most 32768.
     #[must_use]
     pub const fn with_align(self, align: u32) -> Self {
         Self(self.0 & !0xF00 | (align.trailing_zeros() & 0xF) << Self::ALIGN_SHIFT)
@@ -160,7 +160,7 @@ fn write_flags<'a>(
 }
 
 newtype_names! {
-    /// Where the value of a symbol lies: a section from 1, or one of these (section 6.1).
+    /// The section that the value of a symbol lies in: a number from 1, or one of these (section 6.1).
     values SectionNumber(i16) {
         /// Nowhere: the symbol is not defined.
         UNDEFINED = 0 "UNDEF";
@@ -172,7 +172,7 @@ newtype_names! {
 }
 
 newtype_names! {
-    /// What a symbol is (section 6.1).
+    /// The storage class of a symbol (section 6.1).
     values StorageClass(u8) {
         /// Nothing.
         NULL = 0 "NULL";
@@ -269,7 +269,7 @@ newtype_names! {
     }
 }
 
-/// How a type is made of another.
+/// One step of deriving a type from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Derivation {
     /// A pointer to it.
@@ -285,7 +285,7 @@ pub enum Derivation {
 pub struct SymbolType(pub u16);
 
 impl SymbolType {
-    /// A base type by itself.
+    /// A base type without derivations.
     #[must_use]
     pub const fn new(base: BaseType) -> Self {
         Self(base.0 & 0xF)

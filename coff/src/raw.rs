@@ -8,7 +8,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 
 /// Magic number of COFF version 2.
 pub const MAGIC: u16 = 0x00C2;
-/// The same as a big-endian file begins with.
+/// The first two bytes of a big-endian file, read as little-endian.
 pub const MAGIC_BIG_ENDIAN: u16 = 0xC200;
 /// Magic number of the optional header.
 pub const OPTIONAL_MAGIC: i16 = 0x0108;
@@ -105,7 +105,7 @@ structures! {
         symbol: U32,
         /// Further information that the kind needs.
         displacement: U16,
-        /// How the bytes are completed; the target decides.
+        /// The kind of relocation; its meaning depends on the target.
         kind: U16,
     }
 

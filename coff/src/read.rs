@@ -31,10 +31,10 @@ impl Image {
     }
 }
 
-/// How often the names of an image may use the same bytes of the string table, on average.
+/// Maximum number of names of an image, on average, that may share a byte of the string table.
 const NAME_SHARING: u64 = 4;
 
-/// What the image may still take of the file.
+/// The work that reading an image may still cause, bounded by the size of the file.
 struct Reader {
     data_left: u64,
     relocations_left: u64,

@@ -69,7 +69,7 @@ impl Image {
     }
 }
 
-/// Where the parts of an image will be in the file.
+/// The file offsets of the parts of an image.
 #[derive(Clone, Debug)]
 pub struct Layout {
     sections: Vec<SectionPlace>,
@@ -79,7 +79,7 @@ pub struct Layout {
     size: usize,
 }
 
-/// Where the parts of a section will be.
+/// The file offsets of the parts of a section.
 #[derive(Clone, Copy, Debug)]
 struct SectionPlace {
     data_at: u32,
@@ -158,9 +158,9 @@ impl Layout {
 /// The string table: the names that are too long for their fields, each once.
 #[derive(Clone, Debug, Default)]
 struct Strings {
-    /// What follows the length word.
+    /// The bytes after the length word.
     bytes: Vec<u8>,
-    /// Where each name is, counted from the length word.
+    /// Offset of each name, counted from the length word.
     offsets: BTreeMap<Name, u32>,
 }
 

@@ -1,4 +1,4 @@
-//! What is written is read back; what is mutilated is refused or read, never a panic.
+//! Round trips: a written image is read back; a mutilated one is refused or read, without a panic.
 
 use std::num::NonZeroU16;
 
