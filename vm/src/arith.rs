@@ -52,7 +52,7 @@ float_operations! {
     div_f64(f64) = /, canonical_f64;
 }
 
-/// To nearest.
+/// Rounds to nearest.
 #[must_use]
 #[inline]
 pub const fn f32_from_f64(value: f64) -> f32 {
@@ -108,11 +108,11 @@ pub enum WordDivision {
 }
 
 impl WordDivision {
-    /// All of them.
+    /// All divisions.
     pub const ALL: [Self; 4] =
         [Self::Quotient, Self::UnsignedQuotient, Self::Remainder, Self::UnsignedRemainder];
 
-    /// What the firmware's routine makes of a division of `a` by zero.
+    /// The result of the firmware's routine for a division of `a` by zero.
     ///
     /// It subtracts and shifts one time more than the dividend has bits, and zero can always be subtracted
     /// (`c67-subset.md` section 7; measured for what that section does not list).

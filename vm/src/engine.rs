@@ -20,7 +20,7 @@ use crate::thread::Threads;
 use crate::trap::{Trap, TrapKind};
 use crate::wake::Wake;
 
-/// Why an engine returned.
+/// The reason why an engine returned.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Stop {
@@ -40,7 +40,7 @@ pub enum Stop {
     Trapped(Trap),
 }
 
-/// Where a thread that runs bytecode can lose the processor.
+/// The points at which a thread that runs bytecode can lose the processor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Preemption {
     /// After a `charge` that overdraws the budget: what it pays for is never split.
@@ -49,9 +49,9 @@ pub enum Preemption {
     /// Before any instruction, in the cycle in which the slice ends, as on the board: between the load and the store of
     /// one statement, too, and between the two words of a store of eight bytes.
     ///
-    /// A segment that the budget covers is executed as ever. Another one is executed in [`meter::steps`] to its end,
-    /// in this slice and the next: an instruction takes effect if some of the budget is left then. A firmware function,
-    /// a call within the program with its result, and the copy of a block are one step.
+    /// A segment that the budget covers is executed at once. Another one is executed in [`meter::steps`] to its end, in
+    /// this slice and the next: an instruction takes effect if some of the budget is left then. A firmware function, a
+    /// call within the program with its result, and the copy of a block are one step.
     Instructions,
 }
 
@@ -113,26 +113,26 @@ impl Stack {
     }
 }
 
-/// What an engine works with while it runs one context.
+/// The context of one slice: memory, threads, firmware and budget.
 #[derive(Debug)]
 pub struct Slice<'a, F: ?Sized> {
     /// Guest memory.
     pub memory: &'a mut GuestMemory,
     /// The seven threads.
     pub threads: &'a mut Threads,
-    /// Where firmware calls go.
+    /// The firmware, for its functions.
     pub firmware: &'a mut F,
     /// The current tick.
     pub tick: Ticks,
     /// Instant at which the budget was `length`.
     pub start: Cycles,
-    /// What the slice can spend in all.
+    /// The budget of the whole slice, in cycles.
     pub length: Cycles,
-    /// What is left of it; below zero when the last block overdrew it.
+    /// The rest of the budget; below zero when the last block overdrew it.
     pub budget: Cycles,
     /// The wake that came true, if the context is in a waiting call.
     pub woken: Option<Wake>,
-    /// Whether the budget is that of several slices, of a thread that is alone and of a board that does nothing.
+    /// True if the budget is that of several slices, of a thread that is alone and of a board that does nothing.
     ///
     /// The context then computes with registers and SDRAM alone. Before anything else it stops with
     /// [`Stop::NeedsBoard`].
@@ -181,14 +181,14 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
 #[error("the snapshot is from another board, whose native threads cannot continue here")]
 pub struct ForeignSnapshot;
 
-/// Why a context is held.
+/// The reason why a context is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HoldReason {
     /// Before an instruction with a breakpoint.
     Breakpoint,
     /// After one instruction, as was requested.
     Step,
-    /// Something that is watched was changed.
+    /// A watched range has changed.
     Changed {
         /// Its place in the list that was set.
         index: usize,
@@ -200,9 +200,9 @@ pub enum HoldReason {
 /// A context that is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hold {
-    /// Which one.
+    /// The context.
     pub context: ContextId,
-    /// Why.
+    /// The reason.
     pub reason: HoldReason,
 }
 
@@ -211,7 +211,7 @@ pub struct Hold {
 pub struct FrameView {
     /// The instruction that is executed next; in a caller, the call.
     pub at: CodeAddr,
-    /// Where it continues: the same, or in a caller what follows the call.
+    /// The address at which it continues: `at`, or in a caller the instruction after the call.
     pub continues_at: CodeAddr,
     /// Address of the frame in guest memory.
     pub frame: GuestAddr,
@@ -219,15 +219,15 @@ pub struct FrameView {
     pub registers: Vec<u64>,
 }
 
-/// What the machine asks of every engine.
+/// An engine, as the machine uses it.
 pub trait Executor: Default {
-    /// What a thread is loaded with that runs on this engine.
+    /// The code that this engine runs.
     type Code;
 
-    /// Whether it makes code of the host; real images on the same machine are translated then, too.
+    /// True if it makes code of the host; real images on the same machine are translated then, too.
     const TRANSLATES: bool = false;
 
-    /// Whether it keeps an account of where the time went; one of real images on the same machine is kept then, too.
+    /// True if it keeps an account of the time spent; one of real images on the same machine is kept then, too.
     const KEEPS_ACCOUNT: bool = false;
 
     /// All contexts as they were at an instant between two slices.
@@ -268,7 +268,7 @@ pub trait Executor: Default {
     /// then.
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), ForeignSnapshot>;
 
-    /// Whether `id` may be resumed with a [long slice](Slice::is_long).
+    /// Reports whether `id` may be resumed with a [long slice](Slice::is_long).
     ///
     /// In one it must stop as well before it uses more of its stack than ever.
     fn takes_long_slices(&self, id: ContextId) -> bool {
@@ -279,11 +279,11 @@ pub trait Executor: Default {
     /// The most bytes of its stack that `id` has used since its start.
     fn stack_used(&self, id: ContextId) -> u32;
 
-    /// Where `id` is: its instruction, then the calls that led there, innermost first.
+    /// The position of `id`: its instruction, then the calls that led there, innermost first.
     fn backtrace(&self, id: ContextId) -> Vec<CodeAddr>;
 
-    /// Whether it can hold contexts for a debugger: without it, the methods below do nothing and find nothing. Where
-    /// contexts are held changes neither what a program does nor when.
+    /// True if it can hold contexts for a debugger: without it, the methods below do nothing and find nothing. Holding
+    /// contexts changes neither what a program does nor when.
     const HOLDS: bool = false;
 
     /// Holds contexts before these instructions, and before no others.

@@ -1,4 +1,4 @@
-//! How a program leaves the machine: firmware calls, their results and waits.
+//! The interface to the firmware: its functions, their results and waits.
 //!
 //! The machine sees only this trait. The kernel implements it and finds the function by its
 //! guest address, as the linked program names it.
@@ -57,11 +57,11 @@ impl Value {
     }
 }
 
-/// What a firmware call came to.
+/// The result of a firmware call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub enum Outcome<T> {
-    /// It is done; the program continues after the call.
+    /// The call is complete; the program continues after it.
     Done(T),
     /// The thread waits. When the wake comes true the same call is made again, with
     /// [`Caller::woken`] saying so.
@@ -82,7 +82,7 @@ pub struct Signature {
 }
 
 impl Signature {
-    /// Whether a function of this signature may be called through a pointer to `called`.
+    /// Reports whether a function of this signature may be called through a pointer to `called`.
     ///
     /// The call passes what the function takes, in this order; what it passes after that is ignored. A result may be
     /// ignored, and one that is not there reads as 0. Machine code relies on the order: in every calling convention
@@ -103,15 +103,15 @@ impl Signature {
 /// call it without asking the firmware.
 #[derive(Clone, Copy, Debug)]
 pub struct Pure {
-    /// What a call spends.
+    /// The cost of a call, in cycles.
     pub cost: Cycles,
-    /// What is computed.
+    /// The computation.
     pub function: PureFunction,
 }
 
 macro_rules! pure_functions {
     ($($(#[$doc:meta])+ $variant:ident $(($pointer:ty))? = ($($parameter:ident),+) -> $result:ident;)*) => {
-        /// What a [`Pure`] function computes.
+        /// The computation of a [`Pure`] function.
         #[derive(Clone, Copy, Debug)]
         pub enum PureFunction {
             $($(#[$doc])+ $variant $(($pointer))?,)*
@@ -171,7 +171,7 @@ impl PureFunction {
     }
 }
 
-/// One firmware call as the kernel sees it.
+/// A firmware call as the kernel sees it.
 #[derive(Debug)]
 pub struct Caller<'a> {
     /// The calling thread; `None` in the call-back, which must not wait.
@@ -184,9 +184,9 @@ pub struct Caller<'a> {
     pub tick: Ticks,
     /// Instant at which the current slice's budget was full.
     pub slice_start: Cycles,
-    /// What the slice could spend at its start.
+    /// The budget of the slice at its start, in cycles.
     pub slice: Cycles,
-    /// What is left of it; the function spends its cost here.
+    /// The rest of it; the function spends its cost here.
     pub budget: &'a mut Cycles,
     /// The wake that made the machine repeat the call; `None` the first time.
     pub woken: Option<Wake>,
@@ -209,7 +209,7 @@ impl Caller<'_> {
     }
 }
 
-/// What the kernel works with outside a firmware call.
+/// The context in which the kernel works outside a firmware call.
 #[derive(Debug)]
 pub struct TickContext<'a> {
     /// Guest memory.
@@ -231,7 +231,7 @@ pub struct ExecutedPacket {
     pub at: CodeAddr,
     /// The instant at which it began.
     pub start: Cycles,
-    /// What it took.
+    /// The cycles that it took.
     pub cycles: Cycles,
     /// Its instructions, bars between them.
     pub text: String,
@@ -248,11 +248,11 @@ pub struct SharedAccess<'a> {
     pub address: GuestAddr,
     /// Bytes.
     pub size: u32,
-    /// Whether it is a store.
+    /// True for a store.
     pub is_store: bool,
     /// The value as a register slot; 0 for the copy of a block.
     pub value: u64,
-    /// The loads in the same function whose values the stored one is made of.
+    /// The loads in the same function whose values the stored value depends on.
     pub made_of: &'a [CodeAddr],
     /// The instant.
     pub now: Cycles,
@@ -279,7 +279,7 @@ pub trait Firmware: Bus {
         None
     }
 
-    /// Whether the function at `address` takes a variable number of arguments.
+    /// Reports whether the function at `address` takes a variable number of arguments.
     fn is_variadic(&self, address: GuestAddr) -> bool {
         let _ = address;
         false
@@ -307,13 +307,13 @@ pub trait Firmware: Bus {
     /// The servo interrupt: all work of the kernel in one tick.
     fn tick(&mut self, context: &mut TickContext<'_>);
 
-    /// What the servo interrupt takes of the present tick, asked after [`tick`](Self::tick).
+    /// The cycles that the servo interrupt takes of the present tick, asked after [`tick`](Self::tick).
     fn servo_time(&self, memory: &GuestMemory) -> Cycles {
         let _ = memory;
         Cycles::new(8_000)
     }
 
-    /// The rest of this tick belongs to `turn`.
+    /// Gives the rest of this tick to `turn`.
     fn switch_to(&mut self, turn: Turn, context: &mut TickContext<'_>) {
         let _ = (turn, context);
     }
@@ -333,7 +333,7 @@ pub trait Firmware: Bus {
         let _ = (thread, start, end);
     }
 
-    /// Whether packets of real code of this thread, of the call-back for `None`, should be reported one by one.
+    /// Reports whether packets of real code of this thread, of the call-back for `None`, are reported one by one.
     fn follows_packets(&self, thread: Option<ThreadId>) -> bool {
         let _ = thread;
         false
@@ -357,13 +357,14 @@ pub trait Firmware: Bus {
         let _ = (thread, used);
     }
 
-    /// How many of the next ticks would do nothing but what [`skip_ticks`](Self::skip_ticks) does at once.
+    /// Number of the next ticks that do nothing but what [`skip_ticks`](Self::skip_ticks) does at once.
     fn quiet_ticks(&self, memory: &GuestMemory) -> u64 {
         let _ = memory;
         0
     }
 
-    /// The same while a program computes with SDRAM and sees nothing else; at most as many.
+    /// Number of the next ticks that are quiet while a program computes with SDRAM alone; at most as many as
+    /// [`quiet_ticks`](Self::quiet_ticks).
     fn quiet_slices(&self, memory: &GuestMemory) -> u64 {
         let _ = memory;
         0

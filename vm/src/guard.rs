@@ -1,9 +1,9 @@
-//! What precedes bytecode in an image: words that the real processor may execute.
+//! The words before the bytecode of an image: code that the real processor may execute.
 //!
-//! Whoever loads an image without looking at its target, as the vendor's loader does, would have the processor execute
-//! bytecode. So an image's text begins with a return: a thread that is started there has ended before it reaches the
-//! bytecode, whose first word lies after. The entry point of such an image is the start of its text, for the processor
-//! as for the simulated board, which reads in the next word where `main` is.
+//! A loader that ignores an image's target, as the vendor's does, would have the processor execute bytecode. So an
+//! image's text begins with a return: a thread that is started there has ended before it reaches the bytecode, whose
+//! first word follows. The entry point of such an image is the start of its text, for the processor as for the
+//! simulated board, which reads the address of `main` in the next word.
 
 use kmotiondef::GuestAddr;
 
@@ -26,7 +26,7 @@ pub fn words(main: GuestAddr) -> [u8; BYTES] {
     bytes
 }
 
-/// Where the bytecode of a text at `start` begins.
+/// The start of the bytecode in a text at `start`.
 #[must_use]
 pub const fn code_at(start: GuestAddr) -> GuestAddr {
     start.offset(BYTES as u32)

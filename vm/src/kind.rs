@@ -1,11 +1,11 @@
-//! What an instruction is: one word of its row, from which every predicate over instructions follows.
+//! The kind of an instruction: one word of its row, from which every predicate over instructions follows.
 //!
 //! A question about instructions is a method of [`OpKind`] or a match over it, which names every kind: a new kind is
 //! then a compile error wherever somebody must decide.
 
 use crate::operand::Class;
 
-/// What a load or store moves.
+/// The access of a load or store: width and extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Width {
@@ -47,7 +47,7 @@ impl Width {
 /// Defines the names of operands that are requested by name.
 macro_rules! operand_names {
     ($($(#[doc = $doc:literal])+ $name:ident = $text:literal,)*) => {
-        /// A name that operands have in the rows, as far as anybody asks for an operand by its name.
+        /// A name that operands have in the rows, for operands that are looked up by name.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Name {
             $($(#[doc = $doc])+ $name,)*
@@ -57,7 +57,7 @@ macro_rules! operand_names {
             /// All names.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
-            /// As it is written in the rows.
+            /// The name as the rows spell it.
             #[must_use]
             pub const fn text(self) -> &'static str {
                 match self {
@@ -93,7 +93,7 @@ operand_names! {
     Sig = "sig",
     /// The register that is copied.
     Src = "src",
-    /// Where a branch goes, or a block is written.
+    /// The target of a branch, or the destination of a block.
     To = "to",
 }
 
@@ -141,7 +141,7 @@ pub enum OpKind {
 }
 
 impl OpKind {
-    /// Whether execution never continues with the next word.
+    /// Reports whether execution never continues with the next word.
     #[must_use]
     pub const fn ends_path(self) -> bool {
         match self {
@@ -165,7 +165,7 @@ impl OpKind {
         }
     }
 
-    /// Whether execution simply continues with the next word, and the word belongs to no call.
+    /// Reports whether execution simply continues with the next word, and the word belongs to no call.
     #[must_use]
     pub const fn is_straight(self) -> bool {
         match self {
@@ -191,7 +191,7 @@ impl OpKind {
         }
     }
 
-    /// What is moved between memory and a register.
+    /// The width of the access between memory and a register.
     #[must_use]
     pub const fn width(self) -> Option<Width> {
         match self {

@@ -1,4 +1,4 @@
-//! What a thread is loaded with, whatever engine runs it.
+//! The code that a thread is loaded with, for any engine.
 
 mod image;
 
@@ -12,7 +12,7 @@ use crate::program::Program;
 
 pub use self::image::Image;
 
-/// What a thread is loaded with; each kind has its engine.
+/// The code that a thread is loaded with; each kind has its engine.
 #[derive(Clone, Debug)]
 pub enum Loaded {
     /// Bytecode, for the engine that the machine was made with.
@@ -49,7 +49,7 @@ impl Loaded {
         }
     }
 
-    /// Whether a call of `address` is one of its functions.
+    /// Reports whether `address` is that of one of its functions.
     #[must_use]
     pub fn has_function(&self, address: GuestAddr) -> bool {
         match self {

@@ -32,9 +32,9 @@ use crate::wake::Wake;
 /// Bytes of the board's stacks that a program can use: each interrupt takes 128 of the 2048.
 pub const BOARD_STACK_USABLE: u32 = BOARD_STACK_SIZE - 128;
 
-/// How long a call-back may run before it counts as endless: the board would stop.
+/// Ticks that a call-back may run before it counts as endless: the board would stop.
 const CALLBACK_TICKS: i64 = 100;
-/// What a tick takes of the computer besides programs, in cycles of theirs that take it as long.
+/// The computer's work for a tick besides programs, in cycles of programs that take as long.
 const TICK_WORK: u64 = 500;
 
 /// The cycles by which servo interrupts differ where threads lose the processor as on the board.
@@ -45,18 +45,17 @@ const CALLBACK_LIMIT: Cycles = Cycles::new(CALLBACK_TICKS * Cycles::PER_TICK.get
 /// Settings of a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
-    /// What the servo interrupt takes of each tick; `None` for what the firmware says.
+    /// The cycles that the servo interrupt takes of each tick; `None` for the firmware's own figure.
     pub servo: Option<Cycles>,
     /// Skip time in which nothing can happen; never changes a result.
     pub shortcuts: bool,
     /// Stacks as small as the board's.
     pub strict_stack: bool,
-    /// What accesses do that a program should not make.
+    /// The effect of accesses that a program should not make.
     pub faults: Faults,
-    /// Where threads that run bytecode lose the processor.
+    /// The points at which threads that run bytecode lose the processor.
     pub preemption: Preemption,
-    /// Whether each access of bytecode to memory that threads can share is reported to the firmware; bytecode is
-    /// interpreted then.
+    /// Report each access of bytecode to memory that threads can share to the firmware; bytecode is interpreted then.
     pub observed: bool,
 }
 
@@ -97,7 +96,7 @@ pub struct Machine<F, E = BytecodeEngine> {
 struct Window {
     start: Cycles,
     end: Cycles,
-    /// What the call-back took of it.
+    /// The cycles of it that the call-back took.
     callback: Cycles,
 }
 
@@ -145,7 +144,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         self.load(thread, Loaded::Program(program.into()), entry);
     }
 
-    /// The same for what any engine runs.
+    /// Loads code of any engine.
     pub fn load(&mut self, thread: ThreadId, loaded: Loaded, entry: GuestAddr) {
         self.memory.protect(thread, loaded.text());
         self.longest_steps[thread.index()] = loaded.longest_step(&|function| self.firmware.pure(function));
@@ -175,13 +174,13 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         Some(self.loaded(thread)?.program()?)
     }
 
-    /// What is loaded in `thread`.
+    /// The code that is loaded in `thread`.
     #[must_use]
     pub fn loaded(&self, thread: ThreadId) -> Option<&Loaded> {
         self.loaded[thread.index()].as_ref()
     }
 
-    /// Where `thread` stands: its instruction, then the calls that led there, innermost first.
+    /// The position of `thread`: its instruction, then the calls that led there, innermost first.
     #[must_use]
     pub fn backtrace(&self, thread: ThreadId) -> Vec<CodeAddr> {
         let id = ContextId::of(thread);
@@ -248,7 +247,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         )
     }
 
-    /// Whose turn the last tick was.
+    /// The thread whose slice the last tick was.
     #[must_use]
     pub const fn turn(&self) -> Turn {
         self.turn
@@ -299,7 +298,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         }
     }
 
-    /// What comes after the call-back in the tick that begins at `begin`.
+    /// Executes the rest of the tick that begins at `begin`, after the call-back.
     fn after_callback(&mut self, begin: Cycles, callback: Cycles) {
         self.with_context(begin, |firmware, context| firmware.tick(context));
         self.turn = scheduler::next(self.threads.active(), self.turn);
@@ -317,7 +316,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         }
     }
 
-    /// What the servo interrupt takes of the present tick.
+    /// The cycles that the servo interrupt takes of the present tick.
     fn servo_time(&self) -> Cycles {
         let time = self.config.servo.unwrap_or_else(|| self.firmware.servo_time(&self.memory));
         match self.config.preemption {
@@ -542,7 +541,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         self.with_context(begin + self.servo_time(), |firmware, context| firmware.switch_to(turn, context));
     }
 
-    /// How many of the next ticks no user thread can run in.
+    /// Number of the next ticks in which no user thread can run.
     fn idle_ticks(&self) -> u64 {
         let next = self.tick.get() + 1;
         ThreadId::all()
@@ -566,7 +565,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     }
 }
 
-/// What the servo interrupt takes longer in one tick than in others where threads lose the processor as on the board.
+/// The additional cycles of the servo interrupt in one tick, where threads lose the processor as on the board.
 ///
 /// The firmware's interrupt is not always equally long. Slices that were would end in the same place of a loop each
 /// time, or never there. The number is a function of the tick alone (the mixer of SplitMix64).

@@ -41,18 +41,19 @@ const SDRAM_BASE: u32 = SDRAM.base.get();
 const IRAM_BASE: u32 = IRAM.base.get();
 const FLASH_BASE: u32 = FLASH.base.get();
 
-/// What accesses and divisions do that a program of the simulated board should not make.
+/// The effect of accesses and divisions that a program of the simulated board should not make.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Faults {
-    /// They stop the thread.
+    /// The access stops the thread.
     #[default]
     Trap,
-    /// What the real board does: an integer division by zero yields a meaningless value, ROM and control registers read 0 and ignore stores, low bits of a misaligned address
-    /// are ignored. Everywhere else, and for stores into program text, they stop the thread all the same.
+    /// They act as on the real board: an integer division by zero yields a meaningless value, ROM and control registers
+    /// read 0 and ignore stores, low bits of a misaligned address are ignored. Everywhere else, and for stores into
+    /// program text, they stop the thread all the same.
     Board,
 }
 
-/// What ROM, the largest of the silent places, and control registers read as.
+/// The contents of ROM, the largest of the silent regions, and of control registers, as reads see them.
 static SILENCE: LazyLock<Box<[u8]>> = LazyLock::new(|| vec![0; index(ROM_SIZE)].into_boxed_slice());
 
 /// A type that one load or store moves.
@@ -68,7 +69,7 @@ pub trait Scalar: sealed::Sealed + Copy + Default {
     #[doc(hidden)]
     fn get(bytes: &[u8], offset: usize) -> Option<Self>;
 
-    /// The same at a multiple of the size, and `None` elsewhere; one comparison finds both out, as any other offset
+    /// Reads at a multiple of the size, and returns `None` elsewhere; one comparison tests both, as any other offset
     /// becomes an index far beyond the end.
     #[doc(hidden)]
     fn get_multiple(bytes: &[u8], offset: u32) -> Option<Self>;
@@ -147,14 +148,14 @@ pub struct GuestMemory {
     flash: Flash,
     protection: Protection,
     faults: Faults,
-    /// Whether on-chip RAM may have been written, see [`GuestMemory::take_touched`].
+    /// True if on-chip RAM may have been written, see [`GuestMemory::take_touched`].
     is_touched: bool,
-    /// What the last snapshot has, for the next one to share.
+    /// The regions of the last snapshot, which the next one shares.
     last: Option<Regions>,
     places: Places,
 }
 
-/// What a program can see; not who has written it.
+/// Compares the memory that a program can see, without its writers.
 impl PartialEq for GuestMemory {
     fn eq(&self, other: &Self) -> bool {
         self.sdram == other.sdram
@@ -175,7 +176,7 @@ impl Default for GuestMemory {
 /// The large memory.
 pub(crate) type Sdram = [u8; SDRAM_SIZE];
 
-/// What accesses of RAM need besides SDRAM, and divisions.
+/// The state for accesses of RAM besides SDRAM, and for divisions.
 ///
 /// An engine that has both apart can keep the place of SDRAM in a register of the processor.
 pub(crate) struct RamRest<'a> {
@@ -276,7 +277,7 @@ impl GuestMemory {
         self.faults = faults;
     }
 
-    /// What an integer division of `a` by zero comes to.
+    /// The result of an integer division of `a` by zero.
     ///
     /// # Errors
     /// [`TrapKind::DivisionByZero`], unless programs get what the board yields.
@@ -285,9 +286,9 @@ impl GuestMemory {
         divided_by_zero(self.faults, op, a)
     }
 
-    /// Whether on-chip RAM, where the variables of the firmware are, may have been written since this was last asked.
+    /// Reports whether on-chip RAM, where the variables of the firmware are, may have been written since the last call.
     ///
-    /// Whoever works out something from them need not look again if nobody has.
+    /// If not, values derived from them are still valid.
     #[inline]
     pub const fn take_touched(&mut self) -> bool {
         std::mem::replace(&mut self.is_touched, false)
@@ -299,7 +300,7 @@ impl GuestMemory {
         self.is_touched = true;
     }
 
-    /// Does `work`, the writes of which nobody needs to look at: those that the firmware makes in every slice.
+    /// Does `work` without marking memory as touched, for writes that the firmware makes in every slice.
     #[inline]
     pub fn untouched<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let was_touched = self.is_touched;
@@ -384,7 +385,7 @@ impl GuestMemory {
         Some(())
     }
 
-    /// Why a store was refused; a silent place takes it without a trace.
+    /// The error for a store that was refused; a silent region ignores it.
     #[cold]
     fn refuse_store(&self, addr: GuestAddr, size: u32) -> Result<(), TrapKind> {
         self.check_writable(addr, size)?;
@@ -540,7 +541,7 @@ impl GuestMemory {
         self.protection.texts()
     }
 
-    /// Whether all of the `len` bytes from `addr` on can be stored to by a program.
+    /// Checks that a program can store to all of the `len` bytes from `addr` on.
     fn check_writable(&self, addr: GuestAddr, len: u32) -> Result<(), TrapKind> {
         let unmapped = |addr| TrapKind::Unmapped { addr, access: Access::Write };
         match self.bytes(addr, len) {
@@ -557,7 +558,7 @@ impl GuestMemory {
         Ok(())
     }
 
-    /// Whether nothing was ever written to flash memory. To ask first saves the host its two megabytes of erased bytes.
+    /// Reports whether flash memory was never written. To ask first saves the host its two megabytes of erased bytes.
     #[must_use]
     pub const fn is_flash_erased(&self) -> bool {
         self.flash.is_erased()
@@ -616,13 +617,13 @@ impl GuestMemory {
         }
     }
 
-    /// Whether a store of `len` bytes at `addr` stays without a trace.
+    /// Reports whether a store of `len` bytes at `addr` is ignored.
     fn is_silent(&self, addr: GuestAddr, len: u32) -> bool {
         self.silent(addr).is_some_and(|bytes| bytes.len() >= index(len))
     }
 }
 
-/// Whether an access of `addr` goes to the bus: registers always, flash for a store.
+/// Reports whether an access of `addr` goes to the bus: registers always, flash for a store.
 #[must_use]
 pub fn is_on_bus(addr: GuestAddr, access: Access) -> bool {
     REGIONS

@@ -1,8 +1,8 @@
 //! Metering: the place and the amount of each `charge`.
 //!
-//! The compiler's last pass inserts charges with this. The verifier demands less: what an image charges is its own
-//! affair, as it may have been made for the vendor's code and not for these words; but no function begins and no
-//! turn of a loop passes without a charge, so that every program comes to one ([`uncharged`]).
+//! The compiler's last pass inserts charges with this. The verifier demands less: the amounts are not checked, as an
+//! image's charges may state the cycles of the vendor's code and not of these words; but every function and every
+//! iteration of a loop must have a charge, so that every program reaches one ([`uncharged`]).
 //!
 //! The rule. The words of a function fall into **segments** that are executed from their
 //! beginning to their end. A segment begins
@@ -38,13 +38,14 @@ pub fn charge_points(ops: &[Op], body: Range<usize>) -> Vec<(usize, u32)> {
     segment_sums(ops, body, Op::cost)
 }
 
-/// The same for a body whose charges were put where its source states costs: each segment gets the sum of its own.
+/// As [`charge_points`], for a body whose charges were placed where its source states costs: each segment gets the sum
+/// of its own.
 #[must_use]
 pub fn stated_points(ops: &[Op], body: Range<usize>) -> Vec<(usize, u32)> {
     segment_sums(ops, body, stated)
 }
 
-/// What an instruction charges.
+/// The cycles that an instruction charges.
 const fn stated(op: &Op) -> u32 {
     if let Op::Charge { cycles } = op { cycles.0 } else { 0 }
 }
@@ -182,25 +183,25 @@ fn shape(op: &Op) -> (u32, u32) {
     }
 }
 
-/// Whether `op` is a call, after which a segment ends.
+/// Reports whether `op` is a call, after which a segment ends.
 #[must_use]
 pub const fn is_call(op: &Op) -> bool {
     matches!(op.kind(), OpKind::Call)
 }
 
-/// Whether `op` takes the result of a call.
+/// Reports whether `op` takes the result of a call.
 #[must_use]
 pub const fn is_result(op: &Op) -> bool {
     matches!(op.kind(), OpKind::Result(_))
 }
 
-/// Where the branch `op` goes, if it is one with a label.
+/// The target of the branch `op`, if it is one with a label.
 #[must_use]
 pub fn branch_target(op: &Op) -> Option<Label> {
     op.operand(Name::To)
 }
 
-/// What each word of a body is to the metering rule.
+/// The role of each word of a body in the metering rule.
 struct Roles {
     begins: Vec<bool>,
     in_table: Vec<bool>,
@@ -235,7 +236,7 @@ impl Roles {
     }
 }
 
-/// Whether a segment begins after an instruction of this kind, with what belongs to it.
+/// Reports whether a segment begins after an instruction of this kind, with the words that belong to it.
 const fn ends_segment(kind: OpKind) -> bool {
     kind.ends_path() || matches!(kind, OpKind::Branch | OpKind::Table | OpKind::Call)
 }

@@ -47,7 +47,7 @@ use crate::program::Program;
 use crate::translations::Translations;
 use crate::trap::{Trap, TrapKind};
 
-/// Runs programs as machine code, which it makes of them when they are started.
+/// Runs programs as machine code, which is compiled when they are started.
 #[derive(Debug, Default)]
 pub struct NativeEngine {
     contexts: [Option<Context>; ContextId::COUNT],
@@ -59,9 +59,9 @@ pub struct NativeEngine {
     /// Runs the contexts whose program cannot be compiled.
     bytecode: BytecodeEngine,
     preemption: Preemption,
-    /// Whether accesses to shared memory are reported, which the interpreter does.
+    /// True if accesses to shared memory are reported; the interpreter does so.
     observed: bool,
-    /// Tells this engine from all others: a suspended fiber can go on in the engine alone that it is of.
+    /// Identifies this engine: a suspended fiber can continue only in its own engine.
     identity: Rc<()>,
 }
 

@@ -390,7 +390,7 @@ macro_rules! row_kind {
 
 macro_rules! define_ops {
     ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr, $kind:ident $(($fact:ident))?;)*) => {
-        /// One instruction.
+        /// An instruction.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u16)]
         pub enum Op {
@@ -422,7 +422,7 @@ macro_rules! define_ops {
                 }
             }
 
-            /// What it is.
+            /// The kind of instruction.
             #[must_use]
             #[inline]
             pub const fn kind(&self) -> OpKind {
@@ -447,7 +447,7 @@ macro_rules! define_ops {
                 }
             }
 
-            /// What executing the instruction costs, in cycles.
+            /// The cost of executing the instruction, in cycles.
             #[must_use]
             #[expect(unused_variables, reason = "most costs do not depend on operands")]
             pub fn cost(&self) -> u32 {
@@ -528,7 +528,7 @@ impl Unpacker {
         O::from_bits(u32::from_le_bytes(bytes))
     }
 
-    /// Whether the bytes after the last operand are zero, as the encoder leaves them.
+    /// Reports whether the bytes after the last operand are zero, as the encoder leaves them.
     fn is_exhausted(&self) -> bool {
         self.word[self.at..].iter().all(|byte| *byte == 0)
     }

@@ -1,4 +1,4 @@
-//! What an instruction is made of: registers, immediates, labels.
+//! The operands of an instruction: registers, immediates, labels.
 //!
 //! Every instruction is one word of eight bytes: two of opcode and six of operands, packed
 //! in the order of the table row, little endian, the rest zero. An operand type says how it
@@ -61,7 +61,7 @@ impl fmt::Display for Class {
     }
 }
 
-/// One operand of an instruction.
+/// An operand of an instruction.
 pub trait OperandType: Copy + fmt::Display {
     /// Bytes it takes in the instruction word.
     const SIZE: usize;
@@ -165,7 +165,7 @@ macro_rules! number {
     };
 }
 
-/// What the number operands need of their integers.
+/// The operations on integers that number operands need.
 trait Number: Sized {
     /// Little-endian bytes, zero-padded.
     fn to_le_bytes_padded(self) -> [u8; 4];

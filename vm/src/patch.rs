@@ -1,4 +1,4 @@
-//! What a linker changes in instructions that are written already: labels, constants, signatures.
+//! The parts of encoded instructions that a linker changes: labels, constants, signatures.
 //!
 //! Which instruction has which of them follows from the types of its operands, so a new row of the table needs nothing
 //! here.

@@ -34,7 +34,7 @@ pub struct Site {
     pub firmware: Option<GuestAddr>,
 }
 
-/// What was spent at a site.
+/// The time spent at a site, in cycles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Spent {
     /// Processor time.
@@ -43,7 +43,7 @@ pub struct Spent {
     pub waiting: Cycles,
 }
 
-/// Where the time of a run went.
+/// The time of a run, by site.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Profile {
     spent: BTreeMap<Site, Spent>,
@@ -77,12 +77,12 @@ pub fn segment(program: &Program, head: CodeAddr) -> impl Iterator<Item = (CodeA
 pub struct ProfilingEngine {
     inner: BytecodeEngine,
     profile: Profile,
-    /// Where each waiting context waits, and since when.
+    /// The site at which each waiting context waits, and the start of the wait.
     waits: [Option<(Site, Cycles)>; ContextId::COUNT],
 }
 
 impl ProfilingEngine {
-    /// What was spent so far.
+    /// The profile so far.
     #[must_use]
     pub const fn profile(&self) -> &Profile {
         &self.profile
@@ -125,7 +125,7 @@ impl ProfilingEngine {
         stop
     }
 
-    /// What the charge took that stopped a context.
+    /// The cycles of the charge that stopped a context.
     fn charged(&self, id: ContextId, stop: &Stop) -> Cycles {
         let Some(program) = self.inner.program(id).filter(|_| matches!(stop, Stop::Preempted)) else {
             return NOTHING;
@@ -206,9 +206,9 @@ impl Executor for ProfilingEngine {
 #[derive(Debug)]
 struct Metered<'a, F: ?Sized> {
     firmware: &'a mut F,
-    /// What the slice could spend in all.
+    /// The budget of the whole slice, in cycles.
     length: Cycles,
-    /// What it had left where the part began that the engine knows of.
+    /// The budget left at the start of the part that the engine knows of.
     left: Cycles,
     /// The function that was called, and what it spent.
     called: Option<(GuestAddr, Cycles)>,

@@ -19,7 +19,7 @@ pub(crate) fn body_of(function: FuncRef, registers: u16) -> usize {
     function.0 as usize + 1 + usize::from(registers).div_ceil(16)
 }
 
-/// One function of a program.
+/// A function of a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Function {
     /// Index of its `func` word.
@@ -36,15 +36,14 @@ pub struct Function {
 
 /// A program that an engine can run without further checks.
 ///
-/// Made by [`verify`](crate::verify::verify) only. Instructions are addressed by the index of
-/// their word in the text. It is data and nothing else: what an engine makes of it is kept by the engine
-/// ([`Translations`](crate::translations::Translations)).
+/// Made by [`verify`](crate::verify::verify) only. Instructions are addressed by the index of their word in the text.
+/// It is pure data: translations of it are kept by the engine ([`Translations`](crate::translations::Translations)).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Program {
     pub(crate) base: u32,
     /// Address of `main`, where the text begins with the words of [`guard`](crate::guard).
     pub(crate) main: Option<GuestAddr>,
-    /// One for each word of the text; [`Op::Unreachable`] stands for a word of the pool.
+    /// The instruction of each word of the text; [`Op::Unreachable`] for a word of the pool.
     pub(crate) ops: Vec<Op>,
     pub(crate) pool: Vec<u64>,
     pub(crate) signatures: Vec<Signature>,
@@ -52,7 +51,7 @@ pub struct Program {
 }
 
 impl Program {
-    /// Where the first word of the bytecode is.
+    /// The address of the first word of the bytecode.
     #[must_use]
     pub const fn base(&self) -> GuestAddr {
         GuestAddr::new(self.base)
@@ -65,7 +64,7 @@ impl Program {
         self.start()..self.base().offset(bytes)
     }
 
-    /// Where the text begins.
+    /// The start address of the text.
     const fn start(&self) -> GuestAddr {
         let guard = if self.main.is_some() { guard::BYTES as u32 } else { 0 };
         GuestAddr::new(self.base.wrapping_sub(guard))
@@ -83,7 +82,7 @@ impl Program {
         &self.ops
     }
 
-    /// The same program on a processor that takes `factor` times as long for everything between its calls.
+    /// Returns the program for a processor that takes `factor` times as long for everything between its calls.
     ///
     /// A segment costs a cycle at least, and what fits a count at most.
     #[must_use]

@@ -1,4 +1,4 @@
-//! Which bytes hold program text: one bit for each instruction word of the program area.
+//! The bytes that hold program text: one bit for each instruction word of the program area.
 //!
 //! A store asks on its fast path, so the ranges of the seven programs are kept as a map.
 
@@ -66,7 +66,7 @@ impl Protection {
         &self.texts
     }
 
-    /// Whether one of the `len` bytes from `address` on is protected.
+    /// Reports whether one of the `len` bytes from `address` on is protected.
     #[inline]
     pub(crate) fn covers(&self, address: u32, len: u32) -> bool {
         // Within one granule, as all aligned accesses are but a double at an odd word.
@@ -76,7 +76,7 @@ impl Protection {
         self.covers_long(address, len)
     }
 
-    /// Whether bytes from `address` on within its granule are protected.
+    /// Reports whether bytes from `address` on within its granule are protected.
     #[inline]
     pub(crate) fn covers_aligned(&self, address: u32) -> bool {
         address.wrapping_sub(self.hull.first) < self.hull.size

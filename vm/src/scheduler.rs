@@ -5,7 +5,7 @@
 
 use kmotiondef::ThreadId;
 
-/// Whose turn it is.
+/// The thread that a slice belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Turn {
     /// The primary thread, number 0.
@@ -46,13 +46,13 @@ impl ThreadSet {
         Self(self.0 & !(1 << thread.get()))
     }
 
-    /// Whether `thread` is a member.
+    /// Reports whether `thread` is a member.
     #[must_use]
     pub const fn contains(self, thread: ThreadId) -> bool {
         self.0 >> thread.get() & 1 != 0
     }
 
-    /// Whether nobody is a member.
+    /// Reports whether the set has no member.
     #[must_use]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
@@ -77,7 +77,7 @@ impl FromIterator<ThreadId> for ThreadSet {
     }
 }
 
-/// The turn after `current`: the next active thread in ascending order, then the primary thread.
+/// The thread after `current`: the next active one in ascending order, then the primary thread.
 #[must_use]
 pub fn next(active: ThreadSet, current: Turn) -> Turn {
     let passed = (2 << current.number()) - 1;
@@ -86,7 +86,7 @@ pub fn next(active: ThreadSet, current: Turn) -> Turn {
     ThreadId::new(left.trailing_zeros().cast_signed()).map_or(Turn::Primary, Turn::User)
 }
 
-/// The turn `ticks` after `current`, while the same threads are active.
+/// The thread `ticks` ticks after `current`, while the same threads are active.
 #[must_use]
 pub fn after(active: ThreadSet, current: Turn, ticks: u64) -> Turn {
     // From an inactive thread's turn the rotation first returns to its cycle.

@@ -13,10 +13,10 @@ use crate::op::Op;
 use crate::operand::{Addr, OperandType};
 use crate::program::Program;
 
-/// How many instructions before a store are looked at for the loads that its value is made of.
+/// Number of instructions before a store that are searched for the loads of its value.
 const REACH: usize = 400;
 
-/// Whether an address is in RAM that is neither a stack nor the space of programs.
+/// Reports whether an address is in RAM that is neither a stack nor the space of programs.
 #[inline(always)]
 pub(crate) const fn is_shared(address: u32) -> bool {
     let is_stack = address >= STACK_BASE && address < CALLBACK_STACK_BASE + STACK_SIZE;
@@ -49,7 +49,7 @@ impl Program {
 pub(crate) struct OpRegisters {
     /// The one that it assigns.
     pub(crate) assigned: Option<u16>,
-    /// Those that it reads.
+    /// The registers that it reads.
     pub(crate) sources: Vec<u16>,
 }
 

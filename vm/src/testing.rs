@@ -1,4 +1,4 @@
-//! What the tests of this crate share: a small firmware, and programs from text.
+//! Helpers that the tests of this crate share: a small firmware, and programs from text.
 
 use kmotiondef::map::program_base;
 use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
@@ -35,7 +35,7 @@ types 0xc
 /// First word after the head.
 pub(crate) const HEAD_WORDS: usize = 11;
 
-/// Where test programs put their results.
+/// The address at which test programs store their results.
 pub(crate) const OUT: GuestAddr = GuestAddr::new(0x1000_0000);
 
 /// A call-back's address.
@@ -118,7 +118,7 @@ impl Fake {
         }
     }
 
-    /// What must be the same however time passes: in single ticks or in many at once.
+    /// The results that must be the same however time passes: in single ticks or in many at once.
     pub(crate) fn seen(&self) -> (&[String], u64, &[String]) {
         (&self.log, self.ticks, &self.bus)
     }
@@ -241,7 +241,7 @@ pub(crate) fn machine(config: Config, programs: &[(i32, &str)]) -> Machine<Fake>
     machine_on(config, programs)
 }
 
-/// The same on the engine `E`.
+/// A machine on the engine `E`.
 pub(crate) fn machine_on<E: Engine>(config: Config, programs: &[(i32, &str)]) -> Machine<Fake, E> {
     let mut machine = Machine::new(Fake::new(), config);
     for (number, functions) in programs {

@@ -17,17 +17,17 @@ use crate::operand::{
     RegF64, RegI32, RegI64, SigRef,
 };
 
-/// Why a line could not be assembled.
+/// An error in a line of assembly.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {kind}")]
 pub struct AssembleError {
     /// Number of the line, from 1.
     pub line: usize,
-    /// What is wrong with it.
+    /// The kind of error.
     pub kind: AssembleErrorKind,
 }
 
-/// What is wrong with a line.
+/// A kind of error in a line of assembly.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AssembleErrorKind {
     /// No instruction has this name.
@@ -128,7 +128,7 @@ pub fn assemble(text: &str) -> Result<Vec<u8>, AssembleError> {
     Ok(bytes)
 }
 
-/// One line, taken apart.
+/// The parts of a line.
 struct TextLine<'a> {
     number: usize,
     label: Option<&'a str>,

@@ -11,7 +11,7 @@ use crate::scheduler::ThreadSet;
 use crate::trap::Trap;
 use crate::wake::Wake;
 
-/// Where an active or paused thread stands.
+/// The progress of an active or paused thread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
     /// Started, but had no slice yet: begins at its entry point.
@@ -41,7 +41,7 @@ pub enum ThreadState {
 }
 
 impl ThreadState {
-    /// Whether the thread takes part in the rotation.
+    /// Reports whether the thread takes part in the rotation.
     #[must_use]
     pub const fn is_active(&self) -> bool {
         matches!(self, Self::Active(_))
@@ -148,7 +148,7 @@ impl Threads {
         &self.slots[thread.index()].state
     }
 
-    /// Where `thread` starts; null if nothing is loaded.
+    /// The entry point of `thread`; null if nothing is loaded.
     #[must_use]
     pub fn entry(&self, thread: ThreadId) -> GuestAddr {
         self.slots[thread.index()].entry
@@ -174,7 +174,7 @@ impl Threads {
         self.slot(thread).state = state;
     }
 
-    /// What `thread` overdrew in its last slice, as a number not below zero.
+    /// The overdraft of `thread` in its last slice, as a number not below zero.
     pub(crate) fn debt(&self, thread: ThreadId) -> Cycles {
         self.slots[thread.index()].debt
     }

@@ -1,13 +1,13 @@
-//! What an engine has made of the programs that it was given, kept by the engine.
+//! The translations of the programs that an engine was given, kept by the engine.
 //!
-//! A program is shared by reference, and is known again by that reference. What was made of it is dropped after
-//! nobody else holds the program any more.
+//! A program is shared by reference, and is identified by that reference. Its translation is dropped after the last
+//! other reference to the program is gone.
 
 use std::sync::{Arc, Weak};
 
 use crate::program::Program;
 
-/// By program, what an engine has made of it.
+/// The translations of programs, by program.
 #[derive(Clone, Debug)]
 pub(crate) struct Translations<T>(Vec<(Weak<Program>, T)>);
 
@@ -18,7 +18,7 @@ impl<T> Default for Translations<T> {
 }
 
 impl<T: Clone> Translations<T> {
-    /// What `make` makes of `program`, made when it is first requested.
+    /// Returns the translation of `program`; `make` makes it when it is first requested.
     pub(crate) fn get(&mut self, program: &Arc<Program>, make: impl FnOnce(&Program) -> T) -> T {
         // A weak reference keeps the address of its program from being used again.
         let is_same = |(known, _): &&(Weak<Program>, T)| known.as_ptr() == Arc::as_ptr(program);

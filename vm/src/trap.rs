@@ -31,7 +31,7 @@ impl fmt::Display for Access {
     }
 }
 
-/// What went wrong.
+/// The kind of trap.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TrapKind {
     /// An access outside the memory map.
@@ -39,7 +39,7 @@ pub enum TrapKind {
     Unmapped {
         /// First byte that is not mapped.
         addr: GuestAddr,
-        /// What was tried.
+        /// The kind of access.
         access: Access,
     },
     /// A store into program text.
@@ -55,7 +55,7 @@ pub enum TrapKind {
         addr: GuestAddr,
         /// Bytes of the access.
         size: u32,
-        /// What was tried.
+        /// The kind of access.
         access: Access,
     },
     /// An integer division or remainder by zero.
@@ -108,7 +108,7 @@ pub enum TrapKind {
     /// More places than are kept.
     #[error("`setjmp` has set more than {most} buffers in functions that have not returned")]
     TooManyJumpPlaces {
-        /// How many are kept.
+        /// The largest number of places.
         most: usize,
     },
     /// A firmware function that exists on the board only.
@@ -139,7 +139,7 @@ pub enum TrapKind {
 /// A trap with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Trap {
-    /// What went wrong.
+    /// The kind of trap.
     pub kind: TrapKind,
     /// The instruction that did it.
     pub at: CodeAddr,

@@ -37,17 +37,17 @@ pub const MAX_REGISTERS: usize = 0xff00;
 /// Classes in one `types` word.
 const CLASSES_PER_WORD: usize = 16;
 
-/// Why a text was refused.
+/// The error for a text that was refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("word {at}: {kind}")]
 pub struct VerifyError {
     /// Index of the word in the text.
     pub at: usize,
-    /// What is wrong with it.
+    /// The kind of error.
     pub kind: VerifyErrorKind,
 }
 
-/// What is wrong with a word of a text.
+/// A kind of error in a word of a text.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum VerifyErrorKind {
     /// The size is not a multiple of the word, or the address is not.
@@ -124,7 +124,7 @@ pub enum VerifyErrorKind {
     /// The last instruction of a function continues after it.
     #[error("the function continues after its end")]
     FallsOff,
-    /// A function begins, or a loop turns, without a charge.
+    /// A function, or an iteration of a loop, has no charge.
     #[error("the code from here on can run forever without being charged")]
     Uncharged,
 }

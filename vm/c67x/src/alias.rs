@@ -14,7 +14,7 @@ pub(crate) struct Alias {
     name: &'static str,
     mnemonic: Mnemonic,
     constant: i32,
-    /// Whether the .D unit has it too, where the constant is the second operand.
+    /// True if the .D unit has it too, where the constant is the second operand.
     on_d: bool,
 }
 
@@ -58,12 +58,12 @@ impl Alias {
         if self.on_d { vec![with(0), with(1)] } else { vec![with(0)] }
     }
 
-    /// Which operand of the text is the constant.
+    /// The index of the constant among the operands of the text.
     pub(crate) fn hidden_operand(self, inst: Inst) -> usize {
         usize::from(inst.op().row().unit == Some(UnitKind::D))
     }
 
-    /// Whether the form has the constant as an operand of 5 bits and two registers of 32 bits.
+    /// Reports whether the form has the constant as an operand of 5 bits and two registers of 32 bits.
     fn takes(self, inst: Inst) -> bool {
         let row = inst.op().row();
         let simple =

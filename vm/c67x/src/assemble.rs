@@ -19,7 +19,7 @@ use crate::table::Op;
 pub struct AssemblyLine {
     /// The instruction.
     pub inst: Inst,
-    /// Whether it executes in parallel with the instruction before it: `||`.
+    /// True if it executes in parallel with the instruction before it: `||`.
     pub joins_previous: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Which registers a call uses, by the convention that the board's firmware and its compilers follow.
+//! The registers of a call, by the convention that the board's firmware and its compilers follow.
 
 use crate::Reg;
 
@@ -16,7 +16,7 @@ pub const ARGUMENTS: [Reg; 10] = [
     Reg::b(12),
 ];
 
-/// Where results are; of a pair the even register.
+/// The register of the result; of a pair the even one.
 pub const RESULT: Reg = Reg::a(4);
 
 /// The return address.

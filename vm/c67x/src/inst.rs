@@ -43,14 +43,14 @@ pub enum BadWord {
 /// Operands that a form does not take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum BadOperands {
-    /// Another number of operands.
+    /// The number of operands is wrong.
     #[error("{form} takes {wanted} operands, not {given}", form = .op.row().mnemonic)]
     Count {
         /// The form.
         op: Op,
-        /// How many it takes.
+        /// Number of operands of the form.
         wanted: usize,
-        /// How many were given.
+        /// Number of operands given.
         given: usize,
     },
     /// An operand of another kind, of the wrong file, or out of range.
@@ -58,9 +58,9 @@ pub enum BadOperands {
     Operand {
         /// The form.
         op: Op,
-        /// Which operand, from 0.
+        /// Index of the operand, from 0.
         index: usize,
-        /// What the form takes there.
+        /// The kind of operand that the form takes there.
         wanted: Kind,
     },
     /// The form exists on the other side alone, or has no condition.
@@ -163,7 +163,7 @@ impl Inst {
         Pred::from_word(self.word).unwrap_or(Pred::Always)
     }
 
-    /// The same instruction under another condition; `None` for `NOP` and `IDLE`, which have none.
+    /// Returns the instruction under another condition; `None` for `NOP` and `IDLE`, which have none.
     #[must_use]
     pub fn with_pred(self, pred: Pred) -> Option<Self> {
         let word = self.word & 0x0FFF_FFFF | pred.bits();
@@ -208,7 +208,7 @@ impl Inst {
         Side::from_bit(self.word >> SIDE)
     }
 
-    /// Whether bit x moves an operand to the other file.
+    /// Reports whether bit x moves an operand to the other file.
     #[must_use]
     pub fn crosses(self) -> bool {
         let may = self.op.row().operands.iter().any(|(_, kind)| kind.may_cross());
@@ -278,7 +278,7 @@ const fn sign_extend(value: u32, width: u32) -> i32 {
     (value << (32 - width)) as i32 >> (32 - width)
 }
 
-/// Whether fields that the mask leaves free hold something that exists.
+/// Reports whether the fields that the mask leaves free hold valid values.
 fn has_valid_fields(op: Op, word: u32) -> bool {
     op.row().operands.iter().all(|(field, kind)| match kind {
         Kind::Count => bits(word, field.lowest_bit(), 4) <= 8,

@@ -36,14 +36,14 @@ impl Field {
         }
     }
 
-    /// Whether the instruction writes it.
+    /// Reports whether the instruction writes it.
     #[must_use]
     pub const fn is_written(self) -> bool {
         matches!(self, Self::Dst)
     }
 }
 
-/// What an operand is.
+/// The kind of an operand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Kind {
     /// A register of the unit's file.
@@ -110,29 +110,29 @@ pub enum Kind {
     PosU15,
 }
 
-/// How a load or store finds its address.
+/// The addressing mode of a load or store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Mode {
-    /// Whether the offset is subtracted.
+    /// True if the offset is subtracted.
     pub negative: bool,
-    /// What the base register becomes.
+    /// The update of the base register.
     pub update: Update,
-    /// What the offset is.
+    /// The kind of offset.
     pub offset: OffsetKind,
 }
 
-/// What becomes of the base register of a load or store.
+/// The update of the base register of a load or store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Update {
-    /// It stays.
+    /// None.
     None,
-    /// It changes, and the new value is the address.
+    /// The new value is the address.
     Before,
-    /// It changes, and the old value is the address.
+    /// The old value is the address.
     After,
 }
 
-/// What the offset of a load or store is.
+/// The kind of offset of a load or store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum OffsetKind {
     /// A constant 0..=31.
@@ -144,7 +144,7 @@ pub enum OffsetKind {
 }
 
 impl Kind {
-    /// How an address of this kind is found; `None` for all other kinds.
+    /// The addressing mode of this kind; `None` for kinds that are not addresses.
     #[must_use]
     pub const fn mode(self) -> Option<Mode> {
         use OffsetKind::{Reg, U5, U15};
@@ -191,14 +191,14 @@ impl Kind {
         }
     }
 
-    /// Whether it may come from the other file over the cross path.
+    /// Reports whether it may come from the other file over the cross path.
     #[must_use]
     pub const fn may_cross(self) -> bool {
         matches!(self, Self::Xr | Self::Xd)
     }
 }
 
-/// Which processor brought a form.
+/// The processor that introduced a form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Isa {
     /// The C67x.

@@ -232,7 +232,7 @@ macro_rules! define_mnemonics {
         }
 
         impl Mnemonic {
-            /// All of them.
+            /// All mnemonics.
             pub const ALL: &'static [Self] = &[$(Self::$name),*];
 
             /// The name in capitals, as the assembler writes it.
@@ -243,7 +243,7 @@ macro_rules! define_mnemonics {
                 }
             }
 
-            /// What it does, in a few words.
+            /// Its operation, in a few words.
             #[must_use]
             pub const fn meaning(self) -> &'static str {
                 match self {
@@ -251,7 +251,7 @@ macro_rules! define_mnemonics {
                 }
             }
 
-            /// How many bytes a load or store of this name moves; `None` for all others.
+            /// The bytes that a load or store of this name moves; `None` for all others.
             #[must_use]
             pub const fn bytes(self) -> Option<u32> {
                 match self {

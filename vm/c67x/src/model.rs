@@ -1,4 +1,4 @@
-//! What a scheduler must know of an instruction: registers, stages, units, paths.
+//! The properties of an instruction that a scheduler needs: registers, stages, units, paths.
 //!
 //! Everything here follows from the instruction's row: its operands' kinds and its
 //! [`Timing`]. Stage k of an instruction that issues in cycle t is cycle t + k - 1; what is
@@ -30,7 +30,7 @@ pub struct Write {
     pub stage: u8,
 }
 
-/// What a branch does.
+/// The target of a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Branch {
     /// To `bytes` from the address of its fetch packet.
@@ -63,7 +63,7 @@ impl Inst {
         self.timing().stages().unit
     }
 
-    /// How many cycles the packet lasts because of it: 1, or the count of a `NOP`.
+    /// The cycles that the packet lasts because of it: 1, or the count of a `NOP`.
     #[must_use]
     pub fn cycles(self) -> u32 {
         match self.field(Field::N) {
@@ -84,25 +84,25 @@ impl Inst {
         self.mem().map(|_| self.side())
     }
 
-    /// Whether it is a load.
+    /// Reports whether it is a load.
     #[must_use]
     pub fn is_load(self) -> bool {
         self.timing() == Timing::Load
     }
 
-    /// Whether it is a store.
+    /// Reports whether it is a store.
     #[must_use]
     pub fn is_store(self) -> bool {
         self.timing() == Timing::Store
     }
 
-    /// Whether it reads a 40-bit source.
+    /// Reports whether it reads a 40-bit source.
     #[must_use]
     pub fn reads_long(self) -> bool {
         self.has_long(|field| !field.is_written())
     }
 
-    /// Whether it writes a 40-bit result.
+    /// Reports whether it writes a 40-bit result.
     #[must_use]
     pub fn writes_long(self) -> bool {
         self.has_long(Field::is_written)
@@ -112,7 +112,7 @@ impl Inst {
         self.op().row().operands.iter().any(|(field, kind)| *kind == Kind::L && which(*field))
     }
 
-    /// Where it branches to.
+    /// The target, if it is a branch.
     #[must_use]
     pub fn branch(self) -> Option<Branch> {
         if self.timing() != Timing::Branch {
@@ -178,7 +178,7 @@ impl Inst {
         found.into_iter()
     }
 
-    /// Whether it keeps a part of its destination: `MVKH`, `ADDK`.
+    /// Reports whether it keeps a part of its destination: `MVKH`, `ADDK`.
     #[must_use]
     pub fn reads_destination(self) -> bool {
         matches!(self.mnemonic(), Mnemonic::Mvkh | Mnemonic::Addk)

@@ -5,7 +5,7 @@ use std::fmt;
 use crate::kind::{Kind, Mode, OffsetKind, Update};
 use crate::register::{Control, Pair, Reg};
 
-/// One operand of an instruction.
+/// An operand of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Operand {
     /// A register.
@@ -31,9 +31,9 @@ pub enum Operand {
 pub struct Mem {
     /// The base register; its side is the side of the .D unit (B for a 15-bit offset).
     pub base: Reg,
-    /// Whether the offset is subtracted.
+    /// True if the offset is subtracted.
     pub negative: bool,
-    /// What the base register becomes.
+    /// The update of the base register.
     pub update: Update,
     /// The offset, in units of the access's size.
     pub offset: Offset,
@@ -79,7 +79,7 @@ impl Mem {
         Self { base, negative: false, update: Update::Before, offset: Offset::Const(offset) }
     }
 
-    /// Whether a form with addresses of `kind` can express it.
+    /// Reports whether a form with addresses of `kind` can express it.
     #[must_use]
     pub fn fits(&self, kind: Kind) -> bool {
         let Some(Mode { negative, update, offset }) = kind.mode() else { return false };

@@ -215,7 +215,7 @@ pub enum PredReg {
 }
 
 impl PredReg {
-    /// All of them in the order of creg, from 1 on.
+    /// All of them in the order of the field creg, from 1 on.
     pub const ALL: [Self; 6] = [Self::B0, Self::B1, Self::B2, Self::A1, Self::A2, Self::A0];
 
     /// The register.
@@ -285,7 +285,7 @@ impl Pred {
         }
     }
 
-    /// Whether two instructions with these conditions never execute in the same cycle.
+    /// Reports whether two instructions with these conditions never execute in the same cycle.
     #[must_use]
     pub fn excludes(self, other: Self) -> bool {
         match (self, other) {
@@ -321,7 +321,7 @@ pub enum UnitKind {
 /// One of the eight functional units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Unit {
-    /// Which unit.
+    /// The kind of unit.
     pub kind: UnitKind,
     /// On which side.
     pub side: Side,
@@ -368,7 +368,7 @@ macro_rules! define_control {
         }
 
         impl Control {
-            /// All of them.
+            /// All control registers.
             pub const ALL: &'static [Self] = &[$(Self::$name),*];
 
             /// The number in the word of an `MVC`.

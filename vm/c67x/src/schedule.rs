@@ -104,7 +104,7 @@ pub enum Rule {
     LongMultiplies(Unit),
     /// A branch into the middle of a packet.
     IntoPacket(u32),
-    /// Something is in flight when the code is left by a call or return.
+    /// A result is in flight when the code is left by a call or return.
     InFlight(Reg),
     /// Execution runs beyond the last packet.
     RunsOut,

@@ -36,7 +36,7 @@ macro_rules! for_each_form {
     };
 }
 
-/// What the table says of a form.
+/// A row of the table: the properties of a form.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
     /// Its name in the assembler.
@@ -47,15 +47,15 @@ pub struct Row {
     pub form: &'static str,
     /// The bits of a word that tell the form.
     pub mask: u32,
-    /// What these bits are.
+    /// The value of these bits.
     pub value: u32,
     /// The operands in the order of the text.
     pub operands: &'static [(Field, Kind)],
-    /// When it reads and writes.
+    /// The timing: the stages in which it reads and writes.
     pub timing: Timing,
-    /// Which processor brought it.
+    /// The processor that introduced it.
     pub isa: Isa,
-    /// What it computes, as a formula.
+    /// The result, as a formula.
     pub meaning: &'static str,
 }
 
@@ -125,7 +125,7 @@ impl Op {
         }
     }
 
-    /// Whether published descriptions contradict each other about the order of the operands.
+    /// Reports whether published descriptions contradict each other about the order of the operands.
     ///
     /// `SUBSP .S` and `SUBDP .S` with opcodes 0x75 and 0x77: here src2 - src1, as the GNU
     /// tools read them; another table has src1 - src2 with the cross path on src1. No

@@ -133,7 +133,7 @@ fn a_loop_of_few_cycles_takes_no_interrupt() {
     assert!(rules(text).contains(&Rule::NotInterruptible));
 }
 
-/// A loop of six cycles whose sum takes what the turn before loaded, with what happens in its cycles 2, 3 and 5.
+/// A loop of six cycles whose sum adds the value loaded in the previous iteration; its cycles 2, 3 and 5 are given.
 fn overlapping([two, three, five]: [&str; 3]) -> Vec<Rule> {
     rules(&format!("[B0] B .S1 pc+0\n[B0] ADD .L2 -1,B0,B0\n{two}\n{three}\nLDW .D1T1 *A4++[1],A6\n{five}"))
 }

@@ -12,7 +12,7 @@ use c67x::{Inst, Mnemonic, Op};
 
 use self::gnu::gnu_text;
 
-/// Where the words are.
+/// The address of the words.
 const PLACE: u32 = 0x1002_0000;
 /// Words of a fetch packet; the last one is left 0, as it may be a header of short instructions for the tool.
 const FETCH: usize = 8;
@@ -20,7 +20,7 @@ const FETCH: usize = 8;
 const RANDOM: usize = 100_000;
 const OF_FORM: usize = 100;
 
-/// Why a word may be read differently.
+/// A reason why a word may be read differently.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Reason {
     /// The tool reads an instruction that only later processors have.
@@ -42,7 +42,7 @@ const LATER: [&str; 18] = [
 const FIXED_BITS: [&str; 9] =
     ["absdp.S", "dpint.L", "dpsp.L", "dptrunc.L", "rcpdp.S", "rsqrdp.S", "sadd.L", "ssub.L", "sub.L"];
 
-/// Why two readings of a word differ; `None` if nobody knows.
+/// The reason why two readings of a word differ; `None` if it is not known.
 fn reason(ours: Option<Inst>, theirs: Option<&str>) -> Option<Reason> {
     let Some(inst) = ours else {
         // "[!b1]add.D1Xa1,b2,a3" is of the form "add.D".
@@ -83,7 +83,7 @@ fn words() -> Vec<u32> {
     words
 }
 
-/// What the tool reads, without blanks; `None` for what it holds to be no instruction.
+/// The tool's reading of each word, without blanks; `None` for one that it does not read as an instruction.
 fn read_by_tool(tool: &str, words: &[u32]) -> Vec<Option<String>> {
     let mut bytes = Vec::new();
     for fetch in words.chunks(FETCH - 1) {
@@ -111,7 +111,7 @@ fn read_by_tool(tool: &str, words: &[u32]) -> Vec<Option<String>> {
         .collect()
 }
 
-/// Where a word of [`words`] is.
+/// The address of a word of [`words`].
 fn place(index: usize) -> u32 {
     PLACE + 4 * (index + index / (FETCH - 1)) as u32
 }

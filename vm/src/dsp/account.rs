@@ -16,7 +16,7 @@ const LONGEST_CALL: u32 = 6 * 32;
 /// Most calls that have not returned; code without returns makes no more.
 const DEEPEST: usize = 256;
 
-/// What time was spent on.
+/// A place where time is spent: context, packet, firmware function, callers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Spender {
     /// The thread or the call-back.
@@ -33,7 +33,7 @@ pub struct Spender {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Callers(usize);
 
-/// What was spent.
+/// Time that was spent, in cycles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Time {
     /// Processor time.
@@ -45,21 +45,21 @@ pub struct Time {
 /// A context, a packet of it, and the firmware function that this calls.
 pub(super) type Spot = (ContextId, CodeAddr, Option<GuestAddr>);
 
-/// How the packet after another is reached, if by a branch.
+/// The branch by which a packet was reached.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Branch {
     /// The packet of the last branch that was taken.
     pub(super) from: CodeAddr,
     /// B3.
     pub(super) link: u32,
-    /// Whether a function begins at the packet that is reached.
+    /// True if a function begins at the packet that is reached.
     pub(super) enters: bool,
 }
 
 /// A call that has not returned.
 #[derive(Clone, Copy, Debug)]
 struct Open {
-    /// Where it returns to.
+    /// The return address.
     back: u32,
     /// The callers before it.
     outer: Callers,
@@ -72,11 +72,11 @@ struct Trail {
     callers: Callers,
 }
 
-/// Where the time went.
+/// Time spent, by place.
 #[derive(Clone, Debug, Default)]
 pub struct Account {
     spent: BTreeMap<Spender, Time>,
-    /// What each waiting context waits in, and since when.
+    /// The place in which each waiting context waits, and the start of the wait.
     waits: [Option<(Spender, Cycles)>; ContextId::COUNT],
     /// Each list of calls as the list before it and the last call; the list 0 is empty.
     lists: Vec<(Callers, CodeAddr)>,
@@ -146,7 +146,7 @@ impl Account {
     }
 }
 
-/// Whether `back` may be the return address of a call at `at`.
+/// Reports whether `back` may be the return address of a call at `at`.
 pub(super) const fn is_return_of(back: u32, at: u32) -> bool {
     back.wrapping_sub(at) <= LONGEST_CALL
 }

@@ -25,7 +25,7 @@ const BEFORE: u32 = 28;
 /// No packet begins there.
 const NONE: u32 = u32::MAX;
 
-/// What was decoded of a page.
+/// The decoded packets of a page.
 #[derive(Debug)]
 struct Page {
     /// Its number: address / 4096.
@@ -42,7 +42,7 @@ pub(super) struct Cache {
     packets: Vec<Packet>,
     micros: Vec<Micro>,
     pages: Box<[Option<Box<Page>>]>,
-    /// How often decoded packets were dropped.
+    /// Number of times that decoded packets were dropped.
     generation: u64,
     /// Addresses that are searched even where the packet before is followed by them, in order.
     stops: Vec<u32>,
@@ -185,7 +185,7 @@ impl Cache {
         page.get_or_insert_with(|| Box::new(Page { number, lines: 0, packets: [NONE; WORDS] }))
     }
 
-    /// Whether a store to `at` changes words that were decoded.
+    /// Reports whether a store to `at` changes words that were decoded.
     #[inline(always)]
     pub(super) fn is_code(&self, at: u32) -> bool {
         self.page(at).is_some_and(|page| page.lines & line_bit(at) != 0)
@@ -231,7 +231,7 @@ impl Cache {
         &self.stops
     }
 
-    /// Whether an address is one of them.
+    /// Reports whether an address is one of them.
     #[inline(always)]
     pub(super) fn is_stop(&self, at: u32) -> bool {
         self.stops.binary_search(&at).is_ok()
@@ -255,7 +255,7 @@ impl Cache {
         }
     }
 
-    /// Where translated code must not store: decoded packets, and what is protected in `memory`.
+    /// Marks the lines that translated code must not store to: decoded packets, and the protected parts of `memory`.
     #[cfg(feature = "native")]
     pub(super) fn marks(&mut self, memory: &crate::memory::GuestMemory) -> Option<&crate::native::Marks> {
         self.marks.follow(memory.protected_texts())

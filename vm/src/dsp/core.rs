@@ -1,4 +1,4 @@
-//! One processor context: packet after packet, until something ends it.
+//! One processor context: executes packet after packet.
 
 use super::cache::Cache;
 use super::decode::{Micro, NoPacket, STACK, places};
@@ -16,7 +16,7 @@ use crate::trap::{Fault, TrapKind};
 /// The board loses ticks long before, and with them position.
 const LONGEST_SHADOW: i64 = 200_000;
 
-/// Why a core returned.
+/// The reason why a core returned.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Halt {
@@ -30,40 +30,40 @@ pub enum Halt {
     Stopped,
 }
 
-/// How hot code becomes code of the host.
+/// The translator of hot code to code of the host.
 #[cfg(feature = "native")]
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HotCode(RegionTranslator);
 
-/// It never does without that.
+/// The translator of a build without one: there is none.
 #[cfg(not(feature = "native"))]
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum HotCode {}
 
 impl HotCode {
-    /// What this is built with.
+    /// The translator of this build, if it has one.
     #[cfg(feature = "native")]
     pub(crate) const HERE: Option<Self> = Some(Self(TRANSLATOR));
     #[cfg(not(feature = "native"))]
     pub(crate) const HERE: Option<Self> = None;
 }
 
-/// Where a core stops when its cycles are over.
+/// The points at which a core stops when its cycles are used up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Border {
-    /// Where an interrupt is possible; none for long is a fault.
+    /// At points where an interrupt is possible; a long time without one is a fault.
     #[default]
     Slice,
     /// At the next packet.
     Next,
-    /// Where an interrupt is possible, or at the first packet from this cycle on.
+    /// At points where an interrupt is possible, or at the first packet from this cycle on.
     Interrupt(u64),
 }
 
 /// Registers, results in flight, decoded packets.
 #[derive(Clone, Debug, Default)]
 pub struct Core {
-    /// Registers and what is on its way to them.
+    /// Registers, and the results in flight to them.
     pub state: State,
     cache: Cache,
     stack: Option<StackWatch>,
@@ -136,7 +136,7 @@ impl Core {
         self.run_to_border(memory)
     }
 
-    /// As [`run`](Self::run), and says of each packet what it took: its address, cycles, the state after it.
+    /// Acts as [`run`](Self::run), and reports the address of each packet, its cycles, and the state after it.
     pub fn run_counted<M: Memory>(
         &mut self,
         memory: &mut M,
@@ -146,8 +146,8 @@ impl Core {
         self.count_to_border(memory, &mut |_, pc, cycles, state| count(pc, cycles, state))
     }
 
-    /// As [`run_until`](Self::run_until), packet by packet, and says of each what it took: memory, its address, cycles, the
-    /// state after it.
+    /// Acts as [`run_until`](Self::run_until), packet by packet, and reports the memory, the address of each packet,
+    /// its cycles, and the state after it.
     pub fn count_until<M: Memory>(
         &mut self,
         memory: &mut M,
@@ -159,7 +159,7 @@ impl Core {
         self.count_to_border(memory, count)
     }
 
-    /// As [`run_to_interrupt`](Self::run_to_interrupt), packet by packet, and says of each what it took.
+    /// Acts as [`run_to_interrupt`](Self::run_to_interrupt), packet by packet, and reports each.
     pub fn count_to_interrupt<M: Memory>(
         &mut self,
         memory: &mut M,
@@ -204,13 +204,13 @@ impl Core {
         self.cache.set_stops(addresses);
     }
 
-    /// Where runs stop.
+    /// The stops.
     #[must_use]
     pub fn stops(&self) -> &[u32] {
         self.cache.stops()
     }
 
-    /// Whether the next packet is at a stop that was not reported just now.
+    /// Reports whether the next packet is at a stop that was not just reported.
     fn stops_here(&mut self) -> bool {
         let pc = self.state.pc;
         if !self.cache.is_stop(pc) || self.passed.take() == Some(pc) {
@@ -220,7 +220,7 @@ impl Core {
         true
     }
 
-    /// Whether loops that wait are run through in one step by [`run_until`](Self::run_until); nothing else changes.
+    /// Sets whether [`run_until`](Self::run_until) skips the iterations of loops that wait. The results stay the same.
     pub const fn skip_waits(&mut self, whether: bool) {
         self.skips = whether;
     }
@@ -239,7 +239,7 @@ impl Core {
         self.run_to_border(memory)
     }
 
-    /// As [`run_until`](Self::run_until), but no further than to where an interrupt is possible.
+    /// Acts as [`run_until`](Self::run_until), but stops at the first point at which an interrupt is possible.
     pub fn run_to_interrupt<M: Memory>(&mut self, memory: &mut M, until: u64) -> Halt {
         self.border = Border::Interrupt(until);
         self.idle.forget();
@@ -284,12 +284,12 @@ impl Core {
         }
     }
 
-    /// Whether hot code is translated to code of the host, where this is built with it; nothing else changes.
+    /// Sets whether hot code is translated to code of the host, if this build can do so. The results stay the same.
     pub fn translate(&mut self, whether: bool) {
         self.translate_hot(if whether { HotCode::HERE } else { None });
     }
 
-    /// The same by somebody else's choice.
+    /// Sets the translator of hot code; `None` turns translation off.
     pub(super) fn translate_hot(&mut self, hot: Option<HotCode>) {
         #[cfg(feature = "native")]
         {

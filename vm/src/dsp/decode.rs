@@ -1,9 +1,9 @@
 //! Packets, decoded once: operands resolved, order chosen, checks made that need no values.
 //!
-//! The instructions of a packet read all their sources before any of them writes. They are
-//! executed one after another nevertheless, in an order in which nobody reads what another
-//! has written before; where there is no such order (two moves that exchange registers), a
-//! result is [deferred](DEFERRED) to the beginning of the next cycle.
+//! The instructions of a packet read all their sources before any of them writes. They are executed one after another
+//! nevertheless, in an order in which no instruction reads a register that an earlier one of the packet has written;
+//! where there is no such order (two moves that exchange registers), a result is [deferred](DEFERRED) to the beginning
+//! of the next cycle.
 
 use c67x::{Branch, Field, Inst, Kind, Offset, Operand, PARALLEL, Reg, Update, target};
 
@@ -46,11 +46,11 @@ const MOST: usize = 8;
 /// An instruction with its operands resolved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Micro {
-    /// What is done.
+    /// The operation.
     pub(super) work: Work,
     /// The register tested.
     pub(super) pred: u8,
-    /// Whether it executes if that register is 0.
+    /// True if it executes when that register is 0.
     pub(super) inverted: bool,
     /// s1, to which `imm` is added; the base of an address.
     pub(super) a: u8,
@@ -77,17 +77,17 @@ pub(super) struct Packet {
     pub(super) first: u32,
     /// Number of instructions that do something.
     pub(super) count: u8,
-    /// The delays after which something that it sends on its way may happen, as bits.
+    /// The delays after which an effect that it issues may occur, as bits.
     pub(super) delays: u16,
     /// Cycles it lasts, if no branch ends it.
     pub(super) cycles: u8,
-    /// Whether it writes the stack pointer.
+    /// True if it writes the stack pointer.
     pub(super) moves_stack: bool,
-    /// Whether it holds a branch, taken or not.
+    /// True if it holds a branch, taken or not.
     pub(super) has_branch: bool,
-    /// Whether it waits for an interrupt.
+    /// True if it waits for an interrupt.
     pub(super) is_idle: bool,
-    /// Whether the packet after it is the next of the cache.
+    /// True if the packet after it is the next of the cache.
     pub(super) is_linked: bool,
     /// The address after it.
     pub(super) end: u32,
@@ -100,14 +100,14 @@ pub(super) struct Decoded {
     pub(super) writes: u64,
 }
 
-/// Whether bytes look like code of this processor: the first words are instructions.
+/// Reports whether bytes look like code of this processor: the first words are instructions.
 #[must_use]
 pub fn is_code(bytes: &[u8]) -> bool {
     let words = bytes.as_chunks::<4>().0;
     !words.is_empty() && words.iter().take(MOST).all(|word| Inst::decode(u32::from_le_bytes(*word)).is_ok())
 }
 
-/// Why there is no packet.
+/// The reason why there is no packet.
 pub(super) enum NoPacket {
     /// No code of this context is there.
     Outside,
@@ -304,7 +304,7 @@ fn resolve(at: u32, inst: Inst) -> Micro {
 }
 
 impl Micro {
-    /// Whether its condition holds.
+    /// Reports whether its condition holds.
     #[inline(always)]
     pub(super) fn is_executed(&self, regs: &[u32; 256]) -> bool {
         self.pred == TRUE || (regs[usize::from(self.pred)] == 0) == self.inverted

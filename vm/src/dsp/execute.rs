@@ -186,7 +186,7 @@ impl State {
         self.land::<RENAMED>(high_delay, reg | 1, (value >> 32) as u32);
     }
 
-    /// Both words of a result that land in the same cycle.
+    /// Lands both words of a result in the same cycle.
     #[inline(always)]
     fn land_both<const RENAMED: bool>(&mut self, delay: u64, reg: u8, value: u64) {
         if RENAMED {
@@ -281,7 +281,7 @@ impl State {
         Some((join(low1, high1), join(low2, high2)))
     }
 
-    /// The same of a product, which the next packet may change.
+    /// Returns both sources of a product, if its high words are certain before the next packet executes.
     #[inline(always)]
     fn product_words<const RENAMED: bool>(&self, m: &Micro, low1: u32, low2: u32) -> Option<(u64, u64)> {
         let is_foreseen = RENAMED || m.extra & FORESEEN != 0 && !self.branches_next();

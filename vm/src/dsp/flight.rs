@@ -1,7 +1,7 @@
-//! What is on its way: results, branches, double instructions that have more to read.
+//! Effects in flight: results, branches, double instructions that have more to read.
 //!
-//! Results wait in sixteen slots, the slot of a cycle being its number modulo 16. When something may happen is kept
-//! apart from that, so that cycles in which nothing lands pass at once.
+//! Results wait in sixteen slots, the slot of a cycle being its number modulo 16. The cycles in which an effect may
+//! land are kept in a mask of their own, so that cycles without one pass quickly.
 
 use super::decode::Micro;
 
@@ -27,13 +27,13 @@ pub(super) struct Late {
     pub(super) high2: Option<u32>,
 }
 
-/// What is on its way: results, branches, double instructions that have more to read.
+/// The effects in flight: results, branches, double instructions that have more to read.
 #[derive(Clone, Debug)]
 pub(super) struct Flight {
-    /// When something may happen, relative to the present cycle: bit k is set if in k cycles; bit 0 says nothing.
+    /// The cycles in which an effect may land, relative to the present one: bit k for k cycles; bit 0 is meaningless.
     ///
-    /// What a packet may send on its way is known when it is decoded, so this changes once a packet and not with each
-    /// result; a bit may be set for an instruction that was not executed.
+    /// The effects that a packet may issue are known when it is decoded, so this changes once a packet and not with
+    /// each result; a bit may be set for an instruction that was not executed.
     pub(super) due: u32,
     pub(super) masks: [u64; SLOTS],
     pub(super) values: Box<[[u32; 64]; SLOTS]>,
@@ -43,7 +43,7 @@ pub(super) struct Flight {
 }
 
 impl Flight {
-    /// Whether nothing is on its way.
+    /// Reports whether nothing is in flight.
     pub(super) const fn is_empty(&self) -> bool {
         self.due >> 1 == 0
     }

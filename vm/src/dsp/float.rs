@@ -8,7 +8,7 @@ const NAN_DOUBLE: u64 = 0x7FFF_FFFF_FFFF_FFFF;
 const SIGN_SINGLE: u32 = 1 << 31;
 const SIGN_DOUBLE: u64 = 1 << 63;
 const EXPONENT_DOUBLE: u64 = 0x7FF << 52;
-/// The exponent from which on sums are not looked at closely: 2^-900.
+/// The exponent from which on sums take the fast path: 2^-900.
 pub(super) const SUM_EXPONENT: u64 = 1023 - 900;
 
 /// A single as a source.
@@ -56,7 +56,7 @@ pub(super) fn mpysp(s1: u32, s2: u32) -> u32 {
     from_single(single(s1) * single(s2))
 }
 
-/// Whether bits are those of a finite number with this exponent or a greater one.
+/// Reports whether bits are those of a finite number with this exponent or a greater one.
 #[inline(always)]
 const fn is_finite_from(least: u64, bits: u64) -> bool {
     (bits >> 52 & 0x7FF).wrapping_sub(least) < 0x7FF - least

@@ -1,17 +1,17 @@
 //! Waiting loops: recognised by their effects, and skipped in one step.
 //!
-//! A loop that has changed nothing after a turn, with the same registers, the same results in flight, every byte that
-//! it stored as before, and no device reached, does the same in every further turn until something happens: so as many
-//! turns pass as there is room for. Nobody can see the difference but the clock of the computer. Source: `dsp-board.md`
-//! 9, "Skipping idle loops".
+//! If an iteration ends with the registers, the results in flight and every byte that it stored as they were before,
+//! and no device was reached, then every further iteration does the same until something happens from outside. So as
+//! many iterations are skipped as fit into the time left. Only the clock of the computer shows the difference. Source:
+//! `dsp-board.md` 9, "Skipping idle loops".
 
 use super::pipeline::Picture;
 
-/// Visits of a place after which it is looked at.
+/// Number of visits of a packet after which its loop is watched.
 const ENOUGH: u8 = 8;
-/// Longest turn, in cycles.
+/// The longest iteration that is watched, in cycles.
 const LONGEST: u64 = 4000;
-/// Most stores of a turn.
+/// The most stores of an iteration that are remembered.
 const MOST_STORES: usize = 64;
 /// Places that are counted, a power of two.
 const PLACES: usize = 64;
@@ -19,7 +19,7 @@ const PLACES: usize = 64;
 /// A word that was stored to: its address, and what was there before.
 type Old = (u32, u32);
 
-/// A turn that is being watched.
+/// An iteration that is being watched.
 #[derive(Clone, Debug)]
 struct Turn {
     picture: Picture,
@@ -28,7 +28,7 @@ struct Turn {
     stores: Vec<Old>,
 }
 
-/// How often a place was visited since something last happened.
+/// Number of visits of an address since something last happened.
 #[derive(Clone, Copy, Debug, Default)]
 struct Visits {
     pc: u32,
@@ -37,7 +37,7 @@ struct Visits {
     since: u32,
 }
 
-/// What is known about the loops since something last happened.
+/// The knowledge about loops since something last happened.
 #[derive(Clone, Debug)]
 pub(super) struct Idle {
     visits: [Visits; PLACES],
@@ -45,7 +45,7 @@ pub(super) struct Idle {
     /// so the visits before it become invalid, and are not cleared.
     happened: u32,
     turn: Option<Box<Turn>>,
-    /// Whether stores should be noted.
+    /// True if stores are to be noted.
     pub(super) is_watching: bool,
     /// Cycles that were skipped so far.
     pub(super) skipped: u64,
@@ -57,7 +57,7 @@ impl Default for Idle {
     }
 }
 
-/// What should be done at the target of a backward branch.
+/// The action at the target of a backward branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Arrival {
     /// Nothing.
@@ -69,7 +69,7 @@ pub(super) enum Arrival {
 }
 
 impl Idle {
-    /// Something has happened: what was seen does not hold any more.
+    /// Forgets all observations, because something has happened.
     pub(super) fn forget(&mut self) {
         self.happened = self.happened.wrapping_add(1);
         if self.happened == 0 {
@@ -100,7 +100,7 @@ impl Idle {
         if place.count == ENOUGH { Arrival::Look } else { Arrival::Pass }
     }
 
-    /// Watches the turn that begins here.
+    /// Watches the iteration that begins here.
     pub(super) fn look(&mut self, picture: Picture, packets: u64, touches: u64) {
         self.turn = Some(Box::new(Turn { picture, packets, touches, stores: Vec::new() }));
         self.is_watching = true;
@@ -125,7 +125,7 @@ impl Idle {
         }
     }
 
-    /// Cycles and packets of the turn that ends here, if it has changed nothing.
+    /// Returns cycles and packets of the iteration that ends here, if it has changed nothing.
     pub(super) fn end(
         &mut self,
         now: &Picture,

@@ -1,4 +1,4 @@
-//! What a person is shown of a processor that is halted: its registers, the code around a place.
+//! Views of a halted processor for people: its registers, the code around an address.
 
 use c67x::{Control, Inst, PARALLEL, Reg};
 

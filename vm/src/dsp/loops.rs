@@ -1,10 +1,10 @@
 //! Loops with their registers renamed.
 //!
-//! In software-pipelined code something lands in every cycle, and most of what the interpreter of single packets does is
-//! to keep what is on its way. A loop that is reached often is therefore planned once ([`plan`]): a result is written to a
-//! place that nobody reads, and instructions are renamed to find it there from the cycle on in which it lands
-//! ([`renaming`]). What executes them is the same as ever. Where the loop is left, for whatever reason, everything is
-//! brought back: nobody can see a difference but the clock of the computer.
+//! In software-pipelined code a result lands in every cycle, and the interpreter of single packets spends most of its
+//! time on results in flight. A loop that is reached often is therefore planned once ([`plan`]): a result is written at
+//! once to a location that no instruction reads yet, and instructions are renamed to read it there from the cycle on in
+//! which it lands ([`renaming`]). They are executed by the same functions as elsewhere. Where the loop is left, for
+//! whatever reason, the state is converted back: only the clock of the computer shows the difference.
 
 mod plan;
 mod renaming;
@@ -30,7 +30,7 @@ const PLACES: usize = 256;
 /// Most loops of one place, most loops.
 const MOST_HERE: usize = 8;
 const MOST: usize = 128;
-/// How often code may change before nothing is planned any more.
+/// Number of changes of the code after which nothing is planned any more.
 const MOST_CHANGES: u32 = 64;
 /// A loop is entered if there is time for as many cycles.
 const LEAST: i64 = 64;
@@ -52,7 +52,7 @@ pub(super) struct Loops {
     is_off: bool,
 }
 
-/// A loop that is entered at one place with one list of what is on its way.
+/// A loop with its entry and the effects in flight there.
 #[derive(Debug)]
 pub(super) struct RenamedLoop {
     flying: Vec<Flying>,

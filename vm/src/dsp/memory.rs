@@ -1,4 +1,4 @@
-//! What the processor needs of memory.
+//! The interface between processor and memory.
 
 #[cfg(feature = "native")]
 use crate::memory::GuestMemory;
@@ -33,7 +33,7 @@ impl Clock {
         self.deadline = self.cycle.wrapping_add_signed(left);
     }
 
-    /// Whether nothing is left.
+    /// Reports whether no cycles are left.
     #[inline(always)]
     pub(super) const fn is_over(&self) -> bool {
         self.left() <= 0
@@ -44,12 +44,12 @@ impl Clock {
 ///
 /// Addresses are multiples of the size of the access: the processor ignores the low bits.
 pub trait Memory {
-    /// How often a device was reached so far in a way that may matter; a loop that reaches none can be skipped.
+    /// Number of accesses so far that reached a device in a way that may matter; a loop without one can be skipped.
     fn touches(&self) -> u64 {
         0
     }
 
-    /// Both RAMs, if they are all that accesses of their addresses reach: then hot code is translated.
+    /// Both RAMs, if accesses of their addresses reach nothing else: then hot code is translated.
     #[cfg(feature = "native")]
     fn ram(&mut self) -> Option<&mut GuestMemory> {
         None

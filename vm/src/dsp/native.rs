@@ -1,9 +1,9 @@
 //! Hot code as code of the host.
 //!
-//! Whoever executes packets says where branches arrive ([`Native::run`]). A place that is reached often is translated
-//! with everything that is reached from it ([`region`]), for what is on its way there ([`flying`]). A region runs until
-//! something happens that only the interpreter knows, or until too little time is left. Both agree to the cycle and to
-//! the bit; a store among code, and whatever else drops decoded packets, drops all regions.
+//! The executor of packets reports where branches arrive ([`Native::run`]). An address that is reached often is
+//! translated with all packets reachable from it ([`region`]), for the effects in flight there ([`flying`]). A region
+//! runs until something happens that only the interpreter handles, or until too little time is left. Both agree to the
+//! cycle and to the bit; a store among code, and everything else that drops decoded packets, drops all regions.
 
 mod access;
 mod arith;
@@ -30,10 +30,10 @@ const PLACES: usize = 1024;
 /// Most regions of one place, most regions.
 const MOST_HERE: usize = 4;
 const MOST: usize = 512;
-/// How often code may change before nothing is translated any more.
+/// Number of changes of the code after which nothing is translated any more.
 const MOST_CHANGES: u32 = 64;
 
-/// What makes a region of what is reached from an address.
+/// The function that translates the packets reachable from an address.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RegionTranslator(Translate);
 

@@ -1,8 +1,8 @@
-//! Registers, and the results on their way to them.
+//! Registers, and the results in flight to them.
 //!
-//! Results that are not there yet wait in sixteen slots, the slot of a cycle being its number
-//! modulo 16: no instruction takes longer. A slot has a value for every register and a mask
-//! of those that are meant, so two results for one register in one cycle are found for free.
+//! Results wait in sixteen slots, the slot of a cycle being its number modulo 16: no instruction takes longer. A slot
+//! has a value for every register and a mask of the registers that get one, so two results for one register in one
+//! cycle are detected at no cost.
 
 use c67x::Reg;
 
@@ -45,11 +45,11 @@ pub struct State {
     pub(super) branched_at: [u32; 2],
     /// The first cycle before which an interrupt is possible again.
     pub(super) shadow: u64,
-    /// Whether an `IDLE` waits.
+    /// True while an `IDLE` waits.
     pub(super) is_idle: bool,
 }
 
-/// What a packet did whose outcome the processor leaves open.
+/// Effects of a packet whose outcome the processor leaves undefined.
 #[derive(Clone, Debug, Default)]
 struct Undefined {
     /// Registers with two results in one cycle; not 0 either if two branches arrive in one.
@@ -57,7 +57,7 @@ struct Undefined {
     two_branches: Option<(u32, u32)>,
 }
 
-/// What decides how a processor continues, but for memory.
+/// The state that decides how a processor continues, apart from memory.
 #[derive(Clone, Debug)]
 pub(super) struct Picture {
     /// The cycle of it.
@@ -70,12 +70,12 @@ pub(super) struct Picture {
     shadow: u64,
     /// Results in flight: when, which registers, their values, and the target of a branch.
     flight: Vec<(u64, u64, [u32; 64], Option<u32>)>,
-    /// Whether everything in flight is in `flight`.
+    /// True if `flight` holds everything that is in flight.
     is_whole: bool,
 }
 
 impl Picture {
-    /// Whether two processors go on alike.
+    /// Reports whether two processors continue in the same way.
     pub(super) fn is_like(&self, other: &Self) -> bool {
         self.is_whole
             && other.is_whole
@@ -86,7 +86,7 @@ impl Picture {
             && self.flight == other.flight
     }
 
-    /// Whether results are in flight: their slots are those of cycles modulo 16.
+    /// Reports whether results are in flight: their slots are those of cycles modulo 16.
     pub(super) const fn has_flight(&self) -> bool {
         !self.flight.is_empty()
     }
@@ -160,13 +160,13 @@ impl State {
         self.clock.cycle
     }
 
-    /// Whether the processor would take an interrupt before the next packet.
+    /// Reports whether the processor would take an interrupt before the next packet.
     #[must_use]
     pub const fn is_interruptible(&self) -> bool {
         self.clock.cycle >= self.shadow && self.control[CSR] & GIE != 0 && self.control[IER] & TIMER != 0
     }
 
-    /// What decides how it continues.
+    /// Copies the state that decides how it continues.
     pub(super) fn picture(&self) -> Picture {
         let mut regs = [0; 64];
         regs.copy_from_slice(&self.regs[..64]);
@@ -208,7 +208,7 @@ impl State {
         self.control[IFR] |= TIMER;
     }
 
-    /// Whether the interrupt of the timer waits to be taken.
+    /// Reports whether the interrupt of the timer waits to be taken.
     #[must_use]
     pub const fn has_timer_flag(&self) -> bool {
         self.control[IFR] & TIMER != 0
@@ -216,7 +216,7 @@ impl State {
 
     /// Takes the interrupt of the timer: everything in flight lands, and the handler begins `overhead` cycles later.
     ///
-    /// Source: `dsp-board.md` 4.2. Whoever calls has asked [`is_interruptible`](Self::is_interruptible).
+    /// Source: `dsp-board.md` 4.2. The caller has tested [`is_interruptible`](Self::is_interruptible).
     pub fn take_timer_interrupt(&mut self, overhead: u64) {
         self.settle();
         self.clock.cycle += overhead;
@@ -235,7 +235,7 @@ impl State {
 
     /// Lets everything in flight land, as the processor does before it handles an interrupt.
     ///
-    /// Branches that are on their way are lost; where an interrupt is possible there are none.
+    /// Branches in flight are lost; where an interrupt is possible there are none.
     pub fn settle(&mut self) {
         if self.flight.is_empty() {
             return;
@@ -280,14 +280,14 @@ impl State {
         self.undefined.conflicts |= regs;
     }
 
-    /// Whether a result for one of two registers arrives within one or two cycles.
+    /// Reports whether a result for one of two registers arrives within `cycles` cycles, one or two.
     #[inline(always)]
     pub(super) fn arrives_within(&self, cycles: u64, reg1: u8, reg2: u8) -> bool {
         let masks = (1..=cycles).fold(0, |masks, delay| masks | self.flight.masks[self.slot(delay)]);
         masks & (bit(reg1) | bit(reg2)) != 0
     }
 
-    /// A register in `cycles` cycles, if nothing but what is on its way changes it.
+    /// The value of a register in `cycles` cycles, if only the results in flight change it.
     #[inline(always)]
     pub(super) fn after(&self, cycles: u64, reg: u8) -> u32 {
         let landing = (1..=cycles).rev().map(|delay| self.slot(delay));
@@ -307,7 +307,7 @@ impl State {
         self.refuse_second(mask & 3 << low);
     }
 
-    /// Whether a branch arrives in the next cycle.
+    /// Reports whether a branch arrives in the next cycle.
     #[inline(always)]
     pub(super) const fn branches_next(&self) -> bool {
         self.flight.branches >> self.slot(1) & 1 != 0
@@ -414,7 +414,7 @@ impl State {
         if self.flight.due & 1 == 0 { Passed::Through } else { self.arrive() }
     }
 
-    /// What is due in this cycle happens.
+    /// Applies the effects that are due in this cycle.
     #[inline(always)]
     fn arrive(&mut self) -> Passed {
         let slot = self.slot(0);
@@ -465,7 +465,7 @@ impl State {
     }
 }
 
-/// How the cycles of a packet passed.
+/// The end of a packet's cycles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Passed {
     /// The next packet follows.

@@ -1,6 +1,6 @@
 //! Products of 16 bits: which halves, which signs.
 
-/// How one of the sixteen-bit multiplies takes its sources.
+/// The halves and signs that a multiply of 16 bits takes from its sources.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Halves(u8);
 
@@ -46,31 +46,31 @@ impl Halves {
         Self(Self::new(first, second).0 | SATURATING)
     }
 
-    /// From a byte of a decoded instruction.
+    /// Decodes a byte of a decoded instruction.
     #[cfg(feature = "native")]
     pub(super) const fn from_bits(bits: u8) -> Self {
         Self(bits)
     }
 
-    /// Whether the first source is taken from its high half, and with its sign.
+    /// Reports whether the first source is the high half, and whether it is signed.
     #[cfg(feature = "native")]
     pub(super) const fn first(self) -> (bool, bool) {
         (self.0 & HIGH1 != 0, self.0 & SIGNED1 != 0)
     }
 
-    /// The same of the second source.
+    /// Reports whether the second source is the high half, and whether it is signed.
     #[cfg(feature = "native")]
     pub(super) const fn second(self) -> (bool, bool) {
         (self.0 & HIGH2 != 0, self.0 & SIGNED2 != 0)
     }
 
-    /// Whether the product is doubled and clamped.
+    /// Reports whether the product is doubled and clamped.
     #[cfg(feature = "native")]
     pub(super) const fn is_saturating(self) -> bool {
         self.0 & SATURATING != 0
     }
 
-    /// As a byte of a decoded instruction.
+    /// Encodes it as a byte of a decoded instruction.
     pub(super) const fn bits(self) -> u8 {
         self.0
     }

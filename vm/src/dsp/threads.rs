@@ -26,17 +26,17 @@ use crate::trap::{Trap, TrapKind};
 const A5: Reg = Reg::a(5);
 const A14: Reg = Reg::a(14);
 
-/// Where a call-back returns to: no code and no function is there.
+/// The return address of a call-back: no code and no function is there.
 const CALLBACK_RETURN: u32 = 0xFFFF_FFE0;
 
-/// What a register holds that a firmware function may change: a value that shows itself.
+/// The value put into a register that a firmware function may change, so that a later use of it is noticed.
 const CHANGED: u32 = 0xC4A7_6ED0;
 
 /// Runs real images.
 #[derive(Debug, Default)]
 pub struct DspEngine {
     contexts: [Option<Processor>; ContextId::COUNT],
-    /// How hot code is translated, if it is.
+    /// The translator of hot code, if it is translated.
     hot: Option<HotCode>,
     account: Option<Account>,
 }
@@ -61,7 +61,7 @@ impl DspEngine {
         Self { hot, account: keeps_account.then(Account::default), ..Self::default() }
     }
 
-    /// Where the time went, if that is kept.
+    /// The time spent by place, if an account is kept.
     #[must_use]
     pub const fn account(&self) -> Option<&Account> {
         self.account.as_ref()
@@ -208,7 +208,7 @@ impl Processor {
         }
     }
 
-    /// Executes packets one by one: for the account, and for whoever follows them.
+    /// Executes packets one by one: for the account, and for observers.
     fn run_counted<F: Firmware + ?Sized>(
         &mut self,
         id: ContextId,
@@ -243,7 +243,7 @@ impl Processor {
         halt
     }
 
-    /// Makes the firmware call of an address; the stop, if the program does not go on at once.
+    /// Makes the firmware call of an address; returns the stop, if the program does not continue at once.
     fn call<F: Firmware + ?Sized>(
         &mut self,
         id: ContextId,

@@ -10,7 +10,7 @@ pub(super) struct Watched<'a, M> {
     pub(super) inner: &'a mut M,
     cache: &'a Cache,
     idle: &'a mut Idle,
-    /// Where the packet has changed words that were decoded: it has two stores at most.
+    /// Addresses of decoded words that the packet has changed: it has two stores at most.
     pub(super) hits: [Option<u32>; 2],
 }
 

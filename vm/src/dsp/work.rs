@@ -1,4 +1,4 @@
-//! What an instruction does, once its operands are resolved.
+//! The operation of an instruction, once its operands are resolved.
 //!
 //! Several forms of the table share one [`Work`]: sides, cross paths and constants are gone.
 //! The formulas are those of the table (`c67x::Row::meaning`); here is what is common.
@@ -9,7 +9,7 @@ use super::product::{Half, Halves};
 
 macro_rules! works {
     ($($(#[doc = $doc:literal])* $name:ident,)*) => {
-        /// What is executed; s1 and s2 are the sources.
+        /// An operation; s1 and s2 are the sources.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
         pub(super) enum Work {
@@ -214,13 +214,13 @@ works! {
 /// The work of an instruction, and how its sources should be taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Plan {
-    /// What is done.
+    /// The operation.
     pub(super) work: Work,
     /// Shift of a scaled source, halves of a product.
     pub(super) extra: u8,
-    /// Whether s1 is `src2` and s2 is `src1`.
+    /// True if s1 is `src2` and s2 is `src1`.
     pub(super) swaps: bool,
-    /// Whether a 32-bit source of 40-bit arithmetic is zero-extended.
+    /// True if a 32-bit source of 40-bit arithmetic is zero-extended.
     pub(super) is_unsigned: bool,
 }
 

@@ -1,7 +1,7 @@
-//! What instructions work with: one call of a function while it executes.
+//! An activation: one call of a function while it executes, on which instructions work.
 //!
-//! There is one method an instruction, in `arith.rs`, `memory.rs` and `control.rs`. What it returns
-//! says how the execution goes on ([`Finish`]).
+//! There is one method an instruction, in `arith.rs`, `memory.rs` and `control.rs`. Its result is the continuation
+//! ([`Finish`]).
 
 use std::cell::Cell;
 
@@ -17,7 +17,7 @@ use crate::program::Program;
 use crate::slot::Slot;
 use crate::trap::TrapKind;
 
-/// Why the execution stopped.
+/// The reason why the execution stopped.
 #[derive(Debug)]
 pub(super) enum Exit {
     /// The budget is used up.
@@ -46,21 +46,21 @@ pub(super) enum Exit {
     Shared,
 }
 
-/// How the execution continues after an instruction.
+/// The continuation after an instruction.
 pub(super) enum Flow {
-    /// With the next word.
+    /// Continue with the next word.
     Next,
-    /// With the word `.0` words further on than the next.
+    /// Continue `.0` words after the next.
     Skip(usize),
-    /// With the word at a label.
+    /// Continue at a label.
     Jump(Label),
-    /// Not.
+    /// Stop.
     Leave(Exit),
 }
 
-/// What the method of an instruction may return.
+/// A result of an instruction's method, which can be a flow.
 pub(super) trait Finish {
-    /// The same as a flow.
+    /// Converts it to a flow.
     fn flow(self) -> Flow;
 }
 
@@ -131,23 +131,23 @@ registers! {
     RegF64 holds f64, noted as double;
 }
 
-/// What an execution has besides the registers of the current call.
+/// The state of an execution besides the registers of the current call.
 pub(super) struct State<'m> {
-    /// Those of the program.
+    /// The words of the program.
     pub(super) words: &'m Words,
     pub(super) program: &'m Program,
     /// Memory besides SDRAM.
     pub(super) ram: RamRest<'m>,
-    /// What is left of the slice, in cycles.
+    /// The rest of the slice's budget, in cycles.
     pub(super) budget: i64,
     /// The registers of all calls.
     pub(super) registers: &'m [Cell<u64>],
     pub(super) calls: &'m mut Calls,
-    /// Why the execution ended, once it has.
+    /// The reason why the execution ended, once it has.
     pub(super) exit: Option<Exit>,
 }
 
-/// One call of a function while it executes.
+/// A call of a function while it executes.
 pub(super) struct Activation<'a, 'm> {
     pub(super) state: &'a mut State<'m>,
     pub(super) window: &'m Window,

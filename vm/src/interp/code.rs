@@ -1,7 +1,8 @@
-//! What the interpreter executes: the words of a program, each with the handler that executes it.
+//! The code that the interpreter executes: the words of a program, each with its handler.
 //!
-//! The words of the image are kept as they are (`parts.rs`). What is done to them once: a function's word says what a
-//! call of it needs, and operands that may change places do so where the first is then what was assigned last.
+//! The words of the image are kept as they are (`parts.rs`), with two changes made once: a function's word gets the
+//! facts that a call of it needs, and the operands of commutative instructions are swapped where the first is then the
+//! register assigned last.
 
 use std::fmt;
 use std::sync::Arc;
@@ -16,10 +17,10 @@ use crate::op::{Op, WORD};
 use crate::operand::{FuncRef, Label};
 use crate::program::Program;
 
-/// One instruction.
+/// An instruction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Word {
-    /// What executes it, and maybe what comes after it.
+    /// The handler of the instruction, and maybe of those after it.
     pub(super) handler: Handler,
     /// The word of the image.
     pub(super) parts: Parts,
@@ -29,7 +30,7 @@ pub(super) struct Word {
 pub(super) type Words = [Word];
 
 impl Word {
-    /// That of the opcode `code` with these operands.
+    /// The word of the opcode `code` with these operands.
     const fn new(code: u16, parts: Parts) -> Self {
         Self { handler: handler_of(code), parts }
     }
@@ -40,10 +41,10 @@ impl Word {
         Self::new(parts[0], parts)
     }
 
-    /// One at which a context is held.
+    /// The word at which a context is held.
     pub(super) const HELD: Self = Self::new(BREAK, [BREAK, 0, 0, 0]);
 
-    /// That of an instruction whose accesses to shared memory are reported.
+    /// The word of an instruction whose accesses to shared memory are reported.
     fn observed(op: &Op) -> Self {
         let plain = Self::plain(op);
         match observe::place_of(op) {
@@ -54,12 +55,12 @@ impl Word {
         }
     }
 
-    /// Whether a context is held at it.
+    /// Reports whether a context is held at it.
     pub(super) const fn is_held(&self) -> bool {
         self.parts[0] == BREAK
     }
 
-    /// What [`encode`] leaves in the word of a function for calls of it.
+    /// The head of a function, which [`encode`] stores in the function's word.
     #[inline(always)]
     pub(super) const fn head(&self) -> Head {
         let [_, parameters, registers, frame] = self.parts;
@@ -83,17 +84,17 @@ impl Word {
 #[derive(Clone)]
 pub(super) struct Encoded {
     words: Box<Words>,
-    /// Whether accesses to shared memory are reported.
+    /// True if accesses to shared memory are reported.
     observed: bool,
 }
 
 impl Encoded {
-    /// Those of `program`, with accesses to shared memory reported or not.
+    /// Encodes `program`, with accesses to shared memory reported or not.
     pub(super) fn new(program: &Program, observed: bool) -> Self {
         Self::with(program, observed, &|_, _| false)
     }
 
-    /// The same, where a debugger holds contexts at some words.
+    /// Encodes a program with holds at some words.
     pub(super) fn held(&self, program: &Program, is_held: &dyn Fn(usize, &Op) -> bool) -> Self {
         Self::with(program, self.observed, is_held)
     }

@@ -60,10 +60,10 @@ pub(super) struct Calls {
     pub(super) result: u64,
 }
 
-/// What a call needs to know of the function that it calls.
+/// The facts about a function that a call of it needs.
 #[derive(Clone, Copy)]
 pub(super) struct Head {
-    /// How many of its registers are parameters.
+    /// Number of registers that are parameters.
     pub(super) parameters: u16,
     /// Number of registers.
     pub(super) registers: u16,
@@ -72,14 +72,14 @@ pub(super) struct Head {
 }
 
 impl Head {
-    /// That of `function`.
+    /// The head of `function`.
     pub(super) fn of(program: &Program, function: FuncRef) -> Self {
         let (signature, registers, frame) = program.head_of(function);
         Self { parameters: program.signature(signature).params.len() as u16, registers, frame }
     }
 }
 
-/// What a call gets.
+/// The registers and the frame of a call.
 struct Room<'a> {
     /// The first register.
     base: usize,
@@ -107,7 +107,8 @@ impl Calls {
         Some(self.begin(function, head, room))
     }
 
-    /// Where the registers and the frame of a call will be that begins with the parameters after the current registers.
+    /// The room for a call, whose registers begin after those of the current call; `None` if the stack or the registers
+    /// do not suffice.
     #[inline(always)]
     fn room<'a>(&self, head: Head, registers: &'a [Cell<u64>]) -> Option<Room<'a>> {
         let base = self.current.base + usize::from(self.current.registers);
@@ -146,7 +147,7 @@ impl Calls {
         registers.get(self.current.base..)?.first_chunk()
     }
 
-    /// Where the arguments of the next call begin in the window.
+    /// The index in the window at which the arguments of the next call begin.
     #[inline(always)]
     pub(super) const fn arguments_at(&self) -> u16 {
         self.current.registers
@@ -159,10 +160,10 @@ impl Calls {
     }
 }
 
-/// What a context has besides guest memory.
+/// The state of a context besides guest memory.
 #[derive(Debug)]
 pub(super) struct Context {
-    /// Of all calls, with a whole window after the first register of the current one.
+    /// The registers of all calls, with a whole window after the first register of the current one.
     registers: Vec<u64>,
     pub(super) calls: Calls,
     /// The entry function, until it is entered.
@@ -369,7 +370,7 @@ impl Context {
     }
 }
 
-/// Sets the first `count` of `registers` to 0, and some after them, which nobody reads before they are set.
+/// Sets the first `count` of `registers` to 0, and some after them, which are not read before they are set.
 #[inline(always)]
 fn clear(registers: &[Cell<u64>], count: usize) {
     for block in registers.as_chunks::<BLOCK>().0.iter().take(count.div_ceil(BLOCK)) {

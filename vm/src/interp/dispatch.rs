@@ -192,7 +192,7 @@ fn shared<'m>(
     leave(Activation { state, window, sdram, code, double, single }, Exit::Shared);
 }
 
-/// What a word does at which a debugger holds the context.
+/// Handles a word at which a debugger holds the context.
 fn held<'m>(
     state: &mut State<'m>,
     window: &'m Window,
@@ -254,7 +254,7 @@ fn enter(activation: Activation<'_, '_>, code: &Words) {
     }
 }
 
-/// Ends the execution at a place that no verified program comes to.
+/// Ends the execution at a point that a verified program does not reach.
 #[cold]
 fn lost(activation: Activation<'_, '_>) {
     leave(activation, Exit::Trap(TrapKind::Unreachable));

@@ -1,7 +1,8 @@
-//! Where a debugger holds contexts: before instructions that it names, after one instruction, after a change in memory.
+//! The points at which a debugger holds contexts: before given instructions, after one, after a change in memory.
 //!
-//! A word at which a context is held has an opcode that leaves the execution in a copy of the words that the interpreter executes, so
-//! what is nowhere held runs as fast as ever. What is watched for changes is compared after every instruction that can store; those have the opcode too.
+//! A word at which a context is held gets an opcode that leaves the execution, in a copy of the encoded words; so code
+//! without holds runs at full speed. Watched bytes are compared after every instruction that can store; those get the
+//! opcode too.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -33,7 +34,7 @@ impl WatchedBytes {
     }
 }
 
-/// Where contexts are held.
+/// The points at which contexts are held.
 #[derive(Debug, Default)]
 pub(super) struct Holds {
     breakpoints: BTreeSet<u32>,
@@ -47,7 +48,7 @@ pub(super) struct Holds {
 }
 
 impl Holds {
-    /// Whether anything is held anywhere.
+    /// Reports whether anything is held anywhere.
     pub(super) fn is_active(&self) -> bool {
         self.stepping.is_some() || !self.breakpoints.is_empty() || !self.watched.is_empty()
     }
@@ -75,7 +76,7 @@ impl Holds {
         }
     }
 
-    /// The first of what is watched that is not what it was; it is from now on what it is.
+    /// Returns the index of the first watched range that has changed, and takes its present bytes as the new ones.
     pub(super) fn take_change(&mut self, memory: &GuestMemory) -> Option<usize> {
         let index = self.watched.iter().position(|watched| watched.is_changed(memory))?;
         let WatchedBytes { address, bytes } = &mut self.watched[index];
@@ -166,7 +167,7 @@ impl Holds {
     }
 }
 
-/// Whether an instruction can change memory.
+/// Reports whether an instruction can change memory.
 fn may_store(op: &Op) -> bool {
     matches!(
         op,

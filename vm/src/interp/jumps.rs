@@ -1,9 +1,9 @@
 //! `setjmp` and `longjmp`: back into a call that has not returned, past those that it has made.
 //!
-//! What `setjmp` keeps is in the context, not in the guest's memory: a program can neither forge a place nor change
-//! the registers of a call. The `jmp_buf` holds a number, whose context it is of, and the
-//! complement of the number, which tells it from memory that nobody has filled. A call with a place has a mark; the
-//! place is gone when the call of its depth has another one.
+//! The state that `setjmp` saves is in the context, not in the guest's memory: a program can neither forge a jump point
+//! nor change the registers of a call. The `jmp_buf` holds a number, the context to which it belongs, and the
+//! complement of the number, which distinguishes it from uninitialised memory. A call with a jump point has a mark; the
+//! point is gone when the call of its depth has another one.
 
 use kmotiondef::GuestAddr;
 use kmotiondef::jumps::JumpFunction;
@@ -24,9 +24,9 @@ const MOST: usize = 1000;
 pub(super) struct JumpPoint {
     /// The `jmp_buf`.
     pub(super) place: GuestAddr,
-    /// That of its call.
+    /// The mark of its call.
     pub(super) mark: u16,
-    /// How many calls are around its call.
+    /// Number of calls around its call.
     pub(super) depth: usize,
     /// The instruction after the call of `setjmp`.
     pub(super) pc: usize,

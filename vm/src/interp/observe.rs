@@ -1,7 +1,7 @@
-//! Accesses to memory that threads can share, for the firmware to look at.
+//! Accesses to memory that threads can share, reported to the firmware.
 //!
-//! A load or store through a register looks at its address before it is executed, one of a constant address is known
-//! beforehand. What is shared leaves the execution, is executed alone and reported; nothing else changes.
+//! A load or store through a register tests its address before it is executed; a constant address is tested once. An
+//! instruction with a shared access leaves the execution, is executed alone and reported; the results stay the same.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -18,14 +18,14 @@ use crate::program::Program;
 pub(super) use crate::shared::is_shared;
 use crate::shared::{loads_of, registers};
 
-/// How an access names its address.
+/// The form of an access's address.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum AccessPlace {
     /// All.
     Constant(u32),
-    /// It is in a register, and a displacement.
+    /// In a register, plus a displacement.
     Register,
-    /// It is in a register, of a block that is copied or cleared.
+    /// In a register, for a block that is copied or cleared.
     Block,
 }
 
@@ -56,7 +56,7 @@ pub(super) fn place_of(op: &Op) -> Option<AccessPlace> {
     }
 }
 
-/// What accesses are made of, by instruction.
+/// The loads that stored values are made of, by instruction.
 #[derive(Debug, Default)]
 pub(super) struct Observer(BTreeMap<CodeAddr, Arc<[CodeAddr]>>);
 
@@ -68,7 +68,7 @@ pub(super) struct Pending {
     made_of: Arc<[CodeAddr]>,
     /// Address, bytes, whether it is a store.
     parts: Vec<(GuestAddr, u32, bool)>,
-    /// What is stored.
+    /// The stored value.
     stored: u64,
 }
 

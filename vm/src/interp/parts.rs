@@ -9,10 +9,10 @@ use crate::operand::OperandType;
 /// The word of an instruction, the opcode first.
 pub(super) type Parts = [u16; WORD / 2];
 
-/// Where the register that an instruction assigns is in its word.
+/// Position of the destination register in a word.
 pub(super) const DST: usize = 1;
 
-/// Where the operands of an instruction with two are.
+/// Positions of the operands of an instruction with two.
 pub(super) const A: usize = 2;
 pub(super) const B: usize = 3;
 
@@ -31,7 +31,7 @@ pub(super) type Links = [usize; 2];
 pub(super) type Assigned = [u16; 2];
 
 impl<'a> Operands<'a> {
-    /// Those of a word, of which the ones at `links` are the registers `assigned`.
+    /// The operands of a word, of which the ones at `links` are the registers `assigned`.
     #[inline(always)]
     pub(super) const fn of(parts: &'a Parts, links: Links, assigned: Assigned) -> Self {
         Self { parts, at: DST, links, assigned }
@@ -61,7 +61,7 @@ pub(super) fn parts_of(op: &Op) -> Parts {
     std::array::from_fn(|index| u16::from_le_bytes([bytes[2 * index], bytes[2 * index + 1]]))
 }
 
-/// Whether the operands `a` and `b` may change places.
+/// Reports whether the operands `a` and `b` may be swapped.
 pub(super) const fn is_commutative(op: &Op) -> bool {
     matches!(
         op,

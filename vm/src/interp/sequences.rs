@@ -1,14 +1,13 @@
-//! Instructions that programs often execute in a row, and where a program has them.
+//! Sequences of instructions that programs often execute, and their positions in a program.
 //!
-//! One handler executes them all, so that only the last one looks for the handler of what comes next. The
-//! words stay as they are: the first gets another opcode, and whoever jumps into the middle finds there
-//! what he would find without. After a branch a sequence continues where the branch leads, so it is one only
-//! if the next instruction is there on both ways.
+//! One handler executes a whole sequence, so that only the last instruction dispatches to the next handler. The words
+//! stay as they are, only the first gets another opcode, so a jump into the middle works as before. After a branch a
+//! sequence continues at the branch's target, so it is one only if the next instruction is there on both paths.
 //!
-//! In parentheses after an instruction is the operand that is what the one before it assigns; after a comma, the one
-//! that is what the one before that assigns. Their values never wait for memory. In brackets after the first is the
-//! operand that was assigned last before the sequence, and as what; so there are rows of one instruction, too.
-//! Of several rows that begin alike, the first that fits counts.
+//! In parentheses after an instruction is the operand that the one before it assigns; after a comma, the one that the
+//! one before that assigns. Their values never wait for memory. In brackets after the first is the operand that was
+//! assigned last before the sequence, and its kind; so there are rows of one instruction, too. Of several rows that
+//! begin alike, the first that fits counts.
 //!
 //! The list is what was measured to be most frequent in `c-programs` and in `vm/benches`.
 
@@ -267,14 +266,14 @@ const GROUPS: [Range<usize>; OPCODES as usize] = {
     groups
 };
 
-/// Where sequences are looked for.
+/// The text in which sequences are searched.
 pub(super) struct Text<'a> {
     pub(super) ops: &'a [Op],
     /// Their opcodes, [`BREAK`] where contexts are held.
     pub(super) codes: &'a [u16],
     /// Their words.
     pub(super) parts: &'a [Parts],
-    /// Whether a branch goes there.
+    /// True for each word that is the target of a branch.
     pub(super) is_target: &'a [bool],
 }
 
@@ -313,7 +312,7 @@ impl Text<'_> {
         }
     }
 
-    /// Whether `sequence` is what is executed from the word `pc` on, whatever the program computes.
+    /// Reports whether `sequence` is executed from the word `pc` on, whatever the program computes.
     fn has(&self, sequence: &[LinkedOp], pc: usize, before: [Option<usize>; 2]) -> bool {
         let Some((first, then)) = sequence.split_first() else { return true };
         let ops = self.ops;

@@ -15,7 +15,7 @@ pub(super) struct Split {
     pub(super) steps: Arc<[(usize, u32)]>,
     /// The one that comes next.
     pub(super) next: usize,
-    /// What the present instruction has still to store.
+    /// The high word that the present instruction still has to store.
     pub(super) high_word: Option<HighWord>,
 }
 

@@ -47,16 +47,16 @@ impl SingleText {
     }
 }
 
-/// Where contexts can lose the processor, and what it takes to execute instructions one at a time.
+/// The preemption mode, and the state for executing instructions one at a time.
 #[derive(Debug, Default)]
 pub(super) struct Stepping {
     pub(super) preemption: Preemption,
     pub(super) single: SingleText,
-    /// There where accesses to shared memory are reported.
+    /// The observer of accesses to shared memory, if they are reported.
     pub(super) observer: Option<Observer>,
 }
 
-/// What comes next in a segment that is executed in steps.
+/// The next step of a segment that is executed in steps.
 pub(super) enum NextStep {
     /// The slice is over.
     Preempted,

@@ -12,7 +12,7 @@ pub struct Image {
     code: Range<GuestAddr>,
     is_protected: bool,
     returns_to: GuestAddr,
-    /// Where functions begin, in ascending order; what its symbols say.
+    /// The start addresses of functions, from the symbols, in ascending order.
     functions: Arc<[u32]>,
 }
 
@@ -33,7 +33,7 @@ impl Image {
         Self { code, is_protected, returns_to, functions: Arc::default() }
     }
 
-    /// The same with the addresses at which its functions begin.
+    /// Sets the addresses at which its functions begin.
     #[must_use]
     pub fn with_functions(mut self, mut addresses: Vec<u32>) -> Self {
         addresses.sort_unstable();
@@ -41,7 +41,7 @@ impl Image {
         self
     }
 
-    /// Whether one of the functions that are known begins at an address.
+    /// Reports whether one of the known functions begins at an address.
     #[must_use]
     pub fn begins_function(&self, address: u32) -> bool {
         self.functions.binary_search(&address).is_ok()
@@ -59,19 +59,19 @@ impl Image {
         if self.is_protected { self.code.clone() } else { self.code.start..self.code.start }
     }
 
-    /// Where its outermost function returns to, as B3 says at the start of a thread.
+    /// The return address of its outermost function, in B3 at the start of a thread.
     #[must_use]
     pub const fn returns_to(&self) -> GuestAddr {
         self.returns_to
     }
 
-    /// Whether a function may begin at an address: a word of its code.
+    /// Reports whether a function may begin at an address: a word of its code.
     #[must_use]
     pub fn has_function(&self, address: GuestAddr) -> bool {
         address.get().is_multiple_of(4) && self.code.contains(&address)
     }
 
-    /// Whether code at an address is executed, and not called as a firmware function.
+    /// Reports whether code at an address is executed, and not called as a firmware function.
     #[must_use]
     pub const fn is_code(address: u32) -> bool {
         address >= PROGRAM_BASE && address < PROGRAM_LIMIT

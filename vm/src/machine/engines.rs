@@ -18,7 +18,7 @@ pub(super) struct EnginesSnapshot<S> {
 
 /// One engine for each kind of [`Loaded`].
 ///
-/// Whoever names a context says what it is loaded with, and by that whose context it is.
+/// A context is named with its code, which determines its engine.
 #[derive(Debug)]
 pub(super) struct Engines<E> {
     /// Runs bytecode.
@@ -78,7 +78,7 @@ impl<E: Engine> Engines<E> {
         self.images.restore(&snapshot.images)
     }
 
-    /// Whether `id` may be resumed with a [long slice](Slice::is_long).
+    /// Reports whether `id` may be resumed with a [long slice](Slice::is_long).
     pub(super) fn takes_long_slices(&self, id: ContextId, loaded: &Loaded) -> bool {
         match loaded {
             Loaded::Program(_) => self.programs.takes_long_slices(id),
@@ -94,7 +94,7 @@ impl<E: Engine> Engines<E> {
         }
     }
 
-    /// Where `id` is: its instruction, then the calls that led there, innermost first.
+    /// The position of `id`: its instruction, then the calls that led there, innermost first.
     pub(super) fn backtrace(&self, id: ContextId, loaded: &Loaded) -> Vec<CodeAddr> {
         match loaded {
             Loaded::Program(_) => self.programs.backtrace(id),

@@ -10,16 +10,16 @@ use crate::firmware::Firmware;
 use crate::thread::{Progress, ThreadState};
 use crate::wake::Wake;
 
-/// Where a tick is held.
+/// The point in a tick at which it is held.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Held {
     /// In the call-back.
     Callback {
         /// Its function.
         address: GuestAddr,
-        /// When it began.
+        /// The instant at which it began.
         begin: Cycles,
-        /// What is left of its budget.
+        /// The rest of its budget, in cycles.
         left: Cycles,
     },
     /// In the slice of a thread.
@@ -28,7 +28,7 @@ pub(super) enum Held {
         thread: ThreadId,
         /// Its slice.
         window: Window,
-        /// What is left of it.
+        /// The rest of its budget, in cycles.
         left: Cycles,
         /// The wake that came true, if the thread is in a waiting call.
         woken: Option<Wake>,
@@ -36,7 +36,7 @@ pub(super) enum Held {
 }
 
 impl<F: Firmware, E: Engine> Machine<F, E> {
-    /// Whose program the tick is held in, and the instant; `None` between two ticks.
+    /// The context in whose code the tick is held, and the instant; `None` between two ticks.
     #[must_use]
     pub fn held(&self) -> Option<(ContextId, Cycles)> {
         Some(match self.held? {
@@ -47,8 +47,8 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         })
     }
 
-    /// How much a computer has had to do for the board since power-up: cycles of programs, and what a tick takes
-    /// besides in such cycles. Time that is skipped is not work. No snapshot sets it back.
+    /// The work that a computer has done for the board since power-up, in cycles of programs; a tick counts as some of
+    /// them. Skipped time is not work. No snapshot sets it back.
     #[must_use]
     pub const fn work(&self) -> u64 {
         self.work
@@ -79,7 +79,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         self.engines.programs.set_watched(&self.memory, ranges);
     }
 
-    /// Which of the watched bytes have changed since that was last said.
+    /// Returns the index of a watched range that has changed since the last such report.
     pub fn take_change(&mut self) -> Option<usize> {
         self.engines.programs.take_change(&self.memory)
     }

@@ -16,13 +16,13 @@ use crate::thread::{Progress, ThreadState};
 /// The most slices that a long one stands for: a tenth of a second of the board's time.
 const MOST_SLICES: u64 = 512;
 
-/// What a long slice consists of.
+/// A long slice.
 struct LongSlice {
     thread: ThreadId,
     slices: u64,
-    /// What each of them can spend.
+    /// The budget of each slice, in cycles.
     each: Cycles,
-    /// What the last slice's block takes of the first.
+    /// The overdraft of the last slice's block, taken from the first slice.
     debt: Cycles,
 }
 

@@ -34,7 +34,7 @@ impl<S> Snapshot<S> {
         self.tick
     }
 
-    /// Whether a tick is held.
+    /// Reports whether a tick is held.
     #[must_use]
     pub const fn is_held(&self) -> bool {
         self.held.is_some()
@@ -48,7 +48,7 @@ impl<S> Snapshot<S> {
 }
 
 impl<F: Firmware, E: Engine> Machine<F, E> {
-    /// The machine as it is, without its firmware: whoever owns that keeps a copy of it beside.
+    /// Saves the machine without its firmware, whose owner keeps a copy of it.
     ///
     /// Memory is shared with earlier snapshots page by page, and so is the code of programs.
     pub fn snapshot(&mut self) -> Snapshot<E::Snapshot> {

@@ -273,7 +273,7 @@ fn waiting_costs_nothing_when_nothing_else_happens() {
     assert!(machine.firmware().skipped > 19_990);
 }
 
-/// What can be observed of a run.
+/// The observable state of a run.
 fn observe(machine: &Machine<Fake>) -> (Vec<String>, u64, ThreadSet, i32, Turn) {
     let firmware = machine.firmware();
     let count = machine.memory().peek(OUT);

@@ -7,10 +7,10 @@ use super::filled;
 /// Bytes of flash memory.
 pub(super) const SIZE: usize = 0x20_0000;
 
-/// What erased flash reads as.
+/// The value of an erased byte.
 pub(super) const ERASED_BYTE: u8 = 0xff;
 
-/// Flash to which nothing was ever written, once for all boards; it is filled when somebody looks at it.
+/// Erased flash, shared by all boards; filled on first use.
 static ERASED: LazyLock<Box<[u8; SIZE]>> = LazyLock::new(|| filled(ERASED_BYTE));
 
 /// Flash memory.
@@ -23,7 +23,7 @@ impl Flash {
         self.0.as_deref().unwrap_or(&ERASED)
     }
 
-    /// Whether nothing was ever written.
+    /// Reports whether nothing was ever written.
     pub(super) const fn is_erased(&self) -> bool {
         self.0.is_none()
     }

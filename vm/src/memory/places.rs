@@ -1,7 +1,7 @@
-//! Objects that a memory has in other places than the tables say.
+//! Objects whose addresses in a memory differ from those of the tables.
 //!
-//! The tables have the addresses of one firmware. A memory in which another one runs knows where that one keeps the same
-//! objects; whoever has an address of the tables asks for the place before it accesses the memory.
+//! The tables have the addresses of one firmware. A memory in which another one runs maps them to the addresses of the
+//! same objects there; code that has an address of the tables maps it before it accesses the memory.
 
 use std::sync::Arc;
 

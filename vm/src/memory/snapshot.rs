@@ -23,7 +23,7 @@ const _: () = assert!(flash::SIZE.is_multiple_of(PAGE));
 #[derive(Clone)]
 struct Pages(Vec<Arc<Page>>);
 
-/// Where bytes begin that differ from those of the page before, and a checksum of each such page.
+/// Shows the offset of each page that differs from the one before, and a checksum of it.
 impl fmt::Debug for Pages {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut map = f.debug_map();
@@ -85,7 +85,7 @@ pub(super) struct Regions {
 }
 
 impl Default for Regions {
-    /// Those of memory at power-up.
+    /// The regions of memory at power-up.
     fn default() -> Self {
         Self {
             sdram: Pages::filled(0, SDRAM_SIZE),

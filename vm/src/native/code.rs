@@ -31,10 +31,10 @@ const RESERVE_PER_WORD: usize = 0x400;
 /// and this many take it a second or two. Longer ones are tables written as statements, which run once.
 const MAX_WORDS: usize = 0x4000;
 
-/// How to call a function of a program through a pointer.
+/// The entry of a function for calls through a pointer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Entry {
-    /// What passes the function its arguments.
+    /// The thunk, which passes the function its arguments.
     pub(super) thunk: *const u8,
     /// The function.
     pub(super) pointer: *const u8,
@@ -116,12 +116,12 @@ impl MachineCode {
         Ok(Self { begin, entries, _memory: memory, stack: functions.stack })
     }
 
-    /// What begins the outermost call.
+    /// The function that begins the outermost call.
     pub(super) const fn begin(&self) -> Begin {
         self.begin
     }
 
-    /// How to call the function with the given index.
+    /// The entry of the function with the given index.
     pub(super) fn entry(&self, function: usize) -> Entry {
         self.entries[function]
     }

@@ -1,4 +1,4 @@
-//! From a program to the functions of a Cranelift module in the memory of this process ([`code`](super::code)).
+//! Compilation of a program to functions of a Cranelift module in the memory of this process ([`code`](super::code)).
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -29,7 +29,7 @@ const NATIVE_CALL_OVERHEAD: u32 = 32;
 /// interpreter's bound on the registers of all calls together, of which compiled code knows nothing.
 const MAX_REGISTERS: usize = 4096;
 
-/// Why a program cannot be compiled on this host; it runs on the bytecode engine then.
+/// The reason why a program cannot be compiled on this host; it runs on the bytecode engine then.
 #[derive(Debug, thiserror::Error)]
 pub enum CompileError {
     /// Cranelift has no code generator for the host.
@@ -80,15 +80,15 @@ pub(super) fn host_isa() -> Result<OwnedTargetIsa, CompileError> {
 
 /// The functions of a program in a module.
 pub(super) struct Functions {
-    /// What begins the outermost call.
+    /// The function that begins the outermost call.
     pub(super) begin: FuncId,
     /// For each function of the program, what passes it its arguments, and itself.
     pub(super) entries: Vec<(FuncId, FuncId)>,
-    /// What calls take of the native stack.
+    /// The native stack that calls use.
     pub(super) stack: StackUse,
 }
 
-/// What the calls of a program take of the native stack.
+/// The native stack that the calls of a program use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct StackUse {
     /// The most bytes that a call takes for each byte of guest stack.
@@ -135,7 +135,7 @@ fn parameters<'a>(program: &'a Program, function: &Function) -> &'a Vec<Class> {
     &program.signatures()[usize::from(function.signature.0)].params
 }
 
-/// What compiles the functions of one program.
+/// The compiler of the functions of one program.
 struct Compiler<'m> {
     module: &'m mut dyn Module,
     context: Context,

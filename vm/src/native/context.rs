@@ -18,32 +18,32 @@ use crate::slot::Slot;
 use crate::trap::TrapKind;
 use crate::wake::Wake;
 
-/// How a context continues when it is resumed.
+/// The continuation of a context when it is resumed.
 #[derive(Clone, Debug)]
 enum Next {
-    /// With the answer to its last request.
+    /// Continue with the answer to its last request.
     Answer(Answer),
-    /// With the answer to this request, which a long slice could not give.
+    /// Continue with the answer to this request, which a long slice could not give.
     Request(Request),
-    /// With the rest of a store.
+    /// Continue with the rest of a store.
     HighWord(HighWord),
-    /// With the firmware call of this address and signature, for which it waits.
+    /// Repeat the firmware call of this address and signature, for which it waits.
     CallFirmware(GuestAddr, SigRef),
-    /// Not at all; it stopped for good.
+    /// Do not continue: the context has stopped for good.
     Nothing(Stop),
 }
 
-/// What a request leads to; small, because there is one of it at each request.
+/// The step after a request; small, because there is one at each request.
 enum NextStep {
-    /// The context goes on at once.
+    /// Continue at once.
     Go(Answer),
-    /// It waits, and continues as the context says.
+    /// Wait, then continue as stated in the context.
     Wait(Wake),
-    /// It stops, and continues as the context says.
+    /// Stop, then continue as stated in the context.
     Stop(Halt),
 }
 
-/// Why a context stopped that does not wait.
+/// The reason why a context stopped that does not wait.
 #[derive(Clone, Copy)]
 enum Halt {
     Preempted,
@@ -63,7 +63,7 @@ impl From<Halt> for Stop {
     }
 }
 
-/// Which calls of the firmware were found to fit the called function's signature, as many as a loop makes.
+/// The calls of the firmware that were found to match the called function's signature, as many as a loop makes.
 #[derive(Clone, Copy, Debug, Default)]
 struct CheckedCalls([Option<(GuestAddr, SigRef)>; 8]);
 
@@ -76,7 +76,7 @@ impl CheckedCalls {
     }
 }
 
-/// One context.
+/// A context.
 #[derive(Debug)]
 pub(super) struct Context {
     fiber: Fiber,
@@ -253,13 +253,13 @@ impl Context {
         request
     }
 
-    /// Stops the context, to go on later with `next`.
+    /// Stops the context, to continue later with `next`.
     fn halt(&mut self, halt: Halt, next: Next) -> NextStep {
         self.next = next;
         NextStep::Stop(halt)
     }
 
-    /// Does what compiled code asks for.
+    /// Answers a request of compiled code.
     fn answer<F: Firmware + ?Sized>(
         &mut self,
         id: ContextId,
@@ -362,7 +362,7 @@ impl Context {
     }
 }
 
-/// What a call through the pointer `address` with `signature` calls.
+/// The function that a call through the pointer `address` with `signature` calls.
 fn resolve<F: Firmware + ?Sized>(
     program: &Program,
     slice: &Slice<'_, F>,

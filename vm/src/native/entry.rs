@@ -9,8 +9,8 @@ use crate::arith;
 /// The functions of this file that compiled code calls.
 pub(super) const WAYS_OUT: WaysOut = WaysOut { leave, convert };
 
-/// What begins the outermost call: a piece of compiled code that calls the thunk at the second
-/// pointer on the stack that the state describes.
+/// The function that begins the outermost call: a piece of compiled code that calls the thunk at the second pointer on
+/// the stack that the state describes.
 pub(super) type Begin = unsafe extern "C" fn(*const State, *const u8);
 
 /// A piece of machine code; what it returns says how it ended.

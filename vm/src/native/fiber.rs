@@ -32,8 +32,8 @@ pub(super) enum Answer {
     Function(usize),
 }
 
-/// What a fiber is put into: a native stack, and the state of the context that runs on it. Compiled code knows both by
-/// their addresses, so a fiber and its copies are always in the same place; one of them at a time.
+/// The home of a fiber: a native stack, and the state of the context that runs on it. Compiled code knows both by their
+/// addresses, so a fiber and its copies are always in the same home; one of them at a time.
 struct Home {
     stack: DefaultStack,
     /// Bytes of the stack.
@@ -100,8 +100,8 @@ unsafe impl corosensei::stack::Stack for View {
     }
 }
 
-/// What runs on the stack. It is never dropped but discarded, and may be copied bit by bit: like all that lies on the
-/// stack it owns nothing.
+/// The coroutine on the stack. It is never dropped but discarded, and may be copied bit by bit: like all that lies on
+/// the stack it owns nothing.
 type Running = ManuallyDrop<Coroutine<u64, Request, (), View>>;
 
 /// A native stack with one call of a program's function on it.
@@ -111,13 +111,13 @@ pub(super) struct Fiber {
     rest: Rest,
 }
 
-/// What a fiber has besides what runs on it.
+/// The parts of a fiber besides its coroutine.
 #[derive(Clone)]
 struct Rest {
     code: Arc<MachineCode>,
-    /// Where guest memory and the map of protected blocks are, as soon as it has begun.
+    /// The addresses of guest memory and of the map of protected blocks, as soon as it has begun.
     ram: Option<(*mut u8, *mut u8, *const u8)>,
-    /// Whether the last request was for the target of a call.
+    /// True if the last request was for the target of a call.
     resolving: bool,
 }
 
@@ -222,7 +222,7 @@ impl Fiber {
         }
     }
 
-    /// What the engine and compiled code share.
+    /// The state that the engine and compiled code share.
     pub(super) fn state(&self) -> &State {
         &self.place.state
     }

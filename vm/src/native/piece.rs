@@ -22,7 +22,7 @@ pub(crate) struct Handover {
     pub(crate) time: Time,
     /// The packets of the last two branches.
     pub(crate) branched_at: [u32; 2],
-    /// Where the processor continues, if that is not known beforehand.
+    /// The address at which the processor continues, if that is not known beforehand.
     pub(crate) target: u32,
     /// The watched stack.
     pub(crate) stack: Watch,
@@ -30,7 +30,7 @@ pub(crate) struct Handover {
     pub(crate) touched: u32,
     /// Takes stores that are not made.
     pub(crate) scratch: u64,
-    /// Values of what is on its way.
+    /// Values in flight.
     pub(crate) values: [u32; VALUES],
 }
 

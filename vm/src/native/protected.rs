@@ -1,4 +1,4 @@
-//! Where a store of compiled code must be checked: a coarse map of the protected program text.
+//! The blocks in which stores of compiled code must be checked: a coarse map of the protected program text.
 //!
 //! One byte stands for a block of SDRAM and is not 0 if some of the block is protected. A store
 //! to such a block goes the slow way, where guest memory decides exactly.
@@ -20,7 +20,7 @@ pub(super) type Marks = [u8; (SDRAM.size >> BLOCK_BITS) as usize];
 pub(super) struct ProtectedBlocks {
     texts: Texts,
     marks: Box<Marks>,
-    /// How often the ranges have changed.
+    /// Number of changes of the ranges.
     version: u64,
 }
 

@@ -1,8 +1,8 @@
-//! What compiled code asks of the engine.
+//! The requests of compiled code to the engine.
 //!
-//! Compiled code does by itself what needs nothing but registers and RAM. For everything else
-//! it suspends its fiber with a [`Request`]: two numbers say what and where, two say with which
-//! operands. The engine answers it on the host's stack, in safe code, and resumes the fiber.
+//! Compiled code executes instructions that need only registers and RAM. For everything else it suspends its fiber with
+//! a [`Request`]: two numbers for the kind and the position, two for the operands. The engine answers it on the host's
+//! stack, in safe code, and resumes the fiber.
 
 use kmotiondef::map::SDRAM;
 
@@ -13,7 +13,7 @@ use crate::kind::Width;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub(super) struct Request {
-    /// What is asked, as [`Reason::with_width`] made it.
+    /// The kind of request, from [`Reason::with_width`].
     pub(super) code: u32,
     /// The instruction at which the context stands while it waits for the answer.
     pub(super) at: u32,
@@ -25,7 +25,7 @@ pub(super) struct Request {
     pub(super) b: u64,
 }
 
-/// What suspends a fiber with a request, and yields the answer.
+/// The handle that suspends a fiber with a request, and returns the answer.
 pub(super) type Yielder = corosensei::Yielder<u64, Request>;
 
 macro_rules! codes {
@@ -48,7 +48,7 @@ macro_rules! codes {
 }
 
 codes! {
-    /// What is asked.
+    /// The kind of a request.
     Reason {
         /// The budget is used up.
         Preempted,
@@ -73,8 +73,7 @@ codes! {
         NeedsBoard,
         /// The stack has no room for the `a` bytes of a call; `stack_pointer` is that of the caller.
         StackOverflow,
-        /// An integer division of the slot `a` by zero, which one as [`Request::of_division`] says; the answer is what it
-        /// comes to.
+        /// An integer division of the slot `a` by zero, encoded by [`Request::of_division`]; the answer is its result.
         DivisionByZero,
         /// An `unreachable` was reached.
         Unreachable,
@@ -94,12 +93,12 @@ impl Reason {
 }
 
 impl Request {
-    /// What is asked; `None` for a code that no compiled code uses.
+    /// The kind of request; `None` for a code that no compiled code uses.
     pub(super) fn reason(&self) -> Option<Reason> {
         Reason::from_code(self.code & 0xff)
     }
 
-    /// Whether the answer may depend on more than the context and SDRAM, or change more.
+    /// Reports whether the answer may depend on more than the context and SDRAM, or change more.
     pub(super) fn involves_board(&self) -> bool {
         let is_in_sdram = |address: u64| {
             let place = (address as u32).wrapping_sub(SDRAM.base.get());
@@ -131,12 +130,12 @@ impl Request {
         op.map_or(0, |op| op as i64 + 1)
     }
 
-    /// The division that is asked about.
+    /// The division of a request.
     pub(super) fn division(&self) -> Option<WordDivision> {
         WordDivision::ALL.get(usize::try_from(self.b).ok()?.checked_sub(1)?).copied()
     }
 
-    /// What a load or store is to move.
+    /// The width of the load or store.
     pub(super) fn width(&self) -> Option<Width> {
         Width::ALL.get(usize::try_from(self.code >> 8).ok()?).copied()
     }

@@ -14,12 +14,13 @@ type Known = (Program, Preemption, Option<Arc<MachineCode>>);
 
 /// Machine code of the programs that were compiled last, for engines whose boards have the same firmware.
 ///
-/// A program is known again by what it is, not by where it is, so boards that are made from one image share its code.
+/// A program is identified by its contents, not by its address, so boards that are made from one image share its code.
 #[derive(Clone, Debug, Default)]
 pub struct SharedCode(Arc<Mutex<Vec<Known>>>);
 
 impl SharedCode {
-    /// The code of `program`. Nobody waits while it is compiled; where two ask at once, both compile.
+    /// Returns the code of `program`. Compilation does not block others; two simultaneous requests for one program both
+    /// compile it.
     pub(super) fn get(
         &self,
         program: &Program,

@@ -1,4 +1,4 @@
-//! What compiled code and the engine share of one context.
+//! The state of one context that compiled code and the engine share.
 //!
 //! Compiled code reaches every field by its offset from the pointer that is its first
 //! parameter. The engine reads and writes the same fields while the fiber is suspended.
@@ -22,7 +22,7 @@ pub(super) const CALLS: usize = (STACK_SIZE / BYTES_PER_CALL) as usize;
 
 const _: () = assert!(CALLS.is_power_of_two());
 
-/// How compiled code makes a request: state, code, instruction, stack pointer and two operands.
+/// The function by which compiled code makes a request: state, code, instruction, stack pointer and two operands.
 pub(super) type Leave = unsafe extern "C" fn(*const State, u32, u32, u32, u64, u64) -> u64;
 
 /// A conversion that compiled code leaves to Rust.
@@ -32,7 +32,7 @@ pub(super) type Convert = extern "C" fn(f64) -> i64;
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(super) struct WaysOut {
-    /// How compiled code makes a request.
+    /// The function by which compiled code makes a request.
     pub(super) leave: Leave,
     /// The conversion of a double to 64 bits modulo 2⁶⁴ where it does not simply fit.
     pub(super) convert: Convert,
@@ -74,7 +74,7 @@ macro_rules! shared {
     )*};
 }
 shared! {
-    /// A stretch of SDRAM.
+    /// A segment of SDRAM.
     Window {
         /// Offset of its first byte in SDRAM.
         start: Cell<u32>,
@@ -82,7 +82,7 @@ shared! {
         length: Cell<u32>,
     }
 
-    /// Where guest memory is, the same each time the fiber runs.
+    /// The addresses of guest memory, the same each time the fiber runs.
     Ram {
         /// First byte of SDRAM.
         sdram: Cell<*mut u8>,
@@ -94,7 +94,7 @@ shared! {
         windows: [Window; 2],
     }
 
-    /// What one side tells the other of the slice.
+    /// The flags of the slice, from one side to the other.
     Signs {
         /// Not 0 after a store to on-chip RAM.
         touched: Cell<u32>,
@@ -112,12 +112,12 @@ shared! {
         top: Cell<u32>,
     }
 
-    /// What is handed over with requests and calls.
+    /// The values handed over with requests and calls.
     Exchange {
         /// The last of the requests that are rare, and the answer to it.
         request: Cell<Request>,
         answer: Cell<u64>,
-        /// Where compiled code stores what a request has stored already.
+        /// A target for stores that a request has made already.
         scratch: Cell<u64>,
         /// The function that the next thunk calls.
         callee: Cell<*const u8>,
@@ -127,21 +127,21 @@ shared! {
 
     /// The state.
     State {
-        /// What is left of the slice; valid whenever the fiber is suspended.
+        /// The rest of the slice's budget, in cycles; valid whenever the fiber is suspended.
         budget: Cell<i64>,
         /// Guest memory.
         ram: Ram,
-        /// What compiled code calls.
+        /// The functions that compiled code calls.
         ways_out: WaysOut,
-        /// What the slice is, and what was done in it.
+        /// The flags of the slice.
         signs: Signs,
-        /// What suspends the fiber, from its first instruction on.
+        /// The handle that suspends the fiber, from its first instruction on.
         yielder: Cell<*const Yielder>,
         /// The guest stack.
         stack: Bounds,
         /// The return that was executed last.
         returned_at: Cell<u32>,
-        /// Where each call in progress is, at the place of its caller's frame; see [`call_entry`].
+        /// The position of each call in progress, in the entry of its caller's frame; see [`call_entry`].
         calls: [Cell<u32>; CALLS],
         /// Requests and calls.
         exchange: Exchange,
@@ -215,7 +215,7 @@ impl State {
     }
 }
 
-/// Which entry of [`State::calls`] belongs to the frame at `stack_pointer`.
+/// The entry of [`State::calls`] that belongs to the frame at `stack_pointer`.
 ///
 /// No two frames of one stack have the same, since they lie at least [`BYTES_PER_CALL`] apart
 /// and no stack is larger than the table covers.

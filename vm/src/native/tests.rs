@@ -22,7 +22,7 @@ use crate::program::Program;
 use crate::testing::{CALLBACK, Fake, HEAD_WORDS, assert_same, machine_on, program, thread};
 use crate::thread::Threads;
 
-/// Where the harness puts the numbers that generated programs begin with.
+/// The address at which the harness puts the numbers that generated programs begin with.
 const NUMBERS: u32 = 0x80f0_0000;
 
 /// The context that all tests run.
@@ -39,7 +39,7 @@ struct World<E> {
     firmware: Fake,
 }
 
-/// What can be seen of a context when it has stopped.
+/// The observable state of a context when it has stopped.
 #[derive(Debug, PartialEq)]
 struct Seen {
     stop: Stop,
@@ -103,7 +103,7 @@ impl<E: Engine> World<E> {
 }
 
 impl World<NativeEngine> {
-    /// Whether the context runs as machine code.
+    /// Reports whether the context runs as machine code.
     fn is_compiled(&self) -> bool {
         self.engine.contexts[id().index()].is_some()
     }
@@ -115,7 +115,7 @@ fn lockstep(functions: &str, budgets: &[i64]) -> Stop {
     lockstep_with(Preemption::Segments, functions, budgets)
 }
 
-/// The same where the context loses the processor as `preemption` says.
+/// Runs functions on both engines in lockstep, with the given preemption.
 fn lockstep_with(preemption: Preemption, functions: &str, budgets: &[i64]) -> Stop {
     let program = Arc::new(program(1, functions));
     let mut bytecode = World::<BytecodeEngine>::new(&program);
@@ -262,7 +262,7 @@ fn threads_can_be_paused_replaced_and_removed_at_any_moment() {
     assert!(native.firmware().log.iter().any(|line| line.ends_with(" 1 78")), "{:?}", native.firmware().log);
 }
 
-/// How many generated programs a test takes: `many` where `CC67_LONG` is in the environment.
+/// Number of generated programs of a test: `many` if `CC67_LONG` is in the environment.
 fn cases(few: u32, many: u32) -> u32 {
     if std::env::var_os("CC67_LONG").is_some() { many } else { few }
 }

@@ -1,18 +1,17 @@
-//! A function of a program to Cranelift's IR.
+//! Translation of a function of a program to Cranelift's IR.
 //!
-//! Each register becomes a variable of its class, so the frontend builds SSA form. The function's
-//! machine signature is that of the program's with three parameters before it and a result of its
-//! own: state, the caller's stack pointer and the budget go in, the budget comes back with the
-//! result as a register slot. So the budget stays in a processor register; it is written to the
-//! state for a request and read back after it.
+//! Each register becomes a variable of its class, so the frontend builds SSA form. The function's machine signature is
+//! that of the program's with three parameters before it and a result of its own: state, the caller's stack pointer and
+//! the budget go in, the budget comes back with the result as a register slot. So the budget stays in a processor
+//! register; it is written to the state for a request and read back after it.
 //!
-//! A small loop is translated twice, and so is a stretch of code without calls: `candidates.rs` finds them, `turns.rs`
-//! plans several turns on one test of the budget and few checks of addresses, `fast.rs` makes them.
+//! A small loop is translated twice, and so is a region of code without calls: `candidates.rs` finds them, `turns.rs`
+//! plans several iterations on one test of the budget and few checks of addresses, `fast.rs` translates them.
 //!
 //! Where threads lose the processor as on the board, a segment is translated twice, too: `split.rs`.
 //!
-//! The arms of the instructions are in `arith.rs`, `memory.rs` and `control.rs`, one method an
-//! instruction, named as in the table.
+//! The arms of the instructions are in `arith.rs`, `memory.rs` and `control.rs`, one method an instruction, named as in
+//! the table.
 
 mod accesses;
 mod arith;
@@ -57,13 +56,13 @@ use crate::program::{Function, Program};
 /// Reached only if the engine resumed a context that a trap has stopped.
 const RESUMED_BEHIND_TRAP: TrapCode = TrapCode::unwrap_user(1);
 
-/// How functions of a program call each other: the one convention with two results in registers on every host.
+/// The calling convention of a program's functions: the one with two results in registers on every host.
 const CONVENTION: CallConv = CallConv::Tail;
 
 /// Parameters of a machine function before those of the program: state, stack pointer, budget.
 const OWN_PARAMETERS: usize = 3;
 
-/// What should be translated.
+/// The input of a translation.
 #[derive(Clone, Copy)]
 pub(super) struct Translation<'a> {
     /// The program.
@@ -72,15 +71,15 @@ pub(super) struct Translation<'a> {
     pub(super) function: &'a Function,
     /// All its functions, as the module knows them.
     pub(super) functions: &'a [FuncId],
-    /// What [`translate_request`] has made.
+    /// The function made by [`translate_request`].
     pub(super) request: FuncId,
     /// The firmware's functions that only compute.
     pub(super) pure: PureFunctions<'a>,
-    /// Where the function loses the processor.
+    /// The points at which the function loses the processor.
     pub(super) preemption: Preemption,
 }
 
-/// Where the firmware's functions that only compute are found.
+/// The lookup of firmware functions that only compute.
 pub(super) type PureFunctions<'a> = &'a dyn Fn(GuestAddr) -> Option<Pure>;
 
 /// The machine signature of a function with `parameters`.
@@ -218,7 +217,7 @@ pub(super) fn translate_begin(
 /// Translates the way into functions with `parameters` into `ir`, whose signature is set: the state holds
 /// the function and the arguments.
 ///
-/// So whoever calls through a pointer need not know what the function takes.
+/// So a call through a pointer need not know the function's parameters.
 pub(super) fn translate_thunk(
     ir: &mut IrFunction,
     context: &mut FunctionBuilderContext,
@@ -276,7 +275,7 @@ registers! {
     RegF64 is F64;
 }
 
-/// One function while it is translated.
+/// The state of translating a function.
 struct Translator<'a, 'b> {
     builder: FunctionBuilder<'b>,
     module: &'a mut dyn Module,
@@ -463,7 +462,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         self.blocks = begins.into_iter().map(|at| (at, self.builder.create_block())).collect();
     }
 
-    /// What an instruction takes besides its charge, `None` for one that fast turns of a loop cannot hold.
+    /// The cycles of an instruction besides its charge, `None` for one that the fast iterations of a loop cannot hold.
     fn cost_in_turns(&self, op: &Op) -> Option<u32> {
         match op.kind() {
             OpKind::Table | OpKind::Block => None,
@@ -579,7 +578,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         answer
     }
 
-    /// The same for a request that the program makes each time it comes here.
+    /// Makes a request that the program makes each time it executes this instruction.
     fn usual_request(&mut self, code: u32, at: usize, a: Value, b: Value) -> Value {
         let arguments = self.request_arguments(code, at, a, b);
         let leave = self.load_pointer(offset_of!(State, ways_out.leave));
@@ -588,7 +587,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         self.builder.inst_results(call)[0]
     }
 
-    /// What a request is made with; the budget goes to the state.
+    /// The arguments of a request; the budget goes to the state.
     fn request_arguments(&mut self, code: u32, at: usize, a: Value, b: Value) -> [Value; 6] {
         let budget = self.builder.use_var(self.registers.budget);
         self.store_state(budget, offset_of!(State, budget));

@@ -1,8 +1,8 @@
-//! What stops the processor: code that no compiler makes.
+//! The faults of the processor: code that no compiler makes.
 
 use c67x::Reg;
 
-/// Why a packet could not be executed.
+/// The reason why a packet could not be executed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Fault {
     /// A word that is not an instruction.
@@ -22,15 +22,15 @@ pub enum Fault {
     /// A branch to where no instruction can be.
     #[error("branch to 0x{target:08X}, which is not a multiple of 4")]
     OddBranch {
-        /// Where it leads.
+        /// The target.
         target: u32,
     },
     /// Two branches taken at once.
     #[error("two branches are taken in the same cycle, to 0x{first:08X} and 0x{second:08X}")]
     TwoBranches {
-        /// Where one leads.
+        /// The first target.
         first: u32,
-        /// Where the other leads.
+        /// The second target.
         second: u32,
     },
     /// Two results for one register at once.
@@ -42,7 +42,7 @@ pub enum Fault {
     /// Code that keeps interrupts off forever, which on the board stops servo, console and all threads.
     #[error("{cycles} cycles without a place where an interrupt is possible: the board's servo stops")]
     NoInterrupts {
-        /// How long.
+        /// The duration, in cycles.
         cycles: u64,
     },
 }

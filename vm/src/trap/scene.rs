@@ -1,4 +1,4 @@
-//! What a person is shown of a processor that has stopped: its registers, and the code around the place.
+//! A view of a stopped processor for people: its registers, and the code around the address.
 
 use std::fmt;
 

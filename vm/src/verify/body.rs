@@ -169,7 +169,7 @@ impl Body<'_> {
         }
     }
 
-    /// Checks that the function and each of its loops come to a charge.
+    /// Checks that every path through the function and each of its loops has a charge.
     fn check_charges(&self) -> Result<(), VerifyError> {
         let found = meter::uncharged(&self.program.ops, self.function.body.clone());
         found.map_or(Ok(()), |at| Err(VerifyError { at, kind: VerifyErrorKind::Uncharged }))
@@ -189,7 +189,7 @@ const fn result(op: &Op) -> Option<Class> {
 
 /// An operand that is checked by its type.
 trait Checked: OperandType {
-    /// Whether the operand names something that exists.
+    /// Checks that the operand names something that exists.
     fn check(self, body: &Body<'_>) -> Result<(), VerifyErrorKind>;
 }
 

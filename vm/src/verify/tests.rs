@@ -1,4 +1,4 @@
-//! What the verifier accepts and refuses, data first.
+//! Texts that the verifier accepts or refuses, data first.
 
 use kmotiondef::GuestAddr;
 use proptest::prelude::*;

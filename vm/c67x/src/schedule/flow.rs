@@ -31,7 +31,7 @@ struct Pending {
     left: u32,
     /// The condition it depends on, while that register is unchanged.
     pred: Guard,
-    /// Whether a place where an interrupt is taken lies between it and now.
+    /// True if a point at which an interrupt is taken lies between it and now.
     exposed: bool,
 }
 
@@ -64,7 +64,7 @@ struct Reading {
     last: u32,
 }
 
-/// A branch on its way; `None` where it leaves the code.
+/// A branch in flight; `None` where it leaves the code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Coming {
     left: u32,
@@ -272,7 +272,7 @@ impl FlowState {
         }
     }
 
-    /// What the instruction holds from now on, and the branch that it is.
+    /// Records the resources that the instruction occupies from now on, and the branch that it is.
     fn occupy(&mut self, inst: &Inst, at: u32, code: &std::ops::Range<u32>) {
         if let Some((unit, cycles)) = inst.occupies()
             && cycles > 1
@@ -294,7 +294,7 @@ impl FlowState {
         self.shadow = BRANCH;
     }
 
-    /// One cycle passes.
+    /// Advances by one cycle.
     fn tick(&mut self) {
         self.shadow = self.shadow.saturating_sub(1);
         self.since = (self.since + 1).min(LONGEST_SHADOW + 1);

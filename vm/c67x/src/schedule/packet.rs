@@ -1,4 +1,4 @@
-//! The rules that one packet breaks or keeps by itself.
+//! The rules that concern one packet alone.
 
 use super::{Packet, Rule};
 use crate::inst::Inst;

@@ -1,8 +1,8 @@
-//! The packets of a loop with their registers renamed, each once for every renaming that it is reached with.
+//! The packets of a loop with their registers renamed, each once for every renaming with which it is reached.
 //!
-//! Results that come later than in the first stage and only under a condition, branches to the address in a register,
-//! double instructions whose high words are not on their way yet: the loop is left before such a packet, and the
-//! interpreter of single packets continues.
+//! A loop is left before a packet that cannot be renamed, and the interpreter of single packets continues. Such packets
+//! have a result that comes later than in the first stage and only under a condition, a branch to the address in a
+//! register, or a double instruction whose high words are not in flight yet.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::ops::RangeInclusive;
@@ -26,9 +26,9 @@ pub(super) struct RenamedPacket {
     /// Its instructions, in the order in which they are executed.
     pub(super) micros: Box<[Micro]>,
     pub(super) cycles: u8,
-    /// Whether the loop is left before it.
+    /// True if the loop is left before it.
     pub(super) is_exit: bool,
-    /// Whether more should be done after it than to go on at the next one.
+    /// True if it needs more work than continuing with the next packet.
     pub(super) is_special: bool,
     /// The place of the stack pointer if it is written.
     pub(super) stack: Option<u8>,
@@ -41,7 +41,7 @@ pub(super) struct RenamedPacket {
 /// A branch that arrives.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arrival {
-    /// What it depends on.
+    /// The condition; `None` for a branch that is always taken.
     pub(super) decider: Option<Decider>,
     pub(super) to: u32,
     /// Its packet, if that should be noted.
@@ -50,14 +50,14 @@ pub(super) struct Arrival {
     pub(super) rest: u8,
 }
 
-/// Where registers are at a packet.
+/// The locations of registers at a packet.
 #[derive(Debug)]
 pub(super) struct Borders {
     /// Before the packet.
     pub(super) before: Renaming,
-    /// In the cycle of the packet, with all that it has sent on its way.
+    /// In the cycle of the packet, with the effects that it has issued.
     issued: Renaming,
-    /// How many of the landings are there before each instruction.
+    /// Number of landings that are issued before each instruction.
     counts: Vec<usize>,
     /// The number of the instruction that is a branch.
     branch: Option<usize>,
@@ -78,7 +78,7 @@ pub(super) type Find<'a> = dyn FnMut(u32) -> Found + 'a;
 
 struct Planner<'a, 'f> {
     find: &'a mut Find<'f>,
-    /// Where packets of the loop begin.
+    /// The addresses of the packets of the loop.
     range: RangeInclusive<u32>,
     found: BTreeMap<u32, Found>,
     spares: Spares,
@@ -87,8 +87,8 @@ struct Planner<'a, 'f> {
     open: VecDeque<u32>,
 }
 
-/// Plans the loop that is entered at `pc` with this on its way, and whose last branch is in the packet at `last`; `None`
-/// if its first packet is not one.
+/// Plans the loop that is entered at `pc` with these effects in flight, and whose last branch is in the packet at
+/// `last`; `None` if its first packet cannot be part of one.
 pub(super) fn plan(pc: u32, last: u32, flying: &[Flying], find: &mut Find<'_>) -> Option<Planned> {
     let mut spares = Spares::new();
     let entry = Renaming::at_entry(flying, &mut spares)?;
@@ -116,7 +116,8 @@ pub(super) fn plan(pc: u32, last: u32, flying: &[Flying], find: &mut Find<'_>) -
 }
 
 impl Borders {
-    /// Where registers are before the packet's instruction with this number, with what those before it have issued.
+    /// The locations of registers before the packet's instruction with this number, with the results that earlier ones
+    /// have issued.
     pub(super) fn before_instruction(&self, number: usize) -> Renaming {
         let mut renaming = self.issued.clone();
         renaming.landings.truncate(self.counts.get(number).copied().unwrap_or(usize::MAX));
@@ -191,7 +192,7 @@ impl Planner<'_, '_> {
         Some(())
     }
 
-    /// How many cycles pass after a packet, which one follows, and the branch that arrives.
+    /// The cycles that pass after a packet, the packet that follows, and the branch that arrives.
     fn follow(&mut self, packet: &Packet, mut renaming: Renaming) -> Option<(u8, u32, Option<Arrival>)> {
         renaming.sort();
         for cycle in 1..=packet.cycles {
@@ -209,7 +210,7 @@ impl Planner<'_, '_> {
         Some((packet.cycles, self.packet_at(packet.end, renaming), None))
     }
 
-    /// An instruction with its registers renamed; what it sends on its way is added to `issued`.
+    /// Renames the registers of an instruction; its results are added to `issued`.
     fn instruction(
         &mut self,
         pc: u32,
@@ -278,8 +279,8 @@ impl Planner<'_, '_> {
     }
 }
 
-/// After how many cycles an instruction reads the high words of s1 and of s2; `None` if that is not known to be what is
-/// on its way before its packet.
+/// The cycles after which an instruction reads the high words of s1 and of s2; `None` if they may differ from those in
+/// flight before its packet.
 fn later_reads(before: &Renaming, inst: Inst, micro: Micro) -> Option<[u8; 2]> {
     if inst.reads().all(|read| read.first == 1) {
         return Some([0, 0]);

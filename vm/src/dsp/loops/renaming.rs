@@ -1,7 +1,7 @@
-//! Renamed registers of a loop: the slot of each register, and the results on their way to each slot.
+//! Renamed registers of a loop: the location of each register, and the results in flight to each.
 //!
-//! A result that is on its way is written to a place that nothing reads, and landing is that the register has this place
-//! from then on. So at the border of two packets everything but the values follows from the packets executed before.
+//! A result in flight is written to a location that no instruction reads; when it lands, the location becomes that of
+//! the register. So between two packets everything but the values follows from the packets executed before.
 
 use super::super::flight::SLOTS;
 use super::super::pipeline::{BRANCH, State};
@@ -11,33 +11,33 @@ const REGS: usize = 64;
 /// The first place that is not a register, a multiple of 2: those before it hold the constants.
 const FIRST: u8 = 66;
 
-/// A result on its way.
+/// A result in flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Landing {
     /// Cycles until it lands.
     pub(super) due: u8,
     pub(super) reg: u8,
-    /// Where it is until then, and after that.
+    /// Its location until then and afterwards.
     pub(super) place: u8,
 }
 
-/// A branch on its way.
+/// A branch in flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Jump {
     /// Cycles until it arrives.
     pub(super) due: u8,
     pub(super) target: u32,
-    /// Whether it is taken: if the value of this place is 0, or if it is not.
+    /// The condition; `None` for a branch that is always taken.
     pub(super) decider: Option<Decider>,
     /// Its packet; `None` if the state knows of it already.
     pub(super) from: Option<u32>,
 }
 
-/// What decides if a branch is taken.
+/// The condition of a branch in flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Decider {
     pub(super) place: u8,
-    /// Whether it is taken if the value there is 0.
+    /// True if the branch is taken when the value there is 0.
     pub(super) inverted: bool,
 }
 
@@ -59,10 +59,10 @@ pub(super) struct Renaming {
     held: u8,
 }
 
-/// Something on its way in a state: when, which register, or [`REGS`] and the target of a branch.
+/// An effect in flight: the cycles left, the register or [`REGS`], and the target of a branch.
 pub(super) type Flying = (u8, u8, u32);
 
-/// Lists what is on its way in a state; `false` where that is not what a loop begins with.
+/// Lists the effects in flight in a state; `false` if a loop cannot begin with them.
 pub(super) fn list(state: &State, flying: &mut Vec<Flying>) -> bool {
     flying.clear();
     if state.flight.is_empty() {
@@ -107,18 +107,18 @@ impl Renaming {
         self.map.get(usize::from(reg)).copied().unwrap_or(reg)
     }
 
-    /// The place of a register in `cycles` cycles, if nothing but what is on its way changes it.
+    /// The location of a register in `cycles` cycles, if only the effects in flight change it.
     pub(super) fn after(&self, cycles: u8, reg: u8) -> u8 {
         let by_then = self.landings.iter().filter(|landing| landing.reg == reg && landing.due <= cycles);
         by_then.max_by_key(|landing| landing.due).map_or(self.place(reg), |landing| landing.place)
     }
 
-    /// Whether a result for a register lands in `due` cycles.
+    /// Reports whether a result for a register lands in `due` cycles.
     pub(super) fn has_result(&self, due: u8, reg: u8) -> bool {
         self.landings.iter().any(|landing| landing.due == due && landing.reg == reg)
     }
 
-    /// Whether a branch may arrive in `due` cycles.
+    /// Reports whether a branch may arrive in `due` cycles.
     pub(super) fn has_branch(&self, due: u8) -> bool {
         self.jumps.iter().any(|jump| jump.due == due)
     }
@@ -143,7 +143,7 @@ impl Renaming {
         self.jumps.pop_if(|jump| jump.due == 0)
     }
 
-    /// Puts what is on its way in an order of its own: a branch that arrives earlier comes later.
+    /// Sorts the effects in flight: a branch that arrives earlier comes later.
     pub(super) fn sort(&mut self) {
         self.landings.sort_unstable();
         self.jumps.sort_unstable_by(|one, other| other.cmp(one));
@@ -192,24 +192,24 @@ impl Renaming {
     }
 }
 
-/// How much of a pair of places is wanted.
+/// The part of a pair of locations that is needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Width {
     /// The one of the register.
     Word,
-    /// Both.
+    /// The words of both registers.
     Pair,
 }
 
-/// The places that results of each pair of registers have had: first the pair itself.
+/// The locations that results of each pair of registers have had: first the pair itself.
 ///
-/// Each has its own, so that in a loop every register comes back to the same one after a few turns, whatever the others
-/// do.
+/// Each has its own, so that in a loop every register comes back to the same one after a few iterations, whatever the
+/// others do.
 #[derive(Debug)]
 pub(super) struct Spares {
     pairs: [Vec<u8>; REGS / 2],
     deciders: Vec<u8>,
-    /// The next that nobody has.
+    /// The next unused location.
     next: u8,
 }
 
@@ -237,7 +237,7 @@ impl Spares {
     }
 }
 
-/// A pair of places that nobody has had.
+/// Returns an unused pair of locations.
 fn another(next: &mut u8, own: &mut Vec<u8>) -> Option<u8> {
     let low = *next;
     *next = next.checked_add(2)?;

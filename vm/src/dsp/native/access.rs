@@ -66,7 +66,7 @@ impl Translator<'_, '_> {
         if bits == 0 { address } else { self.builder.ins().band_imm_s(address, -1 << bits) }
     }
 
-    /// Where a guest address is on the host; for an access that is not made, somewhere harmless.
+    /// Emits the host address of a guest address; for an access that is not made, the address of a scratch word.
     fn pointer(&mut self, doing: &mut Doing, address: Value, is_store: bool) -> Value {
         let after = self.builder.create_block();
         self.builder.append_block_param(after, types::I64);

@@ -1,4 +1,4 @@
-//! What the instructions compute, as the interpreter has it in `execute.rs`.
+//! Translation of the integer instructions; the interpreter has them in `execute.rs`.
 
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{InstBuilder, Value, types};
@@ -328,7 +328,7 @@ impl Translator<'_, '_> {
         if m.flags & UNSIGNED != 0 { self.builder.ins().uextend(types::I64, word) } else { self.sign(word) }
     }
 
-    /// Both sources.
+    /// Returns both sources.
     fn long_sources(&mut self, doing: &Doing, m: &Micro) -> [Value; 2] {
         let one = self.long_source(doing, m, m.a, m.flags & LONG1 != 0, m.imm);
         [one, self.long_source(doing, m, m.b, m.flags & LONG2 != 0, 0)]

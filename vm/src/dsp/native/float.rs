@@ -250,7 +250,7 @@ impl Translator<'_, '_> {
         }
     }
 
-    /// Whether the exponent of a double is less than `least`, or that of infinities and NaNs.
+    /// Emits the test whether the exponent of a double is less than `least`, or that of infinities and NaNs.
     fn is_outside(&mut self, bits: Value, least: i64) -> Value {
         let magnitude = self.builder.ins().ishl_imm_u(bits, 1);
         let least = least << 53;
@@ -259,7 +259,7 @@ impl Translator<'_, '_> {
         self.builder.ins().icmp(IntCC::UnsignedGreaterThanOrEqual, from_least, range)
     }
 
-    /// Whether the high word is that of a zero or a denormal number.
+    /// Emits the test whether the high word is that of a zero or a denormal number.
     fn is_small(&mut self, high: Value) -> Value {
         let exponent = self.builder.ins().band_imm_u(high, 0x7FF0_0000);
         self.builder.ins().icmp_imm_u(IntCC::Equal, exponent, 0)

@@ -1,26 +1,26 @@
-//! What is on its way at the border of a packet, without its values: the shape that a translation is made for.
+//! The effects in flight between two packets, without their values: the shape that a translation is made for.
 //!
 //! Results in flight are known when code is translated: a load lands five cycles after its issue whatever it loads. So
-//! a translation begins with a list of what is on its way, the values alone come from outside; and where it ends,
-//! another list says what the values are that it leaves.
+//! a translation begins with a list of the effects in flight, and only the values come from outside; at each exit
+//! another list describes the values that it leaves.
 
 use super::super::decode::Micro;
 use super::super::flight::{Late, SLOTS};
 use super::super::pipeline::State;
 use crate::native::{Handover, VALUES};
 
-/// Something that is on its way.
+/// An effect in flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Flying {
     /// Cycles until it arrives.
     pub(super) due: u8,
-    /// Whether a value says if it arrives at all; that value comes first.
+    /// True if a value decides whether it arrives at all; that value comes first.
     pub(super) is_conditional: bool,
-    /// What it is.
+    /// The effect.
     pub(super) what: Arriving,
 }
 
-/// What may be on its way.
+/// An effect that can be in flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Arriving {
     /// A result for this register; its value.
@@ -34,7 +34,7 @@ pub(super) enum Arriving {
 }
 
 impl Arriving {
-    /// How many values it has.
+    /// Number of its values.
     pub(super) const fn values(self) -> usize {
         match self {
             Self::Result(_) | Self::Branch(None) => 1,
@@ -56,7 +56,7 @@ impl Arriving {
 }
 
 impl State {
-    /// Lists what is on its way; `false` where that is not what a translation begins with.
+    /// Lists the effects in flight; `false` if a translation cannot begin with them.
     pub(super) fn list_flying(&self, flying: &mut Vec<Flying>) -> bool {
         flying.clear();
         if self.flight.is_empty() {
@@ -87,7 +87,8 @@ impl State {
         true
     }
 
-    /// Hands over the values of what [`list_flying`](Self::list_flying) has listed: nothing is on its way here any more.
+    /// Moves the values of the effects that [`list_flying`](Self::list_flying) has listed to `values`: none is in
+    /// flight in the state any more.
     pub(super) fn take_flying(&mut self, flying: &[Flying], values: &mut [u32; VALUES]) {
         let mut values = values.iter_mut();
         let mut lates = self.flight.late.iter();
@@ -116,7 +117,7 @@ impl State {
         self.flight.late.clear();
     }
 
-    /// Takes over what is on its way, in the present cycle.
+    /// Puts effects in flight, relative to the present cycle.
     pub(super) fn put_flying(&mut self, flying: &[Flying], values: &[u32; VALUES]) {
         let mut values = values.iter().copied();
         for one in flying {

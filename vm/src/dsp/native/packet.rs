@@ -1,7 +1,7 @@
 //! One packet: the effects of its instructions, and the passing of its cycles.
 //!
-//! Results of the first stage are kept apart until all instructions of the packet are written down, and so are stores:
-//! whatever finds that the packet is the interpreter's leads to the same exit, where nothing of it has happened.
+//! Results of the first stage and stores are kept apart until all instructions of the packet are translated: a case
+//! that only the interpreter can execute leads to an exit at which no effect of the packet has happened.
 
 use std::collections::BTreeMap;
 use std::mem::offset_of;
@@ -18,12 +18,12 @@ use crate::native::Handover;
 /// Cycles from a branch to its target.
 const BRANCH: u8 = 6;
 
-/// What a packet does, while its instructions are looked at.
+/// The state of translating one packet.
 #[derive(Default)]
 pub(super) struct Doing {
     /// Registers that have their new values at the end of this cycle.
     pub(super) now: BTreeMap<u8, Value>,
-    /// What is on its way, from before and from this packet.
+    /// The effects in flight, from before and from this packet.
     pub(super) flights: Vec<Flight>,
     /// Stores that wait for the end: pointer, value, bytes.
     pub(super) stores: Vec<(Value, Value, u32)>,
@@ -31,7 +31,7 @@ pub(super) struct Doing {
     branches: Vec<Option<Value>>,
     /// The condition of the instruction.
     pub(super) condition: Option<Value>,
-    /// Where everything ends that is not to be done here.
+    /// The block for cases that the interpreter handles.
     side: Option<Block>,
 }
 
@@ -304,7 +304,7 @@ impl Translator<'_, '_> {
         self.finish_double(doing, &micro, [low1, high1], [low2, high2.unwrap_or(own2)])
     }
 
-    /// What a branch does when it arrives; whether it certainly does.
+    /// Emits a branch that arrives; reports whether it is certainly taken.
     fn arrive(&mut self, border: &Border, flight: &Flight) -> bool {
         let Arriving::Branch(known) = flight.flying.what else { return false };
         let rest = flight.condition.map(|condition| {
@@ -329,7 +329,7 @@ fn strip(flying: Flying, due: u8, reg: u8) -> Flying {
     Flying { is_conditional: flying.is_conditional, ..result(due, reg) }
 }
 
-/// Something on its way with its condition.
+/// An effect in flight with its condition.
 fn fly(flying: Flying, condition: Option<Value>, values: Vec<Value>) -> Flight {
     Flight { flying: Flying { is_conditional: condition.is_some(), ..flying }, condition, values }
 }

@@ -1,14 +1,13 @@
-//! A region: packets that are reached from one place, as one function of the host.
+//! A region: packets that are reached from one address, as one function of the host.
 //!
-//! A block of it begins at a packet with a list of what is on its way there; the same packet with another list is
-//! another block. It follows the packets as they follow each other, and ends where a branch arrives. What is on its way
-//! from block to block goes as parameters of the blocks, the words of a pair as one; the registers of the processor are
-//! variables, and each new value of one is stored as well, so that wherever the function ends the registers are what
-//! they should be.
+//! A block of it begins at a packet with a list of the effects in flight there; the same packet with another list is
+//! another block. It follows the packets in their order, and ends where a branch arrives. Effects in flight are passed
+//! from block to block as parameters, the words of a pair as one; the registers of the processor are variables, and
+//! each new value of one is stored as well, so that the registers are right wherever the function ends.
 //!
-//! The function ends before a packet, never within one: all that can go wrong is tested before anything of the packet
-//! is stored. The interpreter executes what the function does not: accesses of devices, stores among code, control
-//! registers, faults. It ends likewise where less time is left than a block may take, so that no packet begins too late.
+//! The function ends before a packet, never within one: everything that can go wrong is tested before any effect of the
+//! packet is stored. The interpreter executes the rest: accesses of devices, stores among code, control registers,
+//! faults. The function ends likewise where less time is left than a block may take, so that no packet begins too late.
 
 use std::collections::BTreeMap;
 use std::mem::offset_of;
@@ -40,31 +39,31 @@ pub(super) type Find<'a> = dyn FnMut(u32) -> Option<(Packet, Vec<Micro>)> + 'a;
 /// A region, ready to run.
 #[derive(Debug)]
 pub(super) struct Region {
-    /// What is on its way where it begins.
+    /// The effects in flight at its entry.
     pub(super) entry: Vec<Flying>,
     /// Its code; the number that it returns is that of an exit.
     pub(super) piece: Piece,
-    /// Where it ends.
+    /// Its exits.
     pub(super) exits: Vec<Exit>,
 }
 
 /// A way out of a region.
 #[derive(Debug)]
 pub(super) struct Exit {
-    /// The next packet; `None` if the code says so.
+    /// The next packet; `None` if the code computes it.
     pub(super) pc: Option<u32>,
-    /// What is on its way there.
+    /// The effects in flight there.
     pub(super) flying: Vec<Flying>,
-    /// Whether another region may begin there.
+    /// True if another region may begin there.
     pub(super) is_end: bool,
 }
 
-/// Why there is no region.
+/// The reason why there is no region.
 #[derive(Debug)]
 pub(super) enum NoRegion {
     /// Cranelift has refused it.
     Compile,
-    /// It has something in it that only the interpreter has words for.
+    /// It needs an operation that only the interpreter has.
     Unusual,
 }
 
@@ -74,7 +73,7 @@ impl From<CompileError> for NoRegion {
     }
 }
 
-/// Translates the packets that are reached from `pc` with `entry` on its way.
+/// Translates the packets that are reached from `pc` with the effects `entry` in flight.
 pub(super) fn translate(pc: u32, entry: Vec<Flying>, find: &mut Find<'_>) -> Result<Region, NoRegion> {
     let mut exits = Vec::new();
     let piece = Piece::compile(|function, context, module| {
@@ -89,11 +88,11 @@ pub(super) fn translate(pc: u32, entry: Vec<Flying>, find: &mut Find<'_>) -> Res
     Ok(Region { entry, piece: piece.ok_or(NoRegion::Unusual)?, exits })
 }
 
-/// What a region or a packet cannot have.
+/// The error that a region or a packet needs the interpreter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Unusual;
 
-/// Something on its way, with its values.
+/// An effect in flight, with its values.
 #[derive(Clone, Debug)]
 pub(super) struct Flight {
     pub(super) flying: Flying,
@@ -109,7 +108,7 @@ pub(super) struct Border {
     /// Cycles and packets since the block began.
     pub(super) cycles: u32,
     pub(super) packets: u32,
-    /// What is on its way, in its order.
+    /// The effects in flight, in their order.
     pub(super) flights: Vec<Flight>,
 }
 
@@ -118,7 +117,7 @@ pub(super) struct Border {
 struct Node {
     pc: u32,
     flying: Vec<Flying>,
-    /// Words of what is on its way that come together, by their numbers among all values.
+    /// Words in flight that form one value, by their numbers among all values.
     pairs: Vec<[usize; 2]>,
     block: Block,
 }
@@ -132,7 +131,7 @@ pub(super) struct Counters {
     pub(super) branched_at: [Variable; 2],
 }
 
-/// Which of the two words of 64 bits a value is.
+/// One of the two words of 64 bits.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum PairWord {
     /// Bits 31..0.
@@ -261,7 +260,7 @@ impl<'a, 'f> Translator<'a, 'f> {
         Ok(())
     }
 
-    /// The block of a packet with something on its way.
+    /// Returns the block of a packet with these effects in flight.
     fn node(&mut self, pc: u32, flying: &[Flying]) -> usize {
         if let Some(known) = self.nodes.iter().position(|node| node.pc == pc && node.flying == flying) {
             return known;
@@ -281,7 +280,7 @@ impl<'a, 'f> Translator<'a, 'f> {
         self.nodes.len() - 1
     }
 
-    /// Jumps to a block with what is on its way.
+    /// Jumps to a block with the effects in flight.
     fn jump(&mut self, node: usize, flights: &[Flight]) {
         let Node { pairs, block, .. } = self.nodes[node].clone();
         let values: Vec<Value> = flights.iter().flat_map(|flight| flight.values.iter().copied()).collect();
@@ -327,7 +326,7 @@ impl<'a, 'f> Translator<'a, 'f> {
         }
     }
 
-    /// What is on its way at the beginning of a block.
+    /// The effects in flight at the beginning of a block.
     fn arrived(&mut self, node: &Node) -> Vec<Flight> {
         let mut parameters = self.builder.block_params(node.block).to_vec().into_iter();
         let wholes: Vec<Value> = parameters.by_ref().take(node.pairs.len()).collect();
@@ -441,7 +440,7 @@ impl<'a, 'f> Translator<'a, 'f> {
     }
 }
 
-/// Why no packet follows.
+/// The reason why no packet follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Stopped {
     /// The packet is the interpreter's.
@@ -450,12 +449,12 @@ pub(super) enum Stopped {
     Unusual,
 }
 
-/// What is on its way, without the values.
+/// The effects in flight, without their values.
 fn shape(flights: &[Flight]) -> Vec<Flying> {
     flights.iter().map(|flight| flight.flying).collect()
 }
 
-/// What is on its way with its values, without conditions.
+/// The effects in flight with their values, without conditions.
 fn flights(flying: &[Flying], values: &mut impl Iterator<Item = Value>) -> Vec<Flight> {
     let with_values = |flying: &Flying| Flight {
         flying: *flying,
@@ -488,7 +487,7 @@ fn pairs(flying: &[Flying]) -> Vec<[usize; 2]> {
     pairs
 }
 
-/// Puts what is on its way in its order.
+/// Sorts the effects in flight.
 pub(super) fn sort(flights: &mut [Flight]) {
     flights.sort_by_key(|flight| (flight.flying.due, flight.flying.what.rank()));
 }

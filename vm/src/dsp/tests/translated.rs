@@ -36,7 +36,7 @@ const DOUBLES: [f64; 20] = [
     -1e-290,
 ];
 
-/// Both RAMs; code everywhere in SDRAM from [`CODE`] on.
+/// The RAMs of the board, with code everywhere in SDRAM from [`CODE`] on.
 #[derive(Clone, PartialEq)]
 struct Ram(GuestMemory);
 
@@ -105,7 +105,7 @@ fn seen(core: &Core, halt: &Halt) -> String {
     )
 }
 
-/// Both RAMs with these words, and a core before them.
+/// The RAMs with these words, and a core before them.
 fn start(words: &[u32], regs: &[(Reg, u32)]) -> (Ram, Core) {
     let mut ram = Ram(GuestMemory::new());
     for (at, word) in (CODE..).step_by(4).zip(words) {
@@ -123,8 +123,8 @@ fn start(words: &[u32], regs: &[(Reg, u32)]) -> (Ram, Core) {
     (ram, core)
 }
 
-/// Runs words packet by packet and with loops, up to any packets, and compares what is on its way there; how many
-/// packets were those of loops.
+/// Runs words packet by packet and with loops, up to any packets, and compares the state there; returns the number of
+/// packets that were executed in loops.
 fn check_borders(words: &[u32], regs: &[(Reg, u32)], steps: &[u64]) -> u64 {
     let (mut ram, mut plain) = start(words, regs);
     let (mut others, mut looping) = (ram.clone(), plain.clone());
@@ -283,7 +283,7 @@ fn an_access_outside_ram_ends_the_same() {
     assert!(translated > 0);
 }
 
-/// One line of a loop from a few numbers.
+/// A line of a loop from a few numbers.
 fn line(kind: u8, a: u8, b: u8, c: u8) -> String {
     // A4 to A7 and B4 to B7 are addresses, A0, A1, B1, B2 conditions, B0 counts; the rest are values.
     let [x, y, d] = [a, b, c].map(|n| if n % 16 == 7 { 24 } else { 8 + n % 16 });
@@ -362,7 +362,7 @@ fn doubles_of_every_kind_give_the_same_results() {
 /// Lines that write words which products and sums of doubles read in the cycles after their issue.
 const BESIDE_DOUBLES: [u8; 12] = [0, 21, 30, 32, 32, 33, 33, 33, 34, 37, 40, 42];
 
-/// The same without a condition if its result comes later than in the first stage.
+/// A line of a loop, without a condition if its result comes later than in the first stage.
 fn steady_line(kind: u8, a: u8, b: u8, c: u8) -> String {
     let text = line(kind, a, b, c);
     match text.split_once("] ") {

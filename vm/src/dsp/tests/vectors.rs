@@ -54,7 +54,7 @@ fn registers(state: &State) -> Vec<u32> {
     (0..Reg::COUNT).filter_map(Reg::from_index).map(|reg| state.reg(reg)).collect()
 }
 
-/// What memory and control registers differ in from the line.
+/// The differences of memory and control registers from the line.
 fn differences(line: &Value, core: &Core, memory: &Flat) -> Vec<String> {
     let mut found = Vec::new();
     for (at, bytes) in fields(line, "memout") {

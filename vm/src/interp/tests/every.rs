@@ -19,7 +19,7 @@ use crate::verify::verify;
 /// Turns of the loop that has every handler once.
 const TURNS: u32 = 20_000;
 
-/// The host's stack: there is not room for a frame a turn.
+/// The host's stack, in bytes: too small for a frame an iteration.
 const HOST_STACK: usize = 0x4_0000;
 
 /// Signatures `()` and from each class to itself, constants, and a function of each signature.

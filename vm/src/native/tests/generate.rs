@@ -79,7 +79,7 @@ const ADDRESSES: &[u32] = &[
 /// A generator of random numbers.
 pub(super) struct Random {
     state: u64,
-    /// Which registers an instruction gets for its integers.
+    /// The registers for the integers of an instruction.
     integers: (u16, u16),
 }
 
@@ -142,7 +142,7 @@ macro_rules! define_generators {
 }
 for_each_op!(define_generators);
 
-/// What a generated block ends with or contains by itself.
+/// The instructions that a generated block ends with or contains by itself.
 const CONTROL: &[&str] =
     &["program", "sig", "types", "func", "charge", "br", "arg_", "call", "result_", "ret", "unreachable"];
 

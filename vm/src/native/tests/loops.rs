@@ -1,10 +1,10 @@
-//! Loops that run several turns at once: whatever stops them, stops them where the bytecode engine does.
+//! Loops that run several iterations at once stop at the same instruction as in the bytecode engine.
 
 use super::lockstep;
 use crate::engine::Stop;
 use crate::trap::TrapKind;
 
-/// A loop that does `body` with an address in `r0` and `r1` turns left; `r2`, `r3` and `d4` are free.
+/// A loop that executes `body` with an address in `r0` and the iterations left in `r1`; `r2`, `r3` and `d4` are free.
 fn walk(from: u32, step: i32, turns: u32, body: &str) -> String {
     let from = from.cast_signed();
     format!(

@@ -1,4 +1,4 @@
-//! Functions that may return soon: whether their callers execute the way to the return or make the call, nobody sees.
+//! Functions that may return soon: executing the path to the return and making the call have the same effects.
 
 use super::lockstep;
 use crate::engine::Stop;

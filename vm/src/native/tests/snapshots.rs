@@ -70,7 +70,7 @@ fn machine_of<E: Engine>(seed: u64) -> Machine<Fake, E> {
     machine
 }
 
-/// One of the things that happen to a board from outside, now and then.
+/// Causes one of the events that reach a board from outside.
 fn disturb<E: Engine>(machine: &mut Machine<Fake, E>, kind: u64) {
     match kind {
         0 => machine.threads_mut().pause(thread(1)),

@@ -7,12 +7,12 @@ use crate::engine::HoldReason;
 const COUNT: &str = "@main: func sig0, 1, 0\ntypes 0\n@up: charge 25\nload_i32_at r0, 0x80f00100\n\
      add_i32_imm r0, r0, 1\nstore_i32_at r0, 0x80f00100\nbr @up";
 
-/// The same in turns that a counter ends.
+/// Adds 1 to the cell 20,000 times.
 const COUNT_DOWN: &str = "@main: func sig0, 2, 0\ntypes 0\ncharge 9\nconst_i32 r1, 20000\n@up: charge 29\n\
      load_i32_at r0, 0x80f00100\nadd_i32_imm r0, r0, 1\nstore_i32_at r0, 0x80f00100\nadd_i32_imm r1, r1, -1\n\
      br_if r1, @up\ncharge 7\nret";
 
-/// Stores two numbers of eight bytes in turn.
+/// Stores two numbers of eight bytes alternately.
 const DOUBLES: &str = "@main: func sig0, 2, 0\ntypes 15\ncharge 9\nconst_f64 d0, pool[0]\nconst_f64 d1, pool[1]\n\
      @up: charge 12\nstore_f64_at d0, 0x80f00100\nstore_f64_at d1, 0x80f00100\nbr @up";
 
@@ -73,7 +73,7 @@ fn a_store_of_eight_bytes_is_split_between_its_words() {
     }
 }
 
-/// What two threads that each count to 20,000 in one cell come to.
+/// The result of two threads that each count to 20,000 in one cell.
 fn race<E: Engine>(config: Config) -> (i32, Machine<Fake, E>) {
     let mut machine = machine_on::<E>(config, &[(1, COUNT_DOWN), (2, COUNT_DOWN)]);
     let _ = machine.start(thread(2));

@@ -4,7 +4,7 @@ use crate::kind::{Name, OpKind, Width};
 use crate::op::Op;
 use crate::operand::{Off, RegI32};
 
-/// A value that the plan of fast turns follows.
+/// A value that the plan of fast iterations follows.
 pub(super) type Root = u32;
 
 /// Base register, displacement and width of an access, and whether it is a store.

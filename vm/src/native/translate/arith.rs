@@ -1,10 +1,8 @@
-//! Constants, copies, arithmetic, comparisons and conversions; what they mean is in
-//! [`crate::arith`].
+//! Constants, copies, arithmetic, comparisons and conversions, with the semantics of [`crate::arith`].
 //!
-//! An operation that makes a NaN makes the same one everywhere, which takes a comparison and a
-//! selection. Registers that may put that off until somebody sees the bits do so (`nan.rs`). For
-//! the others arithmetic of the same block reads the result as it was before (`raw`), and
-//! Cranelift removes the selection if nobody else needs it.
+//! An operation that makes a NaN makes the same one everywhere, which takes a comparison and a selection. Registers
+//! whose bits are not observed put that off (`nan.rs`). For the others arithmetic of the same block reads the
+//! unselected result (`raw`), and Cranelift removes the selection if it is not used elsewhere.
 
 use std::mem::offset_of;
 
@@ -294,8 +292,8 @@ impl Translator<'_, '_> {
         self.builder.ins().ireduce(types::I32, wide)
     }
 
-    /// Asks what a division by zero comes to, if it is one: the block after the division, whose parameter is the
-    /// answer. `None` in fast turns, which leave it to the loop as it is.
+    /// Asks for the result of a division by zero, if it is one; returns the block after the division, whose parameter
+    /// is the answer. `None` in fast iterations, which leave it to the ordinary loop.
     fn ask_if_zero(&mut self, class: Class, op: Option<WordDivision>, a: Value, b: Value) -> Option<Block> {
         let go_on = self.builder.create_block();
         if let Some(bail) = self.bail() {
@@ -347,7 +345,7 @@ impl Translator<'_, '_> {
         self.builder.ins().urem(a, b)
     }
 
-    /// Whether `divisor` is -1, and the divisor with 1 in its place.
+    /// Emits the test whether `divisor` is -1, and the divisor with 1 in its place.
     fn without_minus_one(&mut self, divisor: Value) -> (Value, Value) {
         let ty = self.builder.func.dfg.value_type(divisor);
         let minus_one = self.builder.ins().icmp_imm_s(IntCC::Equal, divisor, -1);

@@ -1,4 +1,4 @@
-//! Which words may be translated a second time: loops, regions and stretches.
+//! The words that may be translated a second time: loops, regions and straight segments.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::{Range, RangeInclusive};
@@ -14,7 +14,7 @@ pub(super) const MAX_WORDS: usize = 160;
 
 /// The loops that hold no other, each with the word at which it is entered.
 ///
-/// A loop is the stretch from the target of a branch backwards to the branch. It may be entered at one word only, often
+/// A loop is the segment from the target of a backward branch to the branch. It may be entered at one word only, often
 /// where its condition is.
 pub(super) fn innermost_loops(program: &Program, function: &Function) -> Vec<(RangeInclusive<usize>, usize)> {
     let branches: Vec<(usize, usize)> = (function.body.clone())
@@ -38,7 +38,7 @@ pub(super) fn innermost_loops(program: &Program, function: &Function) -> Vec<(Ra
     ends.iter().filter_map(|(first, last)| entered(*first..=*last)).collect()
 }
 
-/// Which words execution enters elsewhere than from the word before, and from where: the first and the last branch.
+/// The words that execution enters otherwise than from the word before, each with the first and the last branch to it.
 struct Entries(BTreeMap<usize, RangeInclusive<usize>>);
 
 impl Entries {
@@ -53,7 +53,7 @@ impl Entries {
         Self(entries)
     }
 
-    /// Whether a branch to `at` comes from outside of the words from `first` on, or from after.
+    /// Reports whether a branch to `at` comes from outside of the words from `first` on, or from after.
     fn is_entered(&self, at: usize, first: usize) -> bool {
         self.0.get(&at).is_some_and(|from| *from.start() < first || *from.end() >= at)
     }
@@ -104,7 +104,7 @@ fn without_arguments(program: &Program, words: Range<usize>) -> usize {
     argument.unwrap_or(words.end)
 }
 
-/// The stretches of a block, between charges, calls and branches, that make several accesses.
+/// The segments of a block, between charges, calls and branches, that make several accesses.
 pub(super) fn straight_stretches(
     program: &Program,
     function: &Function,
@@ -130,7 +130,7 @@ pub(super) fn straight_stretches(
     stretches
 }
 
-/// Whether an instruction passes an argument to the call after it.
+/// Reports whether an instruction passes an argument to the call after it.
 const fn is_argument(op: &Op) -> bool {
     matches!(op.kind(), OpKind::Argument(_))
 }

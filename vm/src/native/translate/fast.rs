@@ -1,9 +1,9 @@
-//! Several turns of a loop at once: the budget is tested where they begin, addresses where they are first used.
+//! Several iterations of a loop at once: the budget is tested at their start, addresses at their first use.
 //!
-//! [`turns`](super::turns) has decided which loops, and what is known in them. Here their words are
-//! translated once for each turn, by the same methods as elsewhere; the few that differ ask for
-//! [`Translator::fast`]. After the fast turns comes the loop as it is, for what they cannot do and for the
-//! last turns of a slice.
+//! [`turns`](super::turns) selects the loops and collects the facts that hold in them. Here their words are translated
+//! once for each iteration, by the same methods as elsewhere; the few methods that differ test [`Translator::fast`].
+//! After the fast iterations comes the ordinary loop, for the cases that they cannot handle and for the last iterations
+//! of a slice.
 
 use std::collections::BTreeMap;
 use std::mem::{offset_of, take};
@@ -20,7 +20,7 @@ use super::turns::{Group, Plan, TurnWord};
 use crate::kind::Width;
 use crate::operand::RegI32;
 
-/// The fast turns while they are translated.
+/// The state of translating fast iterations.
 pub(super) struct Fast {
     plan: Plan,
     turn: usize,
@@ -28,7 +28,7 @@ pub(super) struct Fast {
     spent: u32,
     /// The roots that have been checked, with the address in the host of the first byte of their group.
     checked: BTreeMap<Root, Value>,
-    /// The same on all ways to a block that have been translated.
+    /// The checked pointers on every path to a block that has been translated.
     arriving: BTreeMap<TurnWord, BTreeMap<Root, Value>>,
     blocks: BTreeMap<TurnWord, Block>,
     /// The words at which the loop as it is takes over.
@@ -44,7 +44,7 @@ pub(super) struct Way {
 }
 
 impl Translator<'_, '_> {
-    /// Translates a loop or a stretch; its first block has been entered.
+    /// Translates a loop or a straight segment; its first block has been entered.
     pub(super) fn turns(&mut self, plan: Plan) {
         let (words, order, turns) = (plan.words.clone(), plan.order.clone(), plan.turns);
         let entry = plan.entry();
@@ -114,7 +114,7 @@ impl Translator<'_, '_> {
         }
     }
 
-    /// Translates one word of one turn.
+    /// Translates one word of one iteration.
     fn fast_word(&mut self, turn: usize, at: usize) {
         let Some(fast) = &mut self.twice.fast else { return };
         if let Some(block) = fast.blocks.get(&(turn, at)).copied() {
@@ -131,12 +131,12 @@ impl Translator<'_, '_> {
         self.word(at);
     }
 
-    /// Adds to what has been charged; `false` outside of fast turns, where that must be taken at once.
+    /// Defers a charge to the end of the fast iterations; `false` outside of them, where it must be taken at once.
     pub(super) fn defer(&mut self, cycles: u32) -> bool {
         self.twice.fast.as_mut().map(|fast| fast.spent += cycles).is_some()
     }
 
-    /// Makes the budget exact where the fast turns are left for good.
+    /// Makes the budget exact at an exit of the fast iterations.
     pub(super) fn settle(&mut self) {
         if let Some(fast) = &mut self.twice.fast {
             let cycles = take(&mut fast.spent);
@@ -169,7 +169,7 @@ impl Translator<'_, '_> {
         self.way(block, cycles, is_rare)
     }
 
-    /// The block to branch to if the instruction is one for the loop as it is; `None` outside of fast turns.
+    /// The block to branch to if the ordinary loop must execute the instruction; `None` outside of fast iterations.
     ///
     /// [`finish_edges`](Self::finish_edges) must follow.
     pub(super) fn bail(&mut self) -> Option<Block> {
@@ -200,7 +200,7 @@ impl Translator<'_, '_> {
         }
     }
 
-    /// Leaves the fast turns if `condition` is not 0.
+    /// Leaves the fast iterations if `condition` is not 0.
     pub(super) fn bail_if(&mut self, condition: Value) {
         let Some(bail) = self.bail() else { return };
         let go_on = self.builder.create_block();
@@ -209,8 +209,7 @@ impl Translator<'_, '_> {
         self.enter(go_on);
     }
 
-    /// The place in the host's memory of the access at hand, as a pointer and a distance; `None` outside of fast
-    /// turns.
+    /// The host address of the current access, as a pointer and a distance; `None` outside of fast iterations.
     pub(super) fn checked_place(
         &mut self,
         base: RegI32,
@@ -247,14 +246,14 @@ impl Translator<'_, '_> {
         Some((pointer, access.at - group.first))
     }
 
-    /// What the address of an access moves by from turn to turn, as 64 bits; it never moves back.
+    /// The distance of an access's address from one iteration to the next, as 64 bits; never negative.
     fn step(&mut self, stride: Stride) -> Value {
         let step = self.get(stride.step);
         self.builder.ins().uextend(types::I64, step)
     }
 
-    /// Leaves the fast turns unless all of the group, the first byte of which is `place` in SDRAM, may be accessed, and
-    /// the same in the later turns of a stride.
+    /// Leaves the fast iterations unless all of the group, whose first byte is at offset `place` in SDRAM, may be
+    /// accessed, in the later iterations of a stride too.
     fn check(&mut self, place: Value, group: Group, stride: Option<Stride>) {
         let span = (group.end - group.first).cast_unsigned();
         let Some(stride) = stride else { return self.check_group(place, group, span) };
@@ -276,7 +275,7 @@ impl Translator<'_, '_> {
         self.bail_if(outside);
     }
 
-    /// The same for a group alone, of `span` bytes.
+    /// Checks a group without a stride, of `span` bytes.
     fn check_group(&mut self, place: Value, group: Group, span: u32) {
         if group.has_store {
             let bits = self.builder.ins().band_imm_u(place, i64::from(group.width - 1));
@@ -299,7 +298,7 @@ impl Translator<'_, '_> {
         self.bail_if(outside);
     }
 
-    /// Leaves the fast turns unless the `span` bytes at `place` are in one of the windows.
+    /// Leaves the fast iterations unless the `span` bytes at `place` are in one of the windows.
     fn check_window(&mut self, place: Value, span: Value) {
         let Some(bail) = self.bail() else { return };
         let (second, inside) = (self.builder.create_block(), self.builder.create_block());

@@ -232,7 +232,8 @@ impl Translator<'_, '_> {
         self.builder.ins().iadd(base, place)
     }
 
-    /// What is not in SDRAM: goes to the access if it is in on-chip RAM, else to `slow`; yields the address.
+    /// Emits an access outside SDRAM: it continues at the access if the address is in on-chip RAM, else at `slow`;
+    /// returns the address.
     fn elsewhere(
         &mut self,
         place: Value,
@@ -284,7 +285,7 @@ impl Translator<'_, '_> {
         self.builder.ins().band_imm_s(place, i64::from(never.cast_signed()))
     }
 
-    /// The same for SDRAM.
+    /// Returns the bits of an offset in SDRAM that an access of `width` must not have.
     pub(super) fn wrong_bits_in_sdram(&mut self, place: Value, width: Width) -> Value {
         self.wrong_bits(SDRAM, place, width)
     }
@@ -336,14 +337,14 @@ impl Translator<'_, '_> {
     }
 }
 
-/// Whether an instruction either uses no constant address or one in SDRAM.
+/// Reports whether an instruction either uses no constant address or one in SDRAM.
 pub(super) fn is_in_sdram(op: &Op) -> bool {
     let (Some(width), Some(addr)) = (op.kind().width(), op.operand::<Addr>(Name::Addr)) else { return true };
     ram_field(addr, width).is_some_and(|(field, _)| field == offset_of!(State, ram.sdram))
 }
 
-/// Where an aligned access of the constant address `addr` goes, if that is RAM: the field of the
-/// state that points to it, and the offset from there.
+/// The location of an aligned access of the constant address `addr`, if that is RAM: the field of the state that points
+/// to it, and the offset from there.
 fn ram_field(addr: Addr, width: Width) -> Option<(usize, i32)> {
     let place_in = |region: Region| {
         let place = addr.0.wrapping_sub(region.base.get());

@@ -1,4 +1,4 @@
-//! Which floating registers may hold NaNs as the processor makes them.
+//! The floating registers that may hold NaNs as the processor makes them.
 //!
 //! An operation that makes a NaN makes the same one everywhere ([`crate::arith`]), which costs a
 //! comparison and a selection. What counts is only what the rest of the machine sees, so a
@@ -37,7 +37,7 @@ pub(super) fn lax_registers(program: &Program, function: &Function, parameters: 
     lax
 }
 
-/// What an instruction assigns to its floating register.
+/// The source of the value that an instruction assigns to its floating register.
 enum Source {
     /// A result of arithmetic, or a number.
     Arithmetic,
@@ -71,7 +71,7 @@ fn source(op: &Op, program: &Program) -> Source {
     }
 }
 
-/// Whether a constant is not a number.
+/// Reports whether a constant is not a number.
 fn is_nan(op: &Op, program: &Program) -> bool {
     let single = op.operand(Name::Bits).is_some_and(|Bits32(bits)| f32::from_bits(bits).is_nan());
     single

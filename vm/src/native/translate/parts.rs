@@ -9,7 +9,7 @@ use super::fast::{Fast, Way};
 use super::shortcut::{Attempt, ShortcutWords};
 use super::turns::Plan;
 
-/// What the registers of the program are.
+/// The variables that hold the registers of the program.
 pub(super) struct Registers {
     pub(super) variables: Vec<Variable>,
     pub(super) budget: Variable,
@@ -19,11 +19,11 @@ pub(super) struct Registers {
     pub(super) raw: BTreeMap<usize, Value>,
 }
 
-/// What calls and requests need.
+/// The state for calls and requests.
 pub(super) struct CallParts {
     /// The functions of the program that this one has called so far.
     pub(super) callees: BTreeMap<usize, FuncRef>,
-    /// What callers attempt of them, how many attempts there are so far, and the attempt at hand.
+    /// The words that callers inline of the callees, the number of such attempts so far, and the current attempt.
     pub(super) shortcuts: BTreeMap<usize, Option<ShortcutWords>>,
     pub(super) attempts: usize,
     pub(super) attempt: Option<Attempt>,
@@ -35,15 +35,15 @@ pub(super) struct CallParts {
     pub(super) result: Option<Value>,
 }
 
-/// What is translated a second time.
+/// The state for words that are translated a second time.
 #[derive(Default)]
 pub(super) struct Twice {
-    /// The loops that are translated in several turns at once, by their first word, and the one at hand.
+    /// The loops that are translated in several iterations at once, by their first word, and the current one.
     pub(super) plans: BTreeMap<usize, Plan>,
     pub(super) fast: Option<Fast>,
-    /// Whether what is translated is there for the rare case that fast turns cannot continue.
+    /// True while code is translated for the rare case that fast iterations cannot continue.
     pub(super) is_rare: bool,
-    /// What is still to be translated of the ways that the next branch takes.
+    /// The targets of branches that are still to be translated.
     pub(super) ways: Vec<Way>,
 }
 
@@ -53,7 +53,7 @@ pub(super) struct Flags {
     pub(super) guest: MemFlagsData,
 }
 
-/// Where the machine function has what belongs to the call.
+/// The values of the machine function that belong to the call.
 pub(super) struct FrameParts {
     pub(super) state: Value,
     /// Address of this call's frame in guest memory.

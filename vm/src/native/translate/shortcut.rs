@@ -1,9 +1,9 @@
-//! Calls of functions that return soon, as a recursion does at its end and a guard that has nothing to do.
+//! Calls of functions that return soon, as a recursion at its end and a guard whose condition fails.
 //!
-//! Where a path of few words leads from the beginning of a function to a return, changes nothing on its way and asks
-//! for nothing, a caller executes it by itself. It is an attempt: at the end the path must be covered by the budget, so
-//! that no charge on it could end the slice, and the frame by the deepest that the stack has been. Whatever else
-//! happens, the call is made, and finds everything as it was.
+//! If a path of few words leads from the beginning of a function to a return, without a store or a request, its callers
+//! inline it. This is an attempt: at the end the path must be covered by the budget, so that no charge on it could end
+//! the slice, and the frame by the deepest that the stack has been. In all other cases the call is made, and the state
+//! is unchanged.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::mem::{offset_of, replace, take};
@@ -23,7 +23,7 @@ use crate::op::Op;
 use crate::operand::{FuncRef, Off, RegI32};
 use crate::program::{Function, Program};
 
-/// The most words that are looked at in a function, and the most registers that it has.
+/// The most words of a function that are searched, and the most registers that it may have.
 const MAX_WORDS: usize = 32;
 const MAX_REGISTERS: usize = 64;
 
@@ -45,7 +45,7 @@ fn shortcut(program: &Program, function: &Function) -> Option<BTreeSet<usize>> {
 /// Looks for paths to a return.
 struct ReturnSearch<'a> {
     program: &'a Program,
-    /// Whether each of the words that were looked at leads to a return.
+    /// True for each visited word that leads to a return.
     leads: BTreeMap<usize, bool>,
 }
 
@@ -86,14 +86,14 @@ impl ReturnSearch<'_> {
         }
     }
 
-    /// Whether the target of the branch `op` leads to a return, and lies ahead.
+    /// Reports whether the target of the branch `op` leads to a return, and lies ahead.
     fn branch(&mut self, at: usize, op: &Op) -> bool {
         let target = branch_target(op).map(|to| to.0 as usize).filter(|to| *to > at);
         target.is_some_and(|to| self.leads_to_return(to))
     }
 }
 
-/// Whether an instruction is a division of integers.
+/// Reports whether an instruction is a division of integers.
 const fn may_divide_by_zero(op: &Op) -> bool {
     matches!(
         op,
@@ -108,7 +108,7 @@ const fn may_divide_by_zero(op: &Op) -> bool {
     )
 }
 
-/// The attempt at hand: where it leads.
+/// The blocks of the current attempt.
 #[derive(Clone, Copy)]
 pub(super) struct Attempt {
     /// Makes the call.

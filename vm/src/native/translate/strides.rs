@@ -1,6 +1,6 @@
-//! Accesses whose address moves by a register that stays the same, turn by turn.
+//! Accesses whose address moves by a loop-invariant register in each iteration.
 //!
-//! One check covers them all: the step must be so small that even the last turn's access is inside.
+//! One check covers them all: the step must be so small that even the last iteration's access is inside.
 
 use std::collections::BTreeMap;
 
@@ -10,11 +10,11 @@ use crate::operand::RegI32;
 /// A root among those at equal distances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Stride {
-    /// What is added from turn to turn.
+    /// The register that is added in each iteration.
     pub(super) step: RegI32,
-    /// The root in the turn before, unless this is the first.
+    /// The root in the iteration before, unless this is the first.
     pub(super) before: Option<Root>,
-    /// How many turns follow.
+    /// Number of iterations that follow.
     pub(super) later: u32,
 }
 
@@ -23,7 +23,7 @@ pub(super) struct Stride {
 pub(super) struct Strides(BTreeMap<Root, Stride>);
 
 impl Strides {
-    /// Notes the roots of an access in all turns.
+    /// Records the roots of an access in all iterations.
     pub(super) fn insert(&mut self, roots: &[Root], step: RegI32) {
         if roots.iter().any(|root| self.0.contains_key(root)) {
             return;
@@ -35,14 +35,14 @@ impl Strides {
         }
     }
 
-    /// Where `root` stands among them.
+    /// The stride of `root`, if it is one of them.
     pub(super) fn get(&self, root: Root) -> Option<Stride> {
         self.0.get(&root).copied()
     }
 }
 
-/// The root that each of `turns`, as sorted sums, has in addition to the previous one; `None` if this is no such
-/// series.
+/// The root that each element of `turns`, as sorted sums, has in addition to the previous one; `None` if they are not
+/// such a series.
 pub(super) fn common_step(turns: &[Vec<Root>]) -> Option<Root> {
     let (first, second) = (turns.first()?, turns.get(1)?);
     let step = *second.iter().find(|root| count(second, **root) > count(first, **root))?;

@@ -1,16 +1,16 @@
 //! Loops translated a second time, with fewer tests, and the facts known inside them.
 //!
-//! A loop without calls that has no loop inside may run for several turns as soon as the budget
-//! covers the most that they can cost: no charge on the way could end the slice, so the charges are
-//! only added up, and the sum is taken where the fast turns are left. The budget is exact wherever
-//! somebody can see it. The same goes for a region in which execution only goes forward: it is one turn.
+//! An innermost loop without calls may run for several iterations as soon as the budget covers the most that they can
+//! cost: no charge in them could end the slice, so the charges are only added up, and the sum is taken where the fast
+//! iterations are left. The budget is exact wherever it can be observed. An acyclic region is treated in the same way,
+//! as one iteration.
 //!
-//! The same stretch of code reaches memory through few registers that move by constants. The
-//! [`Plan`] follows them: an access is at a [`Root`], some value that a register held, plus a
-//! constant. One check, where the first access through a root is made, covers all of that root.
+//! The same region of code reaches memory through few registers that move by constants. The [`Plan`] follows them: an
+//! access is at a [`Root`], some value that a register held, plus a constant. One check, where the first access through
+//! a root is made, covers all of that root.
 //!
-//! Whatever the fast turns cannot do, an access elsewhere than in plain RAM or a division by 0, the
-//! ordinary translation of the same instruction does, from that instruction on.
+//! For a case that the fast iterations cannot handle, an access outside plain RAM or a division by 0, the ordinary
+//! translation continues from that instruction on.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
@@ -24,27 +24,27 @@ use crate::op::Op;
 use crate::operand::RegI32;
 use crate::program::{Function, Program};
 
-/// The most words of all fast turns of a loop together.
+/// The most words of all fast iterations of a loop together.
 const MAX_WORDS_OF_TURNS: usize = 128;
 
-/// The most turns that run at once, and those of a loop of so few words that its test and its jump weigh more.
+/// The most iterations that run at once, and those of a loop of so few words that its test and its jump weigh more.
 ///
-/// In longer turns more values wait for the last one than there are registers.
+/// With more iterations more values are live than there are registers.
 const MAX_TURNS: usize = 4;
 const MAX_SMALL_TURNS: usize = 8;
 const SMALL: usize = 8;
 
-/// How far from its root an access is followed, and of how many others a root is made at most.
+/// The largest distance of an access from its root, in bytes, and the largest number of roots that a root is made of.
 const MAX_DISTANCE: u32 = 1 << 16;
 const MAX_TERMS: usize = 12;
 
-/// A place in the fast turns: the turn, and the word.
+/// A position in the fast iterations: the iteration, and the word.
 pub(super) type TurnWord = (usize, usize);
 
 /// A register as a root and a distance from it.
 type SymbolicValue = (Root, i32);
 
-/// What the accesses through one root have in common.
+/// The properties that the accesses through one root share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Group {
     /// The first byte, as a distance from the root; aligned for the widest access if the root's accesses are.
@@ -53,7 +53,7 @@ pub(super) struct Group {
     pub(super) end: i32,
     /// Bytes of the widest access.
     pub(super) width: u32,
-    /// Whether something is stored.
+    /// True if one of them is a store.
     pub(super) has_store: bool,
 }
 
@@ -62,24 +62,24 @@ pub(super) struct Group {
 pub(super) struct Access {
     /// The root.
     pub(super) root: Root,
-    /// Where the access is made, as a distance from the root.
+    /// The address of the access, as a distance from the root.
     pub(super) at: i32,
-    /// Where its base register points.
+    /// The value of its base register, as a distance from the root.
     pub(super) base: i32,
 }
 
-/// A loop in several turns, or words that are passed once.
+/// The plan of a loop in several iterations, or of words that are executed once.
 #[derive(Debug)]
 pub(super) struct Plan {
     /// The words of the loop.
     pub(super) words: RangeInclusive<usize>,
-    /// The same in the order of a turn.
+    /// The words in the order of an iteration.
     pub(super) order: Vec<usize>,
-    /// How many turns; none for a stretch that is not a loop.
+    /// Number of iterations; 0 for a region that is not a loop.
     pub(super) turns: usize,
-    /// The most cycles that they cost; none for a stretch without charges.
+    /// The most cycles that they cost; 0 for a segment without charges.
     pub(super) cost: u32,
-    /// Whether it is a loop that is left in one place, as those that count are: most of their turns do not leave it.
+    /// True for a loop with one exit, as counted loops are: most of their iterations do not leave it.
     pub(super) is_counted: bool,
     /// The blocks that can be reached, with the cycles that were charged but not yet taken when they begin.
     pub(super) entries: BTreeMap<TurnWord, u32>,
@@ -125,28 +125,28 @@ pub(super) fn plans(
     plans
 }
 
-/// Whether the word `at` is in one of `plans`.
+/// Reports whether the word `at` is in one of `plans`.
 fn is_planned(plans: &BTreeMap<usize, Plan>, at: usize) -> bool {
     plans.range(..=at).next_back().is_some_and(|(_, plan)| plan.words.contains(&at))
 }
 
-/// What is known where a block begins or an instruction stands.
+/// The facts known at the beginning of a block or at an instruction.
 #[derive(Clone, Debug)]
 struct Known {
     spent: u32,
     symbols: Vec<SymbolicValue>,
 }
 
-/// How a root is made of others.
+/// The derivation of a root from others.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Made {
-    /// Of these in ascending order, none of which is a sum.
+    /// The sum of these in ascending order, none of which is a sum.
     Sum(Vec<Root>),
     Difference(Root, Root),
     Product(Root, i32),
 }
 
-/// Follows a loop through its turns.
+/// Follows a loop through its iterations.
 struct Planner<'a> {
     program: &'a Program,
     begins: &'a BTreeSet<usize>,
@@ -207,7 +207,7 @@ impl<'a> Planner<'a> {
         (self.roots, 0)
     }
 
-    /// The plan for turns of a loop, each of which begins at `entry`, or for a stretch.
+    /// Plans the iterations of a loop, each of which begins at `entry`, or a segment.
     fn plan(mut self, entry: usize, is_loop: bool) -> Option<Plan> {
         let (first, last) = (*self.plan.words.start(), *self.plan.words.end());
         self.plan.order = (entry..=last).chain(first..entry).collect();
@@ -275,7 +275,7 @@ impl<'a> Planner<'a> {
         Some(known)
     }
 
-    /// What an instruction makes of the symbols of its operands.
+    /// The symbolic result of an instruction, from the symbols of its operands.
     ///
     /// Equal sums and products of roots are the same root, and a constant in a factor is one in the product.
     fn result(&mut self, op: &Op, symbols: &[SymbolicValue]) -> SymbolicValue {
@@ -319,7 +319,7 @@ impl<'a> Planner<'a> {
         self.sums.get(&root).cloned().unwrap_or_else(|| vec![root])
     }
 
-    /// The root that is made of others in one way.
+    /// Returns the root for a derivation.
     fn made(&mut self, made: Made) -> Root {
         if let Some(root) = self.known_roots.get(&made) {
             return *root;
@@ -332,7 +332,7 @@ impl<'a> Planner<'a> {
         root
     }
 
-    /// The accesses that move by the same register in each turn.
+    /// The accesses that move by the same register in each iteration.
     fn strides(&self) -> Strides {
         let assigned: BTreeSet<usize> =
             self.plan.words.clone().filter_map(|at| int_destination(&self.program.ops()[at])).collect();
@@ -367,7 +367,7 @@ impl<'a> Planner<'a> {
         }
     }
 
-    /// What is known where several ways meet is what is known on all of them.
+    /// Merges facts at a join: those that hold on all paths remain.
     fn arrive(&mut self, place: TurnWord, known: Known) {
         let Some(mut met) = self.arriving.remove(&place) else {
             self.arriving.insert(place, known);
@@ -411,18 +411,18 @@ impl<'a> Planner<'a> {
 }
 
 impl Plan {
-    /// The word at which a turn begins.
+    /// The word at which an iteration begins.
     pub(super) fn entry(&self) -> usize {
         self.order.first().copied().unwrap_or(*self.words.start())
     }
 
-    /// Whether a root has several accesses.
+    /// Reports whether a root has several accesses.
     fn shares_checks(&self) -> bool {
         let mut seen = BTreeSet::new();
         self.accesses.values().any(|access| !seen.insert(access.root))
     }
 
-    /// Where a branch of `turn` to the word `to` continues, if that is in the fast turns.
+    /// The position in the fast iterations at which a branch of `turn` to the word `to` continues, if it is in them.
     pub(super) fn target(&self, turn: usize, to: usize) -> Option<TurnWord> {
         if to == self.entry() {
             return (turn + 1 < self.turns).then_some((turn + 1, to));
@@ -432,7 +432,7 @@ impl Plan {
 }
 
 impl Group {
-    /// Whether the check of the group covers an access of `width` at `at`.
+    /// Reports whether the check of the group covers an access of `width` at `at`.
     pub(super) fn covers(&self, at: i32, width: Width, is_store: bool) -> bool {
         let size = width.bytes().cast_signed();
         self.first <= at
