@@ -1,4 +1,4 @@
-//! Where C's pointers become Rust's references, and panics become results.
+//! The border to C: pointers become references, and panics become results.
 
 use std::ffi::{CStr, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -6,19 +6,19 @@ use std::slice;
 
 use cc67_host::{HostError, fill};
 
-/// What became of a call.
+/// The result of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub enum Outcome {
-    /// It did what it is for.
+    /// The call succeeded.
     Ok = 0,
-    /// It did not; where there is a message, that says why.
+    /// The call failed; where there is a message, it gives the reason.
     Failed = 1,
     /// The board did not answer in time.
     Timeout = 2,
-    /// There is no connection: it was given up.
+    /// The connection was lost or closed.
     NotConnected = 3,
-    /// Another client has the board to itself.
+    /// Another client has locked the board.
     InUse = 4,
     /// An argument is wrong: a null pointer, a text that is not UTF-8, a number out of range.
     Argument = 5,
@@ -58,7 +58,7 @@ pub(crate) fn guarded(work: impl FnOnce() -> Result<(), Outcome>) -> Outcome {
     }
 }
 
-/// The same for a call that yields a value; `failure` stands for a panic.
+/// Calls `work` and catches panics; returns its value, or `failure` after a panic.
 pub(crate) fn guarded_or<R>(failure: R, work: impl FnOnce() -> R) -> R {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or(failure)
 }

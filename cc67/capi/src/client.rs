@@ -98,7 +98,7 @@ fn boot(firmware: &Path, files: Option<PathBuf>, machine: Option<&Path>) -> Resu
     Ok(Client { board, options })
 }
 
-/// What is connected to a board.
+/// The configuration of a board: the folder for its files and its machine file.
 fn config(files: Option<PathBuf>, machine: Option<&Path>) -> Result<Config, String> {
     let mut config = Config::default();
     if let Some(folder) = files {

@@ -12,7 +12,7 @@ use crate::{Client, Outcome};
 /// `longjmp` or an exception.
 pub type LineCallback = Option<unsafe extern "C" fn(line: *const c_char, user: *mut c_void)>;
 
-/// What a caller wants to have back.
+/// The pointer that a caller registered with its callback, handed back unchanged.
 struct User(*mut c_void);
 
 // SAFETY: the library only keeps the pointer and hands it back; the header says in which threads that may be.

@@ -9,7 +9,7 @@ use crate::border::Outcome;
 #[derive(Debug)]
 pub struct Client {
     pub(crate) board: Board,
-    /// How its programs are compiled.
+    /// The options with which its programs are compiled.
     pub(crate) options: Options,
 }
 

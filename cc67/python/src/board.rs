@@ -20,13 +20,13 @@ use crate::residence::Residence;
 use crate::setup::{BoardArguments, refused};
 use crate::trace::MOST_VALUES;
 
-/// Numbers for boards and snapshots, so that nobody takes one for another's.
+/// Numbers for boards and snapshots, so that one board's snapshot is not taken for another's.
 static NUMBERS: AtomicU64 = AtomicU64::new(1);
 
-/// What the native engines of all boards have compiled: a sweep makes a thousand boards of one program.
+/// The native code of all boards, shared: a sweep makes a thousand boards of one program.
 static COMPILED: LazyLock<SharedCode> = LazyLock::new(SharedCode::default);
 
-/// How long a run continues before Python's signals are checked.
+/// The time that a run continues before Python's signals are checked.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// A column of a trace.
@@ -50,7 +50,7 @@ pub(crate) struct Board {
     number: u64,
 }
 
-/// What a run may wait for, as Python says it.
+/// The condition that a run waits for, as Python states it.
 #[derive(Debug, FromPyObject)]
 enum Awaited {
     /// An expression is not 0.
@@ -119,7 +119,7 @@ impl Board {
     }
 }
 
-/// What is wrong with a run as an exception.
+/// Converts a fault of a run into an exception.
 fn exception(fault: Fault) -> PyErr {
     match fault {
         Fault::Unmet { text } => ExpectationError::new_err(text),

@@ -22,7 +22,7 @@ use pyo3::prelude::*;
 
 use crate::errors::{LoadError, input, unreadable};
 
-/// How to compile, as Python says it.
+/// The options of a compilation, as Python passes them.
 #[derive(Clone, Debug, FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct CompileArguments {
@@ -103,7 +103,7 @@ pub(crate) struct LinkableProgram {
     pub(crate) options: Options,
 }
 
-/// What a program is made of.
+/// The parts of a program.
 #[derive(Clone, Debug)]
 enum Content {
     /// Names and bytes of objects.

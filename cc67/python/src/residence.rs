@@ -1,4 +1,4 @@
-//! Where a session lives.
+//! The thread in which a session lives.
 //!
 //! A session on the interpreter can be used by any thread, one at a time. One with native stacks stays in the thread
 //! that made it, so it gets one of its own, to which every call is sent. A call looks the same for both.
@@ -13,7 +13,7 @@ type Job = Box<dyn FnOnce(&mut dyn Control) + Send>;
 
 /// A session, wherever it is.
 pub(crate) enum Residence {
-    /// Of the calling thread.
+    /// The calling thread.
     Here(Box<dyn Control + Send>),
     /// In a thread of its own, which ends with this.
     Elsewhere(Sender<Job>),

@@ -1,4 +1,4 @@
-//! What a board begins with: the arguments of `cc67.Board`.
+//! The initial state of a board: the arguments of `cc67.Board`.
 
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ use vm::machine::Config as MachineConfig;
 use crate::errors::{LoadError, input};
 use crate::program::{LinkableProgram, read, thread};
 
-/// What Python asks for; the texts of files are read there.
+/// The arguments as Python passes them; the texts of files are read there.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct BoardArguments<'py> {
@@ -150,7 +150,7 @@ fn programs(wanted: &[(i32, PyRef<'_, LinkableProgram>, bool)]) -> PyResult<Vec<
     Ok(programs)
 }
 
-/// Why a board does not take a program.
+/// Converts a board's refusal of a program into an exception.
 pub(crate) fn refused(error: HostError) -> PyErr {
     LoadError::new_err(error.to_string())
 }

@@ -57,7 +57,7 @@ impl Recorder {
         }
     }
 
-    /// What was taken.
+    /// Returns the samples.
     pub(crate) fn finish(self) -> Columns {
         self.columns
     }

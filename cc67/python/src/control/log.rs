@@ -1,11 +1,11 @@
-//! What a board has said since power-up: console lines, remarks, traps, expectations that were not met.
+//! The output of a board since power-up: console lines, remarks, traps, expectations that were not met.
 
 use cc67_host::remark;
 use kmotiondef::Cycles;
 use runtime::debug::DebugInfo;
 use runtime::{Event, EventKind};
 
-/// A line with its instant.
+/// A line and its board time.
 #[derive(Clone, Debug)]
 pub(crate) struct Said {
     /// Seconds of board time since power-up.
@@ -14,12 +14,12 @@ pub(crate) struct Said {
     pub(crate) text: String,
 }
 
-/// What is wrong with a run.
+/// A fault that ends a run.
 #[derive(Clone, Debug)]
 pub(crate) enum Fault {
     /// A thread was stopped.
     Trap {
-        /// What happened and where, in words.
+        /// The trap and its position in the source, in words.
         text: String,
         /// Seconds of board time.
         time: f64,
@@ -30,12 +30,12 @@ pub(crate) enum Fault {
     },
     /// An expectation of the stimulus is not met.
     Unmet {
-        /// What.
+        /// The expectation, in words.
         text: String,
     },
 }
 
-/// All of it.
+/// The log of a board.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Log {
     /// Lines that programs printed.
@@ -44,11 +44,11 @@ pub(crate) struct Log {
     pub(crate) replies: Vec<String>,
     /// Remarks of the simulation.
     pub(crate) remarks: Vec<Said>,
-    /// Characters that the serial port sent, if anybody listens.
+    /// Characters that the serial port sent, if they are recorded.
     pub(crate) uart: Vec<u8>,
     /// Traps and expectations that were not met.
     pub(crate) faults: Vec<Fault>,
-    /// How many of them were reported.
+    /// Number of faults that were reported already.
     reported: usize,
 }
 

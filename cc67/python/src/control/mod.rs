@@ -14,19 +14,19 @@ pub(crate) use log::{Fault, Log, Said};
 
 use crate::trace::{Columns, Recorder};
 
-/// Steps of a board in a portion of a run: at most some milliseconds, after which the clock is looked at.
+/// Steps of a board in a portion of a run: at most some milliseconds, after which the clock is read.
 const STEPS: usize = 4000;
 
-/// Ticks of a portion in which a condition is looked at.
+/// Ticks of a portion in which a condition is tested.
 const TICKS: u64 = 4000;
 
-/// What a portion of a run came to.
+/// The result of a portion of a run.
 pub(crate) struct Portion {
-    /// Whether the run is over.
+    /// True if the run is over.
     pub(crate) is_over: bool,
-    /// What the run was to wait for has come true, or all has ended.
+    /// True if the run's condition is met, or all programs have ended.
     pub(crate) is_met: bool,
-    /// What stopped it.
+    /// The fault that stopped it.
     pub(crate) fault: Option<Fault>,
 }
 
@@ -40,11 +40,11 @@ pub(crate) trait Control: 'static {
     fn run(&mut self, limit: u64) -> Portion;
     /// A portion of a run until a condition is met.
     fn run_until(&mut self, condition: &Until, limit: u64) -> Portion;
-    /// The run is over: what is held comes out, expectations are looked at.
+    /// Ends the run: held output is flushed, expectations are evaluated.
     fn finish(&mut self) -> Portion;
     /// Runs to the end of the next slice of a thread.
     fn step_thread(&mut self, thread: ThreadId, limit: u64) -> Portion;
-    /// Whether nothing is active and nothing is under way.
+    /// Reports whether nothing is active and nothing is under way.
     fn has_ended(&self) -> bool;
     /// Sends a line, lets pass the time that it takes, and returns the lines of the reply.
     fn exchange(&mut self, line: &[u8]) -> (Vec<String>, Option<Fault>);
@@ -54,7 +54,7 @@ pub(crate) trait Control: 'static {
     fn drive(&mut self, bit: Bit, level: bool) -> Result<(), HostError>;
     /// The level of a bit.
     fn bit(&self, bit: Bit) -> bool;
-    /// What should be looked at, prepared.
+    /// Parses an item or expression to be watched.
     fn watch(&mut self, text: &str) -> Result<Watch, WatchError>;
     /// The value of an item or an expression.
     fn read(&mut self, text: &str) -> Result<f64, WatchError>;
@@ -66,7 +66,7 @@ pub(crate) trait Control: 'static {
     fn user_data(&self, index: usize) -> Option<i32>;
     /// Stores an element of `persist.UserData`.
     fn set_user_data(&mut self, index: usize, value: i32) -> bool;
-    /// Whether a thread is active.
+    /// Reports whether a thread is active.
     fn is_active(&self, thread: ThreadId) -> bool;
     /// Loads a program.
     fn load(&mut self, program: UserProgram) -> Result<(), HostError>;
@@ -88,11 +88,11 @@ pub(crate) trait Control: 'static {
     fn trace(&mut self) -> Portion;
     /// The trace as far as it is.
     fn end_trace(&mut self) -> Option<Columns>;
-    /// What the board has said.
+    /// The output of the board since power-up.
     fn log(&self) -> &Log;
-    /// Whether a trap or an expectation that is not met ends a run.
+    /// Sets whether a trap or an expectation that is not met ends a run.
     fn stop_at_faults(&mut self, stops: bool);
-    /// What was done by hand, as a stimulus, and whether that is all.
+    /// Returns the actions by hand as a stimulus, and whether it holds all of them.
     fn recording(&self) -> (String, bool);
 }
 
@@ -142,12 +142,12 @@ impl<T: Target> Rig<T> {
         self.log.take(events, || session.debug().into_iter().map(|(_, debug)| debug).collect());
     }
 
-    /// What stops a run now, if something does.
+    /// Returns the fault that stops a run now, if there is one.
     fn fault(&mut self) -> Option<Fault> {
         if self.stops_at_faults { self.log.take_fault() } else { None }
     }
 
-    /// Steps until `is_over` says so or the portion is used up.
+    /// Steps until `is_over` returns true or the portion is used up.
     fn portion(&mut self, limit: Ticks, is_over: impl Fn(&Session<T>) -> bool) -> Portion {
         let mut events = Vec::new();
         for _ in 0..STEPS {
