@@ -14,7 +14,7 @@ pub struct TranslationUnit {
     pub items: Vec<Item>,
 }
 
-/// One external declaration.
+/// An external declaration.
 #[derive(Debug)]
 #[expect(
     clippy::large_enum_variant,
@@ -55,12 +55,12 @@ pub struct Declaration {
     pub span: Span,
 }
 
-/// One declarator with its initialiser.
+/// A declarator with its initialiser.
 #[derive(Debug)]
 pub struct InitDeclarator {
     /// Name and derivation.
     pub declarator: Declarator,
-    /// What follows `=`.
+    /// The initialiser after `=`.
     pub initializer: Option<Initializer>,
 }
 
@@ -182,7 +182,7 @@ pub enum RecordKind {
 /// `struct tag { … }`
 #[derive(Debug)]
 pub struct RecordSpecifier {
-    /// Which keyword.
+    /// The keyword: `struct` or `union`.
     pub kind: RecordKind,
     /// The tag.
     pub tag: Option<(Name, Span)>,
@@ -194,7 +194,7 @@ pub struct RecordSpecifier {
     pub span: Span,
 }
 
-/// One line of members.
+/// A declaration of members.
 #[derive(Debug)]
 pub struct MemberDeclaration {
     /// The type words.
@@ -205,7 +205,7 @@ pub struct MemberDeclaration {
     pub span: Span,
 }
 
-/// One member.
+/// A member.
 #[derive(Debug)]
 pub struct MemberDeclarator {
     /// Name and derivation; `None` for an unnamed bit-field.
@@ -225,7 +225,7 @@ pub struct EnumSpecifier {
     pub span: Span,
 }
 
-/// One enumerator.
+/// An enumerator.
 #[derive(Debug)]
 pub struct Enumerator {
     /// Its name.
@@ -249,7 +249,7 @@ pub struct Declarator {
     pub span: Span,
 }
 
-/// One derivation.
+/// A derivation.
 #[derive(Debug)]
 pub enum Derived {
     /// `*` with its qualifiers.
@@ -276,7 +276,7 @@ pub enum Parameters {
     Names(Vec<(Name, Span)>),
 }
 
-/// One parameter of a prototype.
+/// A parameter of a prototype.
 #[derive(Debug)]
 pub struct Parameter {
     /// The type words.
@@ -309,7 +309,7 @@ pub struct StaticAssert {
     pub span: Span,
 }
 
-/// What initialises an object.
+/// An initialiser of an object.
 #[derive(Debug)]
 pub enum Initializer {
     /// `= expression`
@@ -323,7 +323,7 @@ pub enum Initializer {
     },
 }
 
-/// One element of an initialiser list.
+/// An element of an initialiser list.
 #[derive(Debug)]
 pub struct InitializerItem {
     /// `.x[3] =`, also the GNU form `x:`.
@@ -332,7 +332,7 @@ pub struct InitializerItem {
     pub initializer: Initializer,
 }
 
-/// One step of a designation.
+/// A step of a designation.
 #[derive(Debug)]
 pub enum Designator {
     /// `.name`
@@ -346,9 +346,9 @@ pub enum Designator {
 /// A statement.
 #[derive(Debug)]
 pub struct Statement {
-    /// What it does.
+    /// The kind of statement.
     pub kind: StatementKind,
-    /// Where it is.
+    /// Its range in the source.
     pub span: Span,
 }
 
@@ -376,7 +376,7 @@ pub enum StatementKind {
     },
     /// `while`
     While {
-        /// Tested before each turn.
+        /// The condition, tested before each iteration.
         condition: Expression,
         /// The body.
         body: Box<Statement>,
@@ -385,16 +385,16 @@ pub enum StatementKind {
     DoWhile {
         /// The body.
         body: Box<Statement>,
-        /// Tested after each turn.
+        /// The condition, tested after each iteration.
         condition: Expression,
     },
     /// `for`
     For {
         /// An expression statement, a declaration or an empty statement.
         init: Box<Statement>,
-        /// Tested before each turn.
+        /// The condition, tested before each iteration.
         condition: Option<Expression>,
-        /// Evaluated after each turn.
+        /// The expression evaluated after each iteration.
         step: Option<Expression>,
         /// The body.
         body: Box<Statement>,
@@ -441,9 +441,9 @@ pub enum StatementKind {
 /// An expression.
 #[derive(Debug)]
 pub struct Expression {
-    /// What it computes.
+    /// The kind of expression.
     pub kind: ExpressionKind,
-    /// Where it is.
+    /// Its range in the source.
     pub span: Span,
 }
 
@@ -470,7 +470,7 @@ pub enum ExpressionKind {
     Member {
         /// The structure or pointer.
         base: Box<Expression>,
-        /// Whether `->` was written.
+        /// True for `->`, false for `.`.
         arrow: bool,
         /// The member.
         member: Name,
@@ -481,7 +481,7 @@ pub enum ExpressionKind {
     Unary(UnaryOperator, Box<Expression>),
     /// `++`, `--`, before or after.
     Increment {
-        /// What is changed.
+        /// The operand.
         operand: Box<Expression>,
         /// `++`, else `--`.
         is_increment: bool,
@@ -538,7 +538,7 @@ pub enum ExpressionKind {
     StatementExpression(Vec<Statement>),
     /// `&&label`
     LabelAddress(Name, Span),
-    /// Something that was diagnosed and skipped; it has no further diagnostics.
+    /// An expression that was diagnosed and skipped; it has no further diagnostics.
     Error,
 }
 
@@ -569,7 +569,7 @@ pub struct FloatingLiteral {
 pub struct StringLiteral {
     /// Its elements: bytes, or units of the encoding.
     pub elements: Vec<i32>,
-    /// What the prefix says.
+    /// The encoding, from the prefix.
     pub encoding: Encoding,
 }
 

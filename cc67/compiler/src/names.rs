@@ -1,8 +1,8 @@
 //! Identifiers as small numbers.
 //!
-//! Keywords and the other words that the compiler asks for by name have numbers that are
-//! known beforehand ([`word`]), so that a `match` on a [`Name`] needs no strings. The table is
-//! an open-addressed hash table of its own: it is asked once for every identifier token.
+//! Keywords and the other words that the compiler tests by name have numbers that are known beforehand ([`word`]), so
+//! that a `match` on a [`Name`] needs no strings. The table is an open-addressed hash table of its own: it is used once
+//! for every identifier token.
 
 use std::collections::BTreeSet;
 
@@ -67,7 +67,7 @@ words! {
 }
 
 impl Name {
-    /// Whether the word is a keyword of C11 or GNU C, which a program cannot declare.
+    /// Reports whether the word is a keyword of C11 or GNU C, which a program cannot declare.
     #[must_use]
     pub const fn is_keyword(self) -> bool {
         self.0 <= word::FUNCTION.0
@@ -82,7 +82,7 @@ const USUAL_NAMES: usize = 1024;
 pub struct Names {
     /// All spellings, one after another.
     text: String,
-    /// Where each spelling ends in `text`.
+    /// The end of each spelling in `text`.
     ends: Vec<usize>,
     /// Number + 1 of the name in each slot, 0 for an empty one; the size is a power of two.
     slots: Vec<u32>,
@@ -147,13 +147,13 @@ impl Names {
         self.function_macros.insert(name);
     }
 
-    /// Whether a macro with parameters has this name.
+    /// Reports whether a macro with parameters has this name.
     #[must_use]
     pub fn is_function_macro(&self, name: Name) -> bool {
         self.function_macros.contains(&name)
     }
 
-    /// How many names there are; the numbers are those below.
+    /// Number of names; their indexes are those below.
     #[must_use]
     pub fn len(&self) -> usize {
         self.ends.len()
@@ -206,7 +206,7 @@ impl Names {
     }
 }
 
-/// Whether a byte can go on an identifier.
+/// Reports whether a byte can continue an identifier.
 #[must_use]
 pub const fn is_name_byte(byte: u8) -> bool {
     const NAME_BYTES: [bool; 256] = {

@@ -58,7 +58,7 @@ macro_rules! define_binary_operators {
                 }
             }
 
-            /// How tight it binds; larger is tighter.
+            /// Its precedence; larger binds tighter.
             #[must_use]
             pub(crate) const fn binding(self) -> u8 {
                 match self {
@@ -66,7 +66,7 @@ macro_rules! define_binary_operators {
                 }
             }
 
-            /// What it means.
+            /// Its meaning.
             #[must_use]
             pub(crate) const fn meaning(self) -> OperatorMeaning {
                 match self {
@@ -79,7 +79,7 @@ macro_rules! define_binary_operators {
 
 for_each_binary_operator!(define_binary_operators);
 
-/// What a binary operator means, by what its operands may be.
+/// The meaning of a binary operator, by the operands it accepts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum OperatorMeaning {
     /// Arithmetic, and pointer steps with `+` and `-`.
@@ -155,7 +155,7 @@ macro_rules! define_binary_ops {
                 }
             }
 
-            /// What it computes of integers of 64 bits; `None` for a division by zero.
+            /// The computation on integers of 64 bits; `None` for a division by zero.
             #[must_use]
             pub(crate) const fn in_64_bits(self, is_unsigned: bool) -> Integers {
                 match self {
@@ -164,8 +164,8 @@ macro_rules! define_binary_ops {
                 }
             }
 
-            /// What it computes of numbers without a width; `None` where checks of indexes do not follow it, and beyond
-            /// 64 bits.
+            /// Computes the operator on integers without overflow; `None` for operators that checks of indexes do not
+            /// follow, and beyond 64 bits.
             #[must_use]
             pub(crate) fn exactly(self, a: i64, b: i64) -> Option<i64> {
                 let exact: Option<Integers> = match self {
@@ -199,7 +199,7 @@ macro_rules! define_compare_ops {
                 }
             }
 
-            /// Whether it holds for values in this order; `None` if one of them is not a number.
+            /// Reports whether it holds for values in this order; `None` if one of them is not a number.
             #[must_use]
             pub(crate) fn holds(self, order: Option<Ordering>) -> bool {
                 match self {

@@ -8,13 +8,13 @@ use crate::typed::SymbolId;
 pub struct Relocation {
     /// Index of the word.
     pub word: u32,
-    /// How it is completed.
+    /// The kind of relocation.
     pub kind: RelocationKind,
-    /// Whose address is put there.
+    /// The symbol whose address is put there.
     pub symbol: SymbolId,
 }
 
-/// How a word is completed.
+/// The kind of a relocation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RelocationKind {
     /// The symbol's address is added to the last four bytes of the word.
@@ -25,7 +25,7 @@ pub enum RelocationKind {
     Processor(FixupKind),
 }
 
-/// How a word of a real processor is completed.
+/// The kind of a relocation of a real processor's word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FixupKind {
     /// The low half of an address, plus an offset, as the constant of the instruction.

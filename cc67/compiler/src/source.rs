@@ -11,12 +11,12 @@ use std::sync::{Arc, OnceLock};
 
 use cranelift_entity::{PrimaryMap, entity_impl};
 
-/// One file that was read, or the text of a command-line macro.
+/// A file that was read, or the text of a command-line macro.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FileId(u32);
 entity_impl!(FileId, "file");
 
-/// One expansion of a macro; `Option<ExpansionId>` would double the size of a span.
+/// An expansion of a macro; `Option<ExpansionId>` would double the size of a span.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ExpansionId(u32);
 entity_impl!(ExpansionId, "expansion");
@@ -56,7 +56,7 @@ impl Span {
 pub struct SourceFile {
     /// Name as the user wrote it or as the include search found it.
     pub name: String,
-    /// Where it was read; `None` for the embedded headers and command-line text.
+    /// The path that it was read from; `None` for the embedded headers and command-line text.
     pub path: Option<PathBuf>,
     /// The bytes; not necessarily UTF-8. Shared with other inclusions of the same file.
     pub text: Arc<Vec<u8>>,
@@ -86,12 +86,12 @@ impl SourceFile {
     }
 }
 
-/// One macro expansion.
+/// A macro expansion.
 #[derive(Clone, Copy, Debug)]
 pub struct Expansion {
     /// The macro's name where it is defined; its text is the name.
     pub definition: Span,
-    /// Where it was used.
+    /// The position of the macro call.
     pub call: Span,
 }
 
@@ -158,7 +158,7 @@ impl SourceMap {
         Span::new(lo, file.end())
     }
 
-    /// Whether a span lies in text made by the preprocessor.
+    /// Reports whether a span lies in text made by the preprocessor.
     #[must_use]
     pub fn is_scratch(&self, span: Span) -> bool {
         self.file_at(span.lo).is_some_and(|file| self.files[file].is_scratch)
@@ -198,7 +198,7 @@ impl SourceMap {
         self.expansions.get(id)
     }
 
-    /// The span in a file that a reader should look at first: the outermost macro call, or the text itself.
+    /// The span in a file to show first: the outermost macro call, or the text itself.
     #[must_use]
     pub fn call_site(&self, mut span: Span) -> Span {
         while let Some(expansion) = self.expansion(span.expansion) {
@@ -207,7 +207,7 @@ impl SourceMap {
         span
     }
 
-    /// Where a reader of the main file meets `span`: the position there, then the span's own.
+    /// The position at which a reader of the main file meets `span`, then the span's own.
     ///
     /// Text of an included file is met at its `#include`, so diagnostics in this order are in the
     /// order of the program.

@@ -1,6 +1,6 @@
-//! Each stage after the front end as a function from text to text, to see what a stage does by itself.
+//! Each stage after the front end as a function from text to text, for testing one stage alone.
 //!
-//! The tests in `tests/filetests/{lower,passes,legalize,bytecode}` feed these and compare.
+//! The tests in `tests/filetests/{lower,passes,legalize,bytecode}` use these.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -49,7 +49,7 @@ pub fn reprint(ir: &str) -> Result<String, String> {
 /// Runs the pass of a name, one of [`passes::ALL`], over IR.
 ///
 /// # Errors
-/// What is wrong with the name, the text, or what the pass made of it.
+/// If the name is not that of a pass, or the text or the result is not valid IR.
 pub fn pass(name: &str, ir: &str) -> Result<String, String> {
     let (_, pass) = passes::ALL
         .iter()

@@ -1,6 +1,6 @@
-//! What programs are compiled for.
+//! The targets of compilation.
 
-/// Who executes the code.
+/// The target of a compilation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Target {
     /// The simulated board's engines: bytecode.

@@ -42,25 +42,25 @@ pub struct Unit {
 }
 
 impl Unit {
-    /// Whether a function of this name is defined here.
+    /// Reports whether a function of this name is defined here.
     #[must_use]
     pub fn defines(&self, name: &str) -> bool {
         self.functions.iter().any(|function| self.symbols[function.symbol].name == name)
     }
 }
 
-/// Something with an address at link time.
+/// A function or object with an address at link time.
 #[derive(Debug)]
 pub struct Symbol {
     /// The name; for anonymous objects one that no program can spell (`L.3`).
     pub name: String,
-    /// Whether other units see it.
+    /// Its linkage: internal or external.
     pub linkage: Linkage,
     /// The type.
     pub ty: TypeId,
-    /// Alignment that a declaration asks for; the type may want more.
+    /// Alignment that a declaration requests; the type may need more.
     pub align: u32,
-    /// What is at the address.
+    /// Its definition.
     pub definition: Definition,
     /// The defining declaration, else the first one.
     pub span: Span,
@@ -69,7 +69,7 @@ pub struct Symbol {
 }
 
 impl Symbol {
-    /// Whether it is an object without a name, such as a string literal.
+    /// Reports whether it is an object without a name, such as a string literal.
     #[must_use]
     pub fn is_anonymous(&self) -> bool {
         self.name.starts_with("L.")
@@ -85,7 +85,7 @@ pub enum Linkage {
     Internal,
 }
 
-/// What this unit says about a symbol.
+/// The definition of a symbol in this unit.
 #[derive(Debug)]
 pub enum Definition {
     /// Declared only: another unit, the firmware or the library defines it.
@@ -112,7 +112,7 @@ pub struct StaticData {
 pub struct AddressWord {
     /// Offset in the object.
     pub offset: u32,
-    /// Whose address.
+    /// The symbol whose address is stored.
     pub symbol: SymbolId,
     /// Bytes to add to it.
     pub addend: i32,
@@ -136,7 +136,7 @@ pub struct Function {
     pub ty: FunctionType,
     /// Parameters in order. A structure parameter's local holds the caller's copy; see [`Local::by_pointer`].
     pub parameters: Vec<LocalId>,
-    /// What it is passed besides.
+    /// The parameters that are passed besides the declared ones.
     pub hidden: Hidden,
     /// Parameters, variables and temporaries.
     pub locals: PrimaryMap<LocalId, Local>,
@@ -152,7 +152,7 @@ pub struct Function {
     pub span: Span,
     /// The closing brace, where a function that falls off its end returns 0.
     pub end: Span,
-    /// Something in it was diagnosed as an error: parts of the body are missing.
+    /// True if an error was reported in it: parts of the body are missing.
     pub has_errors: bool,
 }
 
@@ -193,13 +193,13 @@ pub struct Local {
     pub name: String,
     /// Its type.
     pub ty: TypeId,
-    /// Alignment that its declaration asks for; the type may want more.
+    /// Alignment that its declaration requests; the type may need more.
     pub align: u32,
-    /// It needs memory: its address is taken, it is an array or a structure, or it is volatile.
+    /// True if it needs memory: its address is taken, it is an array or a structure, or it is volatile.
     pub in_memory: bool,
     /// A structure parameter: the register that comes in holds the address of the caller's copy.
     pub by_pointer: bool,
-    /// Where it is declared.
+    /// The range of its declaration.
     pub span: Span,
 }
 
@@ -208,7 +208,7 @@ pub struct Local {
 pub struct Label {
     /// Its name.
     pub name: String,
-    /// Where it is.
+    /// Its range in the source.
     pub span: Span,
     /// The number that `&&label` gives and [`StmtKind::GotoAddress`] finds it by; counted from 1.
     pub address: Option<u32>,
@@ -217,7 +217,7 @@ pub struct Label {
 /// A statement.
 #[derive(Debug)]
 pub struct Stmt {
-    /// What it does.
+    /// The kind of statement.
     pub kind: StmtKind,
     /// The source line that a trap inside it names.
     pub span: Span,
@@ -241,9 +241,9 @@ pub enum StmtKind {
     },
     /// Any loop: `while (condition) { body; step; }`, the first test left out for `do`.
     Loop {
-        /// Tested before each turn, or after it; `None` is true.
+        /// The condition, tested before or after each iteration; `None` is true.
         condition: Option<ExprId>,
-        /// When it is tested.
+        /// The time of the test.
         test: LoopTest,
         /// The body; `continue` goes past it.
         body: Vec<Stmt>,
@@ -256,7 +256,7 @@ pub enum StmtKind {
         value: ExprId,
         /// The cases in the order of the body, each with the number its [`StmtKind::Case`] has.
         cases: Vec<Case>,
-        /// Whether the body has [`StmtKind::DefaultCase`].
+        /// True if the body has [`StmtKind::DefaultCase`].
         has_default: bool,
         /// The body.
         body: Vec<Stmt>,
@@ -280,7 +280,7 @@ pub enum StmtKind {
     GotoAddress(ExprId),
 }
 
-/// When a loop tests its condition.
+/// The time at which a loop tests its condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LoopTest {
     /// `while`, `for`
@@ -313,11 +313,11 @@ impl Case {
 /// An expression: a value of a scalar type, or an effect of type `void`.
 #[derive(Debug)]
 pub struct Expr {
-    /// What it computes.
+    /// The kind of expression.
     pub kind: ExprKind,
     /// The type of the value.
     pub ty: TypeId,
-    /// Where it is.
+    /// Its range in the source.
     pub span: Span,
 }
 
@@ -338,9 +338,9 @@ pub enum ExprKind {
     Update(Update),
     /// Copies a structure, or a character array from its initialiser, `memmove`; of type `void`.
     Copy {
-        /// Where to.
+        /// The destination.
         to: PlaceId,
-        /// Where from.
+        /// The source.
         from: PlaceId,
     },
     /// Fills a local with zeros, before its partial initialiser; of type `void`.
@@ -376,7 +376,7 @@ pub enum ExprKind {
 /// `place = (type of place)((computed)place op operand)`
 #[derive(Debug)]
 pub struct Update {
-    /// What is changed.
+    /// The place that is changed.
     pub place: PlaceId,
     /// The operator.
     pub op: BinaryOp,
@@ -384,7 +384,7 @@ pub struct Update {
     pub operand: ExprId,
     /// The type that is computed in; the place's own for pointers.
     pub computed: TypeId,
-    /// Which value the expression has.
+    /// The value of the expression.
     pub result: UpdateResult,
 }
 
@@ -400,7 +400,7 @@ pub enum UpdateResult {
 /// A call.
 #[derive(Debug)]
 pub struct Call {
-    /// What is called.
+    /// The function.
     pub callee: Callee,
     /// The type that the arguments were converted to; never `Unspecified` parameters.
     pub ty: FunctionType,
@@ -410,7 +410,7 @@ pub struct Call {
     pub variable: Option<Vec<ExprId>>,
 }
 
-/// What a call calls.
+/// The target of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Callee {
     /// A function by name.
@@ -433,11 +433,11 @@ pub enum UnaryOp {
 /// Storage.
 #[derive(Debug)]
 pub struct Place {
-    /// Which storage.
+    /// The storage.
     pub kind: PlaceKind,
     /// The type of what is stored.
     pub ty: TypeId,
-    /// Where it is.
+    /// Its range in the source.
     pub span: Span,
 }
 
@@ -448,7 +448,7 @@ pub enum PlaceKind {
     Local(LocalId, u32),
     /// A symbol plus a byte offset.
     Symbol(SymbolId, i32),
-    /// What a pointer points to, plus a byte offset.
+    /// The target of a pointer, plus a byte offset.
     Pointer(ExprId, i32),
     /// A bit-field: the storage unit's place has the declared type.
     Bits(PlaceId, BitRange),

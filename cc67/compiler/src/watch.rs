@@ -1,8 +1,8 @@
-//! Expressions that are looked at while a program runs: C, in the words of the program.
+//! Watched expressions: C expressions of the program, evaluated while it runs.
 //!
 //! An expression is compiled as the result of a function after the program's own text, so every name, type and macro of
-//! the program means in it what it means there. It is not executed by the board but computed from the board's memory, so
-//! a run is the same whether it is watched or not. For the same reason it only reads.
+//! the program has its meaning there. The board does not execute it; it is computed from the board's memory, so a run
+//! is the same with and without it. For the same reason it only reads.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -26,7 +26,7 @@ const FUNCTION: &str = "__cc67_watch";
 /// Most operators and operands of an expression, those of its macros included.
 const MOST: usize = 1000;
 
-/// What a function computes.
+/// The computation of a function.
 type Operation = fn(f64) -> f64;
 
 /// Functions that an expression may call.
@@ -39,22 +39,22 @@ const FUNCTIONS: &[(&str, Operation)] = &[
     ("cos", libm::cos),
 ];
 
-/// What an expression is about.
+/// The program that an expression is evaluated in.
 #[derive(Clone, Copy)]
 pub struct Scope<'a> {
     /// The file of the program, beside which its includes are looked for.
     pub path: &'a Path,
     /// The text of the program.
     pub text: &'a [u8],
-    /// Where the program's variables are.
+    /// The addresses of the program's variables.
     pub symbols: &'a BTreeMap<String, GuestAddr>,
-    /// How the program is compiled.
+    /// The options that the program is compiled with.
     pub options: &'a Options,
     /// The program's includes.
     pub files: &'a (dyn Files + Sync),
 }
 
-/// What an expression reads.
+/// The state that expressions are evaluated on.
 pub trait ItemReader {
     /// The eight bytes from an address on; 0 outside the memory.
     fn bytes(&self, address: GuestAddr) -> [u8; 8];
@@ -62,14 +62,14 @@ pub trait ItemReader {
     /// The item of this place in the list that the expression was compiled with.
     fn item(&self, index: usize) -> f64;
 
-    /// Where a local of a call in progress is; `None` if it is nowhere.
+    /// The location of a local of a call in progress; `None` if it is optimised out.
     fn local(&self, local: LocalId) -> Option<Local> {
         let _ = local;
         None
     }
 }
 
-/// Where a local of a call in progress is.
+/// The location of a local of a call in progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Local {
     /// In memory.
@@ -164,11 +164,11 @@ struct Check<'a> {
     function: &'a Function,
     meanings: BTreeMap<SymbolId, Meaning>,
     count: usize,
-    /// Whether it may name locals.
+    /// True if it may name locals.
     locals: bool,
 }
 
-/// What the names in an expression of a function stand for; it may name the function's locals.
+/// Resolves the names in an expression of a function; it may name the function's locals.
 pub(crate) fn meanings(
     unit: &Unit,
     function: usize,
@@ -230,7 +230,7 @@ impl Check<'_> {
         }
     }
 
-    /// Where a variable is.
+    /// Resolves a variable.
     fn symbol(&mut self, id: SymbolId) -> Result<(), String> {
         let name = self.unit.symbols[id].name.as_str();
         let item = self.items.iter().position(|item| *item == name).map(Meaning::Item);
@@ -288,8 +288,8 @@ impl Expression {
         }
     }
 
-    /// Where a value goes that is stored in it, and the bytes that are there then; `None` unless it is a place in
-    /// memory. The value becomes one of the place's type as by an assignment.
+    /// The address and the bytes with which a value is stored in it; `None` unless it is a place in memory. The value
+    /// is converted to the place's type as by an assignment.
     #[must_use]
     pub fn store(&self, value: f64, reader: &dyn ItemReader) -> Option<(GuestAddr, Vec<u8>)> {
         let place = self.stored_place()?;

@@ -12,7 +12,7 @@ use crate::ir::inst::Class;
 /// Classes in a `types` word.
 pub(super) const CLASSES: usize = 16;
 
-/// How many words there are for the given constants and signatures.
+/// Number of words for the given constants and signatures.
 pub(crate) fn words(pool: &[u64], signatures: &[Signature]) -> u32 {
     let signatures = signatures.iter().map(|signature| 1 + signature.params.len().div_ceil(CLASSES));
     (1 + pool.len() + signatures.sum::<usize>()) as u32

@@ -1,13 +1,11 @@
-//! Leaves only instructions that the machine has.
+//! Rewrites a function to the instructions that the machine has.
 //!
-//! Afterwards every operand is a value, except constants that fit the immediate field of an
-//! instruction and sources of copies; every address is absolute, a symbol, or a value with a
-//! displacement of 16 bits. Objects of the frame have their offsets; loads and stores reach
-//! them through one value, computed at the function's entry.
+//! Afterwards every operand is a value, except constants that fit the immediate field of an instruction and sources of
+//! copies; every address is absolute, a symbol, or a value with a displacement of 16 bits. Objects of the frame have
+//! their offsets; loads and stores reach them through one value, computed at the function's entry.
 //!
-//! A constant that no field can hold is loaded where it is first needed, and reused as long
-//! as the code cannot be entered in between; one that a loop needs is loaded in front of the
-//! first block.
+//! A constant that no field can hold is loaded where it is first needed, and reused as long as the code cannot be
+//! entered in between; one that a loop needs is loaded before the first block.
 
 use cranelift_entity::{PrimaryMap, SecondaryMap};
 
@@ -23,19 +21,19 @@ use crate::ir::operators::{BinaryOp, UnaryOp};
 pub(super) struct FrameLayout {
     /// Bytes, a multiple of 8; `None` if the objects do not fit an address space.
     pub(super) size: Option<u32>,
-    /// Where each object stands.
+    /// The offset of each object in the frame.
     pub(super) offsets: SecondaryMap<SlotId, u32>,
-    /// What is computed once, in front of the first block.
+    /// The instructions that are executed once, before the first block.
     pub(super) prologue: Vec<Inst>,
 }
 
 /// Bytes that one instruction can copy or clear; a multiple of 8.
 const MAX_BLOCK: u32 = 0xfff8;
 
-/// How many loaded constants are remembered.
+/// Number of loaded constants that are remembered.
 const REMEMBERED: usize = 16;
 
-/// How many constants are loaded in front of the first block.
+/// The most constants that are loaded before the first block.
 const MAX_EARLY: usize = 48;
 
 /// Rewrites the function.
@@ -91,7 +89,7 @@ pub(super) fn legalize(function: &mut Function) -> FrameLayout {
     FrameLayout { size, offsets: legalizer.offsets, prologue }
 }
 
-/// Which blocks, by their place in the layout, are between a jump backwards and its target.
+/// True for each block, by its position in the layout, that lies between a backward jump and its target.
 fn blocks_in_loops(function: &Function) -> Vec<bool> {
     let mut places: SecondaryMap<BlockId, u32> = table(function.blocks.len());
     for (index, id) in function.layout.iter().enumerate() {
@@ -171,9 +169,9 @@ struct Legalizer {
     arguments: Vec<Operand>,
     /// Constants that are in values here.
     loaded: Vec<(Constant, ValueId)>,
-    /// Which of them is replaced next.
+    /// The index of the one that is replaced next.
     oldest: usize,
-    /// Whether the block at hand may be executed many times.
+    /// True if the current block may be executed many times.
     is_in_loop: bool,
     /// Constants that are in values everywhere.
     early: Vec<(Constant, ValueId)>,

@@ -39,11 +39,11 @@ pub const MAX_FRAME: u32 = u16::MAX as u32 * WORD as u32;
 /// A function in words.
 #[derive(Debug)]
 pub(crate) struct Generated {
-    /// Where the words are, and what belongs to them.
+    /// Its words and their symbols, relocations and positions.
     pub(crate) added: Added,
     /// Bytes of its frame in guest memory.
     pub(crate) frame: u32,
-    /// Where the source's locals are.
+    /// The locations of the source's locals.
     pub(crate) variables: Vec<VariablePlaces>,
     /// The inlined calls.
     pub(crate) inlined: Vec<InlinedPlaces>,
@@ -60,7 +60,7 @@ pub(crate) struct Generator {
 }
 
 impl Generator {
-    /// Whether variables of the source keep their registers to the end of their function.
+    /// Sets whether variables of the source keep their registers to the end of their function.
     pub(crate) const fn keeps_variables(&mut self, keeps: bool) {
         self.keeps_variables = keeps;
     }

@@ -1,11 +1,12 @@
-//! Which instruction an operator is, for each class of operands.
+//! The instruction for an operator, for each class of operands.
 
 use vm::op::Op;
 use vm::operand::{Imm16, RegF32, RegF64, RegI32, RegI64};
 
 use crate::ir::operators::{BinaryOp, CompareOp};
 
-/// What legal IR never asks for: the program stops there, where a wrong instruction would continue with a wrong result.
+/// The instruction for operators that legal IR does not have: the program stops there, as a wrong instruction would
+/// continue with a wrong result.
 pub(super) fn illegal() -> Op {
     debug_assert!(false, "the IR is verified and legal");
     Op::Unreachable {}

@@ -1,29 +1,29 @@
-//! What the instructions of a program refer to: functions, the firmware, constants.
+//! The references of a program's instructions: functions, the firmware, constants.
 
 use vm::op::{Op, WORD};
 use vm::operand::SigRef;
 use vm::program::Program;
 
-/// What an instruction refers to.
+/// A reference of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Reference {
-    /// It calls the program's function at this address.
+    /// A call of the program's function at this address.
     Call(u32),
-    /// It calls the firmware's function at this address.
+    /// A call of the firmware's function at this address.
     Firmware(u32),
-    /// It calls through a pointer, with this signature.
+    /// A call through a pointer, with this signature.
     Pointer(SigRef),
     /// A number, or an address that is used as a value.
     Number(u32),
     /// A floating-point constant.
     Float(f64),
-    /// The same in single precision.
+    /// A number in single precision.
     Single(f32),
     /// Anything else.
     Nothing,
 }
 
-/// What the instruction with number `word` refers to.
+/// Returns the reference of the instruction with number `word`.
 pub(crate) fn reference(program: &Program, word: usize) -> Reference {
     let Some(op) = program.ops().get(word) else { return Reference::Nothing };
     if let Op::Call { func } = op {

@@ -53,7 +53,7 @@ pub(super) const fn register_class(class: Class) -> RegisterClass {
     }
 }
 
-/// Where a value is mentioned.
+/// The live interval of a value.
 #[derive(Clone, Copy, Debug, Default)]
 struct Interval {
     /// Position of the first mention; a read has an even position, a write the odd one after.
@@ -100,7 +100,7 @@ pub(super) fn assign(function: &Function, prologue: &[Inst], keeps_variables: bo
     scan.allocate(function)
 }
 
-/// How an instruction mentions a value.
+/// A use of a value by an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Mention {
     Read,

@@ -103,7 +103,7 @@ impl Selector<'_> {
         }
     }
 
-    /// What follows was this in the source.
+    /// Sets the source position of the words that follow.
     fn at(&mut self, origin: CodeOrigin) {
         let word = self.code.ops.len() as u32;
         begin(&mut self.code.spans, word, origin.span);
@@ -449,7 +449,7 @@ impl Selector<'_> {
     }
 }
 
-/// From this word on the words are of `what`, if those before are of something else.
+/// Begins a run of words of `what`, if those before are of another value.
 fn begin<T: PartialEq>(runs: &mut Vec<(u32, T)>, word: u32, what: T) {
     match runs.last_mut() {
         Some((_, last)) if *last == what => {}

@@ -1,4 +1,4 @@
-//! What this folder makes of a function, as text for a person and for tests.
+//! The code that this folder generates for a function, as text for people and for tests.
 
 use std::fmt::Write as _;
 

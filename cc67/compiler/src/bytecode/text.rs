@@ -44,7 +44,7 @@ pub(crate) struct Numbers<'a> {
 }
 
 impl Text {
-    /// How many words there are.
+    /// Number of words.
     pub(crate) fn len(&self) -> u32 {
         self.0.len() as u32
     }
@@ -122,7 +122,7 @@ impl Text {
         Some((SignatureId::from_u32(u32::from(sig.0)), u32::from(frame.0) * WORD as u32))
     }
 
-    /// Whether a function begins at a word.
+    /// Reports whether a function begins at a word.
     pub(crate) fn begins_function(&self, word: u32) -> bool {
         matches!(self.0.get(word as usize), Some(Op::Func { .. }))
     }
@@ -157,7 +157,7 @@ struct FromFile<'a> {
     head: u32,
     pool: &'a [u64],
     signatures: &'a [Signature],
-    /// Whether something is named that the unit does not have.
+    /// True if an index is out of the unit's range.
     is_wrong: bool,
 }
 

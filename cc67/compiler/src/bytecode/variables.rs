@@ -1,4 +1,4 @@
-//! Where the locals of the source are, for debuggers.
+//! The locations of the source's locals, for debuggers.
 
 use std::fmt;
 use std::ops::Range;
@@ -33,11 +33,11 @@ pub struct InlinedPlaces {
     pub inside: Option<u32>,
     /// Its words of the unit, without those of calls in it.
     pub words: Vec<Range<u32>>,
-    /// Where its locals are.
+    /// The locations of its locals.
     pub variables: Vec<VariablePlaces>,
 }
 
-/// Where a local is.
+/// The location of a local.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Location {
     /// In a register of its call.
@@ -61,7 +61,7 @@ impl fmt::Display for Location {
     }
 }
 
-/// Where instructions and calls were placed within a function that is generated, as its words are numbered there.
+/// The words of instructions and inlined calls within a function that is generated, numbered as there.
 #[derive(Debug)]
 pub(super) struct PlacedWords {
     /// The first word of each instruction, and of the end of each block.
@@ -76,7 +76,8 @@ impl PlacedWords {
         Self { insts: std::mem::take(&mut code.insts), calls: std::mem::take(&mut code.calls) }
     }
 
-    /// Where the locals of a function are, and those of its inlined calls; its `words` are those
+    /// Returns the locations of the locals of a function, and those of its inlined calls; `words` are its words in the
+    /// unit.
     /// of the unit.
     pub(super) fn collect(
         &self,

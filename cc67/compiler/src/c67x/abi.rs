@@ -1,15 +1,15 @@
-//! Which registers are what: the calling convention of the board's firmware (`c67x.md` section 6.1).
+//! The roles of registers: the calling convention of the board's firmware (`c67x.md` section 6.1).
 
 pub(super) use c67x::convention::{ARGUMENTS, LINK, RESULT, STACK};
 use c67x::{Reg, Side};
 
-/// Where the address of an indirect call is: no argument comes here.
+/// The register for the address of an indirect call: no argument is passed in it.
 pub(super) const TARGET: Reg = Reg::b(0);
 
-/// Where the address of further arguments is when there are more than registers; a convention of ours.
+/// The register for the address of further arguments when there are more than registers; a convention of ours.
 pub(super) const REST: Reg = Reg::a(3);
 
-/// What `sin` and `cos` of the firmware may still write in the cycle after their return.
+/// The register that `sin` and `cos` of the firmware may still write in the cycle after their return.
 pub(super) const LATE: Reg = Reg::a(7);
 
 /// The bit of a register in a set.

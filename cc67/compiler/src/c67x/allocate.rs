@@ -29,13 +29,13 @@ impl Assignment {
         Reg::from_index(usize::from(self.regs[reg])).unwrap_or(abi::RESULT)
     }
 
-    /// Whether it has one: what nothing mentions has none.
+    /// Reports whether it has a register: unused ones have none.
     pub(super) fn is_used(&self, reg: VReg) -> bool {
         self.is_used[reg]
     }
 }
 
-/// How often registers are moved to memory and all begins again.
+/// The most rounds of spilling and allocating again.
 const ROUNDS: usize = 24;
 
 /// Allocates; `None` if the function does not fit the processor.
@@ -69,7 +69,7 @@ struct Scan<'a> {
     holder: [Option<VReg>; Reg::COUNT],
     used: u64,
     moved: Vec<VReg>,
-    /// Loops use as many registers as there are, so that their turns overlap.
+    /// True if loops use as many registers as there are, so that their iterations overlap.
     is_wide: bool,
 }
 
@@ -139,8 +139,9 @@ impl<'a> Scan<'a> {
         abi::registers(allowed).filter(|at| is_free(*at)).min_by_key(key)
     }
 
-    /// Whether a pair in a loop that begins at `first` would share its registers with another value of a turn, or leave
-    /// none of its side for what is tested: turns overlap no closer than two results of one register.
+    /// Reports whether a pair in a loop that begins at `first` would share its registers with another value of an
+    /// iteration, or leave none of its side for conditions: iterations overlap no closer than two results of one
+    /// register.
     fn joins(&self, whole: u64, first: u32) -> bool {
         let is_taken = |one: Reg| self.taken[one.index()] >= first;
         let side = abi::registers(whole).next().map_or(0, |one| abi::file(one.side()));
@@ -155,13 +156,13 @@ impl<'a> Scan<'a> {
         self.liveness.loops.get(next).map(|(first, _)| *first).filter(|first| *first <= position)
     }
 
-    /// Whether a register is needed in every turn of a loop.
+    /// Reports whether a register is live through a whole loop.
     fn lives_through_loop(&self, reg: VReg) -> bool {
         let interval = self.liveness.intervals[reg];
         self.liveness.loops.iter().any(|(first, end)| interval.start <= *first && *end <= interval.end)
     }
 
-    /// Whether a word at `at` leaves half of a pair that was free.
+    /// Reports whether a word in `at` would take half of a free pair.
     fn breaks_pair(&self, reg: VReg, at: Reg, start: u32) -> bool {
         let pair = at.pair();
         let other = if pair.low() == at { pair.high() } else { pair.low() };
@@ -224,7 +225,7 @@ impl<'a> Scan<'a> {
         Reg::from_index(usize::from(self.regs[reg])).unwrap_or(abi::RESULT)
     }
 
-    /// What it costs to keep a register in memory, by length of its interval.
+    /// The cost of keeping a register in memory, per length of its interval.
     fn cost(&self, reg: VReg) -> f32 {
         let info = &self.code.regs[reg];
         if info.is_short {

@@ -17,18 +17,18 @@ use crate::typed::SymbolId;
 pub(super) struct VReg(u32);
 entity_impl!(VReg, "r");
 
-/// What is known about a virtual register.
+/// The properties of a virtual register.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Info {
     /// A pair of registers.
     pub(super) is_pair: bool,
     /// Its file, once that is decided.
     pub(super) side: Option<Side>,
-    /// It is tested as a condition, which six registers can be.
+    /// True if it is tested as a condition, which six registers can be.
     pub(super) is_condition: bool,
     /// The register it would best be.
     pub(super) hint: Option<Reg>,
-    /// It was made by the allocator for one instruction: it is never moved to memory.
+    /// True if the allocator made it for one instruction: it is never spilled.
     pub(super) is_short: bool,
     /// Its only value, a constant that is made again rather than kept in memory.
     pub(super) constant: Option<Value>,
@@ -50,7 +50,7 @@ pub(super) enum Value {
 /// An operand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Arg {
-    /// Not there.
+    /// No argument.
     None,
     /// A register, or a pair.
     Reg(VReg),
@@ -83,7 +83,7 @@ impl From<VReg> for Arg {
     }
 }
 
-/// What an address counts from.
+/// The base of an address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Base {
     /// A register.
@@ -117,7 +117,7 @@ impl MemoryPlace {
 /// The condition of an instruction: the register, and whether it must be 0.
 pub(super) type Condition = Option<(VReg, bool)>;
 
-/// One instruction.
+/// An instruction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Inst {
     pub(super) kind: Kind,
@@ -141,7 +141,7 @@ impl Inst {
         Self { kind, dst, src1, src2, field: (0, 0), place: None, condition: None, number: 0, span }
     }
 
-    /// Whether the old content of the destination matters.
+    /// Reports whether the old value of the destination is read.
     pub(super) fn keeps_destination(&self) -> bool {
         self.condition.is_some() || matches!(self.kind, Kind::Mvkh)
     }
@@ -209,7 +209,7 @@ impl Inst {
     }
 }
 
-/// What a call calls.
+/// The target of a call.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum CallTarget {
     /// A function by name.
@@ -226,11 +226,11 @@ pub(super) struct Call {
     pub(super) arguments: Vec<(VReg, Reg)>,
     /// The registers that it changes, a bit each.
     pub(super) changes: u64,
-    /// Whether it may still write [`super::abi::LATE`] in the cycle after its return.
+    /// True if it may still write [`super::abi::LATE`] in the cycle after its return.
     pub(super) is_late: bool,
 }
 
-/// How a block ends.
+/// The terminator of a block.
 #[derive(Clone, Debug)]
 pub(super) enum End {
     /// Goes on at a block.
@@ -266,7 +266,7 @@ impl End {
         }
     }
 
-    /// The same, to be changed.
+    /// The register that it reads, mutable.
     pub(super) fn read_mut(&mut self) -> Option<&mut VReg> {
         match self {
             Self::Branch { condition: reg, .. } | Self::Table { address: reg, .. } => Some(reg),
@@ -281,15 +281,15 @@ impl End {
 pub(super) struct Block {
     pub(super) insts: Vec<Inst>,
     pub(super) end: End,
-    /// How many loops it is in.
+    /// Number of loops around it.
     pub(super) depth: u32,
-    /// How many turns of the source's loop it is.
+    /// Number of iterations of the source's loop that it executes.
     pub(super) turns: u32,
     pub(super) span: Span,
 }
 
 impl Block {
-    /// How often it happens, as far as one can guess.
+    /// The estimated frequency of its execution.
     pub(super) fn weight(&self) -> f32 {
         8_f32.powi(self.depth.min(5).cast_signed()) / self.turns as f32
     }
@@ -308,7 +308,7 @@ pub(super) struct Code {
     pub(super) tables: Vec<Vec<u32>>,
     /// Words of the frame that the allocator took.
     pub(super) spills: u32,
-    /// Whether the word above the stack pointer is used by calls with variable arguments.
+    /// True if the word above the stack pointer is used by calls with variable arguments.
     pub(super) has_variable_calls: bool,
 }
 

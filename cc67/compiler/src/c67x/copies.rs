@@ -1,8 +1,8 @@
-//! Replaces copies by their sources, and removes unused results.
+//! Copy propagation, and removal of unused results.
 //!
 //! Selection joins the halves of pairs and takes them apart again, shifts by whole words, and combines with words that
-//! are 0. Block by block, a source that is a copy becomes what it was copied from, as long as neither changed; an
-//! instruction that then is a copy too counts as one. What nobody reads goes, except loads.
+//! are 0. Block by block, a source that is a copy is replaced by the original, as long as neither changes; an
+//! instruction that becomes a copy by that counts as one. Unused results are removed, except loads.
 
 use cranelift_entity::SecondaryMap;
 
@@ -26,7 +26,7 @@ pub(super) fn run(code: &mut Code) {
 /// The most copies that are known at a time.
 const MOST: usize = 256;
 
-/// What holds at a place of a block.
+/// The copies that hold at a position in a block.
 struct Copies {
     pairs: SecondaryMap<VReg, bool>,
     /// A word, and the word or the number 0 that it is.
@@ -74,7 +74,7 @@ impl Copies {
         }
     }
 
-    /// What a word is a copy of.
+    /// The word that a word is a copy of.
     fn of(&self, arg: Arg) -> Option<Arg> {
         self.list.iter().find(|(copy, _)| *copy == arg).map(|(_, from)| *from)
     }
@@ -127,7 +127,7 @@ impl Copies {
     }
 }
 
-/// Removes instructions without effect whose result nobody reads.
+/// Removes instructions without effect whose result is not read.
 fn remove_unread(code: &mut Code) {
     loop {
         let mut is_read: SecondaryMap<VReg, bool> = SecondaryMap::with_capacity(code.regs.len());

@@ -1,15 +1,15 @@
-//! What a loop counts and tests needs no second register to be tested in.
+//! Loop counters: a count that is tested needs no second register.
 //!
-//! Selection copies a value that others read too to a register that can be tested, of which there are six. At the end of
-//! a loop of one block that copy costs a step of every turn, between the count and the branch. Where nothing after the
-//! loop reads the count, the count itself is tested.
+//! Selection copies a value with other readers to a register that can be tested, of which there are six. At the end of
+//! a loop of one block that copy costs a step of every iteration, between the count and the branch. If nothing after
+//! the loop reads the count, the count itself is tested.
 
 use cranelift_entity::SecondaryMap;
 
 use super::code::{Arg, Code, End, VReg};
 use super::forms::Kind;
 
-/// Registers that are tested inside a turn, at most.
+/// The most registers that are tested inside an iteration.
 const TESTED: usize = 2;
 
 /// Rewrites the loops of one block.
@@ -49,7 +49,7 @@ fn copied(code: &Code, number: usize) -> Option<(usize, VReg)> {
     (is_own && !is_read_elsewhere(code, number, at, [count, condition])).then_some((at, count))
 }
 
-/// Whether the count is read outside of the block, or its copy anywhere but by the branch.
+/// Reports whether the count is read outside of the block, or its copy anywhere but by the branch.
 fn is_read_elsewhere(code: &Code, number: usize, copy: usize, [count, condition]: [VReg; 2]) -> bool {
     let mut found = SecondaryMap::with_default(false);
     for (other, block) in code.blocks.iter().enumerate() {

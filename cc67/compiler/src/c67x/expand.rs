@@ -1,7 +1,7 @@
-//! From virtual registers to regions of steps.
+//! Expansion of instructions over virtual registers to regions of steps.
 //!
-//! A region is what is scheduled as one: a block, or a part of it up to a call. Calls become moves of their arguments
-//! and a branch with the return address in B3; the beginning and the ends of the function get what the frame needs.
+//! A region is the unit of scheduling: a block, or a part of it up to a call. Calls become moves of their arguments and
+//! a branch with the return address in B3; the prologue and the epilogues of the function manage the frame.
 
 use c67x::{Pred, Reg};
 use cranelift_entity::SecondaryMap;
@@ -17,7 +17,7 @@ use crate::ir::function::{Function, table};
 use crate::ir::inst::SlotId;
 use crate::source::Span;
 
-/// What is scheduled as one.
+/// A region: the unit of scheduling.
 #[derive(Clone, Debug)]
 pub(super) struct Region {
     /// Its label: a block's number, or one after them for where a call returns to.
@@ -25,23 +25,23 @@ pub(super) struct Region {
     pub(super) steps: Vec<Step>,
     /// The branches at its end, none if execution continues in the next region.
     pub(super) branches: Vec<Step>,
-    /// What happens in the slots of the branch, in this order: the register that it reads changes there.
+    /// The steps in the delay slots of the branch, in this order: they change the register that it reads.
     pub(super) late: Vec<Step>,
     pub(super) beyond: Beyond,
-    /// How often it happens, and that of the code around a loop.
+    /// The estimated frequency of its execution, including that of the code around a loop.
     pub(super) weight: f32,
     pub(super) span: Span,
 }
 
 impl Region {
-    /// One without steps.
+    /// An empty region.
     pub(super) fn new(label: u32, weight: f32, span: Span) -> Self {
         let beyond = Beyond::default();
         Self { label, steps: Vec::new(), branches: Vec::new(), late: Vec::new(), beyond, weight, span }
     }
 }
 
-/// What code elsewhere does with registers, a bit each, where a region leaves the function.
+/// The registers that code elsewhere reads and changes, a bit each, at the exits of the function.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Beyond {
     pub(super) reads: u64,
@@ -60,7 +60,7 @@ pub(super) struct Expanded {
     pub(super) frame: u32,
 }
 
-/// Where the return address is while calls change its register.
+/// The location of the return address while calls change its register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Back {
     /// In a register that calls keep, if there is one.
@@ -69,7 +69,7 @@ pub(super) enum Back {
     Frame,
 }
 
-/// Why a function cannot be expanded.
+/// The reason why a function cannot be expanded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TooLarge {
     /// The objects of its frame.
@@ -138,7 +138,7 @@ struct Expander<'a> {
     code: &'a Code,
     frame: &'a Frame,
     saved: Vec<Reg>,
-    /// Where the return address is while calls change B3.
+    /// The register that holds the return address while calls change B3.
     back: Reg,
     regions: Vec<Region>,
     /// The one that grows.
@@ -213,7 +213,7 @@ impl Expander<'_> {
         self.plain(Kind::Addk, stack, Final::Value(Value::Number(bytes)), Final::None);
     }
 
-    /// What happens before the first block.
+    /// Emits the steps before the first block.
     fn enter(&mut self) {
         if self.frame.size > 0 {
             self.move_stack(-self.frame.size.cast_signed());
@@ -269,7 +269,7 @@ impl Expander<'_> {
         }
     }
 
-    /// Whether a load of a pair can have this address: those of the frame reach 31 pairs.
+    /// Reports whether a load of a pair can have this address: those of the frame reach 31 pairs.
     fn reaches_pair(&self, place: MemoryPlace) -> bool {
         if matches!(place.base, Base::Reg(_)) {
             return true;

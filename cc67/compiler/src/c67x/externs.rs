@@ -7,7 +7,7 @@ use kmotiondef::firmware::{FirmwareFunction, Origin, row_named};
 
 use crate::typed::SymbolId;
 
-/// What the unit knows about a symbol.
+/// The facts of the unit about a symbol.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct About {
     pub(crate) align: u32,
@@ -65,17 +65,17 @@ impl Externs {
         self.aligns.get(symbol).copied().unwrap_or(1)
     }
 
-    /// Whether a symbol is a function with variable arguments.
+    /// Reports whether a symbol is a function with variable arguments.
     pub(super) fn is_variadic(&self, symbol: SymbolId) -> bool {
         self.variadic[symbol]
     }
 
-    /// Whether a function does without the address of its variable arguments.
+    /// Reports whether a function does not use the address of its variable arguments.
     pub(super) fn takes_stack_alone(&self, symbol: SymbolId) -> bool {
         self.stack_alone[symbol]
     }
 
-    /// Whether a function may still write [`super::abi::LATE`] in the cycle after its return.
+    /// Reports whether a function may still write [`super::abi::LATE`] in the cycle after its return.
     pub(super) fn is_late(&self, symbol: SymbolId) -> bool {
         self.late[symbol]
     }

@@ -1,4 +1,4 @@
-//! Which forms of the processor's table can do what an instruction asks for.
+//! The forms of the processor's table that can express each kind of instruction.
 //!
 //! One row a kind: the forms, with operands by field; `swapped` exchanges the two sources. All forms of a row
 //! compute the same and take the same time, so the scheduler may take any that fits the registers.
@@ -14,7 +14,7 @@ pub(super) struct Form {
 
 macro_rules! kinds {
     ($($(#[doc = $doc:literal])* $kind:ident = [$($op:ident $($swapped:ident)?),*];)*) => {
-        /// What an instruction does.
+        /// The operation of an instruction.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub(super) enum Kind {
             $($(#[doc = $doc])* $kind,)*
@@ -154,12 +154,12 @@ impl Kind {
         }
     }
 
-    /// Whether it is a store.
+    /// Reports whether it is a store.
     pub(super) const fn is_store(self) -> bool {
         matches!(self, Self::StoreByte | Self::StoreHalf | Self::StoreWord)
     }
 
-    /// How its sources may come from the other file.
+    /// The sources that may come from the other file.
     pub(super) const fn crossing(self) -> Crossing {
         match self {
             Self::Shl | Self::Shr | Self::Shru => Crossing::Second,
@@ -169,7 +169,7 @@ impl Kind {
     }
 }
 
-/// How the sources of an instruction may come from the other file.
+/// The sources of an instruction that may come from the other file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Crossing {
     /// Either of the two, but not both.

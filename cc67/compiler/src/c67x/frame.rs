@@ -13,7 +13,7 @@ use crate::ir::inst::SlotId;
 /// Bytes that an offset of the processor reaches.
 pub(super) const MAX_FRAME: u32 = 0x7FC0;
 
-/// Where everything stands, in bytes above B15.
+/// The layout of the frame, in bytes above B15.
 #[derive(Debug)]
 pub(super) struct Frame {
     pub(super) slots: SecondaryMap<SlotId, u32>,

@@ -1,8 +1,9 @@
-//! What a step of a region must wait for.
+//! The dependence graph of a region.
 //!
-//! An edge says how many cycles after one step another may issue at the earliest. Registers: a result is read when it
-//! has landed, never while it is in flight, because an interrupt would make it land early (`c67x.md` 2.5); results of
-//! one register land in order. Memory: accesses that others may see keep their order; loads may share a cycle.
+//! An edge states after how many cycles from one step another may issue at the earliest. Registers: a result is read
+//! when it has landed, never while it is in flight, because an interrupt would make it land early (`c67x.md` 2.5);
+//! results of one register land in order. Memory: accesses that others may see keep their order; loads may share a
+//! cycle.
 
 use c67x::{Inst, Pred, Reg};
 
@@ -23,7 +24,7 @@ pub(super) struct Edge {
 #[derive(Debug)]
 pub(super) struct Graph {
     pub(super) after: Vec<Vec<Edge>>,
-    /// How many edges lead to each step.
+    /// Number of edges that lead to each step.
     pub(super) before: Vec<u32>,
     /// Cycles from the issue of each step to the end of the region, at least.
     pub(super) height: Vec<u32>,
@@ -91,7 +92,7 @@ struct RegisterWriter {
     pred: (Pred, u32),
 }
 
-/// Whether of two steps only one is executed: their conditions are opposite, and of the same value.
+/// Reports whether at most one of two steps is executed: their conditions are opposite, and of the same value.
 fn excludes((one, version): (Pred, u32), (other, own): (Pred, u32)) -> bool {
     version == own && one.excludes(other)
 }
@@ -102,11 +103,11 @@ struct Builder {
     writers: Vec<Vec<RegisterWriter>>,
     readers: Vec<Vec<RegisterReader>>,
     shared_store: Option<u32>,
-    /// Whether the last such store may share the cycle of the one before.
+    /// True if the last such store may share the cycle of the one before.
     is_joined: bool,
     shared_loads: Vec<u32>,
     own: Vec<u32>,
-    /// How often each register was written.
+    /// Number of writes of each register so far.
     versions: [u32; Reg::COUNT],
     /// The accesses so far: step, what it does, the version of its base.
     accesses: Vec<(u32, Access, u32)>,
@@ -168,7 +169,7 @@ impl Builder {
         }
     }
 
-    /// Accesses keep their order as far as somebody could tell.
+    /// Adds edges between accesses whose order can be observed.
     fn memory(&mut self, step: u32, what: &Step) {
         let version = match what.access {
             Access::None => return,
@@ -220,7 +221,7 @@ impl Builder {
         }
     }
 
-    /// What is above the stack pointer is the function's only until that is raised.
+    /// Adds edges for the stack pointer: the frame belongs to the function only until the pointer is raised.
     fn stack(&mut self, step: u32, inst: &Inst) {
         if inst.writes().any(|write| write.reg == abi::STACK) {
             for index in 0..self.accesses.len() {
@@ -231,7 +232,7 @@ impl Builder {
     }
 }
 
-/// Whether two accesses of the frame touch the same bytes.
+/// Reports whether two accesses of the frame touch the same bytes.
 fn overlaps(a: Access, b: Access) -> bool {
     match (a, b) {
         (Access::Own { at: a, size: x, .. }, Access::Own { at: b, size: y, .. }) => {
@@ -241,7 +242,7 @@ fn overlaps(a: Access, b: Access) -> bool {
     }
 }
 
-/// Whether two accesses, each with the version of its base, certainly touch different bytes.
+/// Reports whether two accesses, each with the version of its base, certainly touch different bytes.
 fn are_apart(a: (Access, u32), b: (Access, u32)) -> bool {
     match (a, b) {
         (

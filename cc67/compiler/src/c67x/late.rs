@@ -2,7 +2,7 @@
 //!
 //! `sin` and `cos` of the firmware multiply before they know that their angle is so near 0 that it is the result, and
 //! return a cycle before that product lands in A7. A packet that wrote A7 in this cycle would do it together with the
-//! product, and the processor does not say what is in the register then: such a packet comes a cycle later.
+//! product, and the processor leaves the value of the register undefined: such a packet is delayed by a cycle.
 
 use super::abi;
 use super::packets::Scheduled;
@@ -18,7 +18,7 @@ pub(super) fn run(regions: &mut [Scheduled], late: &[u32]) {
     }
 }
 
-/// Whether the first cycle has such a result: of the first region, or of those after it that it falls into.
+/// Reports whether the first cycle writes A7: in the first region, or in those after it that it falls into.
 fn meets(regions: &[Scheduled]) -> bool {
     let Some(first) = regions.iter().find(|region| region.cycles > 0) else { return false };
     let issued = first.insts.iter().take_while(|issued| issued.cycle == 0);

@@ -15,12 +15,12 @@ use crate::source::Span;
 #[derive(Debug, Default)]
 pub(super) struct Laid {
     pub(super) words: Vec<u32>,
-    /// How many of the words are code; tables of addresses follow.
+    /// Number of words of code; tables of addresses follow.
     pub(super) code: u32,
     pub(super) fixups: Vec<Fixup>,
     /// The first word of each run of words that belong to one statement.
     pub(super) spans: Vec<(u32, Span)>,
-    /// Where execution comes from outside: the function, and where calls return to.
+    /// The labels at which execution enters from outside: the function, and the return points of calls.
     pub(super) entries: Vec<u32>,
 }
 
@@ -109,7 +109,7 @@ impl Layout {
         self.mark(at, span);
     }
 
-    /// What begins at a word is of this place in the source.
+    /// Sets the source position of the words from `at` on.
     fn mark(&mut self, at: u32, span: Span) {
         if self.laid.spans.last().is_none_or(|(_, last)| *last != span) {
             match self.laid.spans.last_mut() {

@@ -1,25 +1,25 @@
-//! From where to where every virtual register is needed.
+//! The live intervals of virtual registers.
 //!
 //! Positions count instructions in the order of the code: instruction i reads at 2i and writes at 2i + 1; the
 //! parameters are written at 1. An interval reaches from the first write to the last read, and over every block that
-//! the register lives through. Only registers that more than one block mentions take part in the data flow.
+//! the register lives through. Only registers that several blocks use take part in the data flow.
 
 use cranelift_entity::{EntityRef, SecondaryMap};
 
 use super::code::{Code, VReg};
 use super::forms::Kind;
 
-/// Where a register is needed.
+/// The live interval of a register.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Interval {
     pub(super) start: u32,
     pub(super) end: u32,
-    /// How often it is mentioned, in loops more.
+    /// Its uses, weighted by the loops around them.
     pub(super) weight: f32,
     pub(super) is_used: bool,
 }
 
-/// What is known about all registers.
+/// The live intervals of all registers.
 #[derive(Debug)]
 pub(super) struct Liveness {
     pub(super) intervals: SecondaryMap<VReg, Interval>,
@@ -197,7 +197,7 @@ impl Scan {
     }
 }
 
-/// What lives at the end of a block.
+/// Computes the registers that are live at the end of a block.
 fn leave(leaving: &mut [u64], entering: &[u64], block: &super::code::Block, words: usize) {
     leaving.fill(0);
     for target in block.end.targets() {

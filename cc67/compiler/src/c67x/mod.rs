@@ -1,18 +1,19 @@
-//! IR to the real processor's code: the folder that knows execute packets.
+//! Code generation for the real processor: the folder that knows execute packets.
 //!
 //! A function passes these stages, a file each:
 //!
-//! 1. [`select`]: IR to instructions over virtual registers ([`code`]); [`forms`] says which forms of the table can do
-//!    what an instruction asks for.
-//! 2. [`predicate`]: short branches become conditions. [`copies`]: what selection copied is read at its source. [`turns`]: several turns of a short loop as one. [`counters`]: what loops count is tested itself. [`sides`]: every register gets one of the two files; copies where an instruction reaches only one.
-//! 3. [`live`], [`allocate`], [`spill`]: registers of the processor, those that survive a thread switch.
-//! 4. [`frame`], [`moves`], [`expand`]: calls, the stack, the beginning and the ends; regions of [`step`]s.
-//! 5. [`graph`], [`resources`], [`schedule`]: packets, [`refine`] makes them smaller; [`pipeline`], [`modulo`]: those of loops whose turns overlap.
-//! 6. [`layout`]: words, on fetch packets, with what the linker completes ([`text`]).
+//! 1. [`select`]: IR to instructions over virtual registers ([`code`]); [`forms`] has the forms of the table that can
+//! express an instruction. 2. [`predicate`]: short branches become conditions. [`copies`]: copies of selection are
+//! replaced by their sources. [`turns`]: short loops are unrolled. [`counters`]: the counters of loops are tested
+//! directly. [`sides`]: every register gets one of the two files; copies where an instruction reaches only one. 3.
+//! [`live`], [`allocate`], [`spill`]: registers of the processor, those that survive a thread switch. 4. [`frame`],
+//! [`moves`], [`expand`]: calls, the stack, the beginning and the ends; regions of [`step`]s. 5. [`graph`],
+//! [`resources`], [`schedule`]: packets, [`refine`] makes them smaller; [`pipeline`], [`modulo`]: those of loops whose
+//! iterations overlap. 6. [`layout`]: words, on fetch packets, with what the linker completes ([`text`]).
 //!
 //! Rules that all stages keep (`c67x.md`):
 //! - no register is read while a result for it is in flight, for an interrupt would make it land early; except between
-//!   packets of a loop where none is taken, in the slots of its branch ([`modulo`]);
+//! packets of a loop where none is taken, in the delay slots of its branch ([`modulo`]);
 //! - accesses to memory that others can see keep their order;
 //! - at the end of a region nothing is in flight, so calls, returns and jumps are safe whatever follows;
 //! - nothing that the program needs is at B15 or below, and B15 is a multiple of 8.
@@ -91,7 +92,7 @@ impl Attempt {
         self.regions.iter().map(|region| region.weight * region.cycles as f32).sum()
     }
 
-    /// The same of what is in loops.
+    /// The cost of the code in loops.
     fn loop_cost(&self) -> f32 {
         let inside = self.regions.iter().filter(|region| region.weight > 1.0);
         inside.map(|region| region.weight * region.cycles as f32).sum()
@@ -141,8 +142,8 @@ impl Generator {
         Ok(Words { words: start..end, fixups: laid.fixups, spans, frame, exceeded })
     }
 
-    /// The packets of a function. At the level that makes code larger, short loops are tried with several turns as one
-    /// and without, and all loops with other sides for their registers; the better ones stay.
+    /// The packets of a function. At the level that makes code larger, short loops are tried unrolled and not, and all
+    /// loops with other sides for their registers; the better ones stay.
     fn best(&self, ir: &Function, code: Code) -> Result<Attempt, TooLarge> {
         if self.level != Level::Fast {
             let frame = self.attempt(ir, code.clone(), Back::Frame, Policy::USUAL);

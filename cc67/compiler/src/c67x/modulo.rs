@@ -1,10 +1,10 @@
-//! The turns of a loop over each other: when each step of a turn issues, if turns begin at a fixed distance.
+//! Modulo scheduling: the cycles of a loop's steps if its iterations begin at a fixed distance and overlap.
 //!
-//! Iterative modulo scheduling: steps take their cycles one by one, those first that most depends on; one that finds
-//! no room takes that of others, which are placed again. What a step waits for is what [`graph`] says of two turns one
-//! after another. A register is read while a result for it is in flight only where the result's step and the reading one
-//! are in the slots of one branch, where no interrupt is taken (`c67x.md` 2.5); so an interrupt changes nothing. The branch
-//! has its place: six cycles before the next turn begins.
+//! The search is iterative: steps take their cycles one by one, first those that most depends on; one that finds no
+//! room takes that of others, which are placed again. The dependences are those of [`graph`] on two iterations one
+//! after another. A register is read while a result for it is in flight only where the result's step and the reading
+//! one are in the delay slots of one branch, where no interrupt is taken (`c67x.md` 2.5); so an interrupt changes
+//! nothing. The branch has a fixed position: six cycles before the next iteration begins.
 
 use std::ops::Range;
 
@@ -17,21 +17,21 @@ use super::step::Step;
 
 /// Turns that may be under way at the same time.
 pub(super) const MOST_STAGES: u32 = 4;
-/// How often each step may be placed, on average.
+/// The number of placements per step, on average, after which the search ends.
 const TRIES: usize = 8;
-/// The work that a loop may take: cycles that were tried for forms and waits that were looked at.
+/// The most work for a loop: cycles tried for forms, and dependences tested.
 const WORK: u32 = 600_000;
 
-/// When the steps of a turn issue.
+/// A modulo schedule: the cycles in which the steps of an iteration issue.
 #[derive(Debug)]
 pub(super) struct Overlap {
-    /// Cycles from one turn to the next.
+    /// Cycles from one iteration to the next.
     pub(super) period: u32,
-    /// The stage of the branch: what is before it happens for a turn that may never come.
+    /// The stage of the branch: earlier steps are executed for an iteration that may not take place.
     pub(super) commit: u32,
     /// The cycle of each step and its form; the branch is last.
     pub(super) places: Vec<(u32, Inst)>,
-    /// Whether a step may issue before one that reads what its register had until then.
+    /// True if a step may issue before one that reads the previous value of its register.
     pub(super) is_sheltered: bool,
 }
 
@@ -41,13 +41,13 @@ impl Overlap {
         self.places[step].0 / self.period
     }
 
-    /// How many stages there are.
+    /// Number of stages.
     pub(super) fn stages(&self) -> u32 {
         (0..self.places.len()).map(|step| self.stage(step) + 1).max().unwrap_or(1)
     }
 }
 
-/// What one step waits for: `to` issues at least `cycles` after `from` of `turns` turns before.
+/// A dependence: `to` issues at least `cycles` after `from` of the iteration `turns` earlier.
 #[derive(Clone, Copy, Debug)]
 struct Wait {
     from: usize,
@@ -58,8 +58,8 @@ struct Wait {
     sheltered: i64,
 }
 
-/// Finds the shortest period below `limit`. The last of the steps is the branch; `is_certain` says what must not happen
-/// before it is known that the turn does.
+/// Finds the shortest period below `limit`. The last of the steps is the branch; `is_certain` marks the steps that must
+/// wait until it is known that the iteration takes place.
 ///
 /// # Errors
 /// [`Exceeded`] if that takes more than [`WORK`].
@@ -104,11 +104,11 @@ impl Work {
     }
 }
 
-/// The waits within a turn and from one to the next.
+/// The dependences within an iteration and from one to the next.
 struct Waits {
     /// In the order of the steps that are waited for.
     all: Vec<Wait>,
-    /// Where in `all` those of each step begin.
+    /// The index in `all` at which those of each step begin.
     starts: Vec<usize>,
     /// The waits of each step for others.
     before: Vec<Vec<Wait>>,
@@ -140,18 +140,18 @@ impl Waits {
         Self { all, starts, before }
     }
 
-    /// The same waits if an interrupt may come everywhere.
+    /// Returns the dependences for a loop in which an interrupt may come everywhere.
     fn exposed(&self) -> Self {
         let all = self.all.iter().map(|wait| Wait { sheltered: wait.cycles, ..*wait }).collect();
         Self::sorted(all, self.before.len())
     }
 
-    /// What waits for a step.
+    /// The dependences on a step.
     fn after(&self, step: usize) -> &[Wait] {
         &self.all[self.starts[step]..self.starts[step + 1]]
     }
 
-    /// Cycles from each step to the end of its turn; `None` if a turn waits too long for the one before.
+    /// Cycles from each step to the end of its iteration; `None` if an iteration waits too long for the one before.
     fn heights(&self, steps: &[Step], period: u32, work: &mut Work) -> Result<Option<Vec<i64>>, Exceeded> {
         let landing = |step: &Step| step.forms.first().map_or(1, graph::landing);
         let mut heights: Vec<i64> = steps.iter().map(|step| landing(step).into()).collect();
@@ -227,7 +227,7 @@ impl Finder<'_> {
         Ok(placed.places.into_iter().collect())
     }
 
-    /// What the branch of a turn depends on.
+    /// True for each step that the branch of an iteration depends on.
     fn before_branch(&self) -> Vec<bool> {
         let mut is_before = vec![false; self.steps.len()];
         if let Some(last) = is_before.last_mut() {
@@ -250,21 +250,22 @@ impl Finder<'_> {
         after.fold(first, |first, cycle| first.max(u32::try_from(cycle).unwrap_or(0)))
     }
 
-    /// Whether a step that waits comes late enough.
+    /// Reports whether a dependence is met.
     fn is_met(&self, wait: &Wait, from: u32, to: u32) -> bool {
         let to = i64::from(to) + wait.turns * i64::from(self.period);
         let apart = to - i64::from(from);
         apart >= wait.cycles || apart >= wait.sheltered && self.is_sheltered(to, -apart)
     }
 
-    /// Whether no interrupt is taken between a packet and the one `cycles` later: both are in the slots of the branch.
+    /// Reports whether no interrupt is taken between a packet and the one `cycles` later: both are in the delay slots
+    /// of the branch.
     fn is_sheltered(&self, packet: i64, cycles: i64) -> bool {
         let period = i64::from(self.period);
         let own = packet.rem_euclid(period);
         own >= period - i64::from(BRANCH) && own + cycles < period
     }
 
-    /// Whether a step can have this cycle after all that it waits for.
+    /// Reports whether all dependences of a step are met in this cycle.
     fn is_after(&self, step: usize, cycle: u32, placed: &Slots) -> bool {
         let mut waits = self.waits.before[step].iter();
         waits.all(|wait| placed.places[wait.from].is_none_or(|(from, _)| self.is_met(wait, from, cycle)))

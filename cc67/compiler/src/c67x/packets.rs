@@ -28,7 +28,7 @@ pub(super) struct Scheduled {
     pub(super) insts: Vec<Issued>,
     /// Cycles of the region.
     pub(super) cycles: u32,
-    /// How often it happens, as far as one can guess.
+    /// The estimated frequency of its execution.
     pub(super) weight: f32,
     pub(super) span: Span,
     /// A loop for whose overlap the search exceeded its work.

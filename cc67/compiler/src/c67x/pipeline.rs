@@ -1,13 +1,14 @@
-//! Inner loops whose turns overlap: the packets before and after the loop's own.
+//! Software pipelining of inner loops: the loop's packets, and those before and after them.
 //!
-//! A loop of one region without calls becomes: regions that begin the first turns, the packets that [`modulo`] found,
-//! in which every turn is at another stage, and a region that ends the last turns. Every beginning ends with the
-//! branch of its turn, which leads to an end of its own if there is no further turn. So no number of turns needs to
-//! be known, and no load or store happens that the source does not ask for. Only steps without effect that nobody
-//! reads after the loop happen for a turn that never comes.
+//! A loop of one region without calls becomes: prologue regions that start the first iterations, the packets that
+//! [`modulo`] found, in which every iteration is at another stage, and an epilogue region that completes the last
+//! iterations. Every prologue region ends with the branch of its iteration, which leads to an epilogue of its own if
+//! there is no further one. So the number of iterations need not be known, and no load or store is executed that the
+//! source does not ask for. Only steps without effect whose results are not read after the loop are executed for an
+//! iteration that does not take place.
 //!
 //! No result is in flight where an interrupt may come and an earlier one of its register is still needed; the first
-//! packet is such a place, so the packets of the loop can be entered with nothing in flight.
+//! packet is such a point, so the packets of the loop can be entered with nothing in flight.
 
 use c67x::{Inst, Pred};
 
@@ -21,11 +22,11 @@ use super::refine;
 use super::schedule::{self, Order, Tail};
 use super::step::{Access, Step};
 
-/// The largest turn, in steps.
+/// The largest iteration that is pipelined, in steps.
 const LARGEST: usize = 120;
 /// Turns that must be enough for a loop to win.
 const TURNS: u32 = 5;
-/// How often a loop ends before all stages have a turn, at a guess.
+/// The estimated probability that a loop ends before all stages are active.
 const RARE: f32 = 0.1;
 
 /// Schedules all regions; loops overlap. `labels` is the first label that is free.
@@ -74,7 +75,7 @@ fn back(region: &Region) -> Option<&Step> {
     region.branches.iter().find(is_back)
 }
 
-/// The registers that somebody may read from the beginning of each region on, with its label.
+/// The registers that are live at the beginning of each region, with its label.
 fn live(regions: &[Region]) -> Vec<(u32, u64)> {
     let mut entering: Vec<(u32, u64)> = regions.iter().map(|region| (region.label, 0)).collect();
     let mut is_changed = true;
@@ -97,7 +98,7 @@ fn live(regions: &[Region]) -> Vec<(u32, u64)> {
     entering
 }
 
-/// The registers that somebody may read after a region.
+/// The registers that are live after a region.
 fn leaving(region: &Region, next: Option<&(u32, u64)>, entering: &[(u32, u64)]) -> u64 {
     let mut live = next.map_or(0, |(_, live)| *live) & !region.beyond.changes;
     for step in &region.branches {
@@ -115,19 +116,19 @@ fn entering_of(label: u32, entering: &[(u32, u64)]) -> u64 {
 /// A loop that overlaps.
 struct Loop<'a> {
     region: &'a Region,
-    /// The steps of a turn, the branch last.
+    /// The steps of an iteration, the branch last.
     steps: Vec<Step>,
     plan: Overlap,
-    /// Where execution continues after the loop.
+    /// The label at which execution continues after the loop.
     outside: u32,
     /// The next free label.
     label: u32,
 }
 
-/// A step of one turn; turns count from the first, or back from the last.
+/// A step of one iteration; iterations count from the first, or back from the last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Instance {
-    /// Counted from the beginning of turn 0.
+    /// The cycle, from the beginning of iteration 0.
     cycle: i64,
     turn: i64,
     step: usize,
@@ -232,7 +233,7 @@ impl<'a> Loop<'a> {
         }
     }
 
-    /// What happens in some of the passes before every stage has a turn, the branches excepted.
+    /// The instances of the prologue's passes, in which not every stage is active, without the branches.
     fn beginnings(&self, passes: std::ops::Range<i64>) -> Vec<Instance> {
         let mut found = Vec::new();
         for step in 0..self.branch() {
@@ -245,7 +246,7 @@ impl<'a> Loop<'a> {
         found
     }
 
-    /// What is left to do for the last `turns` turns after the pass that was the last; the last turn is turn 0.
+    /// The instances that complete the last `turns` iterations after the last pass; the last iteration is number 0.
     fn endings(&self, turns: i64) -> Vec<Instance> {
         let mut found = Vec::new();
         for step in 0..self.branch() {
@@ -270,7 +271,7 @@ impl<'a> Loop<'a> {
         schedule::schedule(region, Order::Early, 0)
     }
 
-    /// The branch out of the loop where there is no further turn.
+    /// The branch out of the loop after the last iteration.
     fn leave_to(&self, label: u32) -> Option<Step> {
         let step = &self.steps[self.branch()];
         let inst = step.forms.first()?;
@@ -282,7 +283,7 @@ impl<'a> Loop<'a> {
         branch_to(inst, pred, label, step)
     }
 
-    /// The end of the first `turns` turns, if there are no more.
+    /// The epilogue of a loop that has only the first `turns` iterations.
     fn end_of(&self, turns: i64, label: u32) -> Option<Scheduled> {
         let step = &self.steps[self.branch()];
         let out = branch_to(step.forms.first()?, Pred::Always, self.outside, step)?;

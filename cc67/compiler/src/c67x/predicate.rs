@@ -1,9 +1,8 @@
-//! Conditional execution in place of short branches, and blocks that follow each other as one.
+//! Conditional execution in place of short branches, and merging of consecutive blocks.
 //!
-//! A branch costs six cycles and ends a region; an instruction under a condition costs nothing if it does not happen.
-//! Where a short block does no more than continue where its branch would have gone, its instructions move before the
-//! branch. What has no effect and whose result nobody outside wants, happens anyway; loads and stores never do unless
-//! the source says so.
+//! A branch costs six cycles and ends a region; an instruction whose condition is false has no effect. If a short block
+//! only continues where its branch would have gone, its instructions move before the branch, under its condition.
+//! Instructions without effect whose result is not used outside become unconditional; loads and stores never do.
 
 use cranelift_entity::SecondaryMap;
 
@@ -14,7 +13,7 @@ use super::forms::Kind;
 const SHORT: usize = 10;
 /// The most instructions of a block that another joins.
 const LONG: usize = 400;
-/// How often all blocks are looked at.
+/// The most rounds over all blocks.
 const ROUNDS: usize = 6;
 
 /// Rewrites the blocks.
@@ -35,7 +34,7 @@ pub(super) fn run(code: &mut Code) {
     }
 }
 
-/// How many paths lead to each block.
+/// Number of predecessors of each block.
 fn predecessors(code: &Code) -> Vec<u32> {
     let mut before = vec![0; code.blocks.len()];
     if let Some(first) = before.first_mut() {
@@ -47,7 +46,7 @@ fn predecessors(code: &Code) -> Vec<u32> {
     before
 }
 
-/// Where a register is mentioned.
+/// The blocks that use a register.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Mentioned {
     #[default]
@@ -177,7 +176,7 @@ impl Worker<'_> {
         true
     }
 
-    /// Whether a block can happen under the condition of the block before.
+    /// Reports whether a block can be executed under the condition of the block before it.
     fn is_short(&self, block: u32, from: usize, condition: VReg) -> bool {
         let own = self.block(block);
         block as usize != from

@@ -13,9 +13,9 @@ use super::step::{Access, Step};
 
 /// The longest run of empty cycles that is filled.
 const GAP: u32 = 3;
-/// How far a step moves out of a packet that is too long.
+/// The farthest that a step moves out of a packet that is too long, in cycles.
 const FAR: u32 = 6;
-/// How far before an empty cycle what fills it may be.
+/// The farthest distance before an empty cycle that is searched for a step to fill it.
 const REACH: u32 = 1024;
 
 /// A step with its cycle.
@@ -27,7 +27,7 @@ pub(super) struct Item<'a> {
     pub(super) node: Option<usize>,
 }
 
-/// Where the word after a region is, if it begins at the word `at`.
+/// The address of the word after a region that begins at the word `at`.
 pub(super) fn end(region: &Scheduled, mut at: u32) -> u32 {
     let mut cycle = 0;
     let mut insts = region.insts.iter().peekable();
@@ -89,7 +89,7 @@ struct Refiner<'a, 'b> {
     resources: Resources,
     /// The items of each cycle, ascending.
     cells: Vec<Vec<usize>>,
-    /// Where the items that moved were before, since the last attempt began.
+    /// The positions of the moved items before the last attempt began.
     before: Vec<(usize, u32, Inst)>,
 }
 

@@ -1,4 +1,4 @@
-//! What every cycle of a region has room for (`c67x.md` 2.3, 2.4).
+//! The resources of each cycle of a region (`c67x.md` 2.3, 2.4).
 
 use c67x::{Inst, Mnemonic, Reg, Side, UnitKind};
 
@@ -17,9 +17,9 @@ struct Cycle {
     count: u8,
 }
 
-/// The cycles of a region, or of one turn of a loop, whose cycles repeat.
+/// The cycles of a region, or of one iteration of a loop, whose cycles repeat.
 ///
-/// What instructions take is exclusive: each is taken only where it fits, so it can be given back alone.
+/// Resources are exclusive: each is taken only where it is free, so it can be released alone.
 #[derive(Debug, Default)]
 pub(super) struct Resources {
     cycles: Vec<Cycle>,
@@ -27,7 +27,7 @@ pub(super) struct Resources {
     products: Vec<(u8, Mnemonic, u32)>,
     /// The operands that are read in each cycle.
     reads: Vec<Vec<Reg>>,
-    /// After how many cycles everything repeats; 0 for never.
+    /// The period in cycles after which everything repeats; 0 for never.
     period: u32,
 }
 
@@ -38,7 +38,7 @@ const PRODUCTS: u32 = 8;
 const READS: usize = 4;
 
 impl Resources {
-    /// The cycles of a turn, where the next one begins `period` cycles later.
+    /// The cycles of an iteration, where the next one begins `period` cycles later.
     pub(super) fn periodic(period: u32) -> Self {
         Self { period, ..Self::default() }
     }
@@ -56,7 +56,7 @@ impl Resources {
         &mut self.cycles[index]
     }
 
-    /// Whether an instruction can issue in a cycle.
+    /// Reports whether an instruction can issue in a cycle.
     pub(super) fn fits(&mut self, inst: &Inst, cycle: u32) -> bool {
         let Some(unit) = inst.unit() else { return true };
         let bit = 1 << unit.index();

@@ -13,7 +13,7 @@ use super::refine::{self, Item};
 use super::resources::Resources;
 use super::step::{Access, Step};
 
-/// How a region is scheduled.
+/// The order in which a region is scheduled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
     /// One instruction a cycle, in the order of the source.
@@ -168,7 +168,7 @@ impl<'a> List<'a> {
         self.issued.push(Item { step, issued, node });
     }
 
-    /// What waited for a step may be ready now.
+    /// Releases the steps that wait for a step; they may be ready now.
     fn release(&mut self, step: u32, cycle: u32, steps: usize, ready: &mut Vec<u32>) {
         for edge in &self.graph.after[step as usize] {
             let to = edge.to as usize;

@@ -12,34 +12,34 @@ use super::abi;
 use super::code::{Arg, Base, Code, Info, Inst, MemoryPlace, VReg};
 use super::forms::{Crossing, Kind};
 
-/// What a source on the other side costs, in instructions of imbalance.
+/// The cost of a source on the other side, in instructions of imbalance.
 const CROSS: i32 = 3;
 /// The most that imbalance counts: less than a source on the other side, of which only one can be reached in a cycle.
 const IMBALANCE: i32 = 2;
-/// The same where it takes a copy.
+/// The cost of a source on the other side that needs a copy, in instructions of imbalance.
 const COPY: i32 = 6;
-/// What a side costs on which a register does not stay where it is wanted.
+/// The cost of a side that differs from a register's hint.
 const HINT: i32 = 4;
-/// What a side costs from which the instruction that reads the result must fetch it.
+/// The cost of a side from which the reader of the result must fetch it.
 const READER: i32 = 2;
 /// The most that imbalance counts where a register is loaded.
 const LOADS: i32 = 4;
 
-/// What counts in loops of one block besides the number of instructions.
+/// The costs that count in loops of one block besides the number of instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Policy {
     /// For how many cycles an instruction has its unit for itself.
     weighs_units: bool,
-    /// Where the result of an instruction that reads another's is, if that is decided.
+    /// True if the side of a reader of the result counts, where that is decided.
     follows_readers: bool,
-    /// How many registers each side loads.
+    /// True if the number of registers that each side loads counts.
     counts_loads: bool,
 }
 
 impl Policy {
-    /// What is best most often.
+    /// The policy that is best most often.
     pub(super) const USUAL: Self = Self { weighs_units: true, follows_readers: true, counts_loads: false };
-    /// What may be better.
+    /// The policies that may be better.
     pub(super) const OTHERS: [Self; 3] = [
         Self { counts_loads: true, ..Self::USUAL },
         Self { weighs_units: false, ..Self::USUAL },
@@ -148,14 +148,14 @@ fn place(regs: &mut Regs, inst: &Inst, load: &mut Load<'_>) {
     }
 }
 
-/// What the sides have in a block so far.
+/// The load of each side in a block so far.
 #[derive(Debug)]
 struct Load<'a> {
     /// The index that each constant base of an access is used with.
     indexes: &'a SecondaryMap<VReg, PackedOption<VReg>>,
     /// The result of an instruction that reads each register.
     readers: &'a SecondaryMap<VReg, PackedOption<VReg>>,
-    /// What counts, if the block jumps to itself.
+    /// The policy, if the block jumps to itself.
     policy: Option<Policy>,
     insts: [i32; 2],
     /// Results that are pairs, of which there are few registers.
@@ -165,7 +165,7 @@ struct Load<'a> {
 }
 
 impl Load<'_> {
-    /// Where a register is best loaded.
+    /// The best side for loading a register.
     fn loaded(&self, regs: &Regs, dst: VReg) -> Side {
         let info = &regs[dst];
         if let Some(hint) = info.hint {
@@ -181,7 +181,7 @@ impl Load<'_> {
         if on_b < self.reader(regs, dst, Side::A) { Side::B } else { Side::A }
     }
 
-    /// What it costs the reader of a result if that is on a side.
+    /// The cost for the reader of a result on a side.
     fn reader(&self, regs: &Regs, dst: VReg, side: Side) -> i32 {
         if !self.policy.is_some_and(|policy| policy.follows_readers) {
             return 0;
@@ -190,7 +190,7 @@ impl Load<'_> {
         if reader.is_some_and(|reader| reader != side) { READER } else { 0 }
     }
 
-    /// What an instruction counts.
+    /// The weight of an instruction in the load of a side.
     fn weight(&self, kind: Kind) -> i32 {
         let forms = kind.forms().iter().filter(|_| self.policy.is_some_and(|policy| policy.weighs_units));
         forms.map(|form| form.op.row().timing.stages().unit.into()).next().unwrap_or(1)

@@ -28,7 +28,7 @@ pub(super) fn to_memory(code: &mut Code, moved: &[VReg]) {
 /// The most arguments that find room on any side: all are needed at once, and a side has eight pairs.
 const CROWDED: usize = 6;
 
-/// Where a register's value comes from.
+/// The source of a spilled register's value.
 #[derive(Clone, Copy)]
 enum Home {
     Memory(u32),

@@ -9,11 +9,11 @@ use super::code::{self, Arg, Base, MemoryPlace, Value};
 use super::forms::{Form, Kind};
 use crate::source::Span;
 
-/// What a step does to memory.
+/// The effect of a step on memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Access {
     None,
-    /// Bytes of the frame that nobody else can reach: offset and size.
+    /// Bytes of the frame that no other function can reach: offset and size.
     Own {
         is_store: bool,
         at: i32,
@@ -28,15 +28,15 @@ pub(super) enum Access {
     },
 }
 
-/// Where a branch goes until its target is known.
+/// The target of a branch until it is known.
 const UNKNOWN: i32 = 0x3F_FFE0;
 
-/// One instruction.
+/// An instruction with its registers assigned.
 #[derive(Clone, Debug)]
 pub(super) struct Step {
     /// The forms; never empty.
     pub(super) forms: Vec<Inst>,
-    /// What the linker or the layout completes: in the constant, or where a branch goes.
+    /// The value that the linker or the layout completes: a constant, or the target of a branch.
     pub(super) value: Option<Value>,
     pub(super) access: Access,
     pub(super) span: Span,
@@ -73,7 +73,7 @@ pub(super) fn step(kind: Kind, operands: &Operands, access: Access, span: Span) 
     (!forms.is_empty()).then_some(Step { forms, value, access, span })
 }
 
-/// Where an instruction executes.
+/// The side on which an instruction executes.
 fn unit_side(operands: &Operands) -> Option<Side> {
     if let Some(mem) = operands.mem {
         return Some(mem.base.side());
@@ -144,7 +144,7 @@ pub(super) struct Finalizer<'a> {
     pub(super) code: &'a code::Code,
     pub(super) assignment: &'a super::allocate::Assignment,
     pub(super) frame: &'a super::frame::Frame,
-    /// Objects of the frame whose address somebody has.
+    /// Objects of the frame whose address is taken.
     pub(super) escaping: &'a cranelift_entity::SecondaryMap<crate::ir::inst::SlotId, bool>,
 }
 
@@ -198,7 +198,7 @@ impl Finalizer<'_> {
         Some(Mem { base, negative: elements < 0, update: Update::None, offset: Offset::Const(offset) })
     }
 
-    /// What an access does to memory.
+    /// The effect of an access on memory.
     pub(super) fn access(&self, kind: Kind, place: MemoryPlace, mem: Mem) -> Access {
         let (is_store, size) = (kind.is_store(), kind.bytes().unwrap_or(4));
         let at = self.offset(place);

@@ -16,7 +16,7 @@ pub(crate) struct Fixup {
     /// The word, in the function.
     pub(crate) word: u32,
     pub(crate) kind: FixupKind,
-    /// Whose address; `None` for the function's own.
+    /// The symbol whose address is used; `None` for the function's own.
     pub(crate) symbol: Option<SymbolId>,
 }
 
@@ -58,7 +58,7 @@ pub(crate) fn assembled(text: &str) -> Vec<u32> {
     lines.iter().enumerate().map(|(index, line)| line.inst.encode(joins(index + 1))).collect()
 }
 
-/// Words that go on at any address; they change the register of indirect calls alone.
+/// The words of a jump to any address; they change only the register of indirect calls.
 pub(crate) fn far_jump(address: u32) -> Vec<u32> {
     let reg = Operand::Reg(abi::TARGET);
     let low = i32::from(address.cast_signed() as i16);

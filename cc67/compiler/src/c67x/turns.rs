@@ -1,23 +1,23 @@
-//! Several turns of a short loop as one, each under the condition that the one before would have jumped back.
+//! Unrolling of short loops with an unknown number of iterations.
 //!
-//! A jump back costs six cycles whatever the turn does. Where nobody knows how many turns there will be, the second
-//! turn follows the first under the first's condition, the third under that of both, and only the last one jumps. What
-//! cannot be seen from outside happens in any case, in registers of its own, so that it needs not wait for the
-//! condition; loads, stores and what the next turn or the code after the loop reads happen under it. So every access to
-//! memory happens when, and as often as, the source says.
+//! A jump back costs six cycles. So the second iteration follows the first under the first's condition, the third under
+//! that of both, and only the last one jumps. Instructions that cannot be observed outside are unconditional, in
+//! registers of their own, so that they need not wait for the condition; loads, stores and results that the next
+//! iteration or the code after the loop reads are conditional. So every access to memory is made exactly when, and as
+//! often as, the source asks for it.
 
 use cranelift_entity::SecondaryMap;
 
 use super::code::{Arg, Base, Block, Code, Condition, End, Info, Inst, VReg};
 use super::forms::Kind;
 
-/// The largest turn, in instructions.
+/// The largest iteration that is unrolled, in instructions.
 const LARGEST: usize = 20;
-/// Instructions of all turns together.
+/// The most instructions of all iterations together.
 const ALL: usize = 44;
-/// The most turns: each needs a register that is tested.
+/// The most iterations: each needs a register that is tested.
 const MOST: usize = 4;
-/// Registers that are tested inside a turn, at most, for several turns to have a chance.
+/// The most registers that are tested inside an iteration, for a loop to be unrolled.
 const TESTED: usize = 2;
 
 /// Rewrites the short loops of one block, except those with a bit in `skipped`; how many there are.
@@ -65,18 +65,18 @@ fn back(block: &Block, number: u32) -> Option<(VReg, bool)> {
     }
 }
 
-/// What is known about a loop.
+/// The facts about a loop.
 struct Facts {
-    /// What a turn writes and the next turn, or the code after the loop, may read.
+    /// The registers that an iteration writes and the next iteration, or the code after the loop, may read.
     carried: Vec<VReg>,
     /// The register of the jump back, and the instruction that writes it last.
     condition: VReg,
     last: usize,
-    /// Registers that are tested inside a turn.
+    /// Number of registers that are tested inside an iteration.
     tested: usize,
 }
 
-/// Whether a loop can be rewritten, and what that takes.
+/// Returns the facts for rewriting a loop; `None` if it cannot be rewritten.
 fn facts(code: &Code, number: usize, back: (VReg, bool)) -> Option<Facts> {
     let block = &code.blocks[number];
     let is_simple = |inst: &Inst| {
@@ -162,14 +162,14 @@ struct Turns<'a> {
     code: &'a mut Code,
     facts: Facts,
     out: Vec<Inst>,
-    /// The present name of each register that a turn wrote.
+    /// The present name of each register that an iteration wrote.
     names: SecondaryMap<VReg, Option<VReg>>,
-    /// The registers that have a name of this turn.
+    /// The registers that have a name of this iteration.
     fresh: Vec<VReg>,
 }
 
 impl Turns<'_> {
-    /// Adds a turn under a condition; that of the next one.
+    /// Adds an iteration under a condition; returns that of the next one.
     fn turn(&mut self, body: &[Inst], condition: (VReg, bool)) -> (VReg, bool) {
         self.fresh.clear();
         let next = self.reg_like(self.facts.condition);
@@ -226,7 +226,7 @@ impl Turns<'_> {
         }
     }
 
-    /// Gives the result a name of this turn; a load happens under the turn's condition, and so does a store.
+    /// Renames the result for this iteration; a load or store gets the iteration's condition.
     fn rename_written(&mut self, inst: &mut Inst, condition: Condition) {
         let is_memory = inst.kind.bytes().is_some();
         let Some(reg) = inst.dst.reg() else {

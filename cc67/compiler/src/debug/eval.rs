@@ -21,7 +21,7 @@ use crate::ty::{Type, TypeId, Types};
 use crate::typed::{ExprId, ExprKind, LocalId, PlaceKind, StmtKind, Unit};
 use crate::watch::{self, Expression};
 
-/// Where a local of a call in progress is.
+/// The location of a local of a call in progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LocalPlace {
     /// In memory.
@@ -30,7 +30,7 @@ pub enum LocalPlace {
     Slot(u64),
 }
 
-/// What expressions and values are read from.
+/// The state that expressions and values are read from.
 pub trait DebugReader {
     /// The eight bytes from an address on; 0 outside the memory.
     fn bytes(&self, address: GuestAddr) -> [u8; 8];
@@ -38,7 +38,7 @@ pub trait DebugReader {
     /// The item of this place in the list that the expression was compiled with.
     fn item(&self, index: usize) -> f64;
 
-    /// Where a local is; `None` if it is optimised out.
+    /// The location of a local; `None` if it is optimised out.
     fn local(&self, local: &LocalModel) -> Option<LocalPlace>;
 }
 
@@ -116,7 +116,7 @@ impl Model {
         self.compile(text, from as u32..until as u32, name, locals, items, is_address)
     }
 
-    /// Where to insert an expression that is about a line of a function.
+    /// The position in the text at which to insert an expression that is evaluated in a line of a function.
     fn place_in(&self, function: &str, line: u32) -> Option<usize> {
         let function = self.functions.iter().find(|known| known.name == function)?;
         let head = scope::begin_of_line(&self.text, function.lines.start);
@@ -307,7 +307,7 @@ impl Probe {
             .map_or_else(|| "it has no value: it divides by 0".to_owned(), |local| optimised_out(&local.name))
     }
 
-    /// Whether the expression mentions a local.
+    /// Reports whether the expression mentions a local.
     fn names_local(&self, local: &LocalModel) -> bool {
         let function = self.expression.function();
         function.places.values().any(|place| match place.kind {

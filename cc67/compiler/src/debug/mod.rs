@@ -33,7 +33,7 @@ use crate::typed::Unit;
 
 pub use crate::object::Location;
 
-/// What is known about one program for a debugger.
+/// The debug information of one program.
 #[derive(Debug)]
 pub struct Model {
     /// The source file.
@@ -104,15 +104,15 @@ pub struct LocalModel {
     pub ty: String,
     /// The lines in which its name means it.
     pub lines: Range<u32>,
-    /// Where it is, and for which addresses that holds; elsewhere it is optimised out.
+    /// Its locations, each with the addresses for which it holds; elsewhere it is optimised out.
     pub places: Vec<(Range<u32>, Location)>,
-    /// Where it is declared in the source.
+    /// The position of its declaration in the source.
     pub(crate) declared: u32,
     type_id: crate::ty::TypeId,
 }
 
 impl LocalModel {
-    /// Where it is when the instruction at an address is next; `None` if it is optimised out there.
+    /// Its location when the instruction at an address is next; `None` if it is optimised out there.
     #[must_use]
     pub fn at(&self, address: u32) -> Option<Location> {
         self.places.iter().find(|(range, _)| range.contains(&address)).map(|(_, location)| *location)
@@ -120,10 +120,10 @@ impl LocalModel {
 }
 
 impl Model {
-    /// What is known about the program that `text` became, an image for `thread`.
+    /// Collects the information about a program from its source `text`, and its image for `thread`.
     ///
     /// # Errors
-    /// Why there is no information: the source does not compile, or makes another image.
+    /// If the source does not compile, or makes another image.
     ///
     /// # Panics
     /// If the system cannot start a thread.
@@ -145,8 +145,8 @@ impl Model {
         })
     }
 
-    /// The same of code for the controller's processor: functions and their lines as the image has them, types, and
-    /// variables outside of functions. Where locals are is not known.
+    /// Collects the information about code for the controller's processor: functions and their lines as the image has
+    /// them, types, and variables outside of functions. The locations of locals are not known.
     ///
     /// # Errors
     /// As [`of`](Self::of).
@@ -292,7 +292,7 @@ impl Model {
         }
     }
 
-    /// Where the statements of a function begin; the first follows the words that enter it.
+    /// The addresses at which the statements of a function begin; the first follows the words that enter it.
     fn statements(&self, addresses: &Range<u32>, lines: &Range<u32>) -> Vec<(u32, u32)> {
         let program = self.image.program.as_ref().ok();
         let body = program.and_then(|program| {
@@ -362,7 +362,7 @@ impl Model {
         self.image.line_at(address).map(|line| line.line)
     }
 
-    /// What the image says of itself.
+    /// The contents of the image.
     #[must_use]
     pub const fn image(&self) -> &Inspection {
         &self.image
@@ -389,7 +389,7 @@ impl Model {
         globals
     }
 
-    /// All of it as a table.
+    /// The debug information as a table.
     #[must_use]
     pub fn table(&self) -> String {
         let mut out = String::new();
@@ -418,7 +418,7 @@ impl Model {
     }
 }
 
-/// Where locals are, as lines of a table.
+/// Writes the locations of locals as lines of a table.
 fn table_of(locals: &[LocalModel], indent: &str, out: &mut String) {
     for local in locals {
         let (first, last) = (local.lines.start, local.lines.end.saturating_sub(1));
@@ -438,12 +438,12 @@ fn lines_of(object: &Object, function: &ObjectFunction) -> Range<u32> {
     first..function.end.line.max(first)
 }
 
-/// Debug information of an image file, of the source beside it.
+/// Finds the debug information of an image file, from the source in its folder.
 ///
-/// The image has to be what one of the usual sets of options makes of it: those given, or the same at another level.
+/// The image must result from the given options, at their level or another one.
 ///
 /// # Errors
-/// Why there is none.
+/// The reason why there is none.
 pub fn of_image(path: &Path, program: &[u8], options: &Options) -> Result<Model, String> {
     let source = source_of(path, program)?;
     let text =
@@ -464,10 +464,10 @@ pub fn of_image(path: &Path, program: &[u8], options: &Options) -> Result<Model,
     Err(first.unwrap_or_default())
 }
 
-/// The source that an image says it was made of: where it says, or beside the image.
+/// Finds the source of an image: at the path that it states, or in the image's folder.
 ///
 /// # Errors
-/// That it is not there.
+/// If the source is not there.
 pub fn source_of(path: &Path, program: &[u8]) -> Result<PathBuf, String> {
     let image = Inspection::read(program).map_err(|error| error.to_string())?;
     let main = image.symbols.iter().find(|entry| entry.kind == EntryKind::Function && entry.name == "main");

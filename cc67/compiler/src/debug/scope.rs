@@ -46,7 +46,7 @@ impl Braces<'_> {
     }
 }
 
-/// Where the block around a place ends: at its closing brace.
+/// The position of the closing brace of the block around a position.
 pub(super) fn end_of_block(text: &[u8], from: usize) -> Option<usize> {
     let mut depth = 0_u32;
     for (brace, at) in (Braces { text, at: from }) {
@@ -59,7 +59,7 @@ pub(super) fn end_of_block(text: &[u8], from: usize) -> Option<usize> {
     None
 }
 
-/// Where the first block after a place begins, after its brace.
+/// The position after the opening brace of the first block after a position.
 pub(super) fn begin_of_body(text: &[u8], from: usize) -> Option<usize> {
     (Braces { text, at: from }).find(|(brace, _)| *brace == b'{').map(|(_, at)| at + 1)
 }
@@ -69,7 +69,7 @@ pub(super) fn line_of(text: &[u8], at: usize) -> u32 {
     1 + text.iter().take(at).filter(|byte| **byte == b'\n').count() as u32
 }
 
-/// Where a line begins.
+/// The position at which a line begins.
 pub(super) fn begin_of_line(text: &[u8], line: u32) -> usize {
     let mut starts = std::iter::once(0)
         .chain(text.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at + 1));

@@ -12,7 +12,7 @@ use crate::watch;
 const ELEMENTS: u32 = 32;
 const CHARACTERS: u32 = 200;
 
-/// How deep structures in structures are shown in one line.
+/// The depth to which nested structures are shown in one line.
 const DEPTH: u32 = 3;
 
 /// A value of the program.
@@ -20,11 +20,11 @@ const DEPTH: u32 = 3;
 pub struct DebugValue {
     /// Its type.
     pub(super) ty: TypeId,
-    /// Where it is, or what.
+    /// Its location or its bits.
     pub(super) data: Data,
 }
 
-/// Where a value is, or what.
+/// The location of a value, or its bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Data {
     /// In memory.
@@ -47,7 +47,7 @@ impl DebugValue {
         Self { ty, data }
     }
 
-    /// Where it is in memory.
+    /// Its address in memory, if it has one.
     #[must_use]
     pub const fn address(&self) -> Option<GuestAddr> {
         match self.data {
@@ -62,9 +62,9 @@ impl DebugValue {
 pub struct Child {
     /// Its name within the whole: `x`, `[3]`, `*p`.
     pub name: String,
-    /// How C names it.
+    /// The C expression that names it.
     pub expression: String,
-    /// What it is.
+    /// Its value.
     pub value: DebugValue,
 }
 
@@ -104,7 +104,7 @@ impl Displayed<'_> {
         self.text_at(value, 0)
     }
 
-    /// How many parts the value has.
+    /// Number of parts of the value.
     #[must_use]
     pub fn count(&self, value: &DebugValue) -> u32 {
         match self.types.get(value.ty) {

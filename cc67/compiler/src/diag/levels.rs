@@ -1,4 +1,4 @@
-//! Which warnings are shown, and as what: the `-W` switches.
+//! The levels of warnings: the `-W` switches.
 //!
 //! A switch that names a lint wins over one that names a group, wherever it is; among
 //! switches of one kind the last wins. `-w` silences everything.

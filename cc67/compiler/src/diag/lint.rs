@@ -3,7 +3,7 @@
 //! A row of `for_each_lint!` is a lint; its name is the `-W` switch. One that needs a search of its own names it as
 //! its pass, a file of [`lints`](crate::lints).
 
-/// Which switch makes a lint speak.
+/// The switch that enables a lint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Preset {
     /// None: it names a defect, and seldom anything else.
@@ -178,7 +178,7 @@ macro_rules! define_lints {
                 }
             }
 
-            /// What it reports, in one sentence.
+            /// A description of the lint in one sentence.
             #[must_use]
             pub const fn summary(self) -> &'static str {
                 match self {
@@ -208,7 +208,7 @@ for_each_lint!(define_lints);
 pub(crate) use for_each_lint;
 
 impl Lint {
-    /// How to switch it on and off, as the end of its page.
+    /// The switches for it, as the end of its page.
     #[must_use]
     pub fn switches(self) -> String {
         let name = self.name();

@@ -10,7 +10,7 @@ pub use lint::{Lint, Preset};
 
 use crate::source::Span;
 
-/// How bad it is.
+/// The severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// The program cannot be compiled.
@@ -24,23 +24,23 @@ pub enum Severity {
 /// A further place that explains the diagnostic.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Label {
-    /// Where.
+    /// The range in the source.
     pub span: Span,
-    /// What is there.
+    /// The message about that range.
     pub message: String,
 }
 
-/// One finding.
+/// A diagnostic.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[must_use = "a diagnostic does nothing until it is reported to a sink"]
 pub struct Diagnostic {
-    /// How bad it is.
+    /// Its severity.
     pub severity: Severity,
     /// The lint that found it; `None` for errors that no switch controls.
     pub lint: Option<Lint>,
     /// The finding in one lower-case line without a full stop.
     pub message: String,
-    /// Where it is; `None` for findings about the whole program.
+    /// Its range in the source; `None` for findings about the whole program.
     pub span: Option<Span>,
     /// Text at the primary range: what was found or expected there.
     pub at: String,
@@ -48,9 +48,9 @@ pub struct Diagnostic {
     pub labels: Vec<Label>,
     /// Explanations, one line each.
     pub notes: Vec<String>,
-    /// What the user should do.
+    /// A suggestion for the user.
     pub help: Option<String>,
-    /// What the vendor's linker says, if the finding is one of a linker; other programs look for its words.
+    /// The words of the vendor's linker for the finding, if it is one of a linker; other programs search for them.
     pub linker_words: Option<String>,
 }
 
@@ -155,7 +155,7 @@ impl Diagnostic {
 /// Errors after which a stage of the compiler gives up: what follows is seldom worth reading.
 pub const MAX_ERRORS: usize = 20;
 
-/// What a stage says when it gives up.
+/// The message of a stage that gives up.
 pub const TOO_MANY_ERRORS: &str = "more than 20 errors; the rest of the program was not checked";
 
 /// Warnings and notes that are kept; the rest is only counted, so that hostile text cannot fill the memory.
@@ -212,25 +212,25 @@ impl Sink {
         self.report_lost_names(error);
     }
 
-    /// Whether an error that was reported hides the rest of a file.
+    /// Reports whether an error that was reported hides the rest of a file.
     #[must_use]
     pub fn lacks_text(&self) -> bool {
         self.lacks_text
     }
 
-    /// Whether names are unknown because of an error that was reported.
+    /// Reports whether names are unknown because of an error that was reported.
     #[must_use]
     pub fn lacks_names(&self) -> bool {
         self.lacks_names
     }
 
-    /// Whether enough errors were reported that looking for more is pointless.
+    /// Reports whether so many errors were reported that the search for more stops.
     #[must_use]
     pub fn is_full(&self) -> bool {
         self.errors >= MAX_ERRORS
     }
 
-    /// Whether an error was reported.
+    /// Reports whether an error was reported.
     #[must_use]
     pub fn has_errors(&self) -> bool {
         self.errors > 0

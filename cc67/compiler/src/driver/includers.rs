@@ -1,8 +1,7 @@
 //! Finds the programs in the same folder that include a file.
 //!
-//! Many files of this field are not programs but parts of some: functions for homing or for the
-//! spindle that programs include as `.c` files. Whoever compiles such a part is told which
-//! programs it belongs to.
+//! Many files of this field are not programs but parts of some: functions for homing or for the spindle that programs
+//! include as `.c` files. The message for such a file lists the programs that it belongs to.
 
 use std::path::Path;
 
@@ -29,7 +28,7 @@ fn is_source(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("c"))
 }
 
-/// Whether a line of the text includes a file of this name from whatever folder.
+/// Reports whether a line of the text includes a file of this name from any folder.
 fn includes(text: &[u8], name: &str) -> bool {
     String::from_utf8_lossy(text).lines().any(|line| {
         let directive = line.trim_start().strip_prefix('#').map(str::trim_start);

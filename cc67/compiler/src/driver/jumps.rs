@@ -14,7 +14,7 @@ use crate::typed::Linkage;
 /// The file that their lines are of.
 const FILE: &str = "setjmp.s";
 
-/// What keeps registers. The last stores are made while the branch is on its way.
+/// The code that saves the registers. The last stores are in the delay slots of the branch.
 const SET: &str = "
     STW .D1T1 A10,*+A4[0]
     STW .D1T1 A11,*+A4[1]
@@ -34,7 +34,8 @@ const SET: &str = "
     NOP 1
 ";
 
-/// What puts them back. The stack pointer comes while the branch is on its way: no interrupt sees half of a change.
+/// The code that restores them. The stack pointer is loaded in the delay slots of the branch: no interrupt sees half of
+/// a change.
 const LONG: &str = "
     LDW .D1T2 *+A4[12],B3
     LDW .D1T1 *+A4[0],A10
@@ -105,7 +106,7 @@ fn add(object: &mut Object, function: JumpFunction) {
     });
 }
 
-/// What goes in and what comes out.
+/// The signature of a jump function.
 fn signature(function: JumpFunction) -> Signature {
     Signature {
         params: vec![Class::I32; function.parameters()],

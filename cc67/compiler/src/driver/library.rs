@@ -1,10 +1,10 @@
-//! The functions of the C library that are C themselves.
+//! The functions of the C library that are written in C.
 //!
-//! What the firmware lacks becomes a part of the program: the linker asks for what a program uses and does not
-//! define. It is compiled like any other source, costs what its instructions cost and can be preempted.
+//! A function that the firmware lacks becomes a part of the program: the linker adds the members that define names used
+//! and not defined. They are compiled like any other source, cost their instructions and can be preempted.
 //!
 //! A file of the library is made of members, each a text of its own that begins after a line `//@ name …`: the names
-//! that ask for it, and after a `+` others that it defines.
+//! that request it, and after a `+` others that it defines.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -39,14 +39,14 @@ const FILES: &[(&str, &str)] = &[
 pub(super) struct Member<'t> {
     /// The file it is in.
     pub(super) file: &'t str,
-    /// What it defines, with blanks between; a `+` comes before the names that do not ask for it.
+    /// The names that it defines, separated by blanks; a use of one after a `+` does not link the member.
     pub(super) names: &'t str,
     /// Its source.
     pub(super) text: &'t str,
 }
 
 impl<'t> Member<'t> {
-    /// What it defines.
+    /// The names that it defines.
     pub(super) fn names(&self) -> impl Iterator<Item = &'t str> + use<'t> {
         self.names.split_whitespace().filter(|name| *name != "+")
     }
@@ -57,7 +57,7 @@ impl<'t> Member<'t> {
     }
 }
 
-/// What begins the line before a member.
+/// The start of the line before a member.
 const MARK: &str = "//@ ";
 
 /// Every member.
@@ -121,7 +121,7 @@ fn needed_by(
     members().filter(|member| is_used(member) && !member.names().any(|name| defined.contains(name))).collect()
 }
 
-/// Whether one of `objects` uses one of `names`, and none defines any.
+/// Reports whether one of `objects` uses one of `names`, and none defines any.
 pub(super) fn uses(objects: &[Object], names: &[&str]) -> bool {
     let defines = |object: &Object| {
         let is_external = |symbol: &&Symbol| symbol.linkage == Linkage::External;

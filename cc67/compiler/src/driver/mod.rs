@@ -39,22 +39,22 @@ use crate::target::Target;
 use crate::typed::Unit;
 use crate::{c67x, files, lints, lower, parse, pp, sema};
 
-/// How to compile.
+/// The options of a compilation.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Include directories, macros, embedded headers.
     pub preprocessor: pp::Options,
-    /// What to optimise.
+    /// The level of optimisation.
     pub level: Level,
-    /// What the code is charged for, on the simulated board.
+    /// The cycles that the code is charged on the simulated board.
     pub timing: Timing,
-    /// What the code is for.
+    /// The target of the code.
     pub target: Target,
     /// The firmware that programs are for.
     pub firmware: Firmware,
-    /// Whether the linker leaves out what `main` cannot reach.
+    /// Drop sections that `main` cannot reach, when linking.
     pub gc_sections: bool,
-    /// Where sections go that do not go to the space of the thread.
+    /// The addresses of sections outside the space of the thread.
     pub addresses: SectionAddresses,
 }
 
@@ -92,7 +92,7 @@ pub struct Compilation {
     pub name: String,
     /// The files that were read.
     pub sources: SourceMap,
-    /// What was found.
+    /// The diagnostics.
     pub sink: Sink,
     /// The object, if there were no errors.
     pub object: Option<Object>,
@@ -238,7 +238,7 @@ impl fmt::Debug for CompileRequest<'_> {
     }
 }
 
-/// What the stages of a compilation share.
+/// The state that the stages of a compilation share.
 #[derive(Debug)]
 pub struct CompileContext {
     /// The texts.
@@ -290,7 +290,7 @@ impl CompileRequest<'_> {
     }
 }
 
-/// How often the calls of a function in itself are replaced in the controller's code, which should be small.
+/// The depth to which recursive calls are inlined in the controller's code, which should be small.
 const CODE_LEVELS: usize = 1;
 
 /// The object of a unit that has no errors.

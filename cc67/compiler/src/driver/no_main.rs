@@ -11,7 +11,7 @@ use crate::words::suggest;
 /// Programs that are named; more are counted.
 const NAMED: usize = 4;
 
-/// What helps with a file that `includers` include.
+/// The advice for a file that `includers` include.
 const COMPILE_THAT: &str = "compile that program instead";
 
 /// Says of a file with errors that it is not a program: they may come from that.

@@ -1,4 +1,4 @@
-//! What the driver promises: that the library compiles, and that nobody can tell which declarations were left out.
+//! The promises of the driver: the library compiles, and leaving out unused declarations has no visible effect.
 
 use std::collections::BTreeSet;
 use std::fs;

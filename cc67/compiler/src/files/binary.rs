@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-/// How much of a file is looked at.
+/// Bytes of a file that are examined.
 const SAMPLE: usize = 4096;
 
 /// Formats by the bytes they begin with.
@@ -28,7 +28,7 @@ const SUFFIXES: &[(&str, &str)] = &[
     ),
 ];
 
-/// What a file is that cannot be C source text; `None` if it may be.
+/// Describes a file that cannot be C source text; `None` if it may be.
 ///
 /// A single stray byte is left to the preprocessor, which shows where it is.
 #[must_use]

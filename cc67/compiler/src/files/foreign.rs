@@ -6,7 +6,7 @@ use goblin::elf::header::{ET_DYN, ET_EXEC, ET_REL, et_to_str, machine_to_str};
 use goblin::mach::{Mach, constants::cputype::get_arch_name_from_types};
 use goblin::{Hint, Object};
 
-/// What a file is that is not a TI COFF, with its article; `None` if it is not known.
+/// Describes a file that is not a TI COFF, with its article; `None` if it is not known.
 #[must_use]
 pub fn describe(bytes: &[u8]) -> Option<String> {
     if bytes.is_empty() {
@@ -55,7 +55,7 @@ fn machine(name: &str) -> String {
     }
 }
 
-/// Whether the first bytes are text.
+/// Reports whether the first bytes are text.
 fn text(bytes: &[u8]) -> Option<String> {
     let start = bytes.get(..bytes.len().min(512))?;
     let is_text = start.iter().all(|byte| matches!(byte, b'\t' | b'\n' | b'\r' | b' '..=b'~' | 0x80..));

@@ -1,4 +1,4 @@
-//! What the operating system says of a failure, in words for the user.
+//! The operating system's reasons for a failure, in words for the user.
 
 use std::io;
 

@@ -11,16 +11,16 @@ use kmotiondef::boards::{TargetBoard, stamp};
 
 use super::{FirmwareKind, FirmwareSymbol, FirmwareSymbols};
 
-/// Longest version text that is looked at.
+/// The longest version text, in bytes.
 const MAX_VERSION: usize = 80;
 
-/// Why a file cannot serve as firmware.
+/// The reason why a file cannot serve as firmware.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FirmwareError {
     /// The bytes are not a TI COFF image.
     #[error("not a firmware file: {0}")]
     NotAnImage(#[from] coff::Error),
-    /// It exports nothing.
+    /// The image exports no symbols.
     #[error("not a firmware file: the image has no external symbols")]
     NoSymbols,
 }
@@ -63,7 +63,7 @@ impl FirmwareFile {
         Ok(Self { symbols, version, time_stamp })
     }
 
-    /// What the firmware answers to `Version`; `None` if the file does not say.
+    /// The firmware's answer to `Version`; `None` if the file does not contain it.
     #[must_use]
     pub fn version(&self) -> Option<&str> {
         self.version.as_deref()
@@ -97,7 +97,7 @@ impl FirmwareFile {
         self.symbols.keys().map(String::as_str)
     }
 
-    /// Whether programs can use `name`.
+    /// Reports whether programs can use `name`.
     #[must_use]
     pub fn has(&self, name: &str) -> bool {
         self.symbols.contains_key(name)
@@ -121,7 +121,7 @@ impl FirmwareFile {
 /// The type of everything in the vendor's file.
 const INT: SymbolType = SymbolType::new(BaseType::INT);
 
-/// Whether the vendor's linker takes over symbols of this type.
+/// Reports whether the vendor's linker takes over symbols of this type.
 fn is_exported(ty: SymbolType) -> bool {
     match ty.outermost() {
         Some(Derivation::Function | Derivation::Array) => true,

@@ -23,12 +23,12 @@ use std::sync::Arc;
 use kmotiondef::boards::TargetBoard;
 use kmotiondef::firmware::Origin;
 
-/// Which firmware.
+/// The firmware that programs are linked against.
 #[derive(Clone, Debug)]
 pub enum Firmware {
-    /// That of a board.
+    /// The firmware of a board.
     Board(&'static TargetBoard),
-    /// That of a file.
+    /// The firmware of a file.
     File(Arc<FirmwareFile>),
 }
 
@@ -48,7 +48,7 @@ impl Firmware {
         }
     }
 
-    /// Whether the firmware has `name`, or the simulated board supplies it to every program.
+    /// Reports whether the firmware has `name`, or the simulated board supplies it to every program.
     fn has(&self, name: &str) -> bool {
         match self {
             Self::Board(_) => true,

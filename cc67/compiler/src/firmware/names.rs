@@ -1,4 +1,4 @@
-//! What the firmware offers under names that a program did not declare.
+//! The functions and variables of the firmware, for names that a program did not declare.
 //!
 //! A program that forgot the header, or a declaration, still gets the firmware's own
 //! prototype (`dialect.md` 2.3), and a misspelt name gets a suggestion.
@@ -10,9 +10,9 @@ use kmotiondef::firmware::Origin;
 /// The prototype of a firmware or library function.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Prototype {
-    /// What it returns.
+    /// The type of its result.
     pub result: CType,
-    /// What it takes.
+    /// The types of its parameters.
     pub parameters: Vec<CType>,
     /// `...` ends the list.
     pub is_variadic: bool,
@@ -23,20 +23,20 @@ pub trait FirmwareNames {
     /// The prototype of a function that a program may call without declaring it.
     fn prototype(&self, name: &str) -> Option<Prototype>;
 
-    /// Where a function of this name comes from; `None` if there is none.
+    /// The origin of a function of this name; `None` if there is none.
     fn origin(&self, name: &str) -> Option<Origin> {
         self.prototype(name).map(|_| Origin::Header)
     }
 
-    /// Whether the vendor's header declares a variable or constant of this name.
+    /// Reports whether the vendor's header declares a variable or constant of this name.
     fn is_variable(&self, name: &str) -> bool;
 
-    /// Whether the firmware has the name for itself: neither function nor variable for programs.
+    /// Reports whether the firmware uses the name internally: neither a function nor a variable for programs.
     fn is_hidden(&self, _name: &str) -> bool {
         false
     }
 
-    /// Whether the vendor's header defines a type of this name.
+    /// Reports whether the vendor's header defines a type of this name.
     fn is_type(&self, name: &str) -> bool;
 
     /// The board that programs are compiled for; of a firmware that is not known, the one whose tables serve for it.

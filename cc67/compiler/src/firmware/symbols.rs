@@ -1,4 +1,4 @@
-//! What the linker asks of the firmware.
+//! The interface between linker and firmware.
 
 use kmotiondef::boards::TargetBoard;
 use kmotiondef::firmware::{ABSENT, row_named};
@@ -12,13 +12,13 @@ use crate::ir::inst::Class;
 /// A symbol of the firmware.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FirmwareSymbol {
-    /// Where it is.
+    /// Its address.
     pub address: GuestAddr,
-    /// What it is.
+    /// Its kind.
     pub kind: FirmwareKind,
 }
 
-/// What a symbol of the firmware is.
+/// The kind of a symbol of the firmware.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FirmwareKind {
     /// A variable.

@@ -19,23 +19,23 @@ const PIECE: usize = 0x4000;
 pub struct Download {
     /// The thread that it goes into.
     pub thread: ThreadId,
-    /// Where a thread begins to execute it.
+    /// The address at which a thread begins to execute it.
     pub entry: GuestAddr,
-    /// What is stored where, in the order of sending.
+    /// The addresses and bytes to store, in the order of sending.
     pub writes: Vec<(GuestAddr, Vec<u8>)>,
 }
 
-/// Why lines are not a download.
+/// The error for lines that are not a download.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {kind}")]
 pub struct DownloadError {
     /// Number of the line, from 1.
     pub line: usize,
-    /// What is wrong with it.
+    /// The kind of error.
     pub kind: DownloadErrorKind,
 }
 
-/// What is wrong with a line.
+/// A kind of error in a line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DownloadErrorKind {
     /// It is none of the three commands, or incomplete.
@@ -57,7 +57,7 @@ pub fn script(image: &Image, thread: ThreadId) -> String {
     Download { thread, entry: GuestAddr::new(entry), writes }.to_string()
 }
 
-/// What a load sends of a section.
+/// The stores with which a load sends a section.
 fn section_writes(section: &Section) -> Vec<(GuestAddr, Vec<u8>)> {
     let is = |flag| section.flags.contains(flag);
     let address = GuestAddr::new(section.address);

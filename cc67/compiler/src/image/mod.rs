@@ -1,4 +1,4 @@
-//! From a linked program to its image: TI COFF2 as `coff.md` of the specification lays it out.
+//! Writing the image of a linked program: TI COFF2 as in `coff.md` of the specification.
 //!
 //! Departures from what the vendor's compiler writes, each for a reason:
 //! - the target id of bytecode is our own, and its text begins with words that let a processor return at once, so that
@@ -13,7 +13,7 @@
 pub mod download;
 pub mod map;
 
-/// Why a program cannot be an image: it exceeds what the format can count.
+/// The error for a program that exceeds what the format can count.
 pub use coff::Error as WriteError;
 use coff::raw::{BoundaryAux, FunctionAux};
 use coff::{

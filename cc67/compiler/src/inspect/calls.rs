@@ -23,7 +23,7 @@ pub(super) struct Node {
     pub(super) calls: BTreeSet<usize>,
     /// The functions that its calls through pointers may reach.
     pub(super) through_pointers: BTreeSet<usize>,
-    /// Whether there are such calls.
+    /// True if there are such calls.
     pub(super) calls_pointers: bool,
     /// The firmware's functions that it calls.
     pub(super) firmware: BTreeSet<String>,

@@ -1,4 +1,4 @@
-//! How two images differ: headers, sections, symbols.
+//! Comparison of two images: headers, sections, symbols.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

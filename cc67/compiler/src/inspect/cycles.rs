@@ -1,8 +1,7 @@
-//! What the processor's code costs: cycles of functions and of the turns of loops, and the listing that shows why.
+//! The cost of the processor's code: cycles of functions and of loop iterations, and the listing that explains them.
 //!
-//! The cycles are those of the packets (`c67x.md` section 5); what memory makes the processor wait comes on top. Where
-//! the code can take several ways, the shortest and the longest are given; a loop inside counts as one turn, a call as
-//! nothing but the branch.
+//! The cycles are those of the packets (`c67x.md` section 5), without waits for memory. If the code can take several
+//! paths, the shortest and the longest are given; an inner loop counts as one iteration, a call as its branch alone.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -19,7 +18,7 @@ const SLICE: u32 = 18_000;
 struct Loop {
     first: usize,
     last: usize,
-    /// The shortest and the longest turn.
+    /// The shortest and the longest iteration.
     turn: (u32, u32),
 }
 
@@ -150,7 +149,7 @@ impl Routine {
         turns.collect()
     }
 
-    /// Whether the stages of several turns overlap in a loop: why, or why not.
+    /// Explains whether the stages of several iterations overlap in a loop.
     fn remark(&self, found: &Loop) -> &'static str {
         let blocks = &self.blocks[found.first..=found.last];
         if blocks.iter().any(|block| block.call.is_some()) {
@@ -166,7 +165,7 @@ impl Routine {
         }
     }
 
-    /// Whether results are in flight from one turn to the next.
+    /// Reports whether results are in flight from one iteration to the next.
     fn overlaps(&self, block: &Block) -> bool {
         let packets = &self.packets[block.packets.clone()];
         let cycles: u32 = packets.iter().map(|packet| packet.cycles).sum();

@@ -10,7 +10,7 @@ use super::Inspection;
 use super::calls::firmware_name;
 use crate::bytecode::references::{Reference, reference};
 
-/// Where the text of source files comes from; images know their names without folders.
+/// The source of the text of source files; images know their names without folders.
 pub trait Sources {
     /// The text of the file with this name, if it is found.
     fn text(&self, name: &str) -> Option<String>;

@@ -1,5 +1,5 @@
-//! How far a function of the processor's code lowers the stack pointer: the sum of additions to B15, on every path
-//! through its blocks.
+//! The bytes by which a function of the processor's code lowers the stack pointer: the sum of additions to B15, on
+//! every path through its blocks.
 
 use c67x::convention::STACK;
 use c67x::{Inst, Mem, Mnemonic, Offset, Operand, Pred, Update};
@@ -65,7 +65,7 @@ fn taken(inst: &Inst) -> Option<i64> {
     }
 }
 
-/// What an access adds to its base.
+/// The bytes that an access adds to its base.
 fn moved(inst: &Inst, mem: Mem) -> Option<i64> {
     let Offset::Const(count) = mem.offset else { return None };
     let bytes = i64::from(inst.mnemonic().bytes()?) * i64::from(count);

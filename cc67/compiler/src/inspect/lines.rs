@@ -7,7 +7,7 @@ use coff::{Image, Line, Target};
 use super::Inspection;
 use super::symbols::{Entry, EntryKind};
 
-/// Where a source line begins in the code.
+/// The start of a source line in the code.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SourceLine {
     /// The address.
@@ -89,8 +89,8 @@ impl Inspection {
     }
 }
 
-/// Whether no instruction executes in parallel with another, as in all code of the vendor's compiler; ours pads packets
-/// with parallel instructions even where nothing is optimised.
+/// Reports whether no instruction executes in parallel with another, as in all code of the vendor's compiler; ours pads
+/// packets with parallel instructions even where nothing is optimised.
 fn has_no_parallel(image: &Image) -> bool {
     let words = image.section(".text").map(|text| text.data().as_chunks::<4>().0).unwrap_or_default();
     words.iter().all(|word| u32::from_le_bytes(*word) & c67x::PARALLEL == 0)

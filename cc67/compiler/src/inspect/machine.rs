@@ -45,11 +45,11 @@ pub(super) struct Block {
     /// Cycles from its beginning to its end.
     pub(super) cycles: u32,
     pub(super) edges: Vec<Edge>,
-    /// What it calls at its end.
+    /// The target of the call at its end.
     pub(super) call: Option<Called>,
 }
 
-/// What is called.
+/// The target of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Called {
     /// The function at an address.
@@ -208,7 +208,7 @@ impl Routine {
         Block { packets: start..end, cycles, edges: Vec::new(), call: None }
     }
 
-    /// Whether the return address is set for the branch in a packet: in its shadow or shortly before.
+    /// Reports whether the return address is set for the branch in a packet: in its delay slots or shortly before.
     fn sets_link(&self, packet: usize) -> bool {
         let time = self.packets[packet].time;
         let (from, to) = (self.at_time(time.saturating_sub(40)), self.at_time(time + BRANCH));
@@ -220,8 +220,8 @@ impl Routine {
         self.packets[from..to].iter().flat_map(|packet| &packet.insts).any(sets)
     }
 
-    /// Whether a register keeps the return address before a packet: it gets copies of the link register, and at the ends
-    /// of the function what it held before.
+    /// Reports whether a register keeps the return address before a packet: it gets copies of the link register, and at
+    /// the ends of the function its previous value.
     fn keeps_link(&self, packet: usize, reg: Reg) -> bool {
         let before = self.packets[..packet].iter().flat_map(|packet| &packet.insts);
         let mut copies = 0;
@@ -275,7 +275,7 @@ fn packets(address: u32, words: &[u32]) -> Result<Vec<Packet>, u32> {
     Ok(all)
 }
 
-/// Where a call of an address arrives: functions out of reach are called by way of a jump after the program's own.
+/// The target of a call of an address: functions out of reach are called through a jump after the program's code.
 pub(super) fn beyond(image: &coff::Image, address: u32) -> u32 {
     let far = || {
         let text = image.section(".text")?;

@@ -95,7 +95,7 @@ impl Inspection {
         Some(&entry.name)
     }
 
-    /// Who calls whom.
+    /// Renders the call graph.
     #[must_use]
     pub fn calls(&self) -> String {
         match self.call_graph() {

@@ -1,4 +1,4 @@
-//! How deep the stack can get: frames along chains of calls.
+//! The depth of the stack: frames along chains of calls.
 //!
 //! In bytecode a frame holds what has an address: arrays, structures, locals with `&`. Everything else lives in
 //! registers of the machine and costs no stack. In code for the controller's processor a frame is what the code takes
@@ -21,7 +21,7 @@ enum Depth {
     Unknown,
 }
 
-/// What is called at the deepest place.
+/// The callee at the deepest point.
 #[derive(Clone, Copy, Debug)]
 enum Next {
     Nothing,
@@ -67,7 +67,7 @@ pub(super) fn render(inspection: &Inspection, calls: &Calls) -> String {
 
 struct Depths<'a> {
     calls: &'a Calls,
-    /// Whether it is code for the processor, where the firmware's functions are on the same stack.
+    /// True for code of the processor, where the firmware's functions are on the same stack.
     is_real: bool,
 }
 
@@ -148,7 +148,8 @@ fn chain(calls: &Calls, depths: &[Depth], start: usize) -> String {
     names.join(" → ")
 }
 
-/// Why the depth of a function is not known: the first circle of calls that it reaches, or a frame without a size.
+/// The reason why the depth of a function is not known: the first cycle of calls that it reaches, or a frame without a
+/// size.
 fn reason(calls: &Calls, start: usize) -> String {
     let mut path =
         vec![(start, calls.nodes.get(start).map(|node| callees(node).collect()).unwrap_or_default())];

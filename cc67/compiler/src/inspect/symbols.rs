@@ -7,7 +7,7 @@ use coff::{Image, SectionNumber, StorageClass, Symbol, Target};
 
 use super::Inspection;
 
-/// What a symbol names.
+/// The kind of a symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EntryKind {
     /// A function.
@@ -47,15 +47,15 @@ pub struct Entry {
     pub size: Option<u32>,
     /// Its section, or where else it is.
     pub section: String,
-    /// What it is.
+    /// Its kind.
     pub kind: EntryKind,
-    /// Whether other units see it.
+    /// True if other units see it.
     pub is_external: bool,
     /// The file of a function.
     pub file: Option<String>,
 }
 
-/// How a list of symbols is sorted.
+/// The order of a list of symbols.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
     /// By address.
@@ -120,7 +120,7 @@ fn kind(image: &Image, symbol: &Symbol) -> EntryKind {
     }
 }
 
-/// Whether an address lies between the first and the last byte of the program.
+/// Reports whether an address lies between the first and the last byte of the program.
 fn inside(image: &Image, address: u32) -> bool {
     let sections = image.sections.iter().filter(|section| section.size() > 0);
     let start = sections.clone().map(|section| section.address).min().unwrap_or(0);

@@ -1,7 +1,7 @@
-//! What an operator computes of constants, as the machine does.
+//! Arithmetic on constants, with the results of the machine.
 //!
-//! `None` is the result of what would trap, and of an operator that there is not on such values. Analysis folds with it
-//! what the source has as constants, and passes what they find.
+//! `None` is the result of an operation that would trap, and of an operator that does not exist on such values.
+//! Analysis folds the source's constants with it, and passes those that they find.
 
 use std::ops::{Add, Div, Mul, Sub};
 

@@ -56,7 +56,7 @@ impl Builder {
         self.origin.span
     }
 
-    /// Whether what is appended now can be reached.
+    /// Reports whether instructions appended now can be reached.
     #[must_use]
     pub const fn is_open(&self) -> bool {
         self.open.is_some()
@@ -78,7 +78,7 @@ impl Builder {
         self.function.blocks.push(Block { insts: Vec::new(), terminator: Terminator::Unreachable, origin })
     }
 
-    /// Opens a block; the one before, if still open, goes on there.
+    /// Opens a block; the one before, if still open, jumps to it.
     pub fn open(&mut self, block: BlockId) {
         self.terminate(Terminator::Jump(block));
         self.place_ways(block);

@@ -1,8 +1,8 @@
-//! What the text of a function says of the classes of its values.
+//! The classes of values, from the text of a function.
 //!
 //! A parameter list names classes, and so does every instruction that writes a value, except for a copy: that has the
-//! class of its source. What nothing says is declared in front of the first block: the class of a value that is read
-//! and never written, or that is only a copy of such values.
+//! class of its source. The class of a value that is read and never written, or that is only a copy of such values, is
+//! declared before the first block.
 
 use super::inst::{Class, ValueId};
 use cranelift_entity::SecondaryMap;

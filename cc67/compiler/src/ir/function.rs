@@ -18,7 +18,7 @@ pub fn table<K: EntityRef, V: Clone + Default>(len: usize) -> SecondaryMap<K, V>
     table
 }
 
-/// What goes into a function and what comes out, as classes.
+/// The signature of a function, as classes.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Signature {
     /// Parameters, hidden ones included.
@@ -78,7 +78,7 @@ pub struct FrameSlot {
 pub struct Block {
     /// Instructions in order.
     pub insts: Vec<Inst>,
-    /// How it ends.
+    /// Its terminator.
     pub terminator: Terminator,
     /// The statement that the end belongs to.
     pub origin: CodeOrigin,
@@ -89,18 +89,18 @@ pub struct Block {
 pub struct SourceVariable {
     /// The local.
     pub local: LocalId,
-    /// Where it is.
+    /// Its home.
     pub home: VariableHome,
 }
 
-/// Where a local is.
+/// The home of a local.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VariableHome {
     /// In a value that was written this many times when the function was lowered.
     Value(ValueId, u32),
     /// In the frame.
     Slot(SlotId),
-    /// Where a value points.
+    /// In memory, at the address in a value.
     Pointer(ValueId),
     /// Nowhere: it is always this, the bits of a register.
     Constant(u64),
@@ -111,16 +111,16 @@ pub enum VariableHome {
 pub struct InlinedCall {
     /// The called function.
     pub callee: SymbolId,
-    /// Where it was called.
+    /// The position of the call in the source.
     pub origin: CodeOrigin,
-    /// Where its locals are.
+    /// The homes of its locals.
     pub variables: Vec<SourceVariable>,
 }
 
 /// The locals of the source in a function.
 #[derive(Clone, Debug, Default)]
 pub struct SourceLocals {
-    /// Where its own are.
+    /// The homes of its own locals.
     pub variables: Vec<SourceVariable>,
     /// The inlined calls, with theirs.
     pub inlined: PrimaryMap<InlineId, InlinedCall>,
@@ -151,7 +151,7 @@ pub struct Function {
     pub span: Span,
     /// Its closing brace.
     pub end: Span,
-    /// What debuggers look for.
+    /// The homes of the source's locals, for debuggers.
     pub source: SourceLocals,
 }
 
@@ -175,7 +175,7 @@ impl Function {
         }
     }
 
-    /// How often a value is written.
+    /// Number of writes of a value.
     #[must_use]
     pub fn writes(&self, value: ValueId) -> u32 {
         let insts = self.layout.iter().flat_map(|id| &self.blocks[*id].insts);
@@ -191,7 +191,7 @@ impl Function {
         }
     }
 
-    /// How many edges lead to each block; the entry has one more.
+    /// Number of edges that lead to each block; the entry has one more.
     #[must_use]
     pub fn predecessors(&self) -> SecondaryMap<BlockId, u32> {
         let mut counts = table(self.blocks.len());
@@ -206,7 +206,7 @@ impl Function {
         counts
     }
 
-    /// Whether `block` is entered from the block `before` alone, so that what holds at its end holds on.
+    /// Reports whether `before` is the only predecessor of `block`, so that facts at its end still hold.
     #[must_use]
     pub fn is_only_way(
         &self,

@@ -23,7 +23,7 @@ index! {
 }
 
 named! {
-    /// What a value can hold.
+    /// The class of a value.
     Class {
         /// 32-bit integer or address.
         I32 = "i32";
@@ -37,7 +37,7 @@ named! {
 }
 
 impl Class {
-    /// Whether it is one of the integer classes.
+    /// Reports whether it is one of the integer classes.
     #[must_use]
     pub const fn is_integer(self) -> bool {
         match self {
@@ -110,7 +110,7 @@ impl Constant {
     }
 }
 
-/// What an instruction reads.
+/// An operand of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operand {
     /// A value.
@@ -157,7 +157,7 @@ impl From<Constant> for Operand {
     }
 }
 
-/// What an address is relative to.
+/// The base of an address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Base {
     /// Nothing: the offset is the address.
@@ -173,7 +173,7 @@ pub enum Base {
 /// A place in memory: base plus offset, wrapping.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Address {
-    /// What the offset counts from.
+    /// The base of the offset.
     pub base: Base,
     /// Bytes.
     pub offset: i32,
@@ -206,7 +206,7 @@ impl Address {
     }
 }
 
-/// What a call calls.
+/// The target of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Callee {
     /// A function by name.
@@ -220,7 +220,7 @@ pub enum Callee {
 pub struct ArgumentRange {
     /// Index of the first.
     pub start: u32,
-    /// How many.
+    /// Number of arguments.
     pub count: u32,
 }
 
@@ -232,16 +232,16 @@ impl ArgumentRange {
     }
 }
 
-/// One instruction and the statement it belongs to.
+/// An instruction and the statement it belongs to.
 #[derive(Clone, Copy, Debug)]
 pub struct Inst {
-    /// What it does.
+    /// The kind of instruction.
     pub kind: InstKind,
     /// The source that a trap in it names.
     pub origin: CodeOrigin,
 }
 
-/// What code was in the source.
+/// The position of code in the source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CodeOrigin {
     /// The statement.
@@ -258,7 +258,7 @@ impl CodeOrigin {
     }
 }
 
-/// What an instruction does.
+/// The kind of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum InstKind {
     /// `dst = src`
@@ -312,18 +312,18 @@ pub enum InstKind {
     Load {
         /// Written.
         dst: ValueId,
-        /// What is loaded.
+        /// The width of the access.
         width: Width,
-        /// From where.
+        /// The source.
         address: Address,
     },
     /// `memory[address] = src`
     Store {
         /// Read.
         src: Operand,
-        /// What is stored.
+        /// The width of the access.
         width: Width,
-        /// To where.
+        /// The destination.
         address: Address,
     },
     /// `dst = slot + offset`: an address in the frame.
@@ -337,23 +337,23 @@ pub enum InstKind {
     },
     /// Copies `len` bytes; the ranges may be the same but do not overlap otherwise.
     CopyMemory {
-        /// Where to.
+        /// The destination.
         to: Address,
-        /// Where from.
+        /// The source.
         from: Address,
-        /// How many bytes.
+        /// Number of bytes.
         len: u32,
     },
     /// Writes `len` zero bytes.
     ClearMemory {
-        /// Where to.
+        /// The destination.
         to: Address,
-        /// How many bytes.
+        /// Number of bytes.
         len: u32,
     },
     /// `dst = callee(arguments)`
     Call {
-        /// What is called.
+        /// The function.
         callee: Callee,
         /// The arguments, of the classes that the signature names.
         arguments: ArgumentRange,
@@ -426,7 +426,8 @@ impl InstKind {
         if let Self::Call { signature, .. } = *self { Some(signature) } else { None }
     }
 
-    /// Whether the instruction does more than write its value: it must stay even if nobody reads that.
+    /// Reports whether the instruction has an effect besides its value, so that it must stay even if the value is not
+    /// read.
     #[must_use]
     pub fn has_effect(&self, class: Class) -> bool {
         match self {
@@ -455,20 +456,20 @@ fn visit_base(address: &mut Address, visit: &mut impl FnMut(&mut Operand)) {
     }
 }
 
-/// Whether `operand` is an integer constant other than 0.
+/// Reports whether `operand` is an integer constant other than 0.
 fn is_nonzero(operand: Operand) -> bool {
     matches!(operand, Operand::Constant(Constant::I32(value)) if value != 0)
         || matches!(operand, Operand::Constant(Constant::I64(value)) if value != 0)
 }
 
-/// How a block ends.
+/// The terminator of a block.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Terminator {
     /// Goes on at a block.
     Jump(BlockId),
     /// Goes to `then` if `condition`, of class `I32`, is not 0.
     Branch {
-        /// What is tested.
+        /// The tested value.
         condition: Operand,
         /// Taken for anything but 0.
         then: BlockId,

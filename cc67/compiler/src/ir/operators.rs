@@ -1,8 +1,8 @@
 //! Operators, comparisons, conversions and widths of memory accesses.
 //!
-//! Operators name signedness where it matters, as the machine's instructions do. `>` and `>=`
-//! do not exist: whoever builds a comparison swaps its operands. What passes and back ends ask of an
-//! operator is in its row.
+//! Operators name signedness where it matters, as the machine's instructions do. `>` and `>=` do not exist: a
+//! comparison is built with its operands swapped. The properties that passes and back ends need of an operator are in
+//! its row.
 
 use super::inst::Class;
 use crate::operators::{self, for_each_binary_op};
@@ -58,7 +58,7 @@ named! {
 }
 
 impl UnaryOp {
-    /// Whether there is such an operator on values of a class.
+    /// Reports whether the operator exists on values of a class.
     #[must_use]
     pub const fn works_on(self, class: Class) -> bool {
         match self {
@@ -68,7 +68,7 @@ impl UnaryOp {
     }
 }
 
-/// What the two operands of an operator are.
+/// The classes of an operator's operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Domain {
     /// Both of the class of the result.
@@ -79,7 +79,7 @@ enum Domain {
     Shift,
 }
 
-/// What a row says of an operator.
+/// The properties of an operator, from its row.
 #[derive(Clone, Copy, Debug)]
 struct Facts {
     domain: Domain,
@@ -160,7 +160,7 @@ macro_rules! machine_operators {
 for_each_binary_op!(machine_operators);
 
 impl BinaryOp {
-    /// Whether there is such an operator on values of a class.
+    /// Reports whether the operator exists on values of a class.
     #[must_use]
     pub const fn works_on(self, class: Class) -> bool {
         match self.facts().domain {
@@ -169,7 +169,7 @@ impl BinaryOp {
         }
     }
 
-    /// Whether the second operand is a shift count.
+    /// Reports whether the second operand is a shift count.
     #[must_use]
     pub const fn is_shift(self) -> bool {
         match self.facts().domain {
@@ -178,13 +178,13 @@ impl BinaryOp {
         }
     }
 
-    /// Whether the operands can change places.
+    /// Reports whether the operands can be swapped.
     #[must_use]
     pub const fn is_commutative(self) -> bool {
         self.facts().commutative
     }
 
-    /// Whether a zero divisor traps, so that the instruction must stay; floating division never does.
+    /// Reports whether a zero divisor traps, so that the instruction must stay; floating division never does.
     #[must_use]
     pub const fn may_trap(self, class: Class) -> bool {
         class.is_integer() && self.facts().divides
@@ -210,7 +210,7 @@ named! {
 }
 
 impl CompareOp {
-    /// Whether the operands can change places.
+    /// Reports whether the operands can be swapped.
     #[must_use]
     pub const fn is_symmetric(self) -> bool {
         match self {
@@ -297,7 +297,7 @@ conversions! {
 }
 
 named! {
-    /// How many bytes a load or store moves and how a load widens them.
+    /// The width of a load or store, and the extension by a load.
     Width {
         /// A byte, sign-extended by a load.
         I8 = "i8";

@@ -17,7 +17,7 @@ use crate::typed::SymbolId;
 use body::Body;
 use cursor::Cursor;
 
-/// What a text holds.
+/// The functions of a text.
 #[derive(Debug, Default)]
 pub struct Functions {
     /// The functions, in the order of the text.
@@ -53,13 +53,13 @@ impl SymbolNames for Symbols {
     }
 }
 
-/// Why a text is not IR.
+/// The error for a text that is not IR.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {message}")]
 pub struct ParseError {
     /// Number of the line, from 1.
     pub line: usize,
-    /// What is wrong with it.
+    /// The error.
     pub message: String,
 }
 

@@ -28,13 +28,13 @@ use super::inst::{
 };
 use crate::typed::SymbolId;
 
-/// How symbols are called in the text.
+/// The names of symbols in the text.
 pub trait SymbolNames {
     /// The name of a symbol.
     fn symbol_name(&self, symbol: SymbolId) -> &str;
 }
 
-/// Whether a name is that of a value or slot, so that a symbol of this name is marked in the text.
+/// Reports whether a name is that of a value or slot, so that a symbol of this name is marked in the text.
 pub(super) fn is_taken(name: &str) -> bool {
     ["v", "slot"].iter().any(|prefix| {
         let number = name.strip_prefix(prefix);

@@ -7,7 +7,7 @@ use cranelift_entity::EntitySet;
 use super::function::{Function, Signatures};
 use super::inst::{Address, Base, BlockId, Callee, Class, InstKind, Operand, Terminator};
 
-/// What is wrong, and where.
+/// An error in a function, with its position.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{block}, instruction {index}: {message}")]
 pub struct Malformed {

@@ -1,4 +1,4 @@
-//! What can go wrong when linking.
+//! Errors and warnings of the linker.
 
 use kmotiondef::boards::TargetBoard;
 
@@ -6,21 +6,21 @@ use crate::diag::Diagnostic;
 use crate::source::Span;
 use crate::words::foreign;
 
-/// Why the program cannot be linked.
+/// The reason why the program cannot be linked.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{kind}")]
 pub struct LinkError {
     /// Index of the object that it concerns, if it is one.
     pub object: Option<usize>,
-    /// Where in that object's source.
+    /// The range in that object's source.
     pub span: Option<Span>,
-    /// What is wrong.
+    /// The kind of error.
     pub kind: LinkErrorKind,
-    /// Who needs the symbol that it is about: "`main` (a.c:5)".
+    /// The users of the symbol that it is about: "`main` (a.c:5)".
     pub users: Vec<String>,
 }
 
-/// What is wrong.
+/// A kind of link error.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LinkErrorKind {
     /// There is no entry point.
@@ -65,9 +65,9 @@ pub enum LinkErrorKind {
     /// The program does not fit the program area.
     #[error("the program is {excess} bytes too large for the {space} bytes after its address")]
     TooLarge {
-        /// How many bytes stand beyond the limit.
+        /// Bytes beyond the limit.
         excess: u32,
-        /// How many bytes there are from the program's address to the limit.
+        /// Bytes from the program's address to the limit.
         space: u32,
         /// The largest symbols, `name (bytes)`.
         largest: Vec<String>,
@@ -129,7 +129,7 @@ impl LinkError {
     }
 }
 
-/// How many users are named.
+/// The most users that are named.
 const NAMED_USERS: usize = 6;
 
 /// "a, b and 3 others".
@@ -142,7 +142,7 @@ fn enumerate(users: &[String]) -> String {
     }
 }
 
-/// What the user should know about a program that was linked.
+/// A warning about a program that was linked.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LinkWarning {
     /// The program is larger than its thread's space.
@@ -151,7 +151,7 @@ pub enum LinkWarning {
         list(entered)
     )]
     EntersOtherThreads {
-        /// How many bytes stand beyond the thread's own space.
+        /// Bytes beyond the thread's own space.
         excess: u32,
         /// The threads whose space is entered.
         entered: Vec<u8>,

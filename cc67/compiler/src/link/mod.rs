@@ -23,27 +23,27 @@ use crate::firmware::FirmwareSymbols;
 use crate::object::{Object, SourceLine, SymbolKind};
 use crate::typed::Linkage;
 
-/// How to link.
+/// The options of a link.
 #[derive(Clone, Copy)]
 pub struct Options<'a> {
     /// The thread that the program is for.
     pub thread: ThreadId,
-    /// What the firmware offers.
+    /// The symbols of the firmware.
     pub firmware: &'a dyn FirmwareSymbols,
-    /// Whether functions and objects that `main` cannot reach are left out.
+    /// Drop functions and objects that `main` cannot reach.
     pub gc: bool,
-    /// Where sections go that do not go where they usually do.
+    /// The addresses of sections outside the space of the thread.
     pub addresses: SectionAddresses,
 }
 
 /// Addresses of sections; those that are not given follow from the thread and the sections before.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SectionAddresses {
-    /// Of the text.
+    /// The address of the text.
     pub text: Option<GuestAddr>,
-    /// Of the initialised data.
+    /// The address of the initialised data.
     pub data: Option<GuestAddr>,
-    /// Of the uninitialised data.
+    /// The address of the uninitialised data.
     pub bss: Option<GuestAddr>,
 }
 
@@ -52,7 +52,7 @@ pub struct SectionAddresses {
 pub struct Linked {
     /// The thread it is for.
     pub thread: ThreadId,
-    /// What its code is for.
+    /// The target of its code.
     pub target: crate::target::Target,
     /// The text.
     pub text: LinkedSection,
@@ -60,10 +60,10 @@ pub struct Linked {
     pub data: LinkedSection,
     /// The uninitialised data.
     pub bss: Uninitialized,
-    /// Where a thread begins to execute it: `main`, or the words before bytecode, which lead the simulated board there
-    /// and let a processor return.
+    /// The address at which a thread begins to execute it: `main`, or the words before bytecode, which lead the
+    /// simulated board there and let a processor return.
     pub entry: GuestAddr,
-    /// What it needs of the firmware.
+    /// The firmware that it needs.
     pub firmware: LinkedFirmware,
     /// Source files.
     pub files: Vec<String>,
@@ -71,9 +71,9 @@ pub struct Linked {
     pub symbols: Vec<LinkedSymbol>,
     /// The functions, in the order of their addresses; index for index the first of `symbols`.
     pub functions: Vec<LinkedFunction>,
-    /// Where source lines and places in them begin, ascending.
+    /// The starts of source lines and of positions in them, ascending.
     pub lines: Vec<LinkedLine>,
-    /// What deserves a warning.
+    /// The warnings.
     pub warnings: Vec<LinkWarning>,
 }
 
@@ -91,22 +91,22 @@ pub struct LinkedFirmware {
 /// A section with its bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkedSection {
-    /// Where it begins.
+    /// Its start address.
     pub address: GuestAddr,
-    /// What it holds.
+    /// Its bytes.
     pub bytes: Vec<u8>,
 }
 
 /// A section that a load clears.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Uninitialized {
-    /// Where it begins.
+    /// Its start address.
     pub address: GuestAddr,
-    /// How many bytes it has.
+    /// Its size in bytes.
     pub size: u32,
 }
 
-/// Where a symbol stands.
+/// The section of a symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Section {
     /// Code.
@@ -122,17 +122,17 @@ pub enum Section {
 pub struct LinkedSymbol {
     /// Its name.
     pub name: String,
-    /// Where it is.
+    /// Its address.
     pub address: GuestAddr,
     /// Its size in bytes.
     pub size: u32,
     /// Its section.
     pub section: Section,
-    /// What kind of type it has.
+    /// The kind of its type.
     pub kind: SymbolKind,
-    /// Whether it is `static`.
+    /// Its linkage: `static` or external.
     pub linkage: Linkage,
-    /// Where it is defined.
+    /// The position of its definition.
     pub place: SourceLine,
 }
 
@@ -149,7 +149,7 @@ pub struct LinkedFunction {
     pub exceeded: Vec<SourceLine>,
 }
 
-/// From this address on the code belongs to this place.
+/// The source position of the code from an address on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkedLine {
     /// The address.
@@ -167,9 +167,9 @@ pub struct LinkedLine {
 pub struct Import {
     /// Its name.
     pub name: String,
-    /// Where it is.
+    /// Its address.
     pub address: GuestAddr,
-    /// Whether it is a function.
+    /// True if it is a function.
     pub is_function: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Which definition a name means.
+//! Resolution of names to definitions.
 
 use std::collections::BTreeMap;
 
@@ -24,9 +24,9 @@ pub(super) struct Uninitialized {
     pub(super) object: usize,
     /// The symbol there.
     pub(super) symbol: SymbolId,
-    /// Bytes; the most that any definition asks for.
+    /// Its size in bytes: the largest of all definitions.
     pub(super) size: u32,
-    /// Alignment; the most that any definition asks for.
+    /// Its alignment: the largest of all definitions.
     pub(super) align: u32,
 }
 
@@ -116,7 +116,7 @@ impl<'a> Names<'a> {
         objects[object].describe(objects[object].symbols[symbol].place)
     }
 
-    /// What a symbol of an object means inside the program; `None` if no object defines it.
+    /// Returns the definition of an object's symbol inside the program; `None` if no object defines it.
     pub(super) fn find(&self, object: usize, id: SymbolId, symbol: &Symbol) -> Option<Defined> {
         match (symbol.linkage, symbol.definition) {
             (Linkage::External, _) => self.external.get(symbol.name.as_str()).copied(),

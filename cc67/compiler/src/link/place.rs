@@ -12,7 +12,7 @@ use crate::object::{Object, Symbol};
 
 /// Sections start at multiples of this many bytes.
 const SECTION_ALIGN: u32 = 32;
-/// How many symbols are named when the program is too large.
+/// Number of symbols that are named when the program is too large.
 const NAMED: usize = 5;
 
 /// The addresses.
@@ -74,7 +74,7 @@ pub(super) fn place(
     placed
 }
 
-/// Where the section after one that ends at `end` begins.
+/// The start of the section after one that ends at `end`.
 fn behind(end: u32) -> GuestAddr {
     GuestAddr::new(end.checked_next_multiple_of(SECTION_ALIGN).unwrap_or(u32::MAX))
 }

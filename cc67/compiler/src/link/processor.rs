@@ -18,12 +18,12 @@ use crate::target;
 /// Bytes of a word.
 const WORD: u32 = 4;
 
-/// What the objects are for.
+/// The target of the objects.
 pub(super) fn target(objects: &[Object]) -> target::Target {
     objects.first().map_or(target::Target::Sim, Object::target)
 }
 
-/// That all objects are for one target.
+/// Checks that all objects are for one target.
 pub(super) fn check_targets(objects: &[Object]) -> Result<(), Vec<LinkError>> {
     let wanted = target(objects);
     match objects.iter().position(|object| object.target() != wanted) {
@@ -68,7 +68,7 @@ impl TextLayout {
     }
 }
 
-/// Whether a branch anywhere in a program at `base` reaches an address.
+/// Reports whether a branch anywhere in a program at `base` reaches an address.
 fn is_in_reach(base: u32, address: u32) -> bool {
     const REACH: u32 = 0x3C_0000;
     base.abs_diff(address) < REACH

@@ -20,13 +20,13 @@ use crate::target;
 use crate::typed::SymbolId;
 use crate::words::suggest;
 
-/// What a symbol of an object turned out to be.
+/// The target of an object's symbol.
 #[derive(Clone, Debug, Default)]
 pub(super) enum Target {
     /// Nothing refers to it, or nothing defines it.
     #[default]
     Unknown,
-    /// Something of the program.
+    /// A definition of the program.
     Program(Defined),
     /// A function of the firmware.
     Function(GuestAddr, Option<Signature>),
@@ -34,20 +34,20 @@ pub(super) enum Target {
     Variable(GuestAddr),
 }
 
-/// What the program consists of.
+/// The parts of the program.
 #[derive(Debug)]
 pub(super) struct Reached {
     /// The targets of each object's symbols.
     pub(super) targets: Vec<SecondaryMap<SymbolId, Target>>,
-    /// Which functions of each object are needed.
+    /// True for the functions of each object that are needed.
     pub(super) functions: Vec<Vec<bool>>,
-    /// Which initialised objects of each object are needed.
+    /// True for the initialised objects of each object that are needed.
     pub(super) data: Vec<Vec<bool>>,
-    /// Which uninitialised objects are needed.
+    /// True for the uninitialised objects that are needed.
     pub(super) bss: Vec<bool>,
     /// `main`: object and index.
     pub(super) main: (usize, u32),
-    /// What is needed of the firmware, by name.
+    /// The functions and variables of the firmware that are needed, by name.
     pub(super) imports: Vec<Import>,
 }
 
@@ -100,7 +100,7 @@ struct Walk<'a> {
     reached: Reached,
     imports: BTreeMap<&'a str, Import>,
     missing: BTreeMap<&'a str, LinkError>,
-    /// Definitions whose relocations have not been looked at.
+    /// Definitions whose relocations have not been followed yet.
     pending: VecDeque<Defined>,
 }
 
@@ -208,7 +208,7 @@ impl Walk<'_> {
     }
 }
 
-/// Who refers to a symbol.
+/// A user of a symbol.
 #[derive(Clone, Copy)]
 enum User {
     /// A word of a function.

@@ -132,7 +132,7 @@ impl TextLayout {
 
 /// Everything that knows an address.
 pub(super) struct Addresses<'a> {
-    /// Of the first word.
+    /// The address of the first word.
     pub(super) base: GuestAddr,
     pub(super) reached: &'a Reached,
     pub(super) placed: &'a Placed,
@@ -305,7 +305,7 @@ pub(super) fn data(objects: &[Object], addresses: &Addresses<'_>) -> Vec<u8> {
     data
 }
 
-/// What is known about each function besides its symbol.
+/// The descriptions of the functions, besides their symbols.
 pub(super) fn functions(objects: &[Object], layout: &TextLayout) -> Vec<LinkedFunction> {
     let mut first_line = 0;
     let describe = |(object, index, _): &(usize, u32, u32)| {

@@ -1,7 +1,7 @@
-//! Elements that an array does not have.
+//! Accesses beyond the end of an array.
 //!
-//! Only whole objects count: beyond a member array there is the next member, which programs reach on purpose. An
-//! index that changes is followed through the simplest loops, where every turn is known.
+//! Only whole objects count: after a member array comes the next member, which programs reach on purpose. A variable
+//! index is followed through the simplest loops, where every iteration is known.
 
 use super::program::AnalysedProgram;
 use super::walk::{Extent, Walk};
@@ -54,7 +54,7 @@ enum Object {
     Symbol(SymbolId),
 }
 
-/// A local that counts: its value in the first turn of a loop, and in the last.
+/// A loop counter: its value in the first iteration of a loop, and in the last.
 #[derive(Clone, Copy)]
 struct Counter {
     local: LocalId,
@@ -68,7 +68,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Reports accesses in the loops of `stmts` that every turn makes.
+    /// Reports accesses in the loops of `stmts` that every iteration makes.
     fn loops(&self, stmts: &[Stmt], sink: &mut Sink) {
         for [before, stmt] in stmts.array_windows() {
             let StmtKind::Loop { condition: Some(condition), test: LoopTest::Before, body, step: Some(step) } =
@@ -128,7 +128,7 @@ impl Search<'_> {
         }
     }
 
-    /// Whether something in `body` writes `local`.
+    /// Reports whether something in `body` writes `local`.
     fn changes(&self, body: &[Stmt], local: LocalId) -> bool {
         let mut found = false;
         Walk { function: self.function, extent: Extent::All }.stmts(body, &mut |expr| {
@@ -143,7 +143,7 @@ impl Search<'_> {
         found
     }
 
-    /// Reports what every turn of a loop does outside of an array in its first or last one.
+    /// Reports accesses of every iteration that are outside of an array in the first or last one.
     fn turns(&self, body: &[Stmt], counter: Counter, sink: &mut Sink) {
         Walk { function: self.function, extent: Extent::Always }.stmts(body, &mut |expr| {
             for place in accesses(self.function, &self.function.exprs[expr].kind) {
@@ -152,7 +152,7 @@ impl Search<'_> {
         });
     }
 
-    /// The message for an access to `place`, in the first and the last turn of a counter or without one.
+    /// The message for an access to `place`, in the first and the last iteration of a counter or without one.
     fn finding(&self, place: PlaceId, counter: Option<Counter>) -> Option<Diagnostic> {
         let (object, from) = self.target(place, counter.map(|counter| (counter.local, counter.first)))?;
         let (_, to) = self.target(place, counter.map(|counter| (counter.local, counter.last)))?;
@@ -236,7 +236,7 @@ impl Search<'_> {
     }
 }
 
-/// Whether every turn of a loop with this body goes from its beginning to its end.
+/// Reports whether every iteration of a loop with this body goes from its beginning to its end.
 fn is_plain(body: &[Stmt]) -> bool {
     body.iter().all(|stmt| match &stmt.kind {
         StmtKind::Expr(_) | StmtKind::Case(_) | StmtKind::DefaultCase => true,

@@ -1,7 +1,7 @@
-//! Conversions that the board does in a way of its own.
+//! Conversions that the board treats differently from C.
 //!
 //! They are right on a PC and print or store something else on the board (`gather-persist-console.md` 4.1 and 4.2).
-//! Only what can be seen in the format is reported; a format that is not written in the call is not looked at.
+//! Only a format that is a literal in the call is checked.
 
 use super::format::{FormatFunction, literal_format};
 use super::program::AnalysedProgram;
@@ -21,20 +21,20 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// What the board does otherwise.
+/// A conversion that the board treats differently.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Finding {
     /// The conversion as it is written.
     spelled: String,
-    /// What the board does, after "the board".
+    /// The board's behaviour, to follow "the board".
     message: &'static str,
-    /// What to write.
+    /// The replacement.
     help: &'static str,
     /// The warning that it belongs to.
     lint: Lint,
 }
 
-/// What the board does, and what to write.
+/// The board's behaviour, and the replacement.
 type Quirk = (&'static str, &'static str);
 
 fn findings(function: FormatFunction, format: &[u8]) -> Vec<Finding> {
@@ -66,7 +66,7 @@ fn literal_space(between: &[u8]) -> Option<Quirk> {
     ))
 }
 
-/// One `%` sequence.
+/// A `%` sequence.
 #[derive(Clone, Copy, Debug, Default)]
 struct Conversion<'f> {
     letter: u8,
@@ -133,7 +133,7 @@ impl<'f> Conversion<'f> {
         matches!(self.letter, b'f' | b'e' | b'E' | b'g' | b'G')
     }
 
-    /// What the board prints otherwise.
+    /// The board's behaviour for a conversion of `printf` that differs from C.
     fn printed(self) -> Option<Quirk> {
         let unsigned = self.is_integer() && !matches!(self.letter, b'd' | b'i');
         match (self.letter, self.length) {
@@ -169,7 +169,7 @@ impl<'f> Conversion<'f> {
         }
     }
 
-    /// What the board stores otherwise.
+    /// The board's behaviour for a conversion of `scanf` that differs from C.
     fn scanned(self) -> Option<Quirk> {
         match (self.letter, self.length) {
             (_, b"hh") => Some(("stores nothing and reads the letter", "use `%d` and an `int`")),
@@ -199,7 +199,7 @@ fn field(text: &[u8]) -> (&[u8], &[u8]) {
     text.split_at(count)
 }
 
-/// Whether a set has a `-` between two characters.
+/// Reports whether a set has a `-` between two characters.
 fn has_range(set: &[u8]) -> bool {
     let set = set.strip_prefix(b"^").unwrap_or(set);
     set.iter().skip(1).rev().skip(1).any(|byte| *byte == b'-')

@@ -1,4 +1,4 @@
-//! Which function of the unit calls which: what lints about call chains share.
+//! The calls between the functions of a unit, for lints about call chains.
 //!
 //! Calls through pointers are not followed, nor are functions that the unit does not define.
 

@@ -77,7 +77,7 @@ const fn range_of(ty: TypeId) -> Option<(i64, i64)> {
     }
 }
 
-/// What a comparison comes to for every value of a range.
+/// The result of a comparison that is the same for every value of a range.
 fn decided(op: CompareOp, least: i64, most: i64, number: i64) -> Option<bool> {
     let is_outside = number < least || number > most;
     match op {

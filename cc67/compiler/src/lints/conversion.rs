@@ -1,10 +1,10 @@
-//! Conversions that C makes by itself and that may lose something.
+//! Implicit conversions that may lose information.
 
 use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;
 use crate::ty::{TypeId, Types};
 
-/// What is lost of a number of one type that is stored in another.
+/// The loss when a number of one type is stored in another.
 pub(crate) fn loss(types: &Types, from: TypeId, to: TypeId) -> Option<&'static str> {
     let is_narrower = || types.size_of(to) < types.size_of(from);
     match (from.is_floating(), to.is_floating()) {

@@ -65,7 +65,7 @@ fn loop_warning(keyword: &str, body: &Statement, next: &Statement) -> Diagnostic
         .help("remove the `;`, or move it to a line of its own if the loop is only to wait")
 }
 
-/// Whether a `for` that only counts is followed, on the same line, by a use of its counter.
+/// Reports whether a `for` that only counts is followed, on the same line, by a use of its counter.
 fn is_for_next(sources: &SourceMap, statement: &Statement, next: &Statement) -> bool {
     let StatementKind::For { condition: Some(condition), body, .. } = &statement.kind else { return false };
     let ExpressionKind::Binary(operator, left, right) = &condition.kind else { return false };

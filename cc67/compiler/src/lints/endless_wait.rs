@@ -42,7 +42,7 @@ fn waited(program: &AnalysedProgram<'_>, function: &Function, stmt: &Stmt) -> Op
     (is_own && !symbols[symbol].is_anonymous()).then_some((symbol, *condition))
 }
 
-/// Whether statements may leave the loop around them, or hold assembler of their own.
+/// Reports whether statements may leave the loop around them, or hold inline assembler.
 fn leaves(stmts: &[Stmt]) -> bool {
     stmts.iter().any(|stmt| match &stmt.kind {
         StmtKind::Break | StmtKind::Return(_) | StmtKind::Goto(_) | StmtKind::GotoAddress(_) => true,

@@ -45,7 +45,7 @@ const fn is_label(stmt: &Stmt) -> bool {
     matches!(stmt.kind, StmtKind::Case(_) | StmtKind::DefaultCase)
 }
 
-/// Whether a comment between two statements says that the first continues into the second.
+/// Reports whether a comment between two statements announces the fall-through.
 fn is_announced(program: &AnalysedProgram<'_>, before: &Stmt, label: &Stmt) -> bool {
     const WORDS: [&str; 5] = ["fall", "no break", "continue", "also", "too"];
     let between = Span { lo: before.span.hi, hi: label.span.lo, ..label.span };

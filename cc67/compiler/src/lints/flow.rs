@@ -4,10 +4,10 @@ use cranelift_entity::EntityRef;
 
 use crate::typed::LocalId;
 
-/// What is certain at a place.
+/// The facts that hold at a position.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Flow {
-    /// Not reachable: every statement about it holds.
+    /// Not reachable: every fact holds.
     Unreachable,
     /// The locals that hold a value, one bit each.
     Stored(Vec<u64>),

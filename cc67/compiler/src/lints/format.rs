@@ -1,8 +1,7 @@
 //! `printf` and `scanf` formats against their arguments.
 //!
-//! Only a mismatch that prints or stores something wrong is reported: `%d` for an
-//! `unsigned` is fine, `%d` for a `double` is not (`dialect.md` 5). A format that is not
-//! written in the call is not looked at.
+//! Only a mismatch that prints or stores something wrong is reported: `%d` for an `unsigned` is fine, `%d` for a
+//! `double` is not (`dialect.md` 5). Only a format that is a literal in the call is checked.
 
 use kmotiondef::ctype::Role;
 use kmotiondef::firmware::row_named;
@@ -77,9 +76,9 @@ pub(super) fn literal_argument<'p>(
 /// A function that takes a format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct FormatFunction {
-    /// Which argument is the format, counted from 0.
+    /// The index of the format argument, counted from 0.
     pub(super) format: usize,
-    /// It stores through its arguments instead of printing them.
+    /// True for `scanf` and its kind, which store through their arguments.
     pub(super) is_scan: bool,
 }
 
@@ -100,11 +99,11 @@ type PassedArgument = (TypeId, Span);
 struct Finding {
     /// The argument that does not fit; `None` if the format itself is wrong.
     argument: Option<PassedArgument>,
-    /// What is wrong.
+    /// The message.
     message: String,
-    /// What would fit.
+    /// A conversion that fits.
     help: Option<String>,
-    /// It is the lack of an `&`.
+    /// True if the mistake is a missing `&`.
     lacks_address: bool,
 }
 
@@ -199,7 +198,7 @@ fn finding(argument: Option<PassedArgument>, message: String, help: Option<Strin
     Finding { argument, message, help, lacks_address: false }
 }
 
-/// One `%` sequence.
+/// A `%` sequence.
 #[derive(Clone, Copy, Debug)]
 struct Conversion {
     /// The letter; 0 if there is none that is known.
@@ -245,7 +244,7 @@ impl Conversion {
         (conversion, rest)
     }
 
-    /// Whether `printf` prints this type; else what it wants.
+    /// Checks that `printf` prints this type; the error is the type it expects.
     fn printed(self, types: &Types, ty: TypeId) -> Result<(), &'static str> {
         let (fits, wanted) = match self.letter {
             b'd' | b'i' | b'u' | b'x' | b'X' | b'o' | b'c' if self.longs >= 2 => {
@@ -260,7 +259,7 @@ impl Conversion {
         if fits { Ok(()) } else { Err(wanted) }
     }
 
-    /// Whether `scanf` can store through this type; else what it wants.
+    /// Checks that `scanf` can store through this type; the error is the type it expects.
     fn scanned(self, types: &Types, ty: TypeId) -> Result<(), &'static str> {
         let sized = |size| points_to(types, ty, |to| to.is_integer() && types.size_of(to) == Some(size));
         let (fits, wanted) = match self.letter {
@@ -283,7 +282,7 @@ impl Conversion {
     }
 }
 
-/// Whether a value of the type is passed as a word and is an integer.
+/// Reports whether a value of the type is passed as a word and is an integer.
 fn is_int(ty: TypeId) -> bool {
     ty.is_integer() && !ty.is_long_long()
 }
@@ -293,7 +292,7 @@ fn points_to(types: &Types, ty: TypeId, is_wanted: impl Fn(TypeId) -> bool) -> b
 }
 
 impl Conversion {
-    /// What to write for an argument that does not fit: what it points to, if that would, or another conversion.
+    /// The advice for an argument that does not fit: the value it points to, if that would, or another conversion.
     fn print_help(self, types: &Types, ty: TypeId) -> Option<String> {
         let to = types.pointee(ty).map(|to| to.ty).filter(|to| !to.is_character());
         match to {

@@ -75,7 +75,7 @@ fn version_in(text: &[u8]) -> Option<String> {
     })
 }
 
-/// Where the program's structure of this name differs first, if it has one.
+/// The first difference of the program's structure of this name, if it has one.
 fn difference(program: &AnalysedProgram<'_>, structure: &StructureLayout) -> Option<String> {
     let types = &program.unit.types;
     let (record, layout) = types.records().find_map(|(id, record)| {

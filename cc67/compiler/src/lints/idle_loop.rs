@@ -41,7 +41,7 @@ fn finding(function: &Function, stmt: &Stmt) -> Option<Diagnostic> {
     )
 }
 
-/// What a piece of a function does to the locals that live in no memory.
+/// The effects of a piece of a function on its locals in registers.
 struct Effects<'a> {
     function: &'a Function,
     read: BTreeSet<LocalId>,
@@ -49,7 +49,7 @@ struct Effects<'a> {
 }
 
 impl Effects<'_> {
-    /// Whether a statement changes nothing else and does not leave its loop.
+    /// Reports whether a statement has no other effect and does not leave its loop.
     fn is_idle(&mut self, stmt: &Stmt) -> bool {
         match &stmt.kind {
             StmtKind::Expr(expr) => self.is_pure(*expr),
@@ -62,7 +62,7 @@ impl Effects<'_> {
         }
     }
 
-    /// Whether an expression reads and changes nothing else.
+    /// Reports whether an expression reads nothing else and has no other effect.
     fn is_pure(&mut self, expr: ExprId) -> bool {
         match &self.function.exprs[expr].kind {
             ExprKind::Int(_) | ExprKind::Float(_) => true,

@@ -10,7 +10,7 @@ pub(crate) fn finding(sources: &SourceMap, subject: &str, span: Span) -> Diagnos
         .help(help(sources, span))
 }
 
-/// What to do about the variable at `span`.
+/// The advice for the variable at `span`.
 pub(crate) fn help(sources: &SourceMap, span: Span) -> String {
     format!("write `&{}`", String::from_utf8_lossy(sources.text(span)))
 }

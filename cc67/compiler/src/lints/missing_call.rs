@@ -23,7 +23,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// What is zero or not decides something, in no order.
+/// The expressions whose truth is tested, in no order.
 fn tested(function: &Function) -> Vec<ExprId> {
     let mut tested = Vec::new();
     function.each_stmt(&mut |stmt| match &stmt.kind {

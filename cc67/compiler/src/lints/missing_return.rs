@@ -31,12 +31,12 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// Whether what follows the statements can be reached.
+/// Reports whether execution can continue after the statements.
 fn may_complete(stmts: &[Stmt]) -> bool {
     stmts.iter().all(completes)
 }
 
-/// Whether what follows a statement can be reached from it.
+/// Reports whether execution can continue after a statement.
 pub(super) fn completes(stmt: &Stmt) -> bool {
     match &stmt.kind {
         StmtKind::Return(_)
@@ -54,7 +54,7 @@ pub(super) fn completes(stmt: &Stmt) -> bool {
     }
 }
 
-/// Whether a statement leaves the loop or switch around it with `break`.
+/// Reports whether a statement leaves the loop or switch around it with `break`.
 fn breaks(stmt: &Stmt) -> bool {
     match &stmt.kind {
         StmtKind::Break => true,

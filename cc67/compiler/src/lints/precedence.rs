@@ -74,7 +74,7 @@ fn is_relation(operator: BinaryOperator) -> bool {
     !matches!(compare, CompareOp::Equal | CompareOp::NotEqual)
 }
 
-/// Whether a value is 0 or 1 by its form.
+/// Reports whether a value is 0 or 1 by its form.
 fn is_truth(expression: &Expression) -> bool {
     match &expression.kind {
         ExpressionKind::Unary(UnaryOperator::Not, _) => true,
@@ -98,7 +98,7 @@ fn is_large(expression: &Expression) -> bool {
     matches!(&expression.kind, ExpressionKind::Integer(literal) if literal.value > 1)
 }
 
-/// Whether a comparison is one with 1.
+/// Reports whether a comparison is one with 1.
 fn is_one(comparison: &Expression) -> bool {
     let ExpressionKind::Binary(_, _, right) = &comparison.kind else { return false };
     matches!(&right.kind, ExpressionKind::Integer(literal) if literal.value == 1)

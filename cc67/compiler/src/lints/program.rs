@@ -1,4 +1,4 @@
-//! What a lint looks at: the finished typed tree and the names of the board.
+//! The input of lints: the finished typed tree and the names of the board.
 
 use crate::firmware::FirmwareNames;
 use crate::names::Names;
@@ -13,7 +13,7 @@ pub(super) struct AnalysedProgram<'a> {
     pub(super) unit: &'a Unit,
     /// The names in it.
     pub(super) names: &'a Names,
-    /// Where its text came from.
+    /// The source text.
     pub(super) sources: &'a SourceMap,
     /// The board it is for.
     pub(super) firmware: &'a dyn FirmwareNames,

@@ -1,8 +1,8 @@
-//! The call-back of the servo interrupt, where it takes more of the interrupt's time than the servo leaves.
+//! A call-back of the servo interrupt that takes more of the interrupt's time than the servo leaves.
 //!
-//! The estimate is that of one pass: what the called firmware functions take on the board (`costs.md` section 2), and a
-//! few cycles for each operation of the program; loops count as many turns as their constants say, others one. So it is
-//! what a call-back takes at least, where nothing returns early; `cc67 cycles` counts the packets.
+//! The estimate is that of one pass: the cycles of the called firmware functions on the board (`costs.md` section 2),
+//! and a few cycles for each operation of the program; a loop counts with its iterations if they are constant, else
+//! once. So it is a lower bound where nothing returns early; `cc67 cycles` counts the packets.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -57,12 +57,12 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// What functions take.
+/// The estimated time of functions, in cycles.
 struct Estimate<'a> {
     program: &'a AnalysedProgram<'a>,
     graph: &'a CallGraph<'a>,
     known: BTreeMap<SymbolId, u64>,
-    /// Those that are being looked at: one that calls itself counts once.
+    /// The functions being analysed: a recursive one counts once.
     open: BTreeSet<SymbolId>,
 }
 
@@ -128,7 +128,7 @@ impl Estimate<'_> {
         sum
     }
 
-    /// Which of the functions that a function calls takes longest, for people.
+    /// Describes the slowest of the functions that a function calls.
     fn slowest(&self, function: &Function) -> Option<String> {
         let called = function.calls().filter_map(|(_, call)| match call.callee {
             Callee::Symbol(callee) => Some((self.known.get(&callee).copied()?, callee)),
@@ -139,12 +139,12 @@ impl Estimate<'_> {
     }
 }
 
-/// What a firmware function takes on the board, without waiting.
+/// The cycles of a firmware function on the board, without waiting.
 fn firmware(name: &str) -> u64 {
     row_named(name).map_or(0, |function| function.cost.get().max(0).unsigned_abs())
 }
 
-/// How many turns a loop takes whose counter grows from a constant by one up to a constant; 1 for every other.
+/// Number of iterations of a loop whose counter grows from a constant by one up to a constant; 1 for every other.
 fn turns(function: &Function, stmt: &Stmt, before: Option<&Stmt>) -> u64 {
     let StmtKind::Loop { condition: Some(condition), test: LoopTest::Before, step: Some(step), .. } =
         &stmt.kind

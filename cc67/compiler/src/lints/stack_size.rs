@@ -12,7 +12,7 @@ use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::Span;
 use crate::typed::{Function, Local, SymbolId};
 
-/// A frame larger than this is reported by itself.
+/// A frame larger than this is reported on its own.
 const FRAME_LIMIT: u32 = 1024;
 
 /// A call chain from `main` larger than this is reported: 1.9 KiB.
@@ -69,15 +69,15 @@ fn large_frame(program: &AnalysedProgram<'_>, function: &Function, bytes: u32) -
     }
 }
 
-/// What the functions need together with those they call.
+/// The stack that functions need together with their callees.
 struct Depths<'a> {
     program: &'a AnalysedProgram<'a>,
     graph: &'a CallGraph<'a>,
-    /// Every function seen; `None` while it is looked at, so that one that calls itself counts once.
+    /// The functions seen; `None` while one is analysed, so that a recursive one counts once.
     known: BTreeMap<SymbolId, Option<Depth>>,
 }
 
-/// What a function needs.
+/// The stack that a function needs.
 #[derive(Clone, Copy)]
 struct Depth {
     /// Its frame and those below.

@@ -51,7 +51,7 @@ fn text(program: &AnalysedProgram<'_>, function: &Function, mut expr: ExprId) ->
     }
 }
 
-/// Whether a place is all of an array of characters.
+/// Reports whether a place is a whole array of characters.
 fn is_character_array(program: &AnalysedProgram<'_>, function: &Function, place: PlaceId) -> bool {
     let ty = match function.places[place].kind {
         PlaceKind::Symbol(symbol, _) => program.unit.symbols[symbol].ty,

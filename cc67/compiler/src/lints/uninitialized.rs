@@ -70,7 +70,7 @@ struct Search<'a> {
     stored: BTreeSet<LocalId>,
     /// Locals that were read first, and where.
     suspects: BTreeMap<LocalId, Span>,
-    /// What every way to the current place has stored in.
+    /// The locals that every path to the current position has stored in.
     flow: Flow,
     /// Locals that were read where not every way stores in them, and where.
     doubtful: BTreeMap<LocalId, Span>,
@@ -78,7 +78,7 @@ struct Search<'a> {
     exits: Vec<Exits>,
 }
 
-/// Where the ways out of a loop or switch meet.
+/// The facts at the exits of a loop or switch, merged.
 struct Exits {
     /// In front of the cases of a switch; `None` for a loop.
     cases: Option<Flow>,
@@ -156,7 +156,7 @@ impl Search<'_> {
         }
     }
 
-    /// A loop: no turn begins with less than the first one.
+    /// Analyses a loop: the facts at the start of the first iteration hold in all.
     fn turn(&mut self, condition: Option<ExprId>, test: LoopTest, body: &[Stmt], step: Option<ExprId>) {
         self.exits.push(Exits::new(None));
         let before = (test == LoopTest::Before).then(|| self.condition(condition));
@@ -207,7 +207,7 @@ impl Search<'_> {
         }
     }
 
-    /// What is stored further down in a loop may be read further up in its next turn.
+    /// Analyses the body of a loop: a local stored later in the body may be read earlier in the next iteration.
     fn in_loop(&mut self, body: impl FnOnce(&mut Self)) {
         let known: BTreeSet<_> = self.suspects.keys().copied().collect();
         body(self);
@@ -283,7 +283,7 @@ impl Search<'_> {
         }
     }
 
-    /// What is evaluated to find a place.
+    /// Analyses the expressions that compute a place.
     fn place(&mut self, place: PlaceId) {
         match self.function.places[place].kind {
             PlaceKind::Local(..) | PlaceKind::Symbol(..) => {}

@@ -4,7 +4,7 @@ use crate::ast::{Expression, ExpressionKind, UnaryOperator};
 use crate::diag::{Diagnostic, Lint};
 use crate::operators::BinaryOperator;
 
-/// The message for an expression statement whose value nobody sees; `is_function` if it only names one.
+/// The message for an expression statement whose value is not used; `is_function` if it only names one.
 pub(crate) fn finding(expression: &Expression, is_function: bool) -> Option<Diagnostic> {
     if has_effect(expression) {
         return None;
@@ -19,7 +19,7 @@ pub(crate) fn finding(expression: &Expression, is_function: bool) -> Option<Diag
     })
 }
 
-/// Whether evaluating an expression does something, as far as its form tells.
+/// Reports whether evaluating an expression has an effect, judged by its form.
 fn has_effect(expression: &Expression) -> bool {
     match &expression.kind {
         ExpressionKind::Call(..)

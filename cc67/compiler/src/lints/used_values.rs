@@ -1,4 +1,4 @@
-//! Which calls give a value that something looks at: what lints about results share.
+//! The calls whose value is used, for lints about results.
 
 use std::collections::BTreeSet;
 
@@ -20,7 +20,7 @@ pub(super) fn used_in(function: &Function) -> BTreeSet<SymbolId> {
         .collect()
 }
 
-/// The expressions whose value nobody sees.
+/// The expressions whose value is not used.
 fn dropped(function: &Function) -> BTreeSet<ExprId> {
     let mut open = Vec::new();
     function.each_stmt(&mut |stmt| collect(stmt, &mut open));
@@ -46,7 +46,7 @@ fn dropped(function: &Function) -> BTreeSet<ExprId> {
     dropped
 }
 
-/// What one statement evaluates and drops by itself.
+/// Collects the values that one statement evaluates and drops.
 fn collect(stmt: &Stmt, out: &mut Vec<ExprId>) {
     match &stmt.kind {
         StmtKind::Expr(expr) => out.push(*expr),

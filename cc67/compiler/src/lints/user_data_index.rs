@@ -5,7 +5,7 @@ use kmotiondef::structs::Persist;
 use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;
 
-/// Where `UserData` lies in `persist`: its first byte and the one after its last.
+/// The range of `UserData` in `persist`: the offset of its first byte and that after its last.
 pub(crate) fn range() -> (i32, i32) {
     let field = Persist::STRUCTURE.fields.iter().find(|field| field.name == "UserData");
     field.map_or((0, 0), |field| (field.offset.cast_signed(), (field.offset + field.size).cast_signed()))

@@ -40,14 +40,14 @@ fn element(program: &AnalysedProgram<'_>, function: &Function, pointer: ExprId) 
     }
 }
 
-/// Whether a place is an element of `persist.UserData` at a constant index.
+/// Reports whether a place is an element of `persist.UserData` at a constant index.
 fn is_element(program: &AnalysedProgram<'_>, function: &Function, place: PlaceId) -> bool {
     let PlaceKind::Symbol(symbol, offset) = function.places[place].kind else { return false };
     let (first, last) = user_data_index::range();
     program.name(symbol) == "persist" && (first..last).contains(&offset)
 }
 
-/// Whether an address is stored in an element.
+/// Reports whether an address is stored in an element.
 fn keeps_addresses(program: &AnalysedProgram<'_>, function: &Function) -> bool {
     let types = &program.unit.types;
     let is_address = |value: ExprId| {

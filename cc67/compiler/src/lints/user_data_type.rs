@@ -23,12 +23,12 @@ const MAILBOX: std::ops::RangeInclusive<i32> = 100..=107;
 /// Bytes of an element.
 const ELEMENT: i32 = 4;
 
-/// How a program stores in an element.
+/// The stores of a program in an element.
 #[derive(Clone, Copy, Default)]
 struct Stores {
-    /// Where it first stores a floating-point number, and of which type.
+    /// The first store of a floating-point number, and its type.
     floating: Option<(Span, TypeId)>,
-    /// Whether it stores anything else there as well.
+    /// True if other values are stored there as well.
     has_others: bool,
 }
 
@@ -67,7 +67,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// What a value is used for.
+/// The use of a value.
 #[derive(Clone, Copy, PartialEq)]
 enum Use {
     /// It becomes a floating-point number.

@@ -15,7 +15,7 @@ pub(crate) const DAC_WORDS: &str = "DAC_Buffer";
 /// The bits of such a word, which the macro `DAC` cuts its value to.
 const DAC_BITS: i64 = 0xfff;
 
-/// What 0 is in such a word.
+/// The encoding of 0 in such a word.
 const DAC_ZERO: i64 = 2048;
 
 /// A constant that is computed as the macro `DAC` does: `(value - 2048) & 0xfff`.
@@ -26,7 +26,7 @@ pub(crate) struct DacWord {
 }
 
 impl DacWord {
-    /// What the constant `x op y` is, if `x` is what it is.
+    /// The state of the constant `x op y`, given that of `x`.
     pub(crate) fn after(op: BinaryOp, (x, word): (i64, Option<&Self>), y: i64) -> Option<Self> {
         match (op, word) {
             (BinaryOp::Subtract, _) if y == DAC_ZERO => Some(Self { value: x, is_cut: false }),

@@ -68,7 +68,7 @@ fn signed_comparison(program: &AnalysedProgram<'_>, function: &Function, expr: &
     })
 }
 
-/// Whether an unsigned value may be 0x80000000 or more.
+/// Reports whether an unsigned value may be 0x80000000 or more.
 fn may_be_large(function: &Function, expr: ExprId) -> bool {
     let small = |expr| !may_be_large(function, expr);
     match function.exprs[expr].kind {
@@ -86,7 +86,7 @@ fn may_be_large(function: &Function, expr: ExprId) -> bool {
     }
 }
 
-/// Whether a value that becomes unsigned has no highest bit.
+/// Reports whether the highest bit of a value that becomes unsigned is 0.
 fn is_never_negative(function: &Function, expr: ExprId) -> bool {
     let Expr { kind, ty, .. } = &function.exprs[expr];
     match kind {
@@ -104,7 +104,7 @@ fn is_narrow(ty: TypeId) -> bool {
     [Types::BOOL, Types::UNSIGNED_CHAR, Types::UNSIGNED_SHORT].contains(&ty)
 }
 
-/// Whether a pointer is a number that is positive when it counts as signed; programs and their data are elsewhere.
+/// Reports whether a pointer is a number that is positive as a signed one; programs and their data are elsewhere.
 fn is_low(function: &Function, expr: ExprId) -> bool {
     match function.exprs[expr].kind {
         ExprKind::Int(value) => (value as u32) < NEGATIVE,

@@ -53,7 +53,7 @@ fn addresses(function: &Function, sink: &mut Sink) {
     });
 }
 
-/// Whether a place is a later part of a local, which an index or a member reaches.
+/// Reports whether a place is a later part of a local, which an index or a member reaches.
 fn is_inner_part(function: &Function, place: PlaceId) -> bool {
     matches!(function.places[place].kind, PlaceKind::Local(_, offset) if offset > 0)
 }

@@ -32,7 +32,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// Whether a condition asks only whether axes move, with `&&` in between; how many of them.
+/// Reports whether a condition only tests whether axes move, with `&&` in between; counts them.
 fn moving(
     program: &AnalysedProgram<'_>,
     function: &typed::Function,

@@ -2,12 +2,12 @@
 
 use crate::typed::{Callee, ExprId, ExprKind, Function, PlaceId, PlaceKind, Stmt, StmtKind};
 
-/// Which of them.
+/// The expressions to visit.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Extent {
     /// Every one.
     All,
-    /// Those that are evaluated once whatever is computed, in a piece that nothing leaves early.
+    /// Those that are always evaluated exactly once, in a piece that is not left early.
     Always,
 }
 

@@ -7,7 +7,7 @@ use crate::operators;
 use crate::ty::Types;
 use crate::typed::{self, ExprId, ExprKind, UnaryOp};
 
-/// Which way of a condition the vendor's code jumps; on the other it continues where it is.
+/// The outcome of a condition on which the vendor's code jumps; on the other it continues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sense {
     /// As in `if`, loops and `&&`.
@@ -151,13 +151,13 @@ impl Lowering<'_> {
         truth.into()
     }
 
-    /// Whether the expression is the constant 0 of a type held in a 32-bit word.
+    /// Reports whether the expression is the constant 0 of a type held in a 32-bit word.
     fn is_word_zero(&self, id: ExprId) -> bool {
         let expr = &self.function.exprs[id];
         matches!(expr.kind, ExprKind::Int(0)) && types::class(&self.unit.types, expr.ty) == Some(Class::I32)
     }
 
-    /// Whether a conversion gives zero exactly for zero: to `_Bool`, and from word to word.
+    /// Reports whether a conversion gives zero exactly for zero: to `_Bool`, and from word to word.
     fn keeps_truth(&self, inner: ExprId, converted: ExprId) -> bool {
         let (from, to) = (self.function.exprs[inner].ty, self.function.exprs[converted].ty);
         let types = &self.unit.types;
@@ -165,7 +165,7 @@ impl Lowering<'_> {
         to == Types::BOOL || (is_word && types::width(types, to) == Some(Width::I32))
     }
 
-    /// Whether a loop can afford to have the condition twice, before and after the body.
+    /// Reports whether the condition is small enough to be duplicated, before and after the body.
     pub(super) fn is_small(&self, condition: ExprId) -> bool {
         let mut budget = 12;
         self.count(condition, &mut budget);

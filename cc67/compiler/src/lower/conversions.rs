@@ -68,7 +68,7 @@ impl Lowering<'_> {
     }
 }
 
-/// Whether every value of the width `from` is one of the width `to`.
+/// Reports whether every value of the width `from` is one of the width `to`.
 fn is_inside(from: Width, to: Width) -> bool {
     match to {
         Width::I8 => from == Width::I8,

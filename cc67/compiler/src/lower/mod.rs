@@ -55,7 +55,7 @@ impl Definitions {
     }
 }
 
-/// Lowers one function of a unit; `timing` says what it is charged for.
+/// Lowers one function of a unit; `timing` determines its charges.
 #[must_use]
 pub fn lower(
     unit: &Unit,
@@ -100,17 +100,17 @@ fn signature_of(unit: &Unit, function: &typed::Function) -> Signature {
     Signature { params, result: types::class(&unit.types, function.ty.result) }
 }
 
-/// What every frame is aligned to.
+/// The alignment of every frame, in bytes.
 const STACK_ALIGNMENT: u32 = 8;
 
-/// Where a local lives.
+/// The home of a local.
 #[derive(Clone, Copy, Debug)]
 enum Home {
     /// In a value.
     Value(ValueId),
     /// In the frame.
     Slot(SlotId),
-    /// Where the value points to.
+    /// In memory, at the address in the value.
     Pointer(ValueId),
 }
 
@@ -129,7 +129,7 @@ struct Switch {
     default: BlockId,
 }
 
-/// Where the statements being lowered can jump to; the innermost is last.
+/// The jump targets of the statements being lowered; the innermost is last.
 #[derive(Debug, Default)]
 struct Jumps {
     labels: SecondaryMap<LabelId, PackedOption<BlockId>>,
@@ -146,16 +146,16 @@ struct Lowering<'a> {
     signatures: &'a mut Signatures,
     builder: Builder,
     homes: PrimaryMap<LocalId, Home>,
-    /// How often the value of a local has been written so far.
+    /// Number of writes of a local's value so far.
     writes: SecondaryMap<ValueId, u32>,
     jumps: Jumps,
-    /// Where the variable arguments of calls are put.
+    /// The slot for the variable arguments of calls.
     outgoing: Option<SlotId>,
     /// Stack of operator nodes whose left operand is being descended into.
     spine: Vec<ExprId>,
     /// Stack of arguments that wait for their call.
     held: Vec<Held>,
-    /// What charging needs, if the vendor's code is charged.
+    /// The state for charging, if the vendor's code is charged.
     pricing: Option<Pricing>,
 }
 

@@ -89,7 +89,7 @@ impl Lowering<'_> {
         Address::of(self.value(pointer)).plus(offset)
     }
 
-    /// Whether values of the type are 32-bit words that a pointer conversion leaves alone.
+    /// Reports whether values of the type are 32-bit words that a pointer conversion does not change.
     pub(super) fn is_same_word(&self, ty: TypeId) -> bool {
         types::width(&self.unit.types, ty) == Some(Width::I32)
     }

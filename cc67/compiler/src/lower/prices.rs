@@ -1,4 +1,4 @@
-//! What the vendor's code takes for each operation, in cycles without wait states (`spec/costs.md` section 6).
+//! The costs of the vendor's code for each operation, in cycles without wait states (`spec/costs.md` section 6).
 //!
 //! [`super::pricing`] says where each is charged.
 
@@ -23,7 +23,7 @@ pub(super) const CASE: i32 = 12;
 pub(super) const KEEP_OLD: i32 = 1;
 /// `...` arguments are passed at all.
 pub(super) const VARIABLE_ARGUMENTS: i32 = 6;
-/// What the value of a truth takes: the way without a jump, the way with it.
+/// The cost of the value of a truth: on the path without a jump, on the path with it.
 pub(super) const TRUTH: [i32; 2] = [6, 1];
 /// Moving a computed value to where an argument or result is expected; a pair of registers twice.
 pub(super) const MOVE: i32 = 1;
@@ -31,12 +31,12 @@ pub(super) const MOVE: i32 = 1;
 pub(super) const SAVE_ADDRESS: i32 = 10;
 /// A double operation whose right side is an element, or both sides of which are computed.
 pub(super) const CROWDED: i32 = 13;
-/// The same for a comparison with an element, and with one on both sides.
+/// The cost of a comparison with an element, and with one on both sides.
 pub(super) const CROWDED_COMPARE: [i32; 2] = [11, 18];
 /// An operation on singles with an element, or a computed single stored to one.
 pub(super) const CROWDED_SINGLE: i32 = 10;
 
-/// Whether values of a class take two registers.
+/// Reports whether values of a class take two registers.
 const fn is_pair(class: Class) -> bool {
     matches!(class, Class::F64 | Class::I64)
 }
@@ -61,7 +61,7 @@ pub(super) const fn constant(class: Class) -> i32 {
     }
 }
 
-/// How many words of a constant are loaded from memory.
+/// Number of words of a constant that are loaded from memory.
 pub(super) const fn constant_words(class: Class) -> i32 {
     match class {
         Class::I32 | Class::I64 => 0,
@@ -128,7 +128,7 @@ pub(super) fn copy(bytes: u32) -> i32 {
     16 + if bytes < 8 { 32 } else { 26 + (bytes.saturating_mul(7) / 4).cast_signed() }
 }
 
-/// The same for clearing.
+/// The cost of clearing memory.
 pub(super) fn clear(bytes: u32) -> i32 {
     18 + if bytes < 8 { 41 } else { 44 + (u64::from(bytes) * 113 / 100) as i32 }
 }

@@ -1,8 +1,8 @@
-//! Charges what the vendor's code takes, where the typed tree is lowered.
+//! Charges the cycles of the vendor's code while the typed tree is lowered.
 //!
-//! The vendor's compiler makes the same code for a construct wherever it is, so the costs follow the source and not
-//! the instructions that we make of it: what optimisation does later changes none. The rules are those of
-//! `spec/costs.md` section 6; a few smaller ones, marked here, follow from its recorded programs.
+//! The vendor's compiler makes the same code for a construct wherever it is, so the costs follow the source and not our
+//! instructions: later optimisation does not change them. The rules are those of `spec/costs.md` section 6; a few
+//! smaller ones, marked here, follow from its recorded programs.
 
 use cranelift_entity::SecondaryMap;
 use kmotiondef::timing::{Timing, WaitStates};
@@ -15,18 +15,18 @@ use crate::ir::inst::{BlockId, Class};
 use crate::operators::BinaryOp;
 use crate::typed::{self, ExprId, ExprKind, LocalId, PlaceId, PlaceKind, SymbolId, UnaryOp};
 
-/// Where SDRAM begins: what is below is inside of the processor.
+/// The start of SDRAM: lower addresses are inside of the processor.
 const SDRAM: u32 = 0x8000_0000;
 
-/// What is known for charging a function.
+/// The state for charging a function.
 pub(super) struct Pricing {
     waits: WaitStates,
-    /// Whether an expression calls or divides, which leaves no register as it was.
+    /// True for each expression that calls or divides, which changes every register.
     calls: SecondaryMap<ExprId, bool>,
 }
 
 impl Pricing {
-    /// What there is to know of `function`; nothing if time is not the vendor's.
+    /// Collects the facts for charging `function`; `None` if time is not the vendor's.
     pub(super) fn new(function: &typed::Function, timing: Timing) -> Option<Self> {
         let waits = timing.wait_states()?;
         let mut calls = table(function.exprs.len());
@@ -38,7 +38,7 @@ impl Pricing {
     }
 }
 
-/// Whether the expression by itself calls.
+/// Reports whether the expression itself calls, without its operands.
 fn calls_itself(kind: &ExprKind) -> bool {
     let divides = |op: BinaryOp| matches!(op, BinaryOp::Divide | BinaryOp::Remainder);
     match kind {
@@ -90,28 +90,28 @@ fn operands(function: &typed::Function, id: ExprId) -> impl Iterator<Item = Expr
     found.into_iter().flatten()
 }
 
-/// Whether multiplying by a number is a shift.
+/// Reports whether multiplying by a number is a shift.
 const fn is_power(factor: i64) -> bool {
     factor > 1 && factor & (factor - 1) == 0
 }
 
-/// How the vendor's code reaches a place.
+/// The access of the vendor's code to a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Reach {
-    /// It is named: a local, or any place at a constant address.
+    /// A local, or any place at a constant address.
     Local,
-    /// The same for a global, or a number; whether it waits for memory.
+    /// A global, or an address that is a number; accesses may wait for memory.
     Global { waits: bool },
     /// Through an address that takes `fixed` cycles, besides the expressions in it.
     Through { fixed: i32, waits: bool },
 }
 
-/// What an operand is to the registers of the vendor's code.
+/// The location of an operand in the vendor's code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Nature {
     /// A constant or a named variable: it is loaded when it is needed.
     Simple,
-    /// It is loaded through an address that is in a register.
+    /// A load through an address that is in a register.
     Element,
     /// The result of a call.
     Result,
@@ -153,7 +153,7 @@ impl Lowering<'_> {
         self.wait(prices::constant_words(class));
     }
 
-    /// Whether a symbol lies where access waits.
+    /// Reports whether accesses of a symbol wait for memory.
     fn symbol_waits(&self, symbol: SymbolId) -> bool {
         let symbol = &self.unit.symbols[symbol];
         !matches!(symbol.definition, typed::Definition::None)
@@ -172,7 +172,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// How a place is reached; follows it as [`Lowering::address`] does.
+    /// The access to a place; follows it as [`Lowering::address`] does.
     fn reach(&self, place: PlaceId) -> Reach {
         let (mut place, mut steps) = (place, 0);
         loop {
@@ -201,7 +201,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// What a pointer is without constants added to it, and how many these were.
+    /// Returns a pointer without the constants added to it, and the number of these.
     fn without_steps(&self, pointer: ExprId) -> (ExprId, i32) {
         let (mut pointer, mut steps) = (pointer, 0);
         loop {
@@ -222,7 +222,7 @@ impl Lowering<'_> {
         matches!(self.function.exprs[id].kind, ExprKind::Int(_))
     }
 
-    /// Whether what a pointer points to lies where access waits, as far as the expression says.
+    /// Reports whether an access through a pointer waits for memory, as far as the expression shows.
     fn pointee_waits(&self, pointer: ExprId) -> bool {
         let mut pointer = pointer;
         loop {
@@ -426,7 +426,7 @@ impl Lowering<'_> {
         self.price_operator(op, class, b);
     }
 
-    /// Whether an index is computed and scaled by a shift.
+    /// Reports whether an index is computed and scaled by a shift.
     fn is_shifted_sum(&self, bytes: ExprId) -> bool {
         let ExprKind::Binary(BinaryOp::Multiply, index, scale) = self.function.exprs[bytes].kind else {
             return false;
@@ -592,7 +592,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// Whether a conversion takes nothing.
+    /// Reports whether a conversion costs nothing.
     fn is_free(&self, from: ExprId, to: ExprId) -> bool {
         types::class(&self.unit.types, self.function.exprs[to].ty).is_some()
             && (self.is_int(from) || self.class_of(from) == self.class_of(to))

@@ -96,8 +96,8 @@ impl Lowering<'_> {
         self.builder.open(end);
     }
 
-    /// Loops test at the bottom, so that a turn costs one branch. A small condition is tested again in front of
-    /// the loop; a large one is jumped to.
+    /// Lowers a loop with its test at the bottom, so that an iteration costs one branch. A small condition is tested
+    /// again in front of the loop; a large one is jumped to.
     fn loop_statement(
         &mut self,
         condition: Option<ExprId>,

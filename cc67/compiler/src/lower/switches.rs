@@ -20,7 +20,7 @@ struct CaseEntry {
     covered: i128,
 }
 
-/// What all parts of one switch's search share.
+/// The values that all parts of one switch's search share.
 #[derive(Clone, Copy)]
 struct Search {
     value: Operand,

@@ -1,4 +1,4 @@
-//! What the tests of the back end share: C source to a typed unit and to IR.
+//! Helpers that the tests of the back end share: C source to a typed unit and to IR.
 
 use kmotiondef::timing::Timing;
 

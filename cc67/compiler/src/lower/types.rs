@@ -1,4 +1,4 @@
-//! What a C type is to the machine: class, width, signedness, size.
+//! The machine's view of C types: class, width, signedness, size.
 
 use crate::ir::inst::Class;
 use crate::ir::operators::Width;
@@ -15,7 +15,7 @@ pub(super) fn class(types: &Types, ty: TypeId) -> Option<Class> {
     }
 }
 
-/// How a value of the type is loaded and stored; `None` for `void` and structures.
+/// The width with which a value of the type is loaded and stored; `None` for `void` and structures.
 pub(super) fn width(types: &Types, ty: TypeId) -> Option<Width> {
     match types.get(ty) {
         Type::Void | Type::Record(_) => None,
@@ -32,7 +32,7 @@ pub(super) fn width(types: &Types, ty: TypeId) -> Option<Width> {
     }
 }
 
-/// Whether values of the type compare, divide, shift and widen as unsigned ones. `char` and `short` have been
+/// Reports whether values of the type compare, divide, shift and widen as unsigned ones. `char` and `short` have been
 /// promoted where that matters, except in bit-fields.
 pub(super) fn is_unsigned(types: &Types, ty: TypeId) -> bool {
     matches!(

@@ -1,4 +1,4 @@
-//! What objects and images write alike: kinds of symbols, lines, numbers of 16 bits.
+//! Encodings that objects and images share: kinds of symbols, lines, numbers of 16 bits.
 
 use std::num::NonZeroU16;
 
@@ -50,7 +50,7 @@ pub fn kind_of(ty: SymbolType) -> SymbolKind {
     }
 }
 
-/// What fits 16 bits, else the largest number that does.
+/// Converts to 16 bits, saturating.
 pub(crate) fn to_u16(number: u32) -> u16 {
     u16::try_from(number).unwrap_or(u16::MAX)
 }

@@ -47,7 +47,7 @@ pub struct Object {
     pub code: Option<Vec<u32>>,
     /// Words of the text that hold an address, ascending.
     pub relocations: Vec<Relocation>,
-    /// Where source lines begin, ascending by word.
+    /// The starts of source lines, ascending by word.
     pub lines: Vec<Line>,
     /// The functions in the order of the text.
     pub functions: Vec<ObjectFunction>,
@@ -60,7 +60,7 @@ pub struct Object {
 }
 
 impl Object {
-    /// What its code is for.
+    /// The target of its code.
     #[must_use]
     pub const fn target(&self) -> Target {
         if self.code.is_some() { Target::C67x } else { Target::Sim }
@@ -88,11 +88,11 @@ impl Object {
 pub struct Symbol {
     /// The name; anonymous objects have one that no program can spell.
     pub name: String,
-    /// Whether other units see it.
+    /// Its linkage: internal or external.
     pub linkage: Linkage,
-    /// What the unit says about it.
+    /// Its definition in the unit.
     pub definition: Definition,
-    /// What kind of type it has, as the image's symbol table records it.
+    /// The kind of its type, as the image's symbol table records it.
     pub kind: SymbolKind,
     /// Bytes of an object; 0 for a function.
     pub size: u32,
@@ -100,13 +100,13 @@ pub struct Symbol {
     pub align: u32,
     /// The defining declaration, else the first one; `None` in an object that comes from a file.
     pub span: Option<Span>,
-    /// The same as file and line.
+    /// The position as file and line.
     pub place: SourceLine,
     /// The first use, for messages.
     pub used_at: Option<Span>,
 }
 
-/// What a unit says about a symbol.
+/// The definition of a symbol in a unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Definition {
     /// Defined elsewhere.
@@ -147,7 +147,7 @@ pub struct SourceLine {
     pub line: u32,
 }
 
-/// From this word on the code belongs to this place.
+/// The source position of the code from a word on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Line {
     /// Index of the word.
@@ -163,7 +163,7 @@ pub(crate) fn whole_lines<T>(places: &[T], line: impl Fn(&T) -> SourceLine) -> i
     places.chunk_by(move |one, next| line(one) == line(next)).filter_map(|same| same.first())
 }
 
-/// One function.
+/// A function.
 #[derive(Clone, Debug)]
 pub struct ObjectFunction {
     /// Its symbol.
@@ -180,7 +180,7 @@ pub struct ObjectFunction {
     pub frame: u32,
     /// The line of its closing brace.
     pub end: SourceLine,
-    /// Where its locals are; unknown in an object that comes from a file.
+    /// The locations of its locals; unknown in an object that comes from a file.
     pub variables: Vec<VariablePlaces>,
     /// The inlined calls; unknown in an object that comes from a file.
     pub inlined: Vec<InlinedPlaces>,
@@ -189,7 +189,7 @@ pub struct ObjectFunction {
     pub exceeded: Vec<SourceLine>,
 }
 
-/// One initialised object.
+/// An initialised object.
 #[derive(Clone, Debug)]
 pub struct Initialized {
     /// Its symbol.
@@ -205,6 +205,6 @@ pub struct Initialized {
 pub struct DataRelocation {
     /// Offset in [`Object::data`].
     pub offset: u32,
-    /// Whose address.
+    /// The symbol whose address is stored.
     pub symbol: SymbolId,
 }

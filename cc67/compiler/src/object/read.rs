@@ -22,7 +22,7 @@ use crate::typed::{Linkage, SymbolId};
 /// Largest alignment of an object.
 const MAX_ALIGN: u32 = 64;
 
-/// Why a file is not an object.
+/// The reason why a file is not an object.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReadError {
     /// The bytes are not COFF.
@@ -53,14 +53,14 @@ pub enum ReadError {
     },
 }
 
-/// Whether bytes are an object of ours rather than an image or something else.
+/// Reports whether bytes are an object of ours rather than an image or something else.
 #[must_use]
 pub fn is_object(bytes: &[u8]) -> bool {
     coff::File::parse(bytes)
         .is_ok_and(|file| is_ours(file.target()) && !file.flags().contains(FileFlags::EXECUTABLE))
 }
 
-/// Whether objects are for a target.
+/// Reports whether our objects have this target.
 fn is_ours(target: Target) -> bool {
     target == Target::CC67 || target == Target::C6000
 }
@@ -212,7 +212,7 @@ impl<'a> ObjectReader<'a> {
         Ok(id)
     }
 
-    /// What `.bf` and `.ef` say of a function.
+    /// Reads the bounds of a function from `.bf` and `.ef`.
     fn boundaries(&mut self, id: SymbolId, begin: &coff::Symbol, end: &coff::Symbol) {
         let place = |symbol: &coff::Symbol| {
             let aux = symbol.aux.first().map(coff::Aux::as_boundary).unwrap_or_default();
@@ -304,7 +304,7 @@ impl<'a> ObjectReader<'a> {
         Ok(Relocation { word: word.ok_or_else(fail)?, kind, symbol })
     }
 
-    /// How a word of code for the processor is completed.
+    /// The completion of a word of code for the processor.
     fn fixup(&self, relocation: &coff::Relocation, kind: u16) -> Option<FixupKind> {
         let word = *self.object.code.as_ref()?.get((relocation.address / CODE_WORD) as usize)?;
         let (own, other) = (constant(word), u32::from(relocation.displacement));

@@ -16,7 +16,7 @@ use crate::source::{Place, SourceMap, Span};
 use crate::ty::{ParameterTypes, Type, TypeId, Types};
 use crate::typed::{self, Linkage, SymbolId, Unit};
 
-/// What is known about a function besides its words.
+/// The properties of a function besides its words.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct About {
     /// Its symbol.

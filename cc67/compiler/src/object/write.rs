@@ -99,7 +99,7 @@ struct Writer<'a> {
     symbols: Vec<Symbol>,
     /// Entries so far, auxiliary ones included.
     entries: u32,
-    /// Where each of the unit's symbols stands.
+    /// The index of each of the unit's symbols in the symbol table.
     indexes: Vec<u32>,
     bss: u32,
     lines: Vec<Line>,
@@ -211,7 +211,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Where a word of the unit's text is in the section.
+    /// The offset of a word of the unit's text in the section.
     fn byte(&self, word: u32) -> u32 {
         (self.head + word) * self.word
     }

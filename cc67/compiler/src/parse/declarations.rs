@@ -13,7 +13,7 @@ use super::declarators::Naming;
 use super::scopes::Meaning;
 use super::{Parsed, Parser, Reported};
 
-/// What a declaration turned out to be.
+/// A parsed declaration.
 enum Declared {
     /// Variables, types, prototypes.
     Names(Declaration),
@@ -147,7 +147,7 @@ impl Parser<'_> {
         Ok(StaticAssert { condition, message, span })
     }
 
-    /// Whether `static_assert`, which is a macro in C, is used as one.
+    /// Reports whether `static_assert`, which is a macro in C, is used as one.
     pub(super) fn is_static_assert(&self) -> bool {
         self.kind_at(1) == TokenKind::LeftParen
             && self.scopes.meaning(word::STATIC_ASSERT_MACRO) == Meaning::Unknown
@@ -197,7 +197,7 @@ impl Parser<'_> {
         Ok(Declared::Names(Declaration { specifiers, declarators, span }))
     }
 
-    /// Whether a type without declarators ends here, its `;` forgotten.
+    /// Reports whether a type without declarators ends here, its `;` forgotten.
     fn ends_type_alone(&self, specifiers: &Specifiers) -> bool {
         let behind_brace = self.at.checked_sub(1).and_then(|at| self.tokens.get(at));
         specifiers.ty.is_some()
@@ -208,7 +208,7 @@ impl Parser<'_> {
                 || self.is_identifier_at(0) && self.kind_at(1) == TokenKind::LeftParen)
     }
 
-    /// Whether a `;` is between the head of a function and its body; reports it.
+    /// Reports a `;` between the head of a function and its body; returns true if there is one.
     fn has_surplus_semicolon(&mut self, declarator: &Declarator) -> bool {
         let is_head = matches!(declarator.derived.first(), Some(Derived::Function(_)))
             && self.scopes.is_outermost()
@@ -245,7 +245,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether the next variable begins without a comma, as in `int last = 0 pulses = 0;`; reports it.
+    /// Reports a variable that begins without a comma, as in `int last = 0 pulses = 0;`; returns true if there is one.
     fn continues_without_comma(&mut self) -> bool {
         let next = self.peek();
         let is_variable = self.is_identifier_at(0)
@@ -259,7 +259,7 @@ impl Parser<'_> {
         is_variable
     }
 
-    /// Whether the name of a variable continues after a `-`, as in `int home-speed = 5;`; reports it.
+    /// Reports a name that continues after a `-`, as in `int home-speed = 5;`; returns true if there is one.
     fn continues_name(&mut self) -> bool {
         let Some(first) = self.at.checked_sub(1).and_then(|at| self.tokens.get(at)).copied() else {
             return false;
@@ -285,7 +285,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether the declarator is that of a function whose body, or old-style declarations, come next.
+    /// Reports whether the declarator is that of a function whose body, or old-style declarations, come next.
     fn begins_body(&self, declarator: &Declarator) -> bool {
         match declarator.derived.first() {
             Some(Derived::Function(Parameters::Names(_))) => {
@@ -298,7 +298,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether what follows an old-style list is another function or prototype, the `;` forgotten.
+    /// Reports whether another function or prototype follows an old-style list, the `;` forgotten.
     fn peek_is_new_declaration(&self) -> bool {
         let mut ahead = 0;
         loop {
@@ -371,7 +371,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether a statement is where only declarations may.
+    /// Reports whether a statement is at a position where only declarations are allowed.
     fn is_loose_statement(&self) -> bool {
         let Some(name) = self.name() else {
             return self.kind() != TokenKind::Star && self.kind() != TokenKind::LeftParen;

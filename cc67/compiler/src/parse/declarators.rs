@@ -11,7 +11,7 @@ use super::{NESTING, Parsed, Parser};
 /// The name of a declarator and what is derived inside its parentheses.
 type Direct = (Option<(Name, Span)>, Vec<Derived>);
 
-/// Whether a declarator has a name.
+/// The rule for the name of a declarator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Naming {
     /// In a declaration.
@@ -92,7 +92,7 @@ impl Parser<'_> {
         Ok((None, Vec::new()))
     }
 
-    /// Whether the next parenthesis holds the parameters of a function without a name.
+    /// Reports whether the next parenthesis holds the parameters of a function without a name.
     ///
     /// Attributes may begin either: `int (__attribute__((noinline)) *)(void)` is a pointer.
     fn opens_parameters(&self) -> bool {
@@ -102,7 +102,7 @@ impl Parser<'_> {
             || self.name_at(first).is_some_and(|name| self.is_declaration_word(name))
     }
 
-    /// How far ahead the first token is that belongs to no attribute, counted from `ahead` on.
+    /// The index of the first token after attributes, counted from `ahead` on.
     fn after_attributes(&self, mut ahead: usize) -> usize {
         while matches!(self.name_at(ahead), Some(word::ATTRIBUTE | word::ATTRIBUTE__)) {
             let mut depth = 0;
@@ -160,7 +160,7 @@ impl Parser<'_> {
         Ok(parameters)
     }
 
-    /// Whether an old-style list of names is next.
+    /// Reports whether an old-style list of names is next.
     fn opens_names(&self) -> bool {
         self.is_identifier_at(0)
             && !self.name().is_some_and(|name| self.is_type_word(name))

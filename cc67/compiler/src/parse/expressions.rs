@@ -1,7 +1,7 @@
 //! Expressions: operands with operators between them, by precedence climbing.
 //!
-//! Parentheses nest through [`Parser::infix`] and [`Parser::unary`] alone. What they do not
-//! need in every turn is kept out of line, which keeps their frames on the stack small.
+//! Parentheses nest through [`Parser::infix`] and [`Parser::unary`] alone. Rare cases are kept out of line, which keeps
+//! their frames on the stack small.
 
 use crate::ast::{Expression, ExpressionKind};
 use crate::pp::TokenKind;
@@ -67,7 +67,7 @@ impl Parser<'_> {
         Ok(combine(operator, left, right))
     }
 
-    /// What follows `condition ?`; the middle operand may be missing.
+    /// Parses the branches after `condition ?`; the middle operand may be missing.
     #[inline(never)]
     fn branches(&mut self, condition: Expression) -> Parsed<Expression> {
         let then = match self.kind() {

@@ -58,7 +58,7 @@ impl Parser<'_> {
         Some(keyword)
     }
 
-    /// Whether an `else if` in one word stands next; reports it, and leaves the word to be read as `if`.
+    /// Reports an `else if` in one word, which is then read as `if`; returns true if there is one.
     pub(super) fn is_else_if(&mut self) -> bool {
         let Some(written) = self.unknown_word() else { return false };
         let is_known = ["elseif", "elsif", "elif"].contains(&written.to_ascii_lowercase().as_str());
@@ -110,7 +110,7 @@ impl Parser<'_> {
         Some(Ok(Statement { kind: StatementKind::Expression(error), span }))
     }
 
-    /// Whether a word of G-code is at the token `ahead`, which means nothing else.
+    /// Reports whether an otherwise undeclared word of G-code is at the token `ahead`.
     fn is_g_code_at(&self, ahead: usize) -> bool {
         self.name_at(ahead).is_some_and(|name| {
             self.scopes.meaning(name) == Meaning::Unknown && foreign_words::is_g_code(self.spelling(name))
@@ -168,7 +168,7 @@ impl Parser<'_> {
         Some(Expression { kind: ExpressionKind::Error, span })
     }
 
-    /// What to say about a word that is where an operator or a `)` was expected.
+    /// The advice for a word at the position of an operator or a `)`.
     pub(super) fn operator_word(&self) -> Option<&'static str> {
         match self.unknown_word()? {
             written @ ("and" | "or" | "not") => foreign_words::word(written).map(|word| word.advice),
@@ -180,7 +180,7 @@ impl Parser<'_> {
     }
 }
 
-/// Whether a word ends a block in Basic and its relatives.
+/// Reports whether a word ends a block in Basic and its relatives.
 fn is_block_end(word: &str) -> bool {
     const ENDS: &[&str] = &["end", "endif", "endwhile", "endfor", "wend", "fi", "done"];
     ENDS.iter().any(|end| word.eq_ignore_ascii_case(end))

@@ -1,9 +1,8 @@
-//! Which `{` was probably left open: what people see is the indentation.
+//! The `{` that was probably left open, by indentation.
 //!
-//! A missing `}` makes every later one close the wrong block, so that the first brace of the
-//! function is the one without a partner. But a `}` that begins a line is below the line of
-//! its `{`; the first one that stands further left than the block it closes shows which block
-//! was not closed.
+//! A missing `}` makes every later one close the wrong block, so that the first brace of the function is the one
+//! without a partner. But a `}` that begins a line is below the line of its `{`; the first one that is further left
+//! than the block it closes shows which block was not closed.
 
 use crate::pp::{Flags, Token, TokenKind};
 
@@ -45,7 +44,7 @@ impl Parser<'_> {
         open.last().map_or(outer, |(opener, _)| *opener)
     }
 
-    /// Whether the next token, which begins a line, stands no further right than the line of `opener`.
+    /// Reports whether the next token, which begins a line, is no further right than the line of `opener`.
     pub(super) fn stands_left_of_block(&self, opener: Token) -> bool {
         let token = self.peek();
         token.flags.has(Flags::LINE_START) && self.column(token) <= self.indent(opener)

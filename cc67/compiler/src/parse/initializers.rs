@@ -6,7 +6,7 @@ use crate::pp::TokenKind;
 use super::{Parsed, Parser};
 
 impl Parser<'_> {
-    /// What follows `=`.
+    /// Parses an initialiser after `=`.
     pub(super) fn initializer(&mut self) -> Parsed<Initializer> {
         if self.kind() != TokenKind::LeftBrace {
             return Ok(Initializer::Expression(self.assignment()?));

@@ -87,7 +87,7 @@ pub fn parse(tokens: &[Token], sources: &SourceMap, names: &Names, sink: &mut Si
 #[derive(Debug)]
 struct Reported;
 
-/// What a parsing function gives.
+/// The result of a parsing function.
 type Parsed<T> = Result<T, Reported>;
 
 /// A parser at work.
@@ -95,7 +95,7 @@ struct Parser<'a> {
     tokens: &'a [Token],
     /// Index of the next token.
     at: usize,
-    /// What follows the last token.
+    /// The token after the last one.
     end: Token,
     sources: &'a SourceMap,
     names: &'a Names,
@@ -111,7 +111,7 @@ struct Parser<'a> {
     tags: BTreeSet<(Name, &'static str)>,
 }
 
-/// How deep the parser is.
+/// The nesting depth of the parser.
 #[derive(Debug, Default)]
 struct Nesting {
     /// Constructs within each other.
@@ -120,7 +120,7 @@ struct Nesting {
     operators: usize,
 }
 
-/// What the parser must know to continue after errors, and not to report one mistake twice.
+/// The state for continuing after errors, and for reporting each mistake once.
 #[derive(Debug, Default)]
 struct Recovery {
     /// Brackets and braces that are open.
@@ -164,7 +164,7 @@ impl Parser<'_> {
         self.name_at(0)
     }
 
-    /// Whether the token `ahead` is an identifier and no keyword.
+    /// Reports whether the token `ahead` is an identifier and no keyword.
     fn is_identifier_at(&self, ahead: usize) -> bool {
         self.name_at(ahead).is_some_and(|name| !name.is_keyword())
     }

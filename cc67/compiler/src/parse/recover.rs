@@ -50,7 +50,7 @@ impl Parser<'_> {
         })
     }
 
-    /// What was probably meant where `token` was not expected.
+    /// The probable meaning of an unexpected `token`.
     fn hint(&self, token: Token) -> Option<String> {
         if let Some(advice) = self.macro_advice(token) {
             return Some(advice);
@@ -72,7 +72,7 @@ impl Parser<'_> {
         Some(advice.to_owned())
     }
 
-    /// What to change in the `#define` that put `=` or `;` where it is not allowed.
+    /// The change to the `#define` that put `=` or `;` where it is not allowed.
     fn macro_advice(&self, token: Token) -> Option<String> {
         let expansion = self.sources.expansion(token.span.expansion)?;
         let text = match token.kind {
@@ -128,7 +128,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether a parenthesis is that of `if`, `while` or `switch`.
+    /// Reports whether a parenthesis is that of `if`, `while` or `switch`.
     fn is_condition(&self, opener: Token) -> bool {
         let tokens = self.tokens.get(..self.at).unwrap_or_default();
         let at = tokens.iter().rposition(|token| token.span == opener.span);
@@ -337,7 +337,7 @@ impl Parser<'_> {
         self.tokens.get(self.at + ahead).is_none_or(|token| token.flags.has(Flags::LINE_START))
     }
 
-    /// Whether a token is a word that begins a statement or declaration.
+    /// Reports whether a token is a word that begins a statement or declaration.
     fn is_statement_word(&self, token: Token) -> bool {
         matches!(
             token.name,

@@ -1,14 +1,14 @@
-//! Which names are types at the moment.
+//! The names that are types in the current scope.
 //!
-//! C cannot be parsed without that: `a * b;` declares `b` if `a` is a type. A name is looked
-//! up for every identifier token, so each has one entry that says what it is now, and blocks
-//! keep a list of what to restore at their end.
+//! C cannot be parsed without them: `a * b;` declares `b` if `a` is a type. A name is looked up for every identifier
+//! token, so each has one entry with its present meaning, and blocks keep a list of the entries to restore at their
+//! end.
 
 use cranelift_entity::SecondaryMap;
 
 use crate::names::Name;
 
-/// What a name is.
+/// The meaning of a name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Meaning {
     /// Nothing declared it.
@@ -26,14 +26,14 @@ pub(super) enum Meaning {
 #[derive(Debug, Default)]
 pub(super) struct Scopes {
     meanings: SecondaryMap<Name, Meaning>,
-    /// What names meant before the declarations of the open scopes.
+    /// The meanings of names before the declarations of the open scopes.
     hidden: Vec<(Name, Meaning)>,
-    /// Where each open scope begins in `hidden`.
+    /// The start of each open scope in `hidden`.
     starts: Vec<usize>,
 }
 
 impl Scopes {
-    /// What a name is here.
+    /// The meaning of a name in the current scope.
     pub(super) fn meaning(&self, name: Name) -> Meaning {
         self.meanings.get(name).copied().unwrap_or_default()
     }
@@ -51,7 +51,7 @@ impl Scopes {
         *self.entry(name) = Meaning::MissingType;
     }
 
-    /// Whether no scope but that of the file is open.
+    /// Reports whether no scope but that of the file is open.
     pub(super) fn is_outermost(&self) -> bool {
         self.starts.is_empty()
     }

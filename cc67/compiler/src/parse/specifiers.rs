@@ -140,7 +140,7 @@ impl Parser<'_> {
         Ok(alignment)
     }
 
-    /// Whether a word begins a type, wherever one may be.
+    /// Reports whether a word begins a type in any context.
     pub(super) fn is_type_word(&self, name: Name) -> bool {
         match name {
             word::VOID
@@ -182,7 +182,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether a word begins a declaration.
+    /// Reports whether a word begins a declaration.
     pub(super) fn is_declaration_word(&self, name: Name) -> bool {
         matches!(
             name,
@@ -394,7 +394,7 @@ impl Parser<'_> {
         self.fail(diagnostic.help("is a `;` or `,` missing before it?"))
     }
 
-    /// Whether `struct { … }` is followed by a declaration on a line of its own.
+    /// Reports whether `struct { … }` is followed by a declaration on a line of its own.
     fn lacks_semicolon(&self) -> bool {
         let next = self.peek();
         let behind_brace = self.at.checked_sub(1).and_then(|at| self.tokens.get(at));

@@ -235,7 +235,7 @@ impl Parser<'_> {
         is_else
     }
 
-    /// Whether the block after `if` ends before an `else`, its `}` forgotten; reports that.
+    /// Reports a block after `if` that ends before an `else`, its `}` forgotten; returns true if there is one.
     fn ends_before_else(&mut self) -> bool {
         let Some(opener) = self.recovery.open.last().copied() else { return false };
         if self.name() != Some(word::ELSE) || !self.stands_left_of_block(opener) {
@@ -371,7 +371,7 @@ impl Parser<'_> {
         Ok(self.finish(StatementKind::Label { name, name_span, body }, start))
     }
 
-    /// What follows a label: perhaps nothing, at the end of a block.
+    /// Parses the statement after a label: perhaps nothing, at the end of a block.
     fn labelled(&mut self) -> Parsed<Box<Statement>> {
         if self.kind() == TokenKind::RightBrace {
             return Ok(Box::new(Statement { kind: StatementKind::Empty, span: self.end_of_last() }));

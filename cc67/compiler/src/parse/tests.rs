@@ -1,4 +1,4 @@
-//! What the parser promises, as pairs of source and tree or message.
+//! Promises of the parser, as pairs of source and tree or message.
 
 use std::fmt::Write;
 

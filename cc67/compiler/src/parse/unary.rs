@@ -60,7 +60,7 @@ impl Parser<'_> {
         Ok(Expression { kind: ExpressionKind::Unary(operator, Box::new(operand)), span })
     }
 
-    /// Whether a type begins at the token `ahead`.
+    /// Reports whether a type begins at the token `ahead`.
     pub(super) fn is_type_at(&self, ahead: usize) -> bool {
         self.name_at(ahead).is_some_and(|name| self.is_type_word(name))
     }
@@ -144,7 +144,7 @@ impl Parser<'_> {
         Ok(Expression { kind: ExpressionKind::AlignofType(ty), span: self.since(token.span) })
     }
 
-    /// What follows an operand.
+    /// Parses the postfix operators after an operand.
     #[inline(never)]
     fn postfix(&mut self, mut operand: Expression) -> Parsed<Expression> {
         let mut count = 0;
@@ -200,7 +200,7 @@ impl Parser<'_> {
         Ok(arguments)
     }
 
-    /// Whether another argument follows in the same line, the `,` before it forgotten; reports that.
+    /// Reports an argument in the same line without a `,` before it; returns true if there is one.
     fn lacks_comma(&mut self) -> bool {
         let token = self.peek();
         let begins_operand =
@@ -275,7 +275,7 @@ impl Parser<'_> {
     }
 }
 
-/// Whether a token goes on an operand.
+/// Reports whether a token continues an operand.
 fn is_postfix(kind: TokenKind) -> bool {
     matches!(
         kind,

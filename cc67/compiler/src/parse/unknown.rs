@@ -44,8 +44,8 @@ impl Parser<'_> {
         TypeSpecifier::TypeofExpression(Box::new(Expression { kind: ExpressionKind::Error, span }))
     }
 
-    /// Whether the next tokens can only be a declaration with a type that does not exist: `name name`, or
-    /// `name *name` where `name` means nothing.
+    /// Reports whether the next tokens can only be a declaration with a type that does not exist: `name name`, or `name
+    /// *name` where `name` is undeclared.
     pub(super) fn is_unknown_type(&self) -> bool {
         let Some(name) = self.name().filter(|name| !name.is_keyword()) else { return false };
         if self.is_type_word(name) || self.scopes.meaning(name) != Meaning::Unknown {
@@ -91,7 +91,7 @@ impl Parser<'_> {
         self.report(diagnostic);
     }
 
-    /// What to do about a missing type.
+    /// The advice about a missing type.
     fn type_help(&self, spelling: &str) -> String {
         if let Some(keyword) = self.tag_keyword(spelling) {
             return format!("write `{keyword} {spelling}`");
@@ -119,7 +119,7 @@ impl Parser<'_> {
         self.tags.iter().find(|(tag, _)| *tag == name).map(|(_, keyword)| *keyword)
     }
 
-    /// Whether the board's header was read: it declares the persistent memory.
+    /// Reports whether the board's header was read: it declares the persistent memory.
     fn has_board_header(&self) -> bool {
         self.names.find("persist").is_some_and(|name| self.scopes.meaning(name) != Meaning::Unknown)
     }

@@ -18,7 +18,7 @@ pub fn run(function: &mut Function) {
     }
 }
 
-/// How often each value is read in the whole function.
+/// Number of reads of each value in the whole function.
 fn count_reads(function: &Function) -> SecondaryMap<ValueId, u32> {
     let mut reads: SecondaryMap<ValueId, u32> = table(function.values.len());
     for &id in &function.layout {
@@ -47,7 +47,7 @@ fn for_each_read(function: &Function, inst: &Inst, mut visit: impl FnMut(ValueId
     }
 }
 
-/// What happens next to a value, seen from inside a block.
+/// The next use of a value, seen from inside a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Ahead {
     region: u32,
@@ -80,7 +80,7 @@ impl Remover {
         function.blocks[id].insts = insts;
     }
 
-    /// Whether an instruction must stay; the result of a call that must may still be dropped.
+    /// Reports whether an instruction must stay; the result of a call that must may still be dropped.
     fn keeps(&mut self, function: &Function, inst: &mut Inst, leaves: bool) -> bool {
         if let Some(dst) = inst.kind.dst() {
             if self.is_dead(dst, leaves) {
@@ -99,7 +99,7 @@ impl Remover {
         true
     }
 
-    /// Whether nobody reads what is written here to `value`.
+    /// Reports whether the value written to `value` here is never read.
     fn is_dead(&self, value: ValueId, leaves: bool) -> bool {
         let ahead = self.ahead[value];
         let is_read = if ahead.region == self.region { ahead.is_read } else { !leaves };

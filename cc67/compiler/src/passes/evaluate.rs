@@ -1,8 +1,8 @@
-//! Loops that only compute with known numbers: the compiler does what the processor would.
+//! Compile-time evaluation of loops that only compute with known numbers.
 //!
-//! A loop is taken if one block alone leads into it, everything that it reads is known there, and it neither reads nor
-//! writes memory nor calls. Its turns are computed as the machine computes them, up to a limit; what is left of it are
-//! its last values. A loop with more turns, such as one that is meant to take time, stays.
+//! A loop is evaluated if one block alone leads into it, everything that it reads is known there, and it neither reads
+//! nor writes memory nor calls. Its iterations are computed as the machine computes them, up to a limit; they are
+//! replaced by its last values. A loop with more iterations, such as a delay loop, stays.
 
 use std::collections::BTreeMap;
 
@@ -82,7 +82,7 @@ fn replace(
 struct Machine<'a> {
     function: &'a Function,
     entrance: BlockId,
-    /// What was looked up or written so far; `None` where it is not known.
+    /// The constants looked up or written so far; `None` where they are unknown.
     values: BTreeMap<ValueId, Option<Constant>>,
 }
 
@@ -168,7 +168,7 @@ impl Machine<'_> {
         first.map(Operand::from)
     }
 
-    /// What a value is when the loop begins.
+    /// The constant that a value holds at the start of the loop.
     fn first(&self, value: ValueId) -> Option<Constant> {
         let mut id = self.entrance;
         for _ in 0..BEFORE {

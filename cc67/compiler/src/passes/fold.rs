@@ -1,9 +1,8 @@
-//! Folds constants and carries copies and sums forward, within a block and into the block
-//! after it if that has no other predecessor.
+//! Folds constants and propagates copies and sums, within a block and into the block after it if that has no other
+//! predecessor.
 //!
-//! A fact about a value holds until the value, or the value the fact refers to, is written
-//! again; a counter of writes for each value tells. Nothing is ever cleared, so the pass is
-//! linear.
+//! A fact about a value holds until the value, or the value the fact refers to, is written again; a counter of writes
+//! for each value shows that. Facts are never cleared, so the pass is linear.
 
 use cranelift_entity::SecondaryMap;
 
@@ -12,16 +11,16 @@ use crate::ir::function::{Function, table};
 use crate::ir::inst::{Address, Base, Constant, Inst, InstKind, Operand, Terminator, ValueId};
 use crate::ir::operators::{BinaryOp, CompareOp};
 
-/// What is known about a value.
+/// The fact known about a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Known {
     /// Nothing.
     Nothing,
-    /// It equals an operand.
+    /// Equal to an operand.
     Operand(Operand),
-    /// It is this address.
+    /// Equal to this address.
     Address(Address),
-    /// It is 1 if the operand is 0, else 0.
+    /// 1 if the operand is 0, else 0.
     IsZero(Operand),
 }
 
@@ -88,7 +87,7 @@ impl Folder {
         }
     }
 
-    /// What replaces an operand: the constant or the older value that it is known to equal.
+    /// The replacement of an operand: the constant or the older value that it is known to equal.
     fn resolve(&self, operand: Operand) -> Operand {
         match operand.as_value().map(|value| self.known(value)) {
             Some(Known::Operand(known)) => known,
@@ -96,7 +95,7 @@ impl Folder {
         }
     }
 
-    /// What is known about a value now.
+    /// The fact known about a value at this point.
     fn known(&self, value: ValueId) -> Known {
         let fact = self.facts[value];
         let is_current = fact.region == self.region

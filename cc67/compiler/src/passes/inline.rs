@@ -1,11 +1,11 @@
-//! Puts small functions in place of their calls.
+//! Inlining of small functions.
 //!
-//! A function is taken over as it is: its values, blocks and accesses are copied, its
-//! parameters are written before it, its result is written where it returned. What has objects in
-//! the frame is left alone, so that a frame grows only by what its own function asks for.
+//! The values, blocks and accesses of the callee are copied, its parameters are written before them, its result is
+//! written where it returned. A function with objects in the frame is not inlined, so that a frame grows only by its
+//! own function's objects.
 //!
-//! A function that calls itself takes over its own body, from before that, a few levels deep.
-//! The calls that remain still use the stack, so a recursion without end still traps.
+//! A recursive function is inlined in itself, with its body from before that, a few levels deep. The calls that remain
+//! still use the stack, so a recursion without end still traps.
 
 use std::collections::BTreeMap;
 
@@ -22,22 +22,23 @@ use crate::typed::SymbolId;
 /// The most instructions of a function that replaces its calls.
 const SMALL: usize = 40;
 
-/// The same where code must not grow: what a call and the ends of a function take, and what is used once.
+/// The largest function that is inlined where code must not grow: about the size of a call with the function's entry
+/// and exit.
 const SMALLEST: usize = 32;
 
 /// The most instructions of a function whose calls of itself are replaced.
 const SMALL_RECURSIVE: usize = 16;
 
-/// How often the calls of a function in itself are replaced, unless something else is requested.
+/// The depth to which recursive calls are inlined, unless another is requested.
 const LEVELS: usize = 3;
 
-/// What a function may grow to.
+/// The largest size that a function may grow to, in instructions.
 const LARGEST: usize = 1500;
 
 /// The functions that may replace their calls, each with the source file that it is in.
 #[derive(Debug)]
 pub struct Candidates {
-    /// How often the calls of a function in itself are replaced.
+    /// The depth to which recursive calls are inlined.
     levels: usize,
     /// The most instructions of a function that replaces its calls.
     largest: usize,
@@ -57,7 +58,7 @@ impl Candidates {
         Self { levels, largest: SMALL, functions: BTreeMap::new() }
     }
 
-    /// The same for code that must not grow.
+    /// The candidates for code that must not grow.
     #[must_use]
     pub const fn small() -> Self {
         Self { levels: 0, largest: SMALLEST, functions: BTreeMap::new() }
@@ -144,7 +145,7 @@ fn replace_calls<'a>(function: &mut Function, find: impl Fn(SymbolId) -> Option<
     is_changed
 }
 
-/// How often each value of a function is written.
+/// Number of writes of each value of a function.
 fn writes(function: &Function) -> SecondaryMap<ValueId, u32> {
     let mut writes: SecondaryMap<ValueId, u32> = table(function.values.len());
     let insts = function.layout.iter().flat_map(|id| &function.blocks[*id].insts);
@@ -165,7 +166,7 @@ fn split(function: &mut Function, block: BlockId) -> BlockId {
 struct Copier<'a> {
     to: &'a mut Function,
     from: &'a Function,
-    /// How often each value of the calling function is written.
+    /// Number of writes of each value of the calling function.
     writes: &'a SecondaryMap<ValueId, u32>,
     values: SecondaryMap<ValueId, ValueId>,
     blocks: SecondaryMap<BlockId, BlockId>,
@@ -241,8 +242,8 @@ impl<'a> Copier<'a> {
         }
     }
 
-    /// Where locals of the called function are: where they were copied to, and a parameter that is never written also
-    /// where its argument is.
+    /// The homes of the called function's locals: their copies, and for a parameter that is never written also its
+    /// argument.
     fn variables(&self, of: &[SourceVariable], arguments: ArgumentRange) -> Vec<SourceVariable> {
         let mut variables = Vec::new();
         for variable in of {
@@ -279,7 +280,7 @@ impl<'a> Copier<'a> {
         SourceVariable { home, ..variable }
     }
 
-    /// What copied code was in the source.
+    /// The source position of copied code.
     fn origin(&self, origin: CodeOrigin) -> CodeOrigin {
         let call = origin.call.expand().map_or(self.call, |inner| self.inner[inner]);
         CodeOrigin { span: origin.span, call }

@@ -1,14 +1,14 @@
-//! Takes work out of loops: what does not change is computed before them, and an expression
-//! that grows evenly with a counter is a sum carried from turn to turn.
+//! Loop-invariant code motion and strength reduction: invariants are computed before loops, and an expression that
+//! grows evenly with a counter becomes a sum carried from iteration to iteration.
 //!
-//! A loop is a stretch of the layout from the target of a jump backwards to the jump; it counts
-//! only if its first block is its only entrance. Only values are moved, never a load or what may
-//! trap. All arithmetic is modulo 2³², so a sum carried along is exact however far it goes.
+//! A loop is a segment of the layout from the target of a backward jump to the jump; it counts only if it is entered at
+//! its first block alone. Only values are moved, never a load or an instruction that may trap. All arithmetic is modulo
+//! 2³², so a carried sum stays exact.
 //!
-//! Small loops come first, so what leaves an inner loop can leave the outer one as well.
+//! Small loops come first, so that code moved out of an inner loop can leave the outer one as well.
 //!
-//! Most functions have no loop, and most loops nothing to take out: finding that out is what has
-//! to be cheap. What is counted for the whole function is counted once and kept up to date.
+//! Most functions have no loop, and most loops nothing to move, so the test for that has to be cheap: counts for the
+//! whole function are made once and kept up to date.
 
 use cranelift_entity::SecondaryMap;
 
@@ -46,7 +46,7 @@ pub fn run(function: &mut Function) -> bool {
     is_changed
 }
 
-/// A stretch of the layout.
+/// A segment of the layout.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stretch {
     pub(super) first: usize,
@@ -61,7 +61,7 @@ impl Stretch {
     }
 }
 
-/// Where in the layout each block stands.
+/// The position of each block in the layout.
 pub(super) fn places(function: &Function) -> SecondaryMap<BlockId, u32> {
     let mut places = table(function.blocks.len());
     for (place, id) in (0..).zip(&function.layout) {
@@ -70,7 +70,7 @@ pub(super) fn places(function: &Function) -> SecondaryMap<BlockId, u32> {
     places
 }
 
-/// The stretch from each block that a jump backwards leads to, to the last such jump.
+/// The segments from each target of a backward jump to the last such jump.
 pub(super) fn find(function: &Function, places: &SecondaryMap<BlockId, u32>) -> Vec<Stretch> {
     let mut loops: Vec<Stretch> = Vec::new();
     for (last, id) in function.layout.iter().enumerate() {
@@ -107,15 +107,15 @@ pub(super) fn entrance(
     entrance
 }
 
-/// What is known about the whole function, and of the loop that is worked on.
+/// The state for a function, and for the current loop.
 struct Worker<'a> {
     function: &'a mut Function,
     places: SecondaryMap<BlockId, u32>,
-    /// How often each value is written in the function.
+    /// Number of writes of each value in the function.
     writes: SecondaryMap<ValueId, u32>,
     /// And in the loop; zero between two loops.
     writes_inside: SecondaryMap<ValueId, u32>,
-    /// What goes in front of the loop.
+    /// The instructions for the preheader.
     before: Vec<Inst>,
 }
 
@@ -223,7 +223,7 @@ impl<'a> Worker<'a> {
     }
 }
 
-/// Whether an instruction without effect does the same in each turn.
+/// Reports whether an instruction without effect is loop-invariant.
 fn is_fixed(kind: &InstKind, writes_inside: &SecondaryMap<ValueId, u32>) -> bool {
     // A constant costs nothing where it is.
     let mut is_fixed = !matches!(kind, InstKind::Copy { src: Operand::Constant(_), .. });

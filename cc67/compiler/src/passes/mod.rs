@@ -1,8 +1,8 @@
 //! Optimisations of the IR, one a file.
 //!
-//! All are local to a block or to the graph of blocks and take linear time, except for the loops,
-//! each of which takes a turn over its function, up to a limit. They work on values only: loads, stores and calls stay where they are, in number and order
-//! (specification, `dialect.md` 1.5); only a call of a small function gives way to that function.
+//! All are local to a block or to the graph of blocks and take linear time, except for the loops, each of which takes a
+//! pass over its function, up to a limit. They work on values only: loads, stores and calls keep their number and order
+//! (specification, `dialect.md` 1.5); only calls of small functions are inlined.
 
 pub mod dead;
 pub mod divide;
@@ -18,13 +18,13 @@ pub mod unroll;
 use crate::ir::function::Function;
 use inline::Candidates;
 
-/// How much is optimised.
+/// The level of optimisation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// Nothing: the code follows the source (`-O0`).
     None,
-    /// What makes code smaller (`-Os`): short functions alone replace their calls, and none calls of itself; loops that
-    /// only compute with known numbers are their last values.
+    /// Optimise for size (`-Os`): only calls of short functions are inlined, and no recursive ones; loops that only
+    /// compute with known numbers are replaced by their last values.
     Small,
     /// Everything that makes code faster without making it much larger (`-O1`).
     #[default]
@@ -36,7 +36,7 @@ pub enum Level {
 /// A pass over the functions of a unit, in their order.
 pub type Pass = fn(&mut [Function]);
 
-/// Every pass by its name; [`run`] and the driver say when each has its turn.
+/// All passes by name; [`run`] and the driver determine the order.
 pub const ALL: &[(&str, Pass)] = &[
     ("jumps", |unit| unit.iter_mut().for_each(jumps::run)),
     ("fold", |unit| unit.iter_mut().for_each(|function| _ = fold::run(function))),

@@ -7,10 +7,10 @@
 use crate::ir::function::Function;
 use crate::ir::inst::{InstKind, Operand, ValueId};
 
-/// How many expressions are remembered.
+/// Number of expressions that are remembered.
 const REMEMBERED: usize = 24;
 
-/// Replaces expressions whose value is at hand by copies; returns whether there were any.
+/// Replaces expressions whose value is available by copies; returns whether there were any.
 pub fn run(function: &mut Function) -> bool {
     let predecessors = function.predecessors();
     let mut known: Vec<InstKind> = Vec::with_capacity(REMEMBERED);
@@ -45,7 +45,8 @@ pub fn run(function: &mut Function) -> bool {
     is_changed
 }
 
-/// Whether the same instruction on the same values always gives the same; what traps has done so the first time.
+/// Reports whether the instruction always gives the same result for the same values; one that traps has done so the
+/// first time.
 const fn is_expression(kind: &InstKind) -> bool {
     match kind {
         InstKind::Unary { .. }

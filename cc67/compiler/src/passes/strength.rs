@@ -8,7 +8,7 @@ use vm::arith;
 use crate::ir::inst::{Class, Constant, Operand};
 use crate::ir::operators::{BinaryOp, CompareOp, ConvertOp, UnaryOp};
 
-/// What an instruction can be replaced by.
+/// The replacement of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Simplified {
     /// Nothing better.
@@ -94,7 +94,7 @@ fn right_constant(op: BinaryOp, a: Operand, b: Operand) -> Simplified {
     power_of_two(op, a, constant)
 }
 
-/// Whether `a op number` is 0.
+/// Reports whether `a op number` is 0.
 const fn is_zero(op: BinaryOp, number: i64) -> bool {
     match op {
         BinaryOp::Multiply | BinaryOp::And => number == 0,
@@ -111,7 +111,7 @@ const fn is_zero(op: BinaryOp, number: i64) -> bool {
     }
 }
 
-/// Whether `a op number` is `a`.
+/// Reports whether `a op number` is `a`.
 const fn is_identity(op: BinaryOp, number: i64) -> bool {
     match op {
         BinaryOp::Add | BinaryOp::Subtract | BinaryOp::Or | BinaryOp::Xor => number == 0,

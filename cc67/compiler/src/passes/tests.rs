@@ -1,4 +1,4 @@
-//! What the passes make of small functions, all together.
+//! The results of all passes together on small functions.
 
 use super::Level;
 use crate::lower::testing::{check_ir, ir};

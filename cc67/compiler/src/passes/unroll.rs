@@ -1,10 +1,10 @@
-//! Loops that count to a known number: several turns as one, or all of them one after another.
+//! Unrolling of loops with a known number of iterations, partly or completely.
 //!
-//! A loop is taken if its last block alone jumps back and ends with the comparison of a counter, which that block
-//! increases by a constant and nothing else changes, with a constant; and if the counter's first value is known. Then
-//! the number of turns is known, and the copies of a turn need no test between them. Loads, stores and calls keep
-//! their number and order. A turn of one block gets new names for what it writes, so that the turns overlap where the
-//! processor can; the last one writes the old names, which the rest of the function reads.
+//! A loop is unrolled if its last block alone jumps back and ends with the comparison of a counter with a constant; the
+//! counter is incremented by a constant in that block only, and its first value is known. Then the number of iterations
+//! is known, and their copies need no test between them. Loads, stores and calls keep their number and order. The
+//! values that an iteration of one block writes get new names, so that iterations overlap where the processor can; the
+//! last one writes the old names, which the rest of the function reads.
 
 use cranelift_entity::SecondaryMap;
 
@@ -13,15 +13,15 @@ use crate::ir::function::{Block, Function, table};
 use crate::ir::inst::{ArgumentRange, BlockId, Inst, InstKind, Operand, Terminator, ValueId};
 use crate::ir::operators::{BinaryOp, CompareOp};
 
-/// The most turns that are counted.
+/// The most iterations that are counted.
 const MOST_TURNS: u32 = 1 << 16;
 /// Instructions of a loop that disappears.
 const WHOLE: u32 = 120;
 /// Turns of it.
 const WHOLE_TURNS: u32 = 32;
-/// Instructions of a loop that takes several turns as one.
+/// The most instructions of a partly unrolled loop.
 const SEVERAL: u32 = 96;
-/// The same of a loop of one block, whose turns overlap anyway.
+/// The most instructions of a partly unrolled loop of one block, whose iterations overlap anyway.
 const SEVERAL_OF_ONE: u32 = 40;
 /// Turns that it takes as one.
 const MOST_COPIES: u32 = 8;
@@ -61,7 +61,7 @@ pub fn run(function: &mut Function) -> bool {
     }
 }
 
-/// What happens to a loop.
+/// The unrolling of a loop.
 #[derive(Clone, Copy, Debug)]
 struct Plan {
     /// Turns in front of the loop, or all of them.
@@ -92,7 +92,7 @@ fn plan(function: &Function, places: &SecondaryMap<BlockId, u32>, stretch: Stret
     Some(Plan { before: turns % copies, copies, is_whole: false })
 }
 
-/// How many turns a loop takes, if that is known.
+/// Number of iterations of a loop, if it is known.
 fn turns(function: &Function, places: &SecondaryMap<BlockId, u32>, stretch: Stretch) -> Option<u32> {
     let (header, latch) = (function.layout[stretch.first], function.layout[stretch.last]);
     let entrance = entrance(function, places, stretch)?;
@@ -147,7 +147,7 @@ fn turns(function: &Function, places: &SecondaryMap<BlockId, u32>, stretch: Stre
     None
 }
 
-/// The block before a loop, if that is its only entrance and its last block the only way back and out.
+/// The preheader of a loop, if the loop has one, and its last block is the only latch and exit.
 fn entrance(function: &Function, places: &SecondaryMap<BlockId, u32>, stretch: Stretch) -> Option<BlockId> {
     let (header, latch) = (function.layout[stretch.first], function.layout[stretch.last]);
     let is_inside = |id: BlockId| (stretch.first as u32..=stretch.last as u32).contains(&places[id]);
@@ -176,7 +176,7 @@ const fn holds(op: CompareOp, a: i32, b: i32) -> bool {
 struct Unroller<'a> {
     function: &'a mut Function,
     stretch: Stretch,
-    /// The present name of each value that a turn writes.
+    /// The present name of each value that an iteration writes.
     names: SecondaryMap<ValueId, Option<ValueId>>,
     /// The block alone that mentions a value, which it writes first.
     own: SecondaryMap<ValueId, Option<BlockId>>,
@@ -244,7 +244,7 @@ impl<'a> Unroller<'a> {
         self.function.layout.splice(self.stretch.first..self.stretch.first, layout);
     }
 
-    /// Jumps from outside go to the first turn.
+    /// Redirects jumps from outside to the first iteration.
     fn enter(&mut self, header: BlockId, first: BlockId) {
         let before = &self.function.layout[..self.stretch.first];
         let after = &self.function.layout[self.stretch.last + 1..];
@@ -282,7 +282,7 @@ impl<'a> Unroller<'a> {
         }
     }
 
-    /// A turn of a loop of one block; what it writes last has its old name in the last turn.
+    /// Copies an iteration of a loop of one block; the last writes of the last iteration keep their old names.
     fn turn(&mut self, body: &[Inst], is_last: bool, out: &mut Vec<Inst>) {
         for (index, inst) in body.iter().enumerate() {
             let mut inst = *inst;
@@ -323,7 +323,7 @@ impl<'a> Unroller<'a> {
         }
     }
 
-    /// New names for what nobody but the block mentions.
+    /// Renames the values that only the block uses.
     fn rename_own(&mut self, body: &mut Block, id: BlockId) {
         for inst in &mut body.insts {
             self.rename_reads(inst);
@@ -340,7 +340,7 @@ impl<'a> Unroller<'a> {
     }
 }
 
-/// The terminator of the last turn: what jumped back to the old turn does so to the first of the loop.
+/// The terminator of the last iteration: jumps back to the old header go to the first iteration.
 fn back_to(mut terminator: Terminator, outside: BlockId, back: BlockId) -> Terminator {
     terminator.visit_targets(|target| {
         if *target != outside {

@@ -140,7 +140,7 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// Whether the text after this `#else` or `#elif` counts.
+    /// Reports whether the text after this `#else` or `#elif` is compiled.
     fn enters_branch(&mut self, name: Option<Name>, span: Span) -> bool {
         let is_else = name == Some(word::ELSE);
         let directive = if is_else { "#else" } else { "#elif" };

@@ -198,7 +198,7 @@ impl Preprocessor<'_> {
         });
     }
 
-    /// Whether a macro of this name is defined.
+    /// Reports whether a macro of this name is defined.
     pub(super) fn is_defined(&mut self, name: Name) -> bool {
         self.find_macro(name).is_some()
     }

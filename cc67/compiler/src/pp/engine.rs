@@ -28,13 +28,13 @@ pub(super) struct OpenFile {
     pub(super) lexer: Lexer,
     /// Its path, to recognise it when it is included again; none for text without a file.
     pub(super) path: Option<PathBuf>,
-    /// Where includes in it look first.
+    /// The directory that its includes are searched in first.
     pub(super) directory: PathBuf,
     /// The open `#if`s.
     pub(super) conditionals: Vec<Conditional>,
-    /// Whether a second inclusion would be empty.
+    /// The include guard: whether a second inclusion would be empty.
     pub(super) guard: Guard,
-    /// What `#line` adds to line numbers.
+    /// The offset that `#line` adds to line numbers.
     pub(super) line_shift: i64,
     /// The file name that `#line` gave.
     pub(super) presumed_name: Option<String>,
@@ -75,7 +75,7 @@ pub(super) struct Preprocessor<'a> {
     pub(super) work: Work,
 }
 
-/// What was done so far, and whether that is enough.
+/// The work done so far, and whether a limit was reached.
 #[derive(Debug, Default)]
 pub(super) struct Work {
     /// Tokens that macros made.

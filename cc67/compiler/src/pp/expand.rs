@@ -57,7 +57,7 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// Expands a list of tokens by itself.
+    /// Expands a list of tokens separately.
     pub(super) fn expand_list(&mut self, tokens: Vec<Token>) -> Vec<Token> {
         let end = tokens.len();
         let depth = self.frames.len();
@@ -104,7 +104,7 @@ impl Preprocessor<'_> {
         self.next_of_file()
     }
 
-    /// Whether `(` follows.
+    /// Reports whether `(` follows.
     fn is_before_paren(&self) -> bool {
         for frame in self.frames.iter().rev() {
             if frame.at < frame.end {

@@ -1,7 +1,7 @@
-//! How the preprocessor reaches files.
+//! The preprocessor's access to files.
 //!
-//! Everything it reads goes through [`Files`], so that a test, an editor or a tool that lists
-//! dependencies can be between.
+//! Everything it reads goes through [`Files`], so that a test, an editor or a tool that lists dependencies can be
+//! between.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -15,7 +15,7 @@ pub trait Files {
     /// The bytes of a file.
     ///
     /// # Errors
-    /// Whatever the file system says; `NotFound` lets the search go on quietly.
+    /// The file system's error; after `NotFound` the search continues silently.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
 
     /// The names of the entries of a directory, in any order.

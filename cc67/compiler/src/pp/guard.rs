@@ -2,7 +2,7 @@
 
 use crate::names::Name;
 
-/// What is known about a file's guard while it is read.
+/// The state of a file's include guard while it is read.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) enum Guard {
     /// Nothing but comments so far.

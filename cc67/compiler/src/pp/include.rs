@@ -154,7 +154,7 @@ impl Preprocessor<'_> {
         directories.iter().find_map(|directory| self.reader.find_in(directory, relative))
     }
 
-    /// Whether a file has nothing more to give.
+    /// Reports whether including a file again yields nothing.
     fn is_spent(&mut self, path: &Path) -> bool {
         self.reader.is_once(path)
             || self.reader.guard(path).is_some_and(|guard| self.find_macro(guard).is_some())
@@ -213,7 +213,7 @@ impl Preprocessor<'_> {
         self.open_file(file, path, directory);
     }
 
-    /// Whether a file is small enough for the position space.
+    /// Reports whether a file is small enough for the position space.
     fn check_size(&mut self, length: usize, at: Span) -> bool {
         let length = u32::try_from(length).unwrap_or(u32::MAX);
         if length > limits::FILE_BYTES {

@@ -22,11 +22,11 @@ use crate::source::Span;
 
 use super::token::{Flags, Token, TokenKind};
 
-/// What the lexer needs from the rest of the preprocessor.
+/// The parts of the preprocessor that the lexer uses.
 pub(super) struct LexerContext<'a> {
-    /// Where identifiers get their numbers.
+    /// The table of names, which numbers identifiers.
     pub(super) names: &'a mut Names,
-    /// Where diagnostics go.
+    /// The sink of diagnostics.
     pub(super) sink: &'a mut Sink,
 }
 
@@ -74,12 +74,12 @@ impl Lexer {
         }
     }
 
-    /// The same for a part of the text.
+    /// Restricts the lexer to a part of the text.
     pub(super) fn within(self, lo: usize, hi: usize) -> Self {
         Self { at: lo, end: hi, ..self }
     }
 
-    /// Whether the file is in an encoding that cannot be C source.
+    /// Reports whether the file is in an encoding that cannot be C source.
     pub(super) fn is_utf16(&self) -> bool {
         self.text.starts_with(b"\xFF\xFE") || self.text.starts_with(b"\xFE\xFF")
     }
@@ -122,7 +122,7 @@ impl Lexer {
         }
     }
 
-    /// Whether the next token is `(`, without reading it.
+    /// Reports whether the next token is `(`, without reading it.
     pub(super) fn is_before_paren(&self) -> bool {
         let mut at = self.at;
         loop {
@@ -141,7 +141,7 @@ impl Lexer {
         }
     }
 
-    /// Whether the next byte is `(`: what makes a definition that of a function-like macro.
+    /// Reports whether the next byte is `(`, which makes a definition that of a function-like macro.
     pub(super) fn is_at_paren(&self) -> bool {
         self.byte(self.past_splices(self.at)) == b'('
     }

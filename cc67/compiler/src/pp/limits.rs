@@ -1,7 +1,7 @@
-//! What the preprocessor refuses to go beyond.
+//! The limits of the preprocessor.
 //!
-//! Every limit is far above what a program for the board needs, and is a number in the
-//! message about it. They keep hostile text from exhausting memory, time or the stack.
+//! Every limit is far above the needs of a program for the board, and is a number in the message about it. They keep
+//! hostile text from exhausting memory, time or the stack.
 
 use crate::files;
 

@@ -14,7 +14,7 @@ use super::token::Token;
 pub(super) struct MacroId(u32);
 entity_impl!(MacroId, "macro");
 
-/// One definition.
+/// A definition.
 #[derive(Debug)]
 pub(super) struct Macro {
     /// The name where it is defined.
@@ -25,7 +25,7 @@ pub(super) struct Macro {
     pub(super) body: Range<usize>,
     /// The body has no parameters and no `##`, so that it can be read where it lies.
     pub(super) is_plain: bool,
-    /// What computes the value in place of a body.
+    /// The computation of the value in place of a body.
     pub(super) builtin: Option<Builtin>,
     /// Its expansion is being read, so that its name means nothing.
     pub(super) is_active: bool,
@@ -54,7 +54,7 @@ pub(super) enum Builtin {
 /// The meaning of a name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Standing {
-    /// Nobody has asked yet: it may be the name of a macro that is defined before the program begins.
+    /// Not looked up yet: it may be the name of a macro that is defined before the program begins.
     #[default]
     Unknown,
     /// No text that was read so far defines it.
@@ -70,7 +70,7 @@ pub(super) enum Standing {
 pub(super) struct Macros {
     macros: PrimaryMap<MacroId, Macro>,
     current: SecondaryMap<Name, Standing>,
-    /// What `#pragma push_macro` put aside, the last one at the end.
+    /// The definitions saved by `#pragma push_macro`, the last one at the end.
     saved: Vec<(Name, Standing)>,
     bodies: Vec<Token>,
 }

@@ -59,7 +59,7 @@ pub use token::{Flags, Token, TokenKind, token_text};
 /// The lint of text that other compilers would not take.
 const LAX: Lint = Lint::LaxText;
 
-/// What the command line says to the preprocessor.
+/// The preprocessor's options on the command line.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// Directories of `-I`, in order.
@@ -70,14 +70,14 @@ pub struct Options {
     pub undefines: Vec<String>,
     /// Headers that are there when no directory has them: name and text.
     pub embedded: &'static [(&'static str, &'static [u8])],
-    /// Which C the program is written in.
+    /// The standard of C that the program is written in.
     pub standard: Standard,
 }
 
-/// Which C a program is written in, where that makes a difference.
+/// The standard of C that a program is written in, as far as it makes a difference.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Standard {
-    /// As the vendor's compiler reads it: the rules of 1990 for constants.
+    /// The vendor's compiler: the rules of 1990 for constants.
     #[default]
     Vendor,
     /// C of 1999: a decimal constant without `u` is never unsigned.
@@ -101,7 +101,7 @@ impl Standard {
         })
     }
 
-    /// What it predefines.
+    /// The macros that it predefines.
     const fn macros(self) -> &'static str {
         match self {
             Self::Vendor => "",
@@ -112,7 +112,7 @@ impl Standard {
     }
 }
 
-/// How much of the board's headers is read.
+/// The part of the board's headers that is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Headers {
     /// All, as of any other file.
@@ -121,13 +121,13 @@ pub enum Headers {
     AsNeeded,
 }
 
-/// What was read of the board's headers.
+/// The part of the board's headers that was read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeadersRead {
     /// Everything, if they are included.
     Whole,
-    /// Not the declarations that the program does not name. The result is the same as long as nothing is wrong with the
-    /// program.
+    /// Without the declarations that the program does not name. The result is the same as long as the program has no
+    /// errors.
     Partly,
     /// Less than needed: the result means nothing.
     TooLittle,
@@ -148,7 +148,7 @@ pub fn preprocess(
     preprocess_as(Headers::Whole, main, options, files, sources, names, sink).0
 }
 
-/// The same, where not all of the board's headers need be among the tokens.
+/// Preprocesses a program; the board's headers may be read in part.
 pub fn preprocess_as(
     headers: Headers,
     main: FileId,

@@ -1,7 +1,7 @@
-//! What a preprocessing number means.
+//! The values of preprocessing numbers.
 //!
-//! Integers are decimal, octal, hexadecimal or binary, floating constants decimal or
-//! hexadecimal. A floating constant is rounded once, to the type its suffix gives it.
+//! Integers are decimal, octal, hexadecimal or binary, floating constants decimal or hexadecimal. A floating constant
+//! is rounded once, to the type its suffix gives it.
 
 use std::ops::Range;
 
@@ -21,14 +21,14 @@ pub enum Number {
     Floating(FloatingLiteral),
 }
 
-/// Why a text is not a number.
+/// The reason why a text is not a number.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
     /// The finding.
     pub message: String,
-    /// Which bytes of the text it is about.
+    /// The bytes of the text that it is about.
     pub range: Range<usize>,
-    /// What to write instead.
+    /// The replacement.
     pub help: Option<String>,
 }
 
@@ -222,7 +222,7 @@ fn exponent(text: &[u8], letter: usize) -> Result<(i64, usize), Problem> {
     Ok((if sign == Some(&b'-') { -value } else { value }, end))
 }
 
-/// Whether the suffix makes a floating constant a `float`.
+/// Reports whether the suffix makes a floating constant a `float`.
 fn floating_suffix(text: &[u8], at: usize) -> Result<bool, Problem> {
     match text.get(at..) {
         Some([b'f' | b'F']) => Ok(true),

@@ -31,7 +31,7 @@ pub fn print(tokens: &[Token], sources: &SourceMap) -> Vec<u8> {
     output
 }
 
-/// Whether two tokens that nothing separates could be read as one, by the bytes where they meet.
+/// Reports whether two tokens without a separator could be read as one, by the bytes where they meet.
 fn would_join(left: Option<u8>, right: Option<u8>) -> bool {
     let (Some(left), Some(right)) = (left, right) else { return false };
     match right {

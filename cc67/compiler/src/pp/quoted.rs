@@ -1,24 +1,24 @@
-//! What strings and character constants mean.
+//! The values of strings and character constants.
 
 use std::ops::Range;
 
 use super::lexer::is_blank;
 use crate::ast::Encoding;
 
-/// Something wrong within the quotes.
+/// A problem within the quotes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// How bad it is.
+    /// The severity.
     pub kind: ProblemKind,
     /// The finding.
     pub message: String,
-    /// Which bytes of the text it is about.
+    /// The bytes of the text that it is about.
     pub range: Range<usize>,
-    /// What to write instead.
+    /// The replacement.
     pub help: Option<String>,
 }
 
-/// Whether a problem leaves the value in doubt.
+/// The severity of a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProblemKind {
     /// The program is wrong.
@@ -61,7 +61,7 @@ pub fn character(text: &[u8]) -> (i32, Vec<Problem>) {
     (value, problems)
 }
 
-/// What the prefix of a string or character constant says.
+/// The encoding that the prefix of a string or character constant selects.
 #[must_use]
 pub fn encoding(text: &[u8]) -> Encoding {
     let all = [Encoding::Utf8, Encoding::Utf16, Encoding::Utf32, Encoding::Wide];

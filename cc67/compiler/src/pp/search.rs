@@ -9,17 +9,17 @@ use crate::names::Name;
 
 use super::Files;
 
-/// What is where a name points to.
+/// The result of searching a name.
 pub(super) enum Found {
     /// A file; its real spelling may be another one than was requested.
     File { path: PathBuf, text: Arc<Vec<u8>>, is_respelled: bool },
     /// Names that differ from the requested one, and from each other, in letter case only.
     Ambiguous(Vec<PathBuf>),
-    /// Something that cannot be read.
+    /// A file that cannot be read.
     Unreadable(PathBuf, io::Error),
 }
 
-/// The file system, with everything remembered that was asked.
+/// The file system, with a cache of all look-ups.
 pub(super) struct FileReader<'a> {
     files: &'a dyn Files,
     texts: BTreeMap<PathBuf, Arc<Vec<u8>>>,
@@ -47,12 +47,12 @@ impl<'a> FileReader<'a> {
         self.guards.insert(path, guard);
     }
 
-    /// Remembers that a file asked to be read once.
+    /// Records the `#pragma once` of a file.
     pub(super) fn set_once(&mut self, path: PathBuf) {
         self.once.insert(path);
     }
 
-    /// Whether a file asked to be read once, and was.
+    /// Reports whether a file has a `#pragma once` and was read.
     pub(super) fn is_once(&self, path: &Path) -> bool {
         self.once.contains(path)
     }
@@ -124,7 +124,7 @@ impl<'a> FileReader<'a> {
     }
 }
 
-/// Whether the search should just continue.
+/// Reports whether the search should continue after an error.
 fn is_absence(error: &io::Error) -> bool {
     use io::ErrorKind::{InvalidFilename, InvalidInput, IsADirectory, NotADirectory, NotFound};
     matches!(error.kind(), NotFound | NotADirectory | IsADirectory | InvalidFilename | InvalidInput)

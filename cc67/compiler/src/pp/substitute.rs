@@ -123,7 +123,7 @@ impl Preprocessor<'_> {
         None
     }
 
-    /// Whether the rest of the arguments has tokens once its macros are expanded.
+    /// Reports whether the rest of the arguments has tokens once its macros are expanded.
     fn has_rest(&mut self, rest: usize, arguments: &mut MacroArguments<'_>) -> bool {
         let mut tokens = Vec::new();
         self.append_expanded(&mut tokens, rest, arguments);

@@ -1,4 +1,4 @@
-//! What the preprocessor promises, as pairs of input and output.
+//! Promises of the preprocessor, as pairs of input and output.
 
 use super::*;
 

@@ -18,13 +18,13 @@ use super::lexer::without_splices;
 /// A preprocessing token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Token {
-    /// What it is.
+    /// The kind of token.
     pub kind: TokenKind,
-    /// What else is known about it.
+    /// Further facts about it.
     pub flags: Flags,
     /// The name of an identifier; for operands of a macro body the number of the parameter.
     pub name: Name,
-    /// Where its text stands, and through which macro it came.
+    /// The range of its text, and the macro through which it came.
     pub span: Span,
 }
 
@@ -64,7 +64,7 @@ impl Flags {
     pub const NO_EXPAND: Self = Self(1 << 2);
     /// Its text contains a backslash and newline that do not belong to it.
     pub const SPLICED: Self = Self(1 << 3);
-    /// It was diagnosed already; its value means nothing.
+    /// It was diagnosed already; its value is meaningless.
     pub const BROKEN: Self = Self(1 << 4);
 
     /// The facts of both.
@@ -85,13 +85,13 @@ impl Flags {
         Self(self.0 & other.0)
     }
 
-    /// Whether any fact of `other` is in `self`.
+    /// Reports whether any fact of `other` is in `self`.
     #[must_use]
     pub const fn has(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
 
-    /// Whether anything separates the token from the one before.
+    /// Reports whether anything separates the token from the one before.
     #[must_use]
     pub const fn is_separated(self) -> bool {
         self.has(Self(Self::SPACE.0 | Self::LINE_START.0))
@@ -164,7 +164,7 @@ const fn by_first_byte() -> [Spelled; TokenKind::PUNCTUATORS.len()] {
     sorted
 }
 
-/// Whether a punctuator comes before another one.
+/// Reports whether a punctuator comes before another one.
 #[expect(clippy::indexing_slicing, reason = "runs when the compiler is built")]
 const fn is_before(text: &[u8], other: &[u8]) -> bool {
     text[0] < other[0] || text[0] == other[0] && text.len() > other.len()

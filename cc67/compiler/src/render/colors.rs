@@ -20,7 +20,7 @@ enum Hue {
     Cyan = 6,
 }
 
-/// What points at source text beside the place itself: line numbers, borders, further places.
+/// The colour of marks around the primary range: line numbers, borders, further ranges.
 const ASIDE: Hue = Hue::Cyan;
 
 impl Colored {

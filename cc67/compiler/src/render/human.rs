@@ -18,7 +18,7 @@ use crate::source::{FileId, SourceMap};
 use super::colors::Colored;
 use super::marks::{Mark, marks, notes};
 
-/// Whether the text is coloured.
+/// The colouring of the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Color {
     /// Plain text.

@@ -21,9 +21,9 @@ pub(super) struct Mark {
     pub(super) file: FileId,
     /// The bytes in it.
     pub(super) range: Range<usize>,
-    /// Whether this is the place of the mistake, not one that explains it.
+    /// True for the primary range, false for one that explains it.
     pub(super) is_primary: bool,
-    /// What is there; may be empty.
+    /// The message; may be empty.
     pub(super) message: String,
 }
 

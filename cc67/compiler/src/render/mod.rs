@@ -20,7 +20,7 @@ use crate::diag::{Diagnostic, Severity};
 use crate::source::SourceMap;
 use human::Color;
 
-/// Who reads the diagnostics.
+/// The format of diagnostics, by their reader.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Format {
     /// A person.

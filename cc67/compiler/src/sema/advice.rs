@@ -1,4 +1,4 @@
-//! What to do about a name that nothing declares: the most likely of many reasons.
+//! Advice about undeclared names: the most likely of many reasons.
 
 use kmotiondef::structs::STRUCTURES;
 
@@ -7,10 +7,10 @@ use crate::diag::Diagnostic;
 use crate::names::Name;
 use crate::words::foreign::{self as foreign_words, Origin, Word};
 
-/// What to do when the vendor's header seems to be missing.
+/// The advice when the vendor's header seems to be missing.
 pub(super) const HEADER_HELP: &str = "is `KMotionDef.h` included?";
 
-/// What is known about a name that nothing declares.
+/// The advice about an undeclared name.
 pub(super) enum Advice {
     /// It follows from another error, and needs no words.
     Silence,
@@ -22,7 +22,7 @@ pub(super) enum Advice {
 const OWNERS: &[(&str, &str)] = &[("CHAN", "ch0->"), ("PERSIST", "persist.")];
 
 impl Sema<'_> {
-    /// What to say of a name that nothing declares.
+    /// Finds the advice about an undeclared name.
     pub(super) fn advice(&mut self, name: Name) -> Advice {
         if self.sink.lacks_names() || self.sink.is_full() {
             return Advice::Silence;
@@ -61,7 +61,7 @@ impl Sema<'_> {
         }
     }
 
-    /// Whether the program itself probably has a name, where only a pattern speaks for the word.
+    /// Reports whether the program itself probably has a name, where only a pattern speaks for the word.
     fn is_own(&self, name: Name, word: &Word) -> bool {
         let has_case =
             || self.near_name(word.spelling).is_some_and(|near| near.eq_ignore_ascii_case(word.spelling));
@@ -86,14 +86,14 @@ fn say(change: impl FnOnce(Diagnostic) -> Diagnostic + 'static) -> Advice {
     Advice::Say(Box::new(change))
 }
 
-/// Whether a name is that of an axis pointer, except for the number.
+/// Reports whether a name is that of an axis pointer, except for the number.
 pub(super) fn is_axis(spelling: &str) -> bool {
     spelling
         .strip_prefix("ch")
         .is_some_and(|number| !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
-/// How programs reach a member of this name.
+/// The prefix through which programs reach a member of this name.
 fn owner(spelling: &str) -> Option<&'static str> {
     OWNERS.iter().find_map(|(structure, prefix)| {
         let structure = STRUCTURES.iter().find(|known| known.name == *structure)?;

@@ -1,4 +1,4 @@
-//! Alignments that a declaration asks for: `_Alignas`, `__attribute__((aligned))`.
+//! Alignments that a declaration requests: `_Alignas`, `__attribute__((aligned))`.
 
 use super::Sema;
 use crate::ast::{Alignment, Expression};
@@ -62,7 +62,7 @@ impl Sema<'_> {
         Some(self.body.int(i64::from(align), Types::INT, span))
     }
 
-    /// Whether a place of type `part` at the start of an object is the object.
+    /// Reports whether a place of type `part` at the start of an object is the whole object.
     fn is_whole(&self, object: TypeId, part: TypeId) -> bool {
         object == part || self.types.size_of(object) == self.types.size_of(part)
     }

@@ -34,7 +34,7 @@ impl Sema<'_> {
         Some(Operand::Value(self.body.expr(ExprKind::Assign(target.place, value), target.ty.ty, span)))
     }
 
-    /// Whether a place is a variable of this name, or a part of it.
+    /// Reports whether a place is a variable of this name, or a part of it.
     fn is_symbol(&self, place: PlaceId, name: &str) -> bool {
         match self.body.places[place].kind {
             PlaceKind::Symbol(symbol, _) => self.symbols.get(symbol).name == name,

@@ -44,14 +44,14 @@ pub(super) struct Body {
     pub(super) returns_twice: bool,
 }
 
-/// Where statements of a function can go.
+/// The jump targets of a function's statements.
 #[derive(Debug, Default)]
 pub(super) struct Jumps {
     /// Labels.
     pub(super) labels: PrimaryMap<LabelId, Label>,
     /// The labels by name.
     pub(super) label_names: BTreeMap<Name, LabelState>,
-    /// How many loops are open.
+    /// Number of open loops.
     pub(super) loops: u32,
     /// The switches that are open, the innermost last.
     pub(super) switches: Vec<super::switches::Switch>,
@@ -59,12 +59,12 @@ pub(super) struct Jumps {
     pub(super) has_lost_case: bool,
 }
 
-/// What is known about a label.
+/// The state of a label.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LabelState {
     /// The label.
     pub(super) label: LabelId,
-    /// Where it is, once it was found.
+    /// The position of its definition, once found.
     pub(super) defined: Option<Span>,
     /// The first `goto`.
     pub(super) used: Option<Span>,
@@ -93,7 +93,7 @@ impl Body {
         self.exprs[expr].ty
     }
 
-    /// Where an expression stands.
+    /// The source range of an expression.
     pub(super) fn span(&self, expr: ExprId) -> Span {
         self.exprs[expr].span
     }
@@ -252,7 +252,7 @@ impl Body {
         }
     }
 
-    /// Whether evaluating twice is the same as once.
+    /// Reports whether evaluating twice is the same as once.
     pub(super) fn is_repeatable(&self, expr: ExprId) -> bool {
         match self.exprs[expr].kind {
             ExprKind::Int(_) | ExprKind::Float(_) | ExprKind::Address(_) | ExprKind::Load(_) => true,
@@ -262,7 +262,7 @@ impl Body {
         }
     }
 
-    /// Whether evaluating does nothing at all.
+    /// Reports whether evaluating has no effect and reads nothing.
     fn is_idle(&self, expr: ExprId) -> bool {
         match self.exprs[expr].kind {
             ExprKind::Int(_) | ExprKind::Float(_) => true,

@@ -1,4 +1,4 @@
-//! What looks like a call and is not: variable arguments, `offsetof`, statement expressions.
+//! Built-in forms that look like calls: variable arguments, `offsetof`, statement expressions.
 
 use super::Sema;
 use super::operands::Operand;

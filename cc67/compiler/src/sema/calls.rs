@@ -15,7 +15,7 @@ use crate::source::Span;
 use crate::ty::{FunctionType, ParameterTypes, QualifiedType, Type, TypeId, Types, convert};
 use crate::typed::{Call, Callee, ExprId, ExprKind, Linkage, PlaceId, SymbolId};
 
-/// An argument that was looked at.
+/// An analysed argument.
 type Argument = (Operand, Span);
 
 impl Sema<'_> {
@@ -95,7 +95,7 @@ impl Sema<'_> {
         }
     }
 
-    /// Whether a function is the C library's `setjmp`.
+    /// Reports whether a function is the C library's `setjmp`.
     fn is_setjmp(&self, symbol: SymbolId) -> bool {
         let entry = self.symbols.get(symbol);
         entry.linkage == Linkage::External
@@ -381,7 +381,7 @@ fn prototype(ty: &FunctionType) -> (&[QualifiedType], bool) {
     }
 }
 
-/// Whether a prototype takes this number of arguments.
+/// Reports whether a prototype takes this number of arguments.
 fn fits(ty: &FunctionType, given: usize) -> bool {
     let (types, is_variadic) = prototype(ty);
     given == types.len() || (is_variadic && given > types.len())

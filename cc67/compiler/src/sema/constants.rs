@@ -21,7 +21,7 @@ pub(crate) enum Constant {
 }
 
 impl Constant {
-    /// Whether it counts as true.
+    /// Reports whether it counts as true.
     pub(crate) fn is_true(self) -> bool {
         match self {
             Self::Int(value) => value != 0,

@@ -1,6 +1,6 @@
-//! Conversions that C makes by itself, and messages about the doubtful ones.
+//! Implicit conversions, and messages about the doubtful ones.
 //!
-//! Which pairs are silent, warned about or refused: `dialect.md` 2.4.
+//! The table of pairs that are silent, warned about or refused: `dialect.md` 2.4.
 
 use super::Sema;
 use super::constants::Constant;
@@ -10,7 +10,7 @@ use crate::source::Span;
 use crate::ty::{FunctionType, ParameterTypes, QualifiedType, TypeId, Types, convert};
 use crate::typed::{ExprId, ExprKind, PlaceKind, SymbolId};
 
-/// Where a value goes, for messages.
+/// The destination of a value, for messages.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum AssignmentTarget {
     /// `a = b`
@@ -23,7 +23,7 @@ pub(super) enum AssignmentTarget {
     Argument(usize, Option<SymbolId>),
 }
 
-/// What is thought of two pointer types that meet without a cast.
+/// The judgement of two pointer types that meet without a cast.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Agreement {
     Silent,
@@ -44,7 +44,7 @@ impl Sema<'_> {
         self.body.convert(value, to, span)
     }
 
-    /// Whether a value is read from a bit-field that promotion takes to another type than the declared one.
+    /// Reports whether a value is read from a bit-field that promotion takes to another type than the declared one.
     pub(super) fn is_narrow_field(&self, value: ExprId) -> bool {
         let bits = if self.body.ty(value).is_long_long() { 64 } else { 32 };
         self.field_width(value).is_some_and(|width| width < bits)
@@ -68,14 +68,14 @@ impl Sema<'_> {
         (self.body.convert(a, common, span), self.body.convert(b, common, span))
     }
 
-    /// Whether a value is the null pointer constant.
+    /// Reports whether a value is the null pointer constant.
     pub(super) fn is_null(&self, value: ExprId) -> bool {
         let ty = self.body.ty(value);
         let is_void_pointer = self.types.pointee(ty).is_some_and(|to| to.ty.is_void());
         (ty.is_integer() || is_void_pointer) && self.body.as_int(value) == Some(0)
     }
 
-    /// A value in the type of what it is stored in, with the conversions of an assignment.
+    /// Converts a value as by an assignment to the destination's type.
     pub(super) fn assigned(
         &mut self,
         value: ExprId,
@@ -117,7 +117,7 @@ impl Sema<'_> {
         Some(self.converted(value, to, span))
     }
 
-    /// Whether a variable is passed for a parameter that points to its type.
+    /// Reports whether a variable is passed for a parameter that points to its type.
     fn is_pointee(&self, value: ExprId, to: TypeId, target: AssignmentTarget) -> bool {
         matches!(target, AssignmentTarget::Argument(..))
             && matches!(self.body.exprs[value].kind, ExprKind::Load(_))
@@ -140,7 +140,7 @@ impl Sema<'_> {
         }
     }
 
-    /// Whether a constant is in the source as a number.
+    /// Reports whether a constant is in the source as a number.
     fn is_written(&self, value: ExprId, number: f64) -> bool {
         let text = String::from_utf8_lossy(self.sources.text(self.body.span(value))).into_owned();
         text.trim_end_matches(['f', 'F']).parse() == Ok(number.abs())
@@ -156,7 +156,7 @@ impl Sema<'_> {
         }
     }
 
-    /// A value in another type, pointers and integers alike; whoever calls has checked that it makes sense.
+    /// Converts a value to another type, pointers and integers alike; the caller has checked that this is valid.
     pub(super) fn converted(&mut self, value: ExprId, to: TypeId, span: Span) -> ExprId {
         self.lint_misaligned(value, to, span);
         if self.types.is_pointer(to) && self.types.is_pointer(self.body.ty(value)) {
@@ -191,7 +191,7 @@ impl Sema<'_> {
         Some(())
     }
 
-    /// How two pointer types get on with each other; the table is `dialect.md` 2.4.
+    /// The judgement of two pointer types; the table is `dialect.md` 2.4.
     fn agreement(&self, a: QualifiedType, b: QualifiedType) -> Agreement {
         let (a, b) = (a.ty, b.ty);
         if a.is_void() || b.is_void() || self.types.compatible(a, b) {
@@ -211,8 +211,8 @@ impl Sema<'_> {
         if is_bytes || (is_integers && is_one_size) { Agreement::Silent } else { Agreement::Warn }
     }
 
-    /// Functions with other parameters are refused: nobody would pass them. Results may differ as far as `int`
-    /// and `void` go.
+    /// Judges two function types: different parameters are refused, as the calls would not match; `int` and `void`
+    /// results may differ.
     fn function_agreement(&self, a: &FunctionType, b: &FunctionType) -> Agreement {
         let is_empty = |parameters: &ParameterTypes| match parameters {
             ParameterTypes::Unspecified => true,
@@ -344,7 +344,7 @@ impl Sema<'_> {
         }
     }
 
-    /// What was probably forgotten, or is too much, when a pointer and a number meet.
+    /// The probable mistake when a pointer and a number meet.
     fn conversion_help(
         &self,
         from: TypeId,

@@ -16,7 +16,7 @@ use crate::typed::{Definition, Linkage, SymbolId};
 pub(super) struct Declared<'t> {
     /// The name.
     pub(super) name: Name,
-    /// Where it is.
+    /// Its range in the source.
     pub(super) span: Span,
     /// The type.
     pub(super) ty: QualifiedType,

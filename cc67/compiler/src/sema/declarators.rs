@@ -11,7 +11,7 @@ use crate::ty::layout::MAX_OBJECT_SIZE;
 use crate::ty::{FunctionType, ParameterTypes, QualifiedType, Type, Types};
 use crate::typed::{ExprId, ExprKind};
 
-/// How deep a search goes down a tree for what is constant in it, or not.
+/// The depth to which a tree is searched for constant or other parts.
 pub(super) const MAX_SEARCH: u32 = 64;
 
 /// A parameter of a prototype or definition.
@@ -111,7 +111,7 @@ impl Sema<'_> {
         None
     }
 
-    /// Whether an expression is a quotient of constants that folding left alone.
+    /// Reports whether an expression is a quotient of constants that was not folded.
     pub(super) fn divides_by_zero(&self, value: ExprId, depth: u32) -> bool {
         let Some(depth) = depth.checked_sub(1) else { return false };
         match self.body.exprs[value].kind {
@@ -125,7 +125,7 @@ impl Sema<'_> {
         }
     }
 
-    /// Whether the expression is a variable, or one and something else, and whether that is `const`.
+    /// Reports whether the expression is a variable, or a sum with one, and whether that is `const`.
     fn named_variable(&self, expression: &Expression) -> Option<bool> {
         match &expression.kind {
             ExpressionKind::Identifier(name) => match self.scopes.lookup(*name)?.entity {
@@ -208,7 +208,7 @@ impl Sema<'_> {
     }
 }
 
-/// What a parameter list says about the type.
+/// The parameters of the type that a parameter list declares.
 pub(super) fn parameter_types(parameters: &Parameters, declared: &[DeclaredParameter]) -> ParameterTypes {
     match parameters {
         Parameters::Unspecified | Parameters::Names(_) => ParameterTypes::Unspecified,

@@ -36,7 +36,7 @@ impl Sema<'_> {
         }
     }
 
-    /// Whether specifiers name an enumeration without negative constants.
+    /// Reports whether specifiers name an enumeration without negative constants.
     pub(super) fn is_unsigned_enum(&self, specifier: &TypeSpecifier) -> bool {
         let place = match specifier {
             TypeSpecifier::Enum(specifier) => self.enum_place(specifier),
@@ -56,7 +56,7 @@ impl Sema<'_> {
         }
     }
 
-    /// What an enumeration is known by: the first declaration of its tag, else itself.
+    /// The identity of an enumeration: the first declaration of its tag, else itself.
     fn enum_place(&self, specifier: &EnumSpecifier) -> Span {
         let tag = specifier.tag.and_then(|(tag, _)| self.scopes.lookup_tag(tag));
         tag.map_or(specifier.span, |binding| binding.span)

@@ -154,7 +154,7 @@ impl Sema<'_> {
         Some(self.body.convert(index, Types::INT, span))
     }
 
-    /// What `*pointer` means.
+    /// Returns the operand `*pointer`.
     pub(super) fn dereferenced(&mut self, pointer: ExprId, to: QualifiedType, span: Span) -> Operand {
         if self.types.is_function(to.ty) {
             return Operand::Function(self.callee_of(pointer), to.ty);
@@ -491,7 +491,7 @@ impl Sema<'_> {
     }
 }
 
-/// Whether a pointer is written as a sum, as in `*(p + 1)`.
+/// Reports whether a pointer is written as a sum, as in `*(p + 1)`.
 fn is_sum(expression: &Expression) -> bool {
     match &expression.kind {
         ExpressionKind::Cast(_, inner) => is_sum(inner),

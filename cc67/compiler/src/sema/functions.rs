@@ -235,7 +235,7 @@ impl Sema<'_> {
         incoming
     }
 
-    /// One parameter. An old-style `float` arrives as a `double` and is converted at the entry.
+    /// Declares a parameter. An old-style `float` arrives as a `double` and is converted at the entry.
     fn incoming(&mut self, parameter: DeclaredParameter, passed: TypeId, out: &mut Vec<Stmt>) -> LocalId {
         let DeclaredParameter { name, ty, span } = parameter;
         let spelling = name.map_or_else(String::new, |name| self.names.get(name).to_owned());
@@ -279,11 +279,11 @@ impl Sema<'_> {
     }
 }
 
-/// What the head of a definition says.
+/// The signature of a definition, from its head.
 struct Signature {
-    /// As written.
+    /// The type as written.
     declared: FunctionType,
-    /// As called.
+    /// The type as called.
     call: FunctionType,
     parameters: Vec<DeclaredParameter>,
     closed: Closed,
@@ -305,7 +305,7 @@ fn passed_types(list: &Parameters, parameters: &[DeclaredParameter]) -> Paramete
     ParameterTypes::Prototype { types, is_variadic }
 }
 
-/// Whether a statement contains `return` with a value.
+/// Reports whether a statement contains `return` with a value.
 fn returns_value(statement: &Statement) -> bool {
     match &statement.kind {
         StatementKind::Return(value) => value.is_some(),

@@ -31,9 +31,9 @@ pub(super) struct Leaf {
     pub(super) ty: TypeId,
     /// Bit-field.
     pub(super) bits: Option<BitRange>,
-    /// What goes there.
+    /// The value.
     pub(super) value: LeafValue,
-    /// Where the value stands.
+    /// The range of the value in the source.
     pub(super) span: Span,
 }
 
@@ -56,7 +56,7 @@ pub(super) struct Slot {
     bits: Option<BitRange>,
 }
 
-/// What an aggregate is made of.
+/// The shape of an aggregate.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Shape {
     Array { element: QualifiedType, length: Option<u32>, size: u32 },
@@ -76,7 +76,7 @@ pub(super) struct Level {
 struct Given {
     /// The number of its first leaf.
     first: usize,
-    /// How many leaves `end` covers.
+    /// Number of leaves that `end` covers.
     seen: usize,
     /// The last byte, plus one, at which a value begins.
     end: u32,
@@ -212,7 +212,7 @@ impl Sema<'_> {
         stores
     }
 
-    /// How many values fill an object of this type; one initialises a union.
+    /// Number of values that fill an object of this type; one initialises a union.
     fn parts(&self, ty: TypeId) -> Option<usize> {
         if let Some((element, length)) = self.types.array(ty) {
             return self.parts(element.ty)?.checked_mul(usize::try_from(length?).ok()?);
@@ -227,7 +227,7 @@ impl Sema<'_> {
         }
     }
 
-    /// Whether the leaves, in their order, leave no byte out.
+    /// Reports whether the leaves, in their order, leave no byte out.
     fn covers(&self, leaves: &[Leaf], size: u32) -> bool {
         let end = leaves.iter().try_fold(0, |end, leaf| {
             (leaf.offset == end && leaf.bits.is_none()).then_some(end + self.types.size_of(leaf.ty)?)
@@ -363,7 +363,7 @@ impl Sema<'_> {
         Some(slot.ty.ty)
     }
 
-    /// One item of a list: the value, or several times the value of a range.
+    /// Fills in an item of a list: the value, or the value of a range several times.
     fn fill_item(
         &mut self,
         leaves: &mut Vec<Leaf>,
@@ -561,7 +561,7 @@ impl Sema<'_> {
         ty
     }
 
-    /// Whether a string fills an object of this type by itself.
+    /// Reports whether a string alone fills an object of this type.
     fn takes_text(&self, ty: TypeId, text: &StringLiteral) -> bool {
         self.types.array(ty).is_some_and(|(element, _)| match text.encoding.size() {
             1 => element.ty.is_character(),

@@ -75,7 +75,7 @@ pub fn analyze(
     analyze_as(Standard::default(), unit, names, sources, firmware, sink)
 }
 
-/// The same for a program that is written in a given C.
+/// Analyses a program that is written to a given standard of C.
 pub fn analyze_as(
     standard: Standard,
     unit: &ast::TranslationUnit,
@@ -118,21 +118,21 @@ struct Sema<'a> {
     body: Body,
     /// The name of the memory that threads and the PC share.
     persist: Name,
-    /// Which C the program is written in.
+    /// The standard of C that the program is written in.
     standard: Standard,
-    /// Depth of operands that are only looked at for their type.
+    /// Depth of operands that are not evaluated, only analysed for their type.
     unevaluated: u32,
     noted: Noted,
 }
 
-/// What was noted for later messages.
+/// Facts noted for later messages.
 #[derive(Debug, Default)]
 struct Noted {
     /// Structures with a wrong definition: messages about their members would be wrong too.
     broken: BTreeSet<RecordId>,
-    /// Where enumerations without negative constants, and their typedefs, are declared.
+    /// The declarations of enumerations without negative constants, and of their typedefs.
     unsigned_enums: BTreeSet<Span>,
-    /// Where words come from that other languages have and C does not.
+    /// The origins of words that other languages have and C does not.
     origins: BTreeSet<Origin>,
     /// Variables of functions: the function, and where it declares them.
     locals_elsewhere: BTreeMap<Name, (String, Span)>,

@@ -97,7 +97,7 @@ impl Sema<'_> {
         Some(self.body.comma(value, zero, span))
     }
 
-    /// Warns if the value comes from a function that is declared `void` and returns one all the same.
+    /// Warns if the value comes from a function that is declared `void` but returns one.
     fn lint_void_value(&mut self, value: ExprId, span: Span) {
         let ExprKind::Call(call) = &self.body.exprs[value].kind else { return };
         let Callee::Symbol(symbol) = call.callee else { return };
@@ -151,7 +151,7 @@ impl Sema<'_> {
         Operand::Place(Located { place, ty: QualifiedType::plain(ty), is_lvalue: false })
     }
 
-    /// Whether an operand is a whole structure or union.
+    /// Reports whether an operand is a whole structure or union.
     pub(super) fn is_record(&self, operand: Operand) -> bool {
         matches!(operand, Operand::Place(located) if self.types.record_of(located.ty.ty).is_some())
     }

@@ -28,7 +28,7 @@ impl Sema<'_> {
         left
     }
 
-    /// One binary operator on two scalar values.
+    /// Analyses a binary operator on two scalar values.
     pub(super) fn binary(
         &mut self,
         operator: BinaryOperator,
@@ -124,7 +124,7 @@ impl Sema<'_> {
         Some(self.body.binary(BinaryOp::Divide, bytes, size, span))
     }
 
-    /// How far a pointer to `element` moves with `+ 1`.
+    /// The bytes that a pointer to `element` moves with `+ 1`.
     pub(super) fn step_size(&mut self, element: QualifiedType, span: Span) -> Option<u32> {
         let size = self.types.size_of(element.ty);
         if size.is_none() {
@@ -305,7 +305,7 @@ impl Sema<'_> {
         self.body.expr(ExprKind::Conditional(test, a, b), ty, span)
     }
 
-    /// Both branches in one type.
+    /// Converts both branches to one type.
     fn common_branches(&mut self, a: ExprId, b: ExprId, span: Span) -> Option<(ExprId, ExprId)> {
         let (x, y) = (self.body.ty(a), self.body.ty(b));
         if x.is_arithmetic() && y.is_arithmetic() {
@@ -341,7 +341,8 @@ impl Sema<'_> {
         }
     }
 
-    /// What a pointer to one or the other points to (C11 6.5.15): with the qualifiers of both; `void` takes in all.
+    /// The type of a pointer that may point to either operand's target (C11 6.5.15): with the qualifiers of both;
+    /// `void` absorbs all.
     fn common_pointer(&mut self, a: QualifiedType, b: QualifiedType) -> TypeId {
         let ty = if a.ty.is_void() || b.ty.is_void() {
             Types::VOID

@@ -17,7 +17,7 @@ pub(super) struct Located {
     pub(super) place: PlaceId,
     /// The type of what is stored, with qualifiers.
     pub(super) ty: QualifiedType,
-    /// Whether it may be assigned to or its address be taken; a structure result may not.
+    /// True if it may be assigned to or its address be taken; a structure result may not.
     pub(super) is_lvalue: bool,
 }
 
@@ -99,7 +99,7 @@ impl Sema<'_> {
         }
     }
 
-    /// Whether `size` bytes at a place are still inside its local; always, if it is not one.
+    /// Reports whether `size` bytes at a place are still inside its local; true for places outside of locals.
     fn holds(&self, place: PlaceId, size: u32) -> bool {
         match self.body.places[place].kind {
             PlaceKind::Local(local, offset) => offset.saturating_add(size) <= self.local_size(local),

@@ -38,7 +38,7 @@ pub fn unit(unit: &Unit, names: &Names) -> String {
     out
 }
 
-/// One function.
+/// Prints a function.
 #[must_use]
 pub fn function(unit: &Unit, function: &Function, names: &Names) -> String {
     let mut printer = Printer { unit, function, names, out: String::new(), depth: 1 };

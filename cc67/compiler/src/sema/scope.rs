@@ -1,9 +1,8 @@
-//! Scopes: which declaration a name means at a place.
+//! Scopes: the declaration that a name refers to at a position.
 //!
-//! The bindings of a name form a chain from the innermost outwards; leaving a block unwinds
-//! the bindings it made. File-scope declarations are all entered before the first body is
-//! looked at, so each carries the number of the item that made it, and a body sees only
-//! those up to its own item.
+//! The bindings of a name form a chain from the innermost outwards; leaving a block unwinds the bindings it made.
+//! File-scope declarations are all entered before the first body is analysed, so each carries the number of the item
+//! that made it, and a body sees only those up to its own item.
 
 use cranelift_entity::SecondaryMap;
 
@@ -12,7 +11,7 @@ use crate::source::Span;
 use crate::ty::{QualifiedType, TypeId};
 use crate::typed::{LocalId, SymbolId};
 
-/// What an ordinary identifier means.
+/// The meaning of an ordinary identifier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Entity {
     /// A type.
@@ -25,11 +24,11 @@ pub(super) enum Entity {
     Object(SymbolId, QualifiedType),
     /// A function, with the type declared here.
     Function(SymbolId, TypeId),
-    /// Something whose declaration was diagnosed; uses are silent.
+    /// A name whose declaration was diagnosed; uses are silent.
     Poisoned,
 }
 
-/// What a tag means.
+/// The meaning of a tag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Tag {
     /// A structure or union.
@@ -38,14 +37,14 @@ pub(super) enum Tag {
     Enum,
 }
 
-/// One declaration of a name.
+/// A declaration of a name.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Binding<E> {
     /// The name.
     pub(super) name: Name,
-    /// What it means.
+    /// The meaning.
     pub(super) entity: E,
-    /// Where it is declared.
+    /// The range of the declaration.
     pub(super) span: Span,
     /// Nesting depth of its scope; 0 is file scope.
     depth: u32,
@@ -99,11 +98,11 @@ pub(super) struct Scopes {
     tags: Space<Tag>,
     /// For each open block, the numbers of bindings when it was opened.
     blocks: Vec<(usize, usize)>,
-    /// The item being looked at.
+    /// The item being analysed.
     now: u32,
 }
 
-/// The bindings of a parameter list, kept until its body is looked at.
+/// The bindings of a parameter list, kept until the body is analysed.
 #[derive(Debug, Default)]
 pub(super) struct Closed {
     ordinary: Vec<Binding<Entity>>,
@@ -115,7 +114,7 @@ impl Scopes {
         Self { ordinary: Space::new(), tags: Space::new(), blocks: Vec::new(), now: 0 }
     }
 
-    /// From here on, file scope is what item number `item` sees.
+    /// Sets the file scope to the declarations that item number `item` sees.
     pub(super) fn at_item(&mut self, item: usize) {
         self.now = item as u32;
     }
@@ -138,7 +137,7 @@ impl Scopes {
         closed.tags.into_iter().for_each(|binding| self.tags.push(binding));
     }
 
-    /// Whether the innermost scope is a function's body: around it are the parameters.
+    /// Reports whether the innermost scope is a function's body: around it are the parameters.
     pub(super) fn is_body(&self) -> bool {
         self.blocks.len() == 2
     }

@@ -8,7 +8,7 @@ use crate::names::{Name, word};
 use crate::source::Span;
 use crate::ty::{QualifiedType, TypeId, Types};
 
-/// What is thought of a declaration that names no type.
+/// The judgement of a declaration that names no type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ImplicitInt {
     /// `main() {…}`, `static n;` in a block: programs mean it.

@@ -25,7 +25,7 @@ impl Sema<'_> {
         }
     }
 
-    /// One statement; it may become several or none.
+    /// Analyses a statement; it may become several or none.
     pub(super) fn statement(&mut self, statement: &Statement, out: &mut Vec<Stmt>) {
         let span = statement.span;
         match &statement.kind {
@@ -287,7 +287,7 @@ impl Sema<'_> {
         out.push(Stmt { kind: StmtKind::Return(value), span });
     }
 
-    /// What `return;` gives in a function that has a result.
+    /// The value that `return;` yields in a function that has a result.
     fn zero_of_result(&mut self, span: Span) -> Option<ExprId> {
         let result = self.body.result;
         if result.is_void() || self.types.record_of(result).is_some() {

@@ -124,7 +124,7 @@ impl Sema<'_> {
         }
     }
 
-    /// What keeps an expression from being constant, in words.
+    /// The part that keeps an expression from being constant, in words.
     fn culprit(&self, value: ExprId) -> &'static str {
         match &self.body.exprs[value].kind {
             ExprKind::Load(_) => "the value of a variable",

@@ -8,7 +8,7 @@ use crate::source::Span;
 use crate::ty::{TypeId, Types};
 use crate::typed::{Case, Stmt, StmtKind};
 
-/// A switch whose body is being looked at.
+/// A switch whose body is being analysed.
 #[derive(Debug)]
 pub(super) struct Switch {
     /// The type that its value and its cases have.

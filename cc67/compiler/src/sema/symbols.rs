@@ -8,7 +8,7 @@ use crate::source::Span;
 use crate::ty::{FunctionType, TypeId};
 use crate::typed::{Definition, Linkage, StaticData, Symbol, SymbolId};
 
-/// How the definition of a function in this unit is called.
+/// The calling convention of a function that this unit defines.
 #[derive(Clone, Debug)]
 pub(super) struct Definer {
     /// The type that every call is converted to; its parameters are always a prototype.
@@ -17,11 +17,11 @@ pub(super) struct Definer {
     pub(super) declared: TypeId,
     /// The name in the definition.
     pub(super) span: Span,
-    /// It is declared `void` and returns a value all the same.
+    /// True if it is declared `void` but returns a value.
     pub(super) is_void_with_value: bool,
 }
 
-/// What is known about a symbol besides its typed form.
+/// Facts about a symbol besides its typed form.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Facts {
     /// For a function that this unit defines.
@@ -96,12 +96,12 @@ impl Symbols {
         &mut self.table[symbol]
     }
 
-    /// What else is known about a symbol.
+    /// The further facts about a symbol.
     pub(super) fn facts(&self, symbol: SymbolId) -> &Facts {
         &self.facts[symbol]
     }
 
-    /// What else is known about a symbol, to change it.
+    /// The further facts about a symbol, mutable.
     pub(super) fn facts_mut(&mut self, symbol: SymbolId) -> &mut Facts {
         &mut self.facts[symbol]
     }

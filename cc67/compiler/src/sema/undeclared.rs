@@ -57,7 +57,7 @@ impl Sema<'_> {
         );
     }
 
-    /// Whether a call without prototype works on the board as well: integers and pointers only.
+    /// Reports whether a call without prototype works on the board as well: integers and pointers only.
     fn is_plain(&self, ty: TypeId) -> bool {
         let is_word = |ty: TypeId| self.types.is_pointer(ty) || (ty.is_integer() && !ty.is_long_long());
         self.types.function(ty).is_some_and(|function| {
@@ -250,7 +250,7 @@ fn of_other_board(board: &TargetBoard, name: &str, span: Span) -> Option<Diagnos
     Some(Diagnostic::error(span, message).help(format!("`--board {}` builds for that firmware", other.name)))
 }
 
-/// Whether a name may be suggested for another: one letter is close to every other, only its case can be meant.
+/// Reports whether a name may be suggested for another: one letter is close to every other, only its case can be meant.
 pub(super) fn is_sensible(spelling: &str, name: &str) -> bool {
     spelling.len() > 1 || name.eq_ignore_ascii_case(spelling)
 }

@@ -3,44 +3,44 @@
 use super::{FunctionType, QualifiedType, RecordId, Type, TypeId, Types};
 
 impl TypeId {
-    /// Whether it is `void`.
+    /// Reports whether it is `void`.
     #[must_use]
     pub fn is_void(self) -> bool {
         self == Types::VOID
     }
 
-    /// Whether it is an integer type, `_Bool` and `char` included.
+    /// Reports whether it is an integer type, `_Bool` and `char` included.
     #[must_use]
     pub fn is_integer(self) -> bool {
         (Types::BOOL..=Types::UNSIGNED_LONG_LONG).contains(&self)
     }
 
-    /// Whether it is `float` or `double`.
+    /// Reports whether it is `float` or `double`.
     #[must_use]
     pub fn is_floating(self) -> bool {
         self == Types::FLOAT || self == Types::DOUBLE
     }
 
-    /// Whether it is an integer or floating type.
+    /// Reports whether it is an integer or floating type.
     #[must_use]
     pub fn is_arithmetic(self) -> bool {
         (Types::BOOL..=Types::DOUBLE).contains(&self)
     }
 
-    /// Whether it is an integer type of 64 bits.
+    /// Reports whether it is an integer type of 64 bits.
     #[must_use]
     pub fn is_long_long(self) -> bool {
         self == Types::LONG_LONG || self == Types::UNSIGNED_LONG_LONG
     }
 
-    /// Whether it is an integer type without negative values.
+    /// Reports whether it is an integer type without negative values.
     #[must_use]
     pub fn is_unsigned(self) -> bool {
         [Types::BOOL, Types::UNSIGNED_CHAR, Types::UNSIGNED_SHORT, Types::UNSIGNED, Types::UNSIGNED_LONG_LONG]
             .contains(&self)
     }
 
-    /// Whether it is one of the three `char` types.
+    /// Reports whether it is one of the three `char` types.
     #[must_use]
     pub fn is_character(self) -> bool {
         (Types::CHAR..=Types::UNSIGNED_CHAR).contains(&self)
@@ -48,7 +48,7 @@ impl TypeId {
 }
 
 impl Types {
-    /// What a pointer points to; `None` for other types.
+    /// The type that a pointer points to; `None` for other types.
     #[must_use]
     pub fn pointee(&self, ty: TypeId) -> Option<QualifiedType> {
         match self.get(ty) {
@@ -84,25 +84,25 @@ impl Types {
         }
     }
 
-    /// Whether it is a pointer.
+    /// Reports whether it is a pointer.
     #[must_use]
     pub fn is_pointer(&self, ty: TypeId) -> bool {
         matches!(self.get(ty), Type::Pointer(_))
     }
 
-    /// Whether a value of it is one number: arithmetic or a pointer.
+    /// Reports whether a value of it is one number: arithmetic or a pointer.
     #[must_use]
     pub fn is_scalar(&self, ty: TypeId) -> bool {
         ty.is_arithmetic() || self.is_pointer(ty)
     }
 
-    /// Whether it is a structure, union or array.
+    /// Reports whether it is a structure, union or array.
     #[must_use]
     pub fn is_aggregate(&self, ty: TypeId) -> bool {
         matches!(self.get(ty), Type::Record(_) | Type::Array(..))
     }
 
-    /// Whether it is a function.
+    /// Reports whether it is a function.
     #[must_use]
     pub fn is_function(&self, ty: TypeId) -> bool {
         matches!(self.get(ty), Type::Function(_))

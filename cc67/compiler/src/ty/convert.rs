@@ -25,7 +25,7 @@ pub fn argument_promoted(ty: TypeId) -> TypeId {
 }
 
 impl Types {
-    /// Whether two types may declare the same thing; qualifiers do not count.
+    /// Reports whether two types may declare the same thing; qualifiers do not count.
     #[must_use]
     pub fn compatible(&self, a: TypeId, b: TypeId) -> bool {
         if a == b {
@@ -43,7 +43,8 @@ impl Types {
         }
     }
 
-    /// Whether two functions can be called alike; `()` agrees with every list that the promotions leave alone.
+    /// Reports whether two functions can be called alike; `()` agrees with every list that the promotions do not
+    /// change.
     #[must_use]
     pub fn compatible_parameters(&self, a: &FunctionType, b: &FunctionType) -> bool {
         match (&a.parameters, &b.parameters) {
@@ -63,7 +64,7 @@ impl Types {
         }
     }
 
-    /// What two compatible declarations say together: array lengths and parameters that one of them leaves out.
+    /// The composite of two compatible types: array lengths and parameters that one of them leaves out.
     #[must_use]
     pub fn composite(&self, old: TypeId, new: TypeId) -> TypeId {
         let knows_more = match (self.get(old), self.get(new)) {

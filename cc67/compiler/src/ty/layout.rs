@@ -40,7 +40,7 @@ impl Types {
         }
     }
 
-    /// Whether objects of the type can be made.
+    /// Reports whether objects of the type can exist.
     #[must_use]
     pub fn is_object(&self, ty: TypeId) -> bool {
         !ty.is_void() && !self.is_function(ty) && self.size_of(ty).is_some()

@@ -45,7 +45,7 @@ impl QualifiedType {
         Self { ty, is_const: false, is_volatile: false }
     }
 
-    /// The same type with more qualifiers.
+    /// Returns the type with further qualifiers.
     #[must_use]
     pub const fn with(self, qualifiers: Qualifiers) -> Self {
         Self {
@@ -56,7 +56,7 @@ impl QualifiedType {
     }
 }
 
-/// What a type is.
+/// A type.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Type {
     /// `void`
@@ -100,7 +100,7 @@ pub enum Type {
 pub struct FunctionType {
     /// The result.
     pub result: TypeId,
-    /// What is known about the parameters.
+    /// The types of the parameters.
     pub parameters: ParameterTypes,
 }
 
@@ -121,11 +121,11 @@ pub enum ParameterTypes {
 /// A structure or union.
 #[derive(Clone, Debug)]
 pub struct Record {
-    /// Which of the two.
+    /// The kind: structure or union.
     pub kind: RecordKind,
     /// The tag, or the `typedef` name of an untagged one; for messages.
     pub name: Option<Name>,
-    /// Whether `name` is a tag.
+    /// True if `name` is a tag.
     pub is_tagged: bool,
     /// Members and layout; `None` while only declared.
     pub layout: Option<Layout>,
@@ -142,7 +142,7 @@ pub struct Layout {
     pub align: u32,
 }
 
-/// One member.
+/// A member.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Member {
     /// The name; `None` for an anonymous structure or union.
@@ -238,7 +238,7 @@ impl Types {
         id
     }
 
-    /// What a type is.
+    /// Returns the type with this id.
     #[must_use]
     pub fn get(&self, id: TypeId) -> &Type {
         &self.types[id]

@@ -1,10 +1,9 @@
 //! Words of other languages and boards, and their counterparts in a program for KFLOP.
 //!
-//! People come to KFLOP from Arduino, C++, Python, Basic and G-code, and write what they know; or they take a call from
-//! an example of the manual and not the function. A row of [`WORDS`] is such a word with advice on what to write
-//! instead.
+//! People come to KFLOP from Arduino, C++, Python, Basic and G-code, and write the words they know; or they take a call
+//! from an example of the manual and not the function. A row of [`WORDS`] is such a word with its replacement.
 
-/// Where a word comes from.
+/// The origin of a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Origin {
     /// Arduino sketches.
@@ -28,11 +27,11 @@ pub enum Origin {
 pub struct Word {
     /// The word.
     pub spelling: &'static str,
-    /// Where it comes from.
+    /// Its origin.
     pub origin: Origin,
     /// It accompanies other words of its origin, so that after one of them nothing more need be said.
     pub is_companion: bool,
-    /// What to write instead.
+    /// The replacement.
     pub advice: &'static str,
 }
 
@@ -52,7 +51,7 @@ const fn companion(spelling: &'static str, origin: Origin, advice: &'static str)
 
 use Origin::{Arduino, Board, Computer, Console, Cpp, Example, Script};
 
-/// Where the functions are that ask the PC for something.
+/// The advice for functions that send requests to the PC.
 const PC_REQUESTS: &str =
     "take it from the manual's example `KFLOPtoPCCmdExamples.c`, or `#include` a file that defines it";
 
@@ -197,7 +196,7 @@ pub const TYPES: &[(&str, &str)] = &[
     ("int64_t", "include <stdint.h>"),
 ];
 
-/// Whether a word looks like one of G-code: a letter and a number.
+/// Reports whether a word looks like one of G-code: a letter and a number.
 #[must_use]
 pub fn is_g_code(word: &str) -> bool {
     const LETTERS: &str = "ABCDFGHIJKLMNPQRSTXYZ";

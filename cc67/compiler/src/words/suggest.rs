@@ -1,4 +1,4 @@
-//! Which known name was probably meant.
+//! Suggestions: the known name that was probably meant.
 
 /// The candidate that looks most like `name`, if any is close enough to be meant.
 ///
@@ -31,7 +31,7 @@ pub fn suggest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     }
 }
 
-/// Whether `short` is the beginning of `name`, in any letter case: `Vel` of `velocity`.
+/// Reports whether `short` is the beginning of `name`, in any letter case: `Vel` of `velocity`.
 fn abbreviates(short: &str, name: &str) -> bool {
     const LEAST: usize = 3;
     let beginning = name.get(..short.len());

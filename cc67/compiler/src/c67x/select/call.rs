@@ -7,7 +7,7 @@ use crate::c67x::code::{Arg, Base, Call, CallTarget, Inst, MemoryPlace, VReg};
 use crate::c67x::forms::Kind;
 use crate::ir::inst::{ArgumentRange, Callee, Class, Operand, SignatureId, ValueId};
 
-/// Whether the last argument of a call, the address of its variable ones, is for nobody.
+/// Reports whether the callee does not use the last argument of a call, the address of its variable ones.
 pub(super) fn takes_stack_alone(callee: Callee, externs: &Externs) -> bool {
     matches!(callee, Callee::Symbol(symbol) if externs.takes_stack_alone(symbol))
 }

@@ -5,7 +5,7 @@ use crate::c67x::code::{Arg, Info, Inst, VReg, Value};
 use crate::c67x::forms::Kind;
 use crate::ir::inst::{Constant, Operand};
 
-/// How many constants are made in front of the first block.
+/// The most constants that are loaded before the first block.
 const MAX_EARLY: usize = 40;
 
 impl Selector<'_> {

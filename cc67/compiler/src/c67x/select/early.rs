@@ -1,8 +1,9 @@
-//! Variable arguments go to memory as soon as they are known, if calls come between: then no register has to keep them.
+//! Early stores of variable arguments: as soon as they are known, if calls come between, so that no register has to
+//! keep them.
 //!
-//! The area of the frame that they are in is nobody else's until the call, unless a call before has variable arguments
-//! too. A function that is called by its address may have some. Where a function with variable arguments was put in place
-//! of its call, others may read its arguments there; then all stays as it is.
+//! The area of the frame that holds them belongs to one call until it is made, unless a call before it has variable
+//! arguments too, as a function called by its address may. If a function with variable arguments was inlined, other
+//! instructions may read its arguments there; then nothing is moved.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -30,10 +31,10 @@ pub(super) fn order(function: &Function, block: &Block, externs: &Externs, is_sh
 
 /// The calls before each instruction of a block, and the last instruction before it that makes what it stores.
 struct AreaUses {
-    /// How many calls, and how many of what uses the area: those with variable arguments, and loads from it.
+    /// Number of calls, and of users of the area: calls with variable arguments, and loads from it.
     counts: Vec<[usize; 2]>,
     makers: Vec<Option<usize>>,
-    /// Whether an instruction is a call with variable arguments.
+    /// True for each instruction that is a call with variable arguments.
     has_variable: Vec<bool>,
 }
 
@@ -87,7 +88,7 @@ fn maker(function: &Function, block: &Block, uses: &AreaUses, index: usize) -> O
     (after > before && !uses.has_variable[maker]).then_some(maker)
 }
 
-/// Whether anything but calls with variable arguments has the address of their area.
+/// Reports whether anything but calls with variable arguments uses the address of their area.
 pub(super) fn is_area_shared(function: &Function, externs: &Externs) -> bool {
     let insts = || function.layout.iter().flat_map(|block| &function.blocks[*block].insts);
     let addresses: BTreeSet<ValueId> = insts()
@@ -108,7 +109,7 @@ pub(super) fn is_area_shared(function: &Function, externs: &Externs) -> bool {
     })
 }
 
-/// Whether a function may have variable arguments.
+/// Reports whether a function may have variable arguments.
 fn has_variable(callee: Callee, externs: &Externs) -> bool {
     match callee {
         Callee::Pointer(_) => true,

@@ -137,7 +137,7 @@ impl Selector<'_> {
         self.out.push(inst);
     }
 
-    /// Whether an address is certain to be that of a word.
+    /// Reports whether an address is certainly aligned to a word.
     fn is_aligned(&self, address: Address) -> bool {
         let base = match address.base {
             inst::Base::Absolute => true,

@@ -26,7 +26,7 @@ use crate::ir::function::{Function, Signatures, table};
 use crate::ir::inst::{BlockId, Class, InstKind, Operand, ValueId};
 use crate::source::Span;
 
-/// What selection needs besides the function.
+/// The input of selection: the function, and the facts about its surroundings.
 pub(super) struct Context<'a> {
     pub(super) function: &'a Function,
     pub(super) signatures: &'a Signatures,
@@ -68,7 +68,7 @@ pub(super) fn select(context: Context<'_>) -> Code {
     selector.code
 }
 
-/// How often each value is read.
+/// Number of reads of each value.
 fn count_uses(function: &Function, externs: &Externs) -> SecondaryMap<ValueId, u32> {
     let mut uses: SecondaryMap<ValueId, u32> = table(function.values.len());
     let mut count = |operand: Operand| {
@@ -96,7 +96,7 @@ fn count_uses(function: &Function, externs: &Externs) -> SecondaryMap<ValueId, u
     uses
 }
 
-/// What is done in front of the first block.
+/// The code before the first block.
 #[derive(Default)]
 struct Early {
     insts: Vec<Inst>,
@@ -266,7 +266,7 @@ impl Selector<'_> {
         self.copy_word(Arg::High(dst), Arg::High(src));
     }
 
-    /// Both halves of a pair will be written one by one.
+    /// Marks a pair whose halves will be written one by one.
     fn begin(&mut self, dst: VReg) {
         self.push(Kind::Begin, dst, Arg::None, Arg::None);
     }
@@ -329,12 +329,13 @@ impl Selector<'_> {
     }
 }
 
-/// Whether values of a class are in pairs.
+/// Reports whether values of a class are in pairs.
 const fn is_pair(class: Class) -> bool {
     matches!(class, Class::I64 | Class::F64)
 }
 
-/// How many loops each block of the layout is in: stretches from the target of a jump backwards to the jump.
+/// Number of loops around each block of the layout; a loop is the segment from the target of a backward jump to the
+/// jump.
 fn depths(function: &Function) -> Vec<u32> {
     let mut places: SecondaryMap<BlockId, u32> = table(function.blocks.len());
     for (index, id) in function.layout.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! How blocks end.
+//! Selection of the terminators of blocks.
 
 use cranelift_entity::SecondaryMap;
 

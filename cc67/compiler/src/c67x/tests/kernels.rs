@@ -8,10 +8,10 @@ use super::{build, machine};
 use crate::c67x::abi;
 use crate::passes::Level;
 
-/// Where arguments that are arrays are.
+/// The addresses of arguments that are arrays.
 const FIRST: u32 = 0x8006_0000;
 const SECOND: u32 = 0x8006_8000;
-/// Where a string is, and how long it is with its end.
+/// The address of a string, and its length with the terminator.
 const STRING: u32 = 0x8006_F000;
 const LENGTH: u32 = 40;
 
@@ -20,13 +20,13 @@ struct Kernel {
     /// The function, and the file in `vm/benches/processor`.
     name: &'static str,
     source: &'static str,
-    /// What is done, for people.
+    /// The computation, for people.
     what: &'static str,
     arguments: &'static [u32],
     /// Cycles of the vendor's code and of code by hand (`c67x.md` 7).
     vendor: Option<u64>,
     by_hand: Option<u64>,
-    /// Cycles that the processor's rules allow at best, by the longest chain of a turn times the turns.
+    /// The least cycles that the processor's rules allow: the longest chain of an iteration times the iterations.
     limit: u64,
 }
 
@@ -65,7 +65,7 @@ struct Whole {
     /// The file.
     name: &'static str,
     source: &'static str,
-    /// What it does here, for people.
+    /// The computation, for people.
     what: &'static str,
     /// Texts of the source, and what they become.
     less: &'static [(&'static str, &'static str)],

@@ -1,4 +1,4 @@
-//! What the processor has no instruction for, and what the vendor's compiler gets wrong.
+//! Operations that the processor has no instruction for, and those that the vendor's compiler gets wrong.
 //!
 //! The program divides doubles and singles at random, with estimates of the firmware that are off by up to three
 //! units of the last place; what it prints was computed by another compiler.
@@ -81,7 +81,7 @@ fn ten_64_bit_arguments_fit_into_their_registers() {
     }
 }
 
-/// Loops whose number of turns nobody knows: several turns become one, which must end where each of them would.
+/// Loops with an unknown number of iterations: unrolled loops must end where each iteration would.
 const LOOPS: &str = r#"
 #include "KMotionDef.h"
 char text[] = "several turns";

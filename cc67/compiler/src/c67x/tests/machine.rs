@@ -9,7 +9,7 @@ use crate::link::Linked;
 
 const PAGE: usize = 4096;
 
-/// Where the firmware's end of a thread is.
+/// The address of the firmware's end of a thread.
 pub(super) const THREAD_DONE: u32 = 0x1000_0040;
 /// The cycles that a run may take.
 const MOST_CYCLES: i64 = 400_000_000;
@@ -84,7 +84,7 @@ impl Memory for Ram {
     }
 }
 
-/// What a run gave.
+/// The result of a run.
 #[derive(Debug, Default)]
 pub(super) struct Run {
     pub(super) console: String,

@@ -7,8 +7,8 @@ use crate::passes::Level;
 
 const PROGRAMS: &str = include_str!("programs.jsonl");
 
-/// What differs from the vendor's compiler on purpose: its division is not correctly rounded, and comparisons with
-/// a NaN are wrong. And what the firmware of these tests does not have: time, and its own `%g`.
+/// Programs whose output differs from that with the vendor's compiler: its division is not correctly rounded, and
+/// comparisons with a NaN are wrong. Others need time or `%g`, which the firmware of these tests does not have.
 const OTHERWISE: &[&str] = &["specials", "convert", "printfmt", "timeslice", "delay"];
 
 /// Runs every program; the table, and the geometric means of cycles and of bytes.

@@ -15,7 +15,7 @@ use super::inst::{self, Content};
 use super::{Functions, ParseError, Symbols};
 use crate::source::Span;
 
-/// What is read, or what is wrong with the line.
+/// A result, or the error in the line.
 pub(super) type Read<T> = Result<T, String>;
 
 /// No place in a source: the text of a function does not say its places.
@@ -42,11 +42,11 @@ pub(super) struct Body {
     result: Option<Class>,
     blocks: BTreeMap<BlockId, BlockLines>,
     open: Option<BlockId>,
-    /// Where each value is mentioned first.
+    /// The line of each value's first mention.
     values: BTreeMap<ValueId, usize>,
-    /// Where each target of a jump is mentioned first.
+    /// The line of each jump target's first mention.
     targets: BTreeMap<BlockId, usize>,
-    /// What a comparison says of its operands' class.
+    /// The classes that comparisons demand of their operands.
     compared: Vec<(Operand, Class, usize)>,
     /// The line with the function's name.
     begins: usize,

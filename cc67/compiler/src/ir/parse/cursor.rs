@@ -9,7 +9,7 @@ use super::super::inst::Class;
 /// The largest number of a value, slot or block: a text of a few bytes takes no gigabytes to hold.
 const LARGEST_NUMBER: u32 = 1 << 20;
 
-/// What is left of a line.
+/// The rest of a line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cursor<'a> {
     rest: &'a str,
@@ -21,7 +21,7 @@ impl<'a> Cursor<'a> {
         Self { rest }
     }
 
-    /// Whether `text` comes next; it is then read.
+    /// Reads `text` if it comes next; reports whether it did.
     pub(super) fn take(&mut self, text: &str) -> bool {
         match self.rest.trim_start().strip_prefix(text) {
             Some(rest) => {
@@ -32,7 +32,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Whether the next word is `word`; it is then read.
+    /// Reads `word` if it is the next word; reports whether it was.
     pub(super) fn keyword(&mut self, word: &str) -> bool {
         let mut ahead = *self;
         let is_next = ahead.word().is_ok_and(|found| found == word);

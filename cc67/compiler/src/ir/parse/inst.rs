@@ -9,7 +9,7 @@ use super::Symbols;
 use super::body::{Body, Read};
 use super::cursor::{Cursor, number};
 
-/// What a line of a block is.
+/// The content of a line of a block.
 pub(super) enum Content {
     Inst(InstKind),
     /// A call; its signature is known when the classes of its arguments are.
@@ -40,7 +40,7 @@ struct InstReader<'r, 'l> {
 }
 
 impl InstReader<'_, '_> {
-    /// What follows `dst =`.
+    /// Parses an assignment after `dst =`.
     fn assignment(&mut self, dst: ValueId) -> Read<Content> {
         let mut ahead = *self.line;
         let word = ahead.word()?;

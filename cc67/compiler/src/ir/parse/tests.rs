@@ -1,4 +1,4 @@
-//! What is printed is read back; what is wrong is refused with its line.
+//! Round trips: printed IR is read back; malformed IR is refused with its line.
 
 use super::super::text;
 use super::*;

@@ -1,4 +1,4 @@
-//! What is charged for constructs and programs, compared with what the board took (`vectors/costs.jsonl`).
+//! The charges of constructs and programs, compared with the board's (`vectors/costs.jsonl`).
 
 use std::path::Path;
 
@@ -99,7 +99,7 @@ impl Firmware for Stopwatch {
     }
 }
 
-/// What `main` spends, without its own entry.
+/// The cycles of `main`, without its entry.
 fn spent(source: &str, level: Level, waits: WaitStates) -> i64 {
     let (unit, sources) = testing::unit(source);
     let mut sink = Sink::new();
@@ -129,7 +129,7 @@ fn rows(kind: &str) -> Vec<Json> {
     rows.filter(|row| row["kind"] == kind).collect()
 }
 
-/// What the recorded constructs are about: `l…` local, `g…` global.
+/// The variables of the recorded constructs: `l…` local, `g…` global.
 const GLOBALS: &str = "
     typedef struct { int a; double d; int b[4]; int e; } ST; ST gst, gst2, *gsp = &gst;
     int gi = 5, gj = 7, ga[10], *gp = ga; unsigned gu; char gc, gca[10], buf[200]; short gs; double gd = 1, ge = 2;
@@ -147,7 +147,7 @@ const LOCALS: &str = "
     li = 5; lj = 7; lk = 3; lu = 9; lc = 1; ld = 1.0; le = 2.0; lf = 1.0f; lg = 2.0f; lp = la;
 ";
 
-/// What is not compared, and why.
+/// Reports whether a construct is not compared.
 fn is_other(construct: &str) -> bool {
     // Firmware structures; functions whose cost depends on the arguments.
     ["persist", "ch0", "ch1", "chan", "ServoTick", "FPGA", "printf", "sin(gd)", "PI"]
@@ -210,7 +210,7 @@ fn programs_take_the_recorded_cycles() {
     assert!(off.is_empty() && compared > 50, "{compared} compared\n{}", off.join("\n"));
 }
 
-/// How many calls that access a register a program makes.
+/// Number of calls of a program that access a register.
 fn calls(text: &str) -> f64 {
     if text.contains("i<60") { 120.0 } else { 200.0 }
 }

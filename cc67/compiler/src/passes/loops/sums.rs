@@ -1,4 +1,4 @@
-//! Expressions that grow evenly with a counter become sums that are carried from turn to turn.
+//! Strength reduction: expressions that grow evenly with a counter become sums carried from iteration to iteration.
 
 use std::collections::BTreeMap;
 
@@ -11,17 +11,17 @@ use crate::ir::operators::BinaryOp;
 /// The most sums that one loop carries.
 const MAX_SUMS: usize = 6;
 
-/// What an expression has to cost, in additions, for a sum to be cheaper.
+/// The cost of an expression, in additions, from which a sum is cheaper.
 const WORTH: u32 = 2;
 
-/// An expression that grows by the same amount in each turn.
+/// An expression that grows by the same amount in each iteration.
 #[derive(Clone, Copy, Debug)]
 struct Linear {
     /// The counter it follows.
     counter: ValueId,
     /// By how much it grows when the counter grows by 1.
     scale: i32,
-    /// What computing it takes.
+    /// The cost of computing it, in additions.
     cost: u32,
     /// Its instruction.
     kind: InstKind,
@@ -177,7 +177,7 @@ impl Worker<'_> {
         read
     }
 
-    /// What `operand` is when the loop begins, computed before it.
+    /// The value of `operand` at the start of the loop, computed before it.
     fn start(&mut self, linear: &BTreeMap<ValueId, Linear>, operand: Operand, inst: &Inst) -> Operand {
         let Some(sum) = operand.as_value().and_then(|value| linear.get(&value)).copied() else {
             return operand;

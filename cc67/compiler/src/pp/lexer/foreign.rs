@@ -10,14 +10,14 @@ use super::super::LAX;
 use super::super::token::{Flags, Token, TokenKind};
 use super::{Lexer, LexerContext};
 
-/// What was already said about this file.
+/// The complaints already reported for this file.
 #[derive(Debug, Default)]
 pub(super) struct Complained {
     space: bool,
     control: bool,
 }
 
-/// What a character stands for.
+/// The meaning of a character.
 enum Meaning {
     Space,
     Quote(u8),
@@ -42,12 +42,12 @@ impl Lexer {
         true
     }
 
-    /// Whether the next bytes are a character that someone may take for a letter.
+    /// Reports whether the next bytes are a character that can be mistaken for a letter.
     pub(super) fn is_foreign_letter(&self) -> bool {
         matches!(meaning(self.character().0), Meaning::Letter)
     }
 
-    /// Reads a name that goes on in other letters.
+    /// Reads a name that continues with other letters.
     pub(super) fn foreign_name(&mut self, lo: usize, flags: Flags, cx: &mut LexerContext<'_>) -> Token {
         let mut first = None;
         loop {

@@ -164,7 +164,7 @@ impl Lexer {
     }
 }
 
-/// Where two bytes are together first.
+/// The position of the first pair of two bytes.
 fn find_pair(text: &[u8], [first, second]: [u8; 2]) -> Option<usize> {
     memchr::memchr_iter(first, text).find(|at| text.get(at + 1) == Some(&second))
 }

@@ -1,9 +1,9 @@
-//! Where the names of the texts are that every compilation begins with, found while the compiler itself is built.
+//! An index of the names in the texts that every compilation begins with, made while the compiler itself is built.
 //!
 //! The predefined macros and the headers of the board have a thousand names, of which a program uses a few. The index
-//! says for each name where its macro or its declaration is, so that only those few are read. It is a constant: the
-//! functions here run when the compiler is built. They know no more of C than those texts need, and refuse to build
-//! an index of anything else; that they understand the headers as the parser does is a test of [`crate::driver`].
+//! has the position of each name's macro or declaration, so that only those few are read. It is a constant: the
+//! functions here run when the compiler is built. They know no more of C than those texts need, and refuse to build an
+//! index of anything else; a test of [`crate::driver`] checks that they understand the headers as the parser does.
 
 #![expect(
     clippy::indexing_slicing,
@@ -37,7 +37,7 @@ pub(super) const fn name(text: usize) -> &'static str {
     NAMES[text]
 }
 
-/// What the texts contain.
+/// The index of the texts.
 pub(super) static INDEX: Index = Index::of_texts();
 
 /// A place in one of the texts.
@@ -90,7 +90,7 @@ impl IndexedName {
         piece: u16::MAX,
     };
 
-    /// Where the `#define` of a macro has the name.
+    /// The position of the name in the `#define` of a macro.
     pub(super) const fn definition(&self) -> Option<At> {
         if self.definition.is_nowhere() { None } else { Some(self.definition) }
     }
@@ -100,7 +100,7 @@ impl IndexedName {
         if self.piece == u16::MAX { None } else { Some(self.piece as usize) }
     }
 
-    /// Whether the headers mean something else, or say something, if the program has a macro of this name
+    /// Reports whether the headers change their meaning, or cause a diagnostic, if the program has a macro of this name
     /// before it includes them.
     pub(super) const fn is_of_headers(&self) -> bool {
         self.is_of_headers || self.is_in_declaration
@@ -263,7 +263,7 @@ impl Index {
         at + 1
     }
 
-    /// What declarations read through macros is in them, too.
+    /// Adds the names in macros to the declarations that use them.
     const fn spread(&mut self) {
         let mut is_new = true;
         while is_new {
@@ -335,7 +335,7 @@ impl Index {
     }
 }
 
-/// Whether a text continues with some bytes.
+/// Reports whether a text continues with some bytes.
 const fn is_at(text: &[u8], at: usize, bytes: &[u8]) -> bool {
     let mut index = 0;
     while index < bytes.len() {

@@ -1,11 +1,11 @@
-//! Texts of which only what a program uses is read.
+//! Texts of which only the parts that a program uses are read.
 //!
 //! The predefined macros and the headers of the board are the same for every program, and most of what they define and
-//! declare is never used. So their text takes its place among the sources, but a macro is read when its name is met,
-//! and of the declarations those that the rest of the tokens name, and those that these name in turn, when everything
-//! else was read. [`index`] knows where they are.
+//! declare is never used. So their text is among the sources, but a macro is read when its name is met. Declarations
+//! are read after everything else: those that the rest of the tokens name, and those that these name in turn. [`index`]
+//! has their positions.
 //!
-//! For the predefined macros nobody can see a difference. For the headers there are cases where the result would not
+//! For the predefined macros there is no visible difference. For the headers there are cases where the result would not
 //! be the same; then the headers have to be read whole:
 //! - A file in the folder has the name of one of them, or a macro that is defined before has a name of theirs: this is
 //!   known when the program includes them.
@@ -154,7 +154,7 @@ impl Preprocessor<'_> {
         tokens
     }
 
-    /// Whether a definition is one of the prepared texts.
+    /// Reports whether a definition is one of the prepared texts.
     fn is_prepared(&self, id: MacroId) -> bool {
         let file = self.macros.get(id).and_then(|definition| self.sources.file_at(definition.definition.lo));
         file.is_some() && self.prepared.files.contains(&file)
@@ -206,7 +206,7 @@ impl Preprocessor<'_> {
         Span::new(position(lo), position(hi))
     }
 
-    /// Whether a limit on files could be exceeded within the headers.
+    /// Reports whether a limit on files could be exceeded within the headers.
     fn is_near_limits(&self) -> bool {
         let bytes: usize = TEXTS.iter().map(|text| text.len() + 1).sum();
         let total = self.sources.end().saturating_add(u32::try_from(bytes).unwrap_or(u32::MAX));
@@ -215,7 +215,7 @@ impl Preprocessor<'_> {
             || total > limits::TOTAL_BYTES
     }
 
-    /// Whether the first header would find another text for one that it includes.
+    /// Reports whether the first header would find another text for one that it includes.
     fn has_own_copy(&mut self) -> bool {
         let own = [PathBuf::new(), self.main_directory.clone()];
         let directories: Vec<_> = own.into_iter().chain(self.options.include_dirs.iter().cloned()).collect();

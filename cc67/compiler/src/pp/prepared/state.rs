@@ -1,4 +1,4 @@
-//! How far the prepared texts were read in one compilation.
+//! The progress in reading the prepared texts in one compilation.
 
 use crate::source::FileId;
 
@@ -15,7 +15,7 @@ pub(in crate::pp) struct Prepared {
     pub(super) in_declaration: bool,
 }
 
-/// How the headers are read.
+/// The mode in which the headers are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum HeaderState {
     /// As any other file.
@@ -39,7 +39,7 @@ impl Prepared {
         Self { files: [None; TEXTS.len()], headers, in_declaration: false }
     }
 
-    /// How much of the headers was read.
+    /// The part of the headers that was read.
     pub(in crate::pp) fn read(&self) -> HeadersRead {
         match self.headers {
             HeaderState::Whole | HeaderState::AsNeeded => HeadersRead::Whole,

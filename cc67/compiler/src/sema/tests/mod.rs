@@ -1,4 +1,4 @@
-//! What sema promises, as pairs of C text and typed tree, or C text and messages.
+//! Promises of semantic analysis, as pairs of C text and typed tree, or C text and messages.
 
 mod calls;
 mod declarations;
@@ -100,7 +100,7 @@ fn said(source: &str, expect: &[&str]) {
     assert_eq!(said, expect, "said about:\n{source}");
 }
 
-/// What an expression of a function with some variables becomes.
+/// Checks the typed tree of an expression in a function with some variables.
 fn expression(source: &str, expect: &str) {
     let program = format!(
         "struct S {{ int a; double b; struct {{ short c[3]; }}; int f : 3; unsigned u : 5; }};\n\
