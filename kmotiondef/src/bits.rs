@@ -4,7 +4,7 @@
 
 use crate::ids::Bit;
 
-/// The hardware or variable behind the bits of a range.
+/// The hardware or variable that a range of bits belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BitKind {
     /// A pin of the FPGA whose direction programs choose.
@@ -57,7 +57,7 @@ pub struct BitRange {
     pub last: u16,
     /// The name in messages.
     pub name: &'static str,
-    /// The hardware or variable behind its bits.
+    /// The hardware or variable that its bits belong to.
     pub kind: BitKind,
     /// The direction of its bits.
     pub direction: BitDirection,

@@ -5,7 +5,7 @@
 
 use kmotiondef::{AccessSize, Cycles, GuestAddr};
 
-/// The devices behind the addresses that are not memory.
+/// The devices at the addresses that are not memory.
 pub trait Bus {
     /// Reads a register; the value is zero-extended from `size`.
     fn read(&mut self, addr: GuestAddr, size: AccessSize, now: Cycles) -> u32;

@@ -17,15 +17,15 @@
 #include <stdint.h>
 
 /*
- What became of a call.
+ The result of a call.
  */
 enum cc67_result {
   /*
-   It did what it is for.
+   The call succeeded.
    */
   CC67_RESULT_OK = 0,
   /*
-   It did not; where there is a message, that says why.
+   The call failed; where there is a message, it gives the reason.
    */
   CC67_RESULT_FAILED = 1,
   /*
@@ -33,11 +33,11 @@ enum cc67_result {
    */
   CC67_RESULT_TIMEOUT = 2,
   /*
-   There is no connection: it was given up.
+   The connection was lost or closed.
    */
   CC67_RESULT_NOT_CONNECTED = 3,
   /*
-   Another client has the board to itself.
+   Another client has locked the board.
    */
   CC67_RESULT_IN_USE = 4,
   /*

@@ -45,7 +45,7 @@ pub(super) struct Idle {
     /// so the visits before it become invalid, and are not cleared.
     happened: u32,
     turn: Option<Box<Turn>>,
-    /// True if stores are to be noted.
+    /// True while stores are noted.
     pub(super) is_watching: bool,
     /// Cycles that were skipped so far.
     pub(super) skipped: u64,

@@ -224,7 +224,7 @@ impl Sink {
         self.lacks_names
     }
 
-    /// Reports whether so many errors were reported that the search for more stops.
+    /// Reports whether the limit of reported errors is reached, so that the search for more stops.
     #[must_use]
     pub fn is_full(&self) -> bool {
         self.errors >= MAX_ERRORS

@@ -44,7 +44,7 @@ impl Parser<'_> {
         open.last().map_or(outer, |(opener, _)| *opener)
     }
 
-    /// Reports whether the next token, which begins a line, is no further right than the line of `opener`.
+    /// Reports whether the next token, which begins a line, is not further right than the line of `opener`.
     pub(super) fn stands_left_of_block(&self, opener: Token) -> bool {
         let token = self.peek();
         token.flags.has(Flags::LINE_START) && self.column(token) <= self.indent(opener)
