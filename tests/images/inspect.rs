@@ -158,7 +158,7 @@ main()
     let table = succeed(&scratch, &["cycles", "p.c"]);
     assert_eq!(table, succeed(&scratch, &["cycles", "p(1).out"]), "of the source and of the image");
     assert!(listing.starts_with(&table), "the listing begins with the table:\n{listing}");
-    for part in ["a turn of the loop at line 5\n", ", without WaitNextTimeSlice\n", "main, "] {
+    for part in ["an iteration of the loop at line 5\n", ", without WaitNextTimeSlice\n", "main, "] {
         assert!(table.contains(part), "{part:?} in:\n{table}");
     }
     let output = cc67(&scratch, ["build", "--target", "sim", "--asm", "p.c"]);

@@ -216,7 +216,7 @@ impl Check<'_> {
     fn place(&mut self, id: PlaceId) -> Result<(), String> {
         match self.function.places[id].kind {
             PlaceKind::Local(..) if self.locals => Ok(()),
-            PlaceKind::Local(..) => Err("it has variables of its own".to_owned()),
+            PlaceKind::Local(..) => Err("it declares variables".to_owned()),
             PlaceKind::Symbol(symbol, offset) => {
                 let entry = &self.unit.symbols[symbol];
                 let size = self.unit.types.size_of(entry.ty);

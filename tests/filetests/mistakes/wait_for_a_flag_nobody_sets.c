@@ -3,7 +3,7 @@
 //@ says:    ┌─ wait_for_a_flag_nobody_sets.c:17:12
 //@ says:    │
 //@ says: 17 │     while (!ready)
-//@ says:    │            ^^^^^^ the same in every turn
+//@ says:    │            ^^^^^^ the same in every iteration
 //@ says:    │
 //@ says:    = help: a variable belongs to its own program: threads share `persist.UserData` and virtual bits
 //@ says: at the end, after 0.500 s of board time:

@@ -181,7 +181,7 @@ impl Model {
         let linked: Option<Linked> = compilation.link(thread, options);
         let made = linked.and_then(|linked| image::write(&linked).ok()).ok_or("the source does not link")?;
         if made != program {
-            return Err("the source, as it is compiled here, makes another image".to_owned());
+            return Err("the source compiles to a different image".to_owned());
         }
         let image = Inspection::read(program).map_err(|error| error.to_string())?;
         let model = Self {
@@ -448,7 +448,7 @@ pub fn of_image(path: &Path, program: &[u8], options: &Options) -> Result<Model,
     let source = source_of(path, program)?;
     let text =
         crate::files::read(&source).map_err(|error| format!("cannot read {}: {error}", source.display()))?;
-    let thread = thread_of(program).ok_or("the image is of no thread")?;
+    let thread = thread_of(program).ok_or("the image is not linked for a thread")?;
     let levels = [(Level::Full, true), (Level::None, false), (Level::None, true), (Level::Full, false)];
     let others = levels.map(|(level, gc_sections)| Options { level, gc_sections, ..options.clone() });
     let mut first = None;
@@ -472,10 +472,10 @@ pub fn source_of(path: &Path, program: &[u8]) -> Result<PathBuf, String> {
     let image = Inspection::read(program).map_err(|error| error.to_string())?;
     let main = image.symbols.iter().find(|entry| entry.kind == EntryKind::Function && entry.name == "main");
     let file =
-        main.and_then(|entry| entry.file.clone()).ok_or("the image does not say which source it is of")?;
+        main.and_then(|entry| entry.file.clone()).ok_or("the image does not name its source")?;
     let beside = path.parent().unwrap_or(Path::new("")).join(&file);
     let found = [beside, PathBuf::from(&file)].into_iter().find(|path| path.is_file());
-    found.ok_or_else(|| format!("its source {file} is not beside it"))
+    found.ok_or_else(|| format!("its source {file} is not in the same folder"))
 }
 
 /// The thread that an image is linked for.

@@ -38,7 +38,7 @@ impl Inspection {
             let _ = writeln!(out, "{}  {}, {} bytes", span(own), code.name, code.bytes);
             for found in code.loops() {
                 let lines = self.lines_of(code, &found);
-                let _ = write!(out, "{}    a turn of the loop{lines}", span(found.turn));
+                let _ = write!(out, "{}    an iteration of the loop{lines}", span(found.turn));
                 let calls = self.called(&code.blocks[found.first..=found.last]);
                 let _ = match calls.as_str() {
                     "" => writeln!(out),
@@ -157,11 +157,11 @@ impl Routine {
         } else if blocks.len() > 1 {
             "not pipelined: it has branches inside"
         } else if self.overlaps(&blocks[0]) {
-            "pipelined: its turns overlap"
+            "pipelined: its iterations overlap"
         } else if self.is_filled(&blocks[0]) {
             "every cycle issues"
         } else {
-            "its turns wait for results, or for its branch"
+            "its iterations wait for results, or for the branch"
         }
     }
 
@@ -211,7 +211,7 @@ impl Listing<'_> {
             for found in loops.iter().filter(|found| found.first == number) {
                 let (least, most) = found.turn;
                 let turn = if least == most { most.to_string() } else { format!("{least} to {most}") };
-                let _ = writeln!(self.out, "; loop, {turn} cycles a turn; {}", code.remark(found));
+                let _ = writeln!(self.out, "; loop, {turn} cycles an iteration; {}", code.remark(found));
             }
             let start = code.packets[block.packets.start].time;
             for packet in &code.packets[block.packets.clone()] {

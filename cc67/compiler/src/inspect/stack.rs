@@ -159,7 +159,7 @@ fn reason(calls: &Calls, start: usize) -> String {
         let Some(node) = calls.nodes.get(*index) else { break };
         if node.frame.is_none() {
             return format!(
-                "`{}` moves the stack pointer by an amount that its code does not say",
+                "`{}` moves the stack pointer by an amount that is not constant",
                 node.name
             );
         }

@@ -178,7 +178,7 @@ impl Search<'_> {
             Some(Counter { local, first, last }) => {
                 let (value, turn) = if wrong == to { (last, "last") } else { (first, "first") };
                 let name = &self.function.locals[local].name;
-                finding.note(format!("`{name}` is {value} in the {turn} turn of the loop"))
+                finding.note(format!("`{name}` is {value} in the {turn} iteration of the loop"))
             }
         })
     }

@@ -22,7 +22,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
                 let message = format!("this loop waits for `{name}`, which nothing in the program changes");
                 sink.report(
                     Diagnostic::warning(Lint::EndlessWait, function.exprs[condition].span, message)
-                        .at("the same in every turn")
+                        .at("the same in every iteration")
                         .help("a variable belongs to its own program: threads share `persist.UserData` and virtual bits"),
                 );
             }

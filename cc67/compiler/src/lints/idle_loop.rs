@@ -36,7 +36,7 @@ fn finding(function: &Function, stmt: &Stmt) -> Option<Diagnostic> {
     let message = format!("this loop only tests `{name}`, which nothing in it changes");
     Some(
         Diagnostic::warning(Lint::IdleLoop, function.exprs[*condition].span, message)
-            .at("the same in every turn")
+            .at("the same in every iteration")
             .help("no other thread sees a local variable; wait for a global or an element of `persist.UserData`"),
     )
 }

@@ -19,7 +19,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
         };
         sink.report(
             Diagnostic::warning(Lint::Recursion, span, message)
-                .at("how deep, the compiler cannot tell")
+                .at("the depth is not known at compile time")
                 .note("a thread has 2048 bytes of stack"),
         );
     }

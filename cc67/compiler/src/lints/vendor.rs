@@ -34,7 +34,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
 /// The message for a local array or structure that its initialiser does not fill.
 pub(crate) fn partly_initialised(span: Span) -> Diagnostic {
     warning(span, "clears the wrong memory for a local that its initialiser fills in part")
-        .at("not everything has a value here")
+        .at("some elements have no value here")
         .note("the call that clears the rest has its arguments in reverse")
         .help("give every element a value, or make the local `static`")
 }

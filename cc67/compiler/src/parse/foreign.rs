@@ -92,7 +92,7 @@ impl Parser<'_> {
             (Language::Basic, message, "`}` ends what `{` began".to_owned())
         } else if written == "delete" && self.kind_at(1) != TokenKind::LeftParen {
             let message = "`delete` belongs to C++".to_owned();
-            (Language::Cpp, message, "nothing need be given back".to_owned())
+            (Language::Cpp, message, "memory is not allocated, so it is not freed".to_owned())
         } else if foreign_words::is_g_code(written) && self.is_g_code_at(1) {
             let help = "`Move(0, 10);` moves axis 0; G-code is run by the PC, not by C programs";
             let message = "this is G-code, not C".to_owned();

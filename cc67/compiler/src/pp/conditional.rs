@@ -85,7 +85,7 @@ impl Preprocessor<'_> {
         for conditional in &file.conditionals {
             self.sink.report(
                 Diagnostic::warning(LAX, conditional.opener, "`#if` without `#endif`")
-                    .at("goes on to the end of the file"),
+                    .at("continues to the end of the file"),
             );
         }
     }

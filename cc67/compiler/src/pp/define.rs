@@ -192,7 +192,7 @@ impl Preprocessor<'_> {
         let message = format!("macro `{}` is redefined with a different body", self.names.get(name.name));
         self.sink.report(
             Diagnostic::warning(Lint::MacroRedefined, name.span, message)
-                .at("this one counts from here on")
+                .at("this definition is used from here on")
                 .label(before, "first defined here"),
         );
     }

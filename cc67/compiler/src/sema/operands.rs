@@ -114,7 +114,7 @@ impl Sema<'_> {
                 span,
                 format!("the value of the `void` function `{name}` is used"),
             )
-            .at("the value is what its `return` gives, as `int`")
+            .at("the value is that of its `return`, as `int`")
             .label(definition, "declared `void` here")
             .help(format!("declare `{name}` as `int`")),
         );

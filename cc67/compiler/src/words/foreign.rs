@@ -86,7 +86,7 @@ const WORDS: &[Word] = &[
     companion("endl", Cpp, "a line ends in `\\n`"),
     companion("std", Cpp, "C has no namespaces"),
     lead("new", Cpp, "give an array a fixed size, such as `double samples[100];`"),
-    companion("delete", Cpp, "nothing need be given back"),
+    companion("delete", Cpp, "memory is not allocated, so it is not freed"),
     lead("nullptr", Cpp, "write `NULL`"),
     lead("this", Cpp, "C has no classes; pass a pointer to a `struct`"),
     lead("print", Script, "`printf(\"%f\\n\", value)` writes to the console"),
