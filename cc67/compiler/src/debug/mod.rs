@@ -471,8 +471,7 @@ pub fn of_image(path: &Path, program: &[u8], options: &Options) -> Result<Model,
 pub fn source_of(path: &Path, program: &[u8]) -> Result<PathBuf, String> {
     let image = Inspection::read(program).map_err(|error| error.to_string())?;
     let main = image.symbols.iter().find(|entry| entry.kind == EntryKind::Function && entry.name == "main");
-    let file =
-        main.and_then(|entry| entry.file.clone()).ok_or("the image does not name its source")?;
+    let file = main.and_then(|entry| entry.file.clone()).ok_or("the image does not name its source")?;
     let beside = path.parent().unwrap_or(Path::new("")).join(&file);
     let found = [beside, PathBuf::from(&file)].into_iter().find(|path| path.is_file());
     found.ok_or_else(|| format!("its source {file} is not in the same folder"))

@@ -158,10 +158,7 @@ fn reason(calls: &Calls, start: usize) -> String {
         let open: &mut Vec<usize> = open;
         let Some(node) = calls.nodes.get(*index) else { break };
         if node.frame.is_none() {
-            return format!(
-                "`{}` moves the stack pointer by an amount that is not constant",
-                node.name
-            );
+            return format!("`{}` moves the stack pointer by an amount that is not constant", node.name);
         }
         let Some(next) = open.pop() else {
             path.pop();
