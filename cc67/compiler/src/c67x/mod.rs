@@ -3,17 +3,19 @@
 //! A function passes these stages, a file each:
 //!
 //! 1. [`select`]: IR to instructions over virtual registers ([`code`]); [`forms`] has the forms of the table that can
-//! express an instruction. 2. [`predicate`]: short branches become conditions. [`copies`]: copies of selection are
-//! replaced by their sources. [`turns`]: short loops are unrolled. [`counters`]: the counters of loops are tested
-//! directly. [`sides`]: every register gets one of the two files; copies where an instruction reaches only one. 3.
-//! [`live`], [`allocate`], [`spill`]: registers of the processor, those that survive a thread switch. 4. [`frame`],
-//! [`moves`], [`expand`]: calls, the stack, the beginning and the ends; regions of [`step`]s. 5. [`graph`],
-//! [`resources`], [`schedule`]: packets, [`refine`] makes them smaller; [`pipeline`], [`modulo`]: those of loops whose
-//! iterations overlap. 6. [`layout`]: words, on fetch packets, with what the linker completes ([`text`]).
+//!    express an instruction.
+//! 2. [`predicate`]: short branches become conditions. [`copies`]: copies of selection are replaced by their sources.
+//!    [`turns`]: short loops are unrolled. [`counters`]: the counters of loops are tested directly. [`sides`]: every
+//!    register gets one of the two files; copies where an instruction reaches only one.
+//! 3. [`live`], [`allocate`], [`spill`]: registers of the processor, those that survive a thread switch.
+//! 4. [`frame`], [`moves`], [`expand`]: calls, the stack, the beginning and the ends; regions of [`step`]s.
+//! 5. [`graph`], [`resources`], [`schedule`]: packets, [`refine`] makes them smaller; [`pipeline`], [`modulo`]: those of
+//!    loops whose iterations overlap.
+//! 6. [`layout`]: words, on fetch packets, with what the linker completes ([`text`]).
 //!
 //! Rules that all stages keep (`c67x.md`):
 //! - no register is read while a result for it is in flight, for an interrupt would make it land early; except between
-//! packets of a loop where none is taken, in the delay slots of its branch ([`modulo`]);
+//!   packets of a loop where none is taken, in the delay slots of its branch ([`modulo`]);
 //! - accesses to memory that others can see keep their order;
 //! - at the end of a region nothing is in flight, so calls, returns and jumps are safe whatever follows;
 //! - nothing that the program needs is at B15 or below, and B15 is a multiple of 8.
