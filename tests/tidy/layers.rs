@@ -99,7 +99,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
             ("addresses", &["bus", "loads"]),
             ("registers", &["window"]),
             ("surroundings", &["around"]),
-            ("devices", &["control", "flash", "link", "timer"]),
+            ("devices", &["control", "flash", "link", "sent", "timer"]),
             ("files and reports", &["file", "crash"]),
             ("functions in ROM", &["rom"]),
         ],

@@ -212,6 +212,12 @@ pub trait Target {
     /// Says whether the PC takes console lines.
     fn listen(&mut self, listens: bool);
 
+    /// Keeps from now on the bytes that the board sends over its link, for a PC that is elsewhere.
+    fn tap_wire(&mut self);
+
+    /// Those bytes since the last time.
+    fn take_wire(&mut self) -> Vec<u8>;
+
     /// What flash memory holds, if that can be read.
     fn flash(&self) -> Option<&[u8]> {
         None

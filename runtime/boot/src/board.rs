@@ -24,6 +24,7 @@ use super::crash::Crash;
 use super::file::{FirmwareError, FirmwareFile};
 use super::loads::Loads;
 use super::rom::RomFunction;
+use super::sent::{SentLine, SentLines};
 use super::window::{Window, bit, instant};
 
 /// Cycles of a second.
@@ -39,28 +40,6 @@ const GIE: u32 = 1;
 /// Begins a line for the console; begins a command without echo, with any byte after it.
 const ESCAPE: u8 = 0x1B;
 const NO_ECHO: u8 = 1;
-
-/// What kind of line the firmware sent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sent {
-    /// Console text.
-    Console,
-    /// An answer to a command.
-    Reply,
-    /// A request to the PC about files; the bytes begin with its number.
-    Request,
-}
-
-/// A line that the firmware sent, without its line end.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SentLine {
-    /// The cycle of its first byte, since power-up.
-    pub cycle: u64,
-    /// What it is.
-    pub kind: Sent,
-    /// Its text.
-    pub text: Vec<u8>,
-}
 
 /// What the processor is about to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -87,9 +66,8 @@ pub struct BootedBoard<A = ()> {
     file: Arc<FirmwareFile>,
     core: Core,
     hardware: Hardware<A>,
-    /// Bytes of a line that is not complete, and the cycle of the first.
-    unfinished: (u64, Vec<u8>),
-    lines: Vec<SentLine>,
+    /// What it has sent.
+    sent: SentLines,
     /// The cycle in which the timer's interrupt began to wait.
     waits_since: u64,
     /// What the axes move.
@@ -338,34 +316,19 @@ impl<A: Around> BootedBoard<A> {
         self.hardware.window.link.take_sent()
     }
 
-    /// The lines that the firmware has completed since the last time.
-    pub fn take_lines(&mut self) -> Vec<SentLine> {
-        for (cycle, byte) in self.hardware.window.link.take_sent() {
-            self.hear(cycle, byte);
-        }
-        std::mem::take(&mut self.lines)
+    /// Keeps from now on the bytes that [`take_lines`](Self::take_lines) makes lines of, for a PC that is elsewhere.
+    pub fn tap_wire(&mut self) {
+        self.sent.tap();
     }
 
-    fn hear(&mut self, cycle: u64, byte: u8) {
-        let (first, bytes) = &mut self.unfinished;
-        if bytes.is_empty() {
-            *first = cycle;
-        }
-        bytes.push(byte);
-        // The answer to an abort is the one line that ends with a carriage return alone.
-        if byte != b'\n' && bytes != b"\x1bC\r" {
-            return;
-        }
-        let cycle = *first;
-        let line = std::mem::take(bytes);
-        let text = line.strip_suffix(b"\n").unwrap_or(&line);
-        let text = text.strip_suffix(b"\r").unwrap_or(text);
-        let (kind, text) = match text {
-            [ESCAPE, request @ 1..=7, ..] => (Sent::Request, &text[usize::from(*request != 0)..]),
-            [ESCAPE, rest @ ..] if line.last() == Some(&b'\n') => (Sent::Console, rest),
-            _ => (Sent::Reply, text),
-        };
-        self.lines.push(SentLine { cycle, kind, text: text.to_vec() });
+    /// Those bytes since the last time.
+    pub fn take_wire(&mut self) -> Vec<u8> {
+        self.sent.take_wire()
+    }
+
+    /// The lines that the firmware has completed since the last time.
+    pub fn take_lines(&mut self) -> Vec<SentLine> {
+        self.sent.take(self.hardware.window.link.take_sent())
     }
 
     /// Puts the sections of a linked program into memory, as a download does, and tells the firmware its start address.
@@ -481,10 +444,9 @@ impl<A: Around> BootedBoard<A> {
     /// The same board with this around it, which is shown what was written to the registers so far.
     #[must_use]
     pub fn connect<B: Around>(self, around: Option<B>) -> BootedBoard<B> {
-        let Self { file, core, hardware, unfinished, lines, waits_since, loads, skips, packets, crash } =
-            self;
+        let Self { file, core, hardware, sent, waits_since, loads, skips, packets, crash } = self;
         let hardware = hardware.connect(around, core.state.cycle());
-        BootedBoard { file, core, hardware, unfinished, lines, waits_since, loads, skips, packets, crash }
+        BootedBoard { file, core, hardware, sent, waits_since, loads, skips, packets, crash }
     }
 
     /// What [is connected](Self::connect).

@@ -28,6 +28,7 @@ mod flash;
 mod link;
 mod loads;
 mod rom;
+mod sent;
 #[cfg(test)]
 mod tests;
 mod timer;
@@ -35,8 +36,8 @@ mod window;
 
 pub use around::{Around, AtMatch};
 pub use board::{
-    BootedBoard, BootedSnapshot, Doing, FlashError, Halted, ProgramCall, ProgramPacket, Ran, Reached, Sent,
-    SentLine,
+    BootedBoard, BootedSnapshot, Doing, FlashError, Halted, ProgramCall, ProgramPacket, Ran, Reached,
 };
 pub use crash::Crash;
 pub use file::{FirmwareError, FirmwareFile};
+pub use sent::{Sent, SentLine};

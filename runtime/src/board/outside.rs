@@ -32,6 +32,17 @@ impl<E: Engine> Board<E> {
         kernel.parts.pc.is_heard = listens;
     }
 
+    /// Keeps from now on the bytes that the board sends to the PC, for one that is elsewhere.
+    pub fn tap_wire(&mut self) {
+        self.machine.firmware_mut().0.parts.out.tap_wire();
+    }
+
+    /// The bytes that the board has sent to the PC since the last time, as they are on the wire.
+    #[must_use]
+    pub fn take_wire(&mut self) -> Vec<u8> {
+        self.machine.firmware_mut().0.parts.out.take_wire()
+    }
+
     /// Whether a command waits for its data lines, so that the next line is one.
     #[must_use]
     pub fn is_in_command(&self) -> bool {

@@ -17,7 +17,7 @@ use super::{Command, absent, find};
 use crate::firmware::parts::Parts;
 use crate::firmware::serial;
 use crate::out::{EventKind, Message};
-use crate::pc::{Arrival, ByteLink, END, ESCAPE, Pc};
+use crate::pc::{Arrival, ByteLink, Pc};
 
 /// Characters of a line; the last of them ends it.
 const LINE_LIMIT: usize = 2560;
@@ -82,16 +82,6 @@ impl Output {
             Self::Console(line) => EventKind::ConsoleLine(line),
         }
     }
-
-    /// The bytes on the wire.
-    fn into_wire(self) -> Vec<u8> {
-        match self {
-            Self::Echo(bytes) => bytes,
-            Self::Aborted => vec![ESCAPE, b'C', END],
-            Self::Reply(line) => [&line[..], b"\r\n"].concat(),
-            Self::Console(line) => [&[ESCAPE][..], &line, b"\r\n"].concat(),
-        }
-    }
 }
 
 /// What the board calls itself: its version up to the build.
@@ -118,7 +108,8 @@ pub(super) fn slice(
     let to_uart = serial::has_commands(parts, context.memory);
     for output in out {
         if to_uart {
-            serial::write(parts, context.memory, &output.into_wire());
+            let bytes = output.into_event().on_wire().unwrap_or_default();
+            serial::write(parts, context.memory, &bytes);
         } else {
             parts.out.tell(context.now, output.into_event());
         }

@@ -7,7 +7,6 @@ use kmotiondef::limits::TIMEBASE;
 use serde_json::Value as Json;
 
 use super::COMMANDS;
-use crate::out::EventKind;
 use crate::testing::Desk;
 use crate::text::vectors::rows;
 
@@ -87,14 +86,7 @@ impl Wire {
 }
 
 fn wire(event: crate::Event) -> String {
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("text");
-    match event.kind {
-        EventKind::ConsoleLine(line) => format!("\x1b{}\r\n", text(line)),
-        EventKind::Reply(line) => format!("{}\r\n", text(line)),
-        EventKind::Echo(bytes) => text(bytes),
-        EventKind::Aborted => "\x1bC\r".to_owned(),
-        _ => String::new(),
-    }
+    String::from_utf8(event.kind.on_wire().unwrap_or_default()).expect("text")
 }
 
 fn text(json: &Json) -> &str {

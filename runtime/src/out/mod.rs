@@ -18,6 +18,9 @@ pub(crate) use console::Console;
 pub use record::Record;
 pub use remarks::{Message, OtherPlace, REMARKS, Remark, RemarkRow, Severity, Speaker};
 
+/// Begins a console line on the wire, and a line to the board that is not echoed.
+pub(crate) const ESCAPE: u8 = 0x1B;
+
 /// What goes out: console text on its way, events since the last time they were taken, requests to the board.
 #[derive(Clone, Debug)]
 pub(crate) struct Out {
@@ -26,6 +29,8 @@ pub(crate) struct Out {
     requests: Vec<Request>,
     /// Console lines that a stimulus has not seen; `None` if there is none.
     lines: Option<VecDeque<(Cycles, Vec<u8>)>>,
+    /// Bytes on the wire that a PC elsewhere has not been sent; `None` if there is none.
+    wire: Option<Vec<u8>>,
     /// Whether remarks are worth making that say what a program may have forgotten.
     pub(crate) hints: bool,
     /// Whether a script command is being executed.
@@ -43,6 +48,7 @@ impl Default for Out {
             events: Vec::new(),
             requests: Vec::new(),
             lines: None,
+            wire: None,
             hints: true,
             is_commanding: false,
             unwanted: BTreeSet::new(),
@@ -56,6 +62,9 @@ impl Out {
     pub(crate) fn tell(&mut self, at: Cycles, kind: EventKind) {
         if let (EventKind::ConsoleLine(line), Some(lines)) = (&kind, &mut self.lines) {
             lines.push_back((at, line.clone()));
+        }
+        if let (Some(wire), Some(bytes)) = (&mut self.wire, kind.on_wire()) {
+            wire.extend(bytes);
         }
         self.events.push(Event { at, kind });
     }
@@ -114,6 +123,16 @@ impl Out {
     /// What was requested since the last time.
     pub(crate) fn take_requests(&mut self) -> Vec<Request> {
         std::mem::take(&mut self.requests)
+    }
+
+    /// Keeps the bytes on the wire from now on.
+    pub(crate) fn tap_wire(&mut self) {
+        self.wire.get_or_insert_default();
+    }
+
+    /// The bytes on the wire since the last time.
+    pub(crate) fn take_wire(&mut self) -> Vec<u8> {
+        self.wire.as_mut().map(std::mem::take).unwrap_or_default()
     }
 
     /// Keeps console lines for a stimulus from now on.
@@ -181,4 +200,24 @@ pub enum EventKind {
     Host(String),
     /// The processor of the board has stopped for good: why, where, and its registers.
     Halted(String),
+}
+
+impl EventKind {
+    /// The bytes that the PC receives; `None` where it receives none. Source: host-protocol.md sections 1 and 4.
+    pub(crate) fn on_wire(&self) -> Option<Vec<u8>> {
+        match self {
+            Self::ConsoleLine(line) => Some([&[ESCAPE][..], line, b"\r\n"].concat()),
+            Self::Reply(line) => Some([&line[..], b"\r\n"].concat()),
+            Self::Echo(bytes) => Some(bytes.clone()),
+            Self::Aborted => Some(vec![ESCAPE, b'C', b'\r']),
+            Self::Remark(_)
+            | Self::Loaded(..)
+            | Self::Trap(_)
+            | Self::Trace(_)
+            | Self::UartSent(_)
+            | Self::Unmet(_)
+            | Self::Host(_)
+            | Self::Halted(_) => None,
+        }
+    }
 }

@@ -5,12 +5,12 @@
 
 use std::collections::VecDeque;
 
+use crate::out::ESCAPE;
+
 /// Drops the line and the command in progress.
 const ABORT: u8 = 0x03;
-/// Begins a line that is not echoed.
-pub(crate) const ESCAPE: u8 = 0x1B;
 /// Ends a line.
-pub(crate) const END: u8 = b'\r';
+const END: u8 = b'\r';
 
 /// Where in a line the link stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -13,7 +13,7 @@ mod requests;
 pub use answers::{AnswerError, Answers, HELP as ANSWERS_HELP};
 pub use boxes::OpenBox;
 pub(crate) use downloads::Downloads;
-pub(crate) use link::{Arrival, ByteLink, END, ESCAPE};
+pub(crate) use link::{Arrival, ByteLink};
 
 use kmotiondef::Cycles;
 

@@ -218,6 +218,16 @@ impl<T: Target> Session<T> {
         self.note(Input::Stop(thread));
     }
 
+    /// Keeps from now on the bytes that the board sends over its link, for a PC that is elsewhere.
+    pub fn tap_wire(&mut self) {
+        self.target.tap_wire();
+    }
+
+    /// Those bytes since the last time.
+    pub fn take_wire(&mut self) -> Vec<u8> {
+        self.target.take_wire()
+    }
+
     /// Says whether the PC takes console lines. If not, they wait in the board's queue, and once that is full, so do the
     /// programs that print.
     pub fn listen(&mut self, listens: bool) {

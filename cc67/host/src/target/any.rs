@@ -122,6 +122,8 @@ impl Target for AnyTarget {
         fn write(&mut self, address: GuestAddr, bytes: &[u8]) -> Result<(), HostError>;
         fn receive(&mut self, bytes: &[u8]);
         fn listen(&mut self, listens: bool);
+        fn tap_wire(&mut self);
+        fn take_wire(&mut self) -> Vec<u8>;
         fn play(&mut self, stimulus: Stimulus);
         fn drive_input(&mut self, bit: Bit, level: bool);
         fn send_to_uart(&mut self, bytes: &[u8]);

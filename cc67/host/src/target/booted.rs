@@ -210,12 +210,12 @@ impl BootedTarget {
         for line in lines {
             let at = self.since_begin(line.cycle);
             let is_lost = self.state.is_deaf && line.kind == Sent::Console;
+            let is_console = matches!(line.kind, Sent::Console | Sent::Request);
             match self.surroundings() {
                 _ if is_lost => self.report_loss(at, events),
                 // The PC around it takes what is for files, and shows the rest.
-                Some(surroundings) if line.kind != Sent::Reply => surroundings.hear(line.text, at),
-                Some(_) => events(Event { at, kind: EventKind::Reply(line.text) }),
-                None => events(Event { at, kind: event_of(line) }),
+                Some(surroundings) if is_console => surroundings.hear(line.text, at),
+                Some(_) | None => events(Event { at, kind: event_of(line) }),
             }
             self.deliver(events);
         }
@@ -322,6 +322,7 @@ fn event_of(line: SentLine) -> EventKind {
     match line.kind {
         Sent::Console => EventKind::ConsoleLine(line.text),
         Sent::Reply => EventKind::Reply(line.text),
+        Sent::Aborted => EventKind::Aborted,
         Sent::Request => {
             let text = String::from_utf8_lossy(line.text.get(1..).unwrap_or_default()).into_owned();
             EventKind::Host(format!(
@@ -469,6 +470,14 @@ impl Target for BootedTarget {
 
     fn listen(&mut self, listens: bool) {
         self.state.is_deaf = !listens;
+    }
+
+    fn tap_wire(&mut self) {
+        self.board.tap_wire();
+    }
+
+    fn take_wire(&mut self) -> Vec<u8> {
+        self.board.take_wire()
     }
 
     fn flash(&self) -> Option<&[u8]> {

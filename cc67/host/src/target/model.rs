@@ -168,6 +168,14 @@ impl<E: Engine> Target for Board<E> {
         self.listen(listens);
     }
 
+    fn tap_wire(&mut self) {
+        self.tap_wire();
+    }
+
+    fn take_wire(&mut self) -> Vec<u8> {
+        self.take_wire()
+    }
+
     fn flash(&self) -> Option<&[u8]> {
         Some(self.flash())
     }

@@ -15,6 +15,7 @@ use crate::around::Around;
 use crate::bus::Hardware;
 use crate::file::FirmwareFile;
 use crate::loads::Loads;
+use crate::sent::SentLines;
 
 /// Longest start: many times what any version takes.
 const LONGEST_START: u64 = 3 * SECOND;
@@ -54,20 +55,8 @@ impl BootedBoard {
         fill_flash(&mut hardware.memory);
         let mut core = Core::at_power_up(file.entry(), 0, 0);
         core.skip_waits(true);
-        let unfinished = (0, Vec::new());
-        let (lines, loads) = (Vec::new(), Loads::default());
-        Self {
-            file,
-            core,
-            hardware,
-            unfinished,
-            lines,
-            waits_since: 0,
-            loads,
-            skips: true,
-            packets: None,
-            crash: None,
-        }
+        let (sent, loads) = (SentLines::default(), Loads::default());
+        Self { file, core, hardware, sent, waits_since: 0, loads, skips: true, packets: None, crash: None }
     }
 
     /// The board that a firmware file makes, when it first looks for what the PC sends.

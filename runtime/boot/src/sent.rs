@@ -1,0 +1,130 @@
+//! The lines that a firmware has sent to the PC. Source: host-protocol.md sections 1 and 4.
+
+/// Begins a line for the console.
+const ESCAPE: u8 = 0x1B;
+/// The answer to an abort: the one line that ends with a carriage return alone. With a line feed after it, it is a
+/// console line with the text `C`.
+const ABORTED: &[u8] = b"\x1bC\r";
+
+/// What kind of line the firmware sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sent {
+    /// Console text.
+    Console,
+    /// An answer to a command.
+    Reply,
+    /// A request to the PC about files; the bytes begin with its number.
+    Request,
+    /// The answer to an abort, without text.
+    Aborted,
+}
+
+/// A line that the firmware sent, without its line end.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SentLine {
+    /// The cycle of its first byte, since power-up.
+    pub cycle: u64,
+    /// What it is.
+    pub kind: Sent,
+    /// Its text.
+    pub text: Vec<u8>,
+}
+
+/// The bytes of a firmware on their way to become lines.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SentLines {
+    /// The cycle of the first byte of the line that is not complete.
+    first: u64,
+    unfinished: Vec<u8>,
+    lines: Vec<SentLine>,
+    /// Bytes that a PC elsewhere has not been sent; `None` if there is none.
+    wire: Option<Vec<u8>>,
+}
+
+impl SentLines {
+    /// Keeps from now on the bytes themselves, too.
+    pub(crate) fn tap(&mut self) {
+        self.wire.get_or_insert_default();
+    }
+
+    /// The bytes since the last time.
+    pub(crate) fn take_wire(&mut self) -> Vec<u8> {
+        self.wire.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+
+    /// Takes bytes with their cycles and returns the lines that are complete.
+    pub(crate) fn take(&mut self, bytes: Vec<(u64, u8)>) -> Vec<SentLine> {
+        // Nothing follows what looks like the answer to an abort.
+        if bytes.is_empty() && self.unfinished == ABORTED {
+            self.end(Sent::Aborted, 0);
+        }
+        for (cycle, byte) in bytes {
+            if let Some(wire) = &mut self.wire {
+                wire.push(byte);
+            }
+            self.byte(cycle, byte);
+        }
+        std::mem::take(&mut self.lines)
+    }
+
+    fn byte(&mut self, cycle: u64, byte: u8) {
+        if byte != b'\n' && self.unfinished == ABORTED {
+            self.end(Sent::Aborted, 0);
+        }
+        if byte == b'\n' {
+            match self.unfinished[..] {
+                [ESCAPE, 1..=7, ..] => self.end(Sent::Request, 1),
+                [ESCAPE, ..] => self.end(Sent::Console, 1),
+                _ => self.end(Sent::Reply, 0),
+            }
+            return;
+        }
+        if self.unfinished.is_empty() {
+            self.first = cycle;
+        }
+        self.unfinished.push(byte);
+    }
+
+    /// The line is complete; `from` is where its text begins.
+    fn end(&mut self, kind: Sent, from: usize) {
+        let line = std::mem::take(&mut self.unfinished);
+        let text = line.strip_suffix(b"\r").unwrap_or(&line);
+        let text = if kind == Sent::Aborted { &[] } else { text.get(from..).unwrap_or_default() };
+        self.lines.push(SentLine { cycle: self.first, kind, text: text.to_vec() });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The lines of a stream that comes in pieces of one size, and then no more.
+    fn lines(stream: &[u8], size: usize) -> Vec<(Sent, String)> {
+        let mut sent = SentLines::default();
+        sent.tap();
+        let pieces = stream.chunks(size).chain([&[][..]]);
+        let lines: Vec<_> =
+            pieces.flat_map(|piece| sent.take(piece.iter().map(|byte| (0, *byte)).collect())).collect();
+        assert_eq!(sent.take_wire(), stream);
+        let text = |line: SentLine| (line.kind, String::from_utf8(line.text).expect("text"));
+        lines.into_iter().map(text).collect()
+    }
+
+    #[test]
+    fn the_answer_to_an_abort_is_not_a_console_line_with_the_same_letter() {
+        let stream = b"1\r\n\x1bC\r\x1bC\r\n\x1b\x04a.txt\r\n\r\n\x1bC\r";
+        let expect = [
+            (Sent::Reply, "1"),
+            (Sent::Aborted, ""),
+            (Sent::Console, "C"),
+            (Sent::Request, "\x04a.txt"),
+            (Sent::Reply, ""),
+            (Sent::Aborted, ""),
+        ];
+        for size in [1, 2, 3, 100] {
+            let found = lines(stream, size);
+            let found: Vec<_> = found.iter().map(|(kind, text)| (*kind, text.as_str())).collect();
+            assert_eq!(found, expect, "pieces of {size}");
+        }
+    }
+}
