@@ -130,6 +130,16 @@ impl Setup {
         }
     }
 
+    /// The same board with its PC at the other end of its link.
+    pub(crate) fn with_pc_elsewhere(mut self) -> Self {
+        let config = &mut self.session.config;
+        config.host = false;
+        // It is not missing, and takes its time.
+        let known = config.machine_file.want_remark("no-pc", false);
+        debug_assert!(known.is_some(), "there is this remark");
+        self
+    }
+
     /// Does the work of a command on the target that was requested.
     pub(crate) fn on_its_target(self, work: impl Work) -> Result<Exit> {
         match self.code {

@@ -9,6 +9,7 @@ mod failures;
 mod home;
 mod hostile;
 mod page;
+mod wire;
 
 use std::io::{BufRead, BufReader};
 use std::net::TcpStream;
@@ -279,7 +280,10 @@ fn a_server_ends_after_the_time_that_it_was_given() {
     assert!(output.stderr.starts_with("cc67: a board is served on tcp:"), "{}", output.stderr);
     for (arguments, expect) in [
         (&["console", "--serve", "tcp:x"][..], "`--serve tcp:x`: `x` is not a port number"),
-        (&["serve", "--listen", "usb:1"], "`--listen usb:1`: neither tcp:PORT nor the path of a socket"),
+        (
+            &["serve", "--listen", "usb:1"],
+            "`--listen usb:1`: neither tcp:PORT, tcp-raw:PORT, pty nor the path of a socket",
+        ),
         (&["serve", "--pace", "0"], "expected a number from 0.01 to 1000, or `fast`"),
         (&["serve", "--no-open"], "--live"),
     ] {

@@ -100,6 +100,16 @@ pub const CLIENTS: &[Limit] = &[
         serve::CONSOLE_LINES as u64,
         "programs that print wait, as on a board whose PC does not read",
     ),
+    limit(
+        "bytes that the client of a wire (`--listen pty`, `tcp-raw:PORT`) has not read",
+        serve::UNREAD_BYTES as u64,
+        "programs that print wait, as on a board whose PC does not read",
+    ),
+    limit(
+        "bytes of a firmware file's output that the client of a wire has not read",
+        serve::LOST_BYTES as u64,
+        "further ones are lost, with a message",
+    ),
 ];
 
 /// What is read and drawn.

@@ -5,4 +5,5 @@ pub(crate) mod input;
 pub(crate) mod interrupt;
 pub(crate) mod output;
 pub(crate) mod pace;
+pub(crate) mod pty;
 pub(crate) mod terminal;

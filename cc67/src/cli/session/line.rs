@@ -19,6 +19,7 @@ use runtime::{Event, EventKind};
 use crate::cli::args::uart::UartArguments;
 use crate::cli::io::output::{Draft, cannot_write};
 use crate::cli::io::pace::Pace;
+use crate::cli::io::pty::Terminal;
 use crate::cli::io::terminal;
 
 /// Ticks that a run with a peer goes on before it looks for what has come: 9.99 ms.
@@ -85,47 +86,11 @@ fn program(command: &str) -> Result<Peer> {
 }
 
 /// Opens a pseudo-terminal and says its name.
-#[cfg(unix)]
 fn pty() -> Result<Peer> {
-    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
-    use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
-
-    let controller = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).context("cannot open a terminal")?;
-    grantpt(&controller)?;
-    unlockpt(&controller)?;
-    let name = ptsname(&controller, Vec::new())?.to_string_lossy().into_owned();
-    // Held open, as the line would be broken whenever nobody else has it open.
-    let line = std::fs::OpenOptions::new().read(true).write(true).open(&name)?;
-    let mut mode = tcgetattr(&line)?;
-    mode.make_raw();
-    tcsetattr(&line, OptionalActions::Now, &mode)?;
-    terminal::note(&format!("serial port: terminal {name}"));
-    let controller = std::fs::File::from(controller);
-    let outgoing = Held { file: controller.try_clone()?, _line: line };
-    Ok(Peer::new(format!("terminal {name}"), controller, Box::new(outgoing), None))
-}
-
-#[cfg(not(unix))]
-fn pty() -> Result<Peer> {
-    bail!("`--uart pty`: this system has no pseudo-terminals; tcp:PORT works everywhere")
-}
-
-/// A terminal and its other side, which keeps it alive.
-#[cfg(unix)]
-struct Held {
-    file: std::fs::File,
-    _line: std::fs::File,
-}
-
-#[cfg(unix)]
-impl Write for Held {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        self.file.write(bytes)
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        self.file.flush()
-    }
+    let line = Terminal::open().context("`--uart pty`")?;
+    terminal::note(&format!("serial port: terminal {}", line.name()));
+    let name = format!("terminal {}", line.name());
+    Ok(Peer::new(name, line.controller()?, Box::new(line), None))
 }
 
 impl Peer {

@@ -83,7 +83,7 @@ pub(super) fn console(arguments: &ConsoleArguments) -> Result<Exit> {
     match &arguments.serve {
         Some(address) => {
             let debugger = AttachArguments { debug: arguments.debug }.open()?;
-            setup.debugged(debugger, &arguments.terms(address))
+            arguments.terms(address).serve(setup, debugger)
         }
         None => setup.on_its_target(arguments),
     }

@@ -11,7 +11,9 @@ use super::Terms;
 use super::link::{CONSOLE_LINES, Unread};
 use super::log::ExchangeLog;
 use super::served::{PageWishes, Served};
+use super::wire::{self, WireEnd};
 use crate::cli::io::exit::Exit;
+use crate::cli::io::pace::now;
 use crate::cli::io::terminal;
 use crate::cli::report::seen::Seen;
 use crate::cli::report::trace::Trace;
@@ -34,12 +36,19 @@ pub(super) struct ServedBoard<'a, T: Target> {
     is_for_page: bool,
     /// Whether programs that print wait, as too much waits for the console.
     is_held_back: bool,
+    /// The wire to the one client that has the link to itself, if the board is served so.
+    pub(super) wire: Option<WireEnd>,
+    has_told_wire: bool,
 }
 
 impl<'a, T: Target> ServedBoard<'a, T> {
     /// A board, recorded as the terms say.
-    pub(super) fn new(board: Served<T>, trace: Option<Trace>, terms: &'a Terms<'a>) -> Result<Self> {
+    pub(super) fn new(mut board: Served<T>, trace: Option<Trace>, terms: &'a Terms<'a>) -> Result<Self> {
         let log = terms.log.map(ExchangeLog::new).transpose()?;
+        let wire = terms.is_on_wire().then(WireEnd::default);
+        if wire.is_some() {
+            board.tap_wire();
+        }
         Ok(Self {
             board,
             terms,
@@ -51,6 +60,8 @@ impl<'a, T: Target> ServedBoard<'a, T> {
             has_told_replies: false,
             is_for_page: false,
             is_held_back: false,
+            wire,
+            has_told_wire: false,
         })
     }
 
@@ -89,16 +100,56 @@ impl<'a, T: Target> ServedBoard<'a, T> {
             log.line(self.board.tick(), line, self.board.is_in_command());
         }
         self.board.receive(&[before, line, b"\r"].concat());
-        self.until(TAKEN_WITHIN, |board| !board.board.is_receiving());
+        self.until(TAKEN_WITHIN, |board| !board.is_receiving());
     }
 
     /// The same for a page, which alone sees what the board answers.
     pub(super) fn send_for_page(&mut self, before: &[u8], line: &[u8]) {
         self.log("page:");
+        self.forward();
         self.is_for_page = true;
         self.send(before, line);
         self.until(EXCHANGE, |_| false);
         self.is_for_page = false;
+        let sent = self.board.take_wire();
+        self.send_on_wire(wire::console_lines(&sent));
+    }
+
+    /// Gives the board what its client has sent, once it has taken what came before.
+    pub(super) fn feed(&mut self) {
+        if let Some(wire) = self.wire.as_mut().filter(|wire| wire.has_incoming())
+            && !self.board.is_receiving()
+        {
+            self.board.receive(&wire.next());
+        }
+    }
+
+    /// Whether the board has not taken all bytes that it was sent.
+    pub(super) fn is_receiving(&self) -> bool {
+        self.board.is_receiving()
+    }
+
+    /// Whether the board has not taken all that a client has sent who has the link to itself.
+    pub(super) fn is_feeding(&self) -> bool {
+        self.wire.as_ref().is_some_and(|wire| wire.has_incoming() || self.is_receiving())
+    }
+
+    /// Sends the client what the board has sent, and has programs that print wait while it does not read.
+    pub(super) fn forward(&mut self) {
+        if self.wire.is_some() {
+            let sent = self.board.take_wire();
+            self.send_on_wire(sent);
+        }
+        if let Some(is_too_much) = self.wire.as_mut().and_then(WireEnd::hold_back) {
+            self.board.listen(!is_too_much);
+        }
+    }
+
+    fn send_on_wire(&mut self, bytes: Vec<u8>) {
+        let is_lost = self.wire.as_mut().is_some_and(|wire| wire.send(bytes, now()));
+        if is_lost && !std::mem::replace(&mut self.has_told_wire, true) {
+            terminal::note("the client reads nothing: what the board sends is lost");
+        }
     }
 
     /// Whether a command waits for data lines.
@@ -144,7 +195,7 @@ impl<'a, T: Target> ServedBoard<'a, T> {
     /// Reopens the link: what is under way is dropped on both ends.
     pub(super) fn reopen(&mut self) {
         self.board.receive(b"\x03");
-        self.until(TAKEN_WITHIN, |board| !board.board.is_receiving());
+        self.until(TAKEN_WITHIN, |board| !board.is_receiving());
         self.link.clear();
     }
 
@@ -168,6 +219,8 @@ impl<'a, T: Target> ServedBoard<'a, T> {
             self.board.show(&event);
         }
         match &event.kind {
+            // The client has the bytes themselves.
+            EventKind::Reply(_) | EventKind::Echo(_) | EventKind::ConsoleLine(_) if self.wire.is_some() => {}
             EventKind::Reply(line) => {
                 if !self.is_for_page {
                     self.link.reply(line);

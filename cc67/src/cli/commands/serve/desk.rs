@@ -18,6 +18,7 @@ use super::Terms;
 use super::board::ServedBoard;
 use super::calls::SILENT;
 use super::message::{self, Reply, Request};
+use super::wire::WireClient;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::pace::{Pace, now};
 
@@ -49,6 +50,12 @@ pub(super) enum Note {
     Asked(u64, Request),
     /// A client is gone.
     Left(u64),
+    /// A client that has the board's link to itself.
+    Plugged(WireClient),
+    /// Bytes of that client.
+    Bytes(u64, Vec<u8>),
+    /// That client is gone.
+    Unplugged(u64),
     /// The server is to end.
     End,
 }
@@ -176,6 +183,7 @@ impl<'a, T: Target> Desk<'a, T> {
                 self.catch_up(limit, AT_ONCE);
                 self.settle();
             }
+            self.board.forward();
             self.look_at_page();
         }
         self.board.finish()
@@ -188,6 +196,9 @@ impl<'a, T: Target> Desk<'a, T> {
         }
         let first = self.waiting.iter().map(|waiting| waiting.until).min();
         let patience = match (&self.clock, first) {
+            (Some(_), None) if self.board.wire.as_ref().is_some_and(|wire| wire.is_lively(now())) => {
+                SHORT_BEAT
+            }
             (Some(_), None) => BEAT,
             (Some(_), Some(_)) if self.page.stopped.is_some() => BEAT,
             (Some(_), Some(_)) => SHORT_BEAT,
@@ -211,6 +222,7 @@ impl<'a, T: Target> Desk<'a, T> {
                 self.clients.insert(client, answers);
             }
             Note::Left(client) => return self.left(client),
+            Note::Plugged(_) | Note::Bytes(..) | Note::Unplugged(_) => return self.wire(note),
             Note::Asked(..) if self.page.stopped.is_some() => self.page.held.push(note),
             Note::Asked(client, request) => {
                 self.wait_for_clock();
@@ -223,6 +235,18 @@ impl<'a, T: Target> Desk<'a, T> {
             }
         }
         Course::Continue
+    }
+
+    /// What the client does that has the link to itself.
+    fn wire(&mut self, note: Note) -> Course {
+        let Some(wire) = &mut self.board.wire else { return Course::Continue };
+        match note {
+            Note::Plugged(client) => wire.plug(client),
+            Note::Bytes(client, bytes) => wire.take(client, &bytes, now()),
+            Note::Unplugged(client) => wire.unplug(client),
+            Note::Came(..) | Note::Asked(..) | Note::Left(_) | Note::End => {}
+        }
+        if self.terms.once && wire.is_unplugged() { Course::Leave } else { Course::Continue }
     }
 
     /// A client is gone: what it had is free again.
@@ -328,7 +352,14 @@ impl<'a, T: Target> Desk<'a, T> {
                 }
                 return;
             }
-            self.board.advance(Ticks::new(due.min(tick.get() + STRETCH)));
+            let part = STRETCH.min(due - tick.get());
+            self.board.feed();
+            if self.board.is_feeding() {
+                self.board.until(part, |board| !board.is_receiving());
+            } else {
+                self.board.advance(Ticks::new(tick.get() + part));
+            }
+            self.board.forward();
             self.notes.extend(self.inbox.try_iter());
             if !self.notes.is_empty() {
                 return;
@@ -341,8 +372,18 @@ impl<'a, T: Target> Desk<'a, T> {
         self.waiting.iter().map(|waiting| waiting.left).max().unwrap_or(0)
     }
 
-    /// Runs the board a little for those who wait, until it has something for them.
+    /// Runs the board a little for those who wait, until it has something for them; and for a client that has its link
+    /// to itself as long as it takes what was sent, and an exchange longer.
     fn run_for_clients(&mut self) {
+        if self.board.is_feeding() {
+            while self.board.is_feeding() && self.notes.is_empty() {
+                self.board.feed();
+                self.board.until(STRETCH, |board| !board.is_receiving());
+                self.board.forward();
+                self.notes.extend(self.inbox.try_iter());
+            }
+            self.board.until(EXCHANGE, |_| false);
+        }
         let ticks = self.ticks_wanted().min(STRETCH);
         let begin = self.board.tick().get();
         self.board.until(ticks, |board| board.link.has_line());

@@ -1,20 +1,23 @@
 //! Where clients come in: sockets and ports, and a thread for each connection.
 //!
 //! A connection reads requests, hands them to the [desk](super::desk) and sends what it answers. It alone waits for its
-//! client: one that sends half a message, or reads no reply, keeps nobody else from the board.
+//! client: one that sends half a message, or reads no reply, keeps nobody else from the board. At a pseudo-terminal and
+//! a raw port the board's own bytes are [carried](super::carry).
 
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, Shutdown, TcpListener, TcpStream};
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::mpsc::{Sender, channel};
 use std::thread;
 
 use anyhow::{Context, Result, bail};
 
+use super::carry::carry;
 use super::desk::Note;
 use super::message::{self, Received, Request};
+use crate::cli::io::pty::Terminal;
 use crate::cli::io::terminal;
 
 /// Connections at a time.
@@ -22,6 +25,9 @@ pub(in crate::cli::commands) const MOST_CLIENTS: usize = 200;
 /// What somebody reads who sends text.
 const NO_TEXT: &[u8] =
     b"cc67: a board is served here to programs that use the KMotion client library (4.34), not as text; to type commands: cc67 console\r\n";
+/// The address of a pseudo-terminal, and how the addresses of ports begin that carry the board's own bytes.
+const TERMINAL: &str = "pty";
+const RAW_PORT: &str = "tcp-raw:";
 /// Bytes of such a text that are read before the connection is closed.
 const TEXT_LIMIT: u64 = 1 << 16;
 
@@ -77,8 +83,12 @@ pub(super) fn listen(addresses: &[String], option: &str, desk: &Sender<Note>) ->
         let complaint = || format!("`{option} {address}`");
         if let Some(port) = address.strip_prefix("tcp:") {
             listen_on_port(port, &door).with_context(complaint)?;
+        } else if let Some(port) = address.strip_prefix(RAW_PORT) {
+            carry_on_port(port, &door).with_context(complaint)?;
+        } else if address == TERMINAL {
+            carry_on_terminal(&door).with_context(complaint)?;
         } else if address.contains(':') && !address.contains('/') {
-            bail!("{}: neither tcp:PORT nor the path of a socket", complaint());
+            bail!("{}: neither tcp:PORT, tcp-raw:PORT, pty nor the path of a socket", complaint());
         } else {
             places.0.push(listen_on_path(address, &door).with_context(complaint)?);
         }
@@ -86,9 +96,60 @@ pub(super) fn listen(addresses: &[String], option: &str, desk: &Sender<Note>) ->
     Ok(places)
 }
 
-fn listen_on_port(port: &str, door: &Door) -> Result<()> {
+/// Whether an address is for a client that has the board's link to itself.
+pub(super) fn is_wire(address: &str) -> bool {
+    address == TERMINAL || address.starts_with(RAW_PORT)
+}
+
+/// Makes a pseudo-terminal that carries the board's own bytes.
+fn carry_on_terminal(door: &Door) -> Result<()> {
+    let terminal = Terminal::open()?;
+    terminal::note(&format!("a board is served on serial:{}", terminal.name()));
+    let writer = terminal.controller()?;
+    let door = door.clone();
+    thread::spawn(move || {
+        let number = door.numbers.fetch_add(1, Ordering::Relaxed) + 1;
+        carry(number, &door.desk, terminal, writer);
+    });
+    Ok(())
+}
+
+/// Takes connections that carry the board's own bytes, one at a time.
+fn carry_on_port(port: &str, door: &Door) -> Result<()> {
+    let listener = bind(port)?;
+    terminal::note(&format!("a board is served on tcp:localhost:{}", listener.local_addr()?.port()));
+    let door = door.clone();
+    let is_taken = Arc::new(AtomicBool::new(false));
+    let admit = move |stream: TcpStream| {
+        let number = door.numbers.fetch_add(1, Ordering::Relaxed) + 1;
+        if is_taken.swap(true, Ordering::Relaxed) {
+            terminal::note(&format!("client {number}: refused, another one has the link"));
+            return;
+        }
+        let (door, is_taken) = (door.clone(), Arc::clone(&is_taken));
+        thread::spawn(move || {
+            // A connection that cannot be read and written at once ends here.
+            if let Ok(writer) = stream.try_clone() {
+                carry(number, &door.desk, stream, writer);
+            }
+            is_taken.store(false, Ordering::Relaxed);
+        });
+    };
+    thread::spawn(move || {
+        // Small messages go out at once; where that cannot be set, they are only later.
+        let streams = listener.incoming().flatten().inspect(|stream| drop(stream.set_nodelay(true)));
+        streams.for_each(admit);
+    });
+    Ok(())
+}
+
+fn bind(port: &str) -> Result<TcpListener> {
     let number: u16 = port.parse().with_context(|| format!("`{port}` is not a port number"))?;
-    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, number)).context("cannot listen there")?;
+    TcpListener::bind((Ipv4Addr::LOCALHOST, number)).context("cannot listen there")
+}
+
+fn listen_on_port(port: &str, door: &Door) -> Result<()> {
+    let listener = bind(port)?;
     terminal::note(&format!("a board is served on tcp:{}", listener.local_addr()?.port()));
     let door = door.clone();
     thread::spawn(move || {

@@ -10,6 +10,8 @@
 //! served    what is under control there
 //! page      the page of it
 //! link      what the board has sent and nobody has read yet
+//! carry     a thread for a client that has the board's own bytes
+//! wire      the board's own bytes for one client
 //! message   requests and replies as bytes
 //! log       the exchanges as a script for the console
 //! home      the folder that the vendor's library reads
@@ -17,6 +19,7 @@
 
 mod board;
 mod calls;
+mod carry;
 mod desk;
 pub(super) mod home;
 mod link;
@@ -26,6 +29,7 @@ mod message;
 #[cfg(feature = "live")]
 mod page;
 mod served;
+mod wire;
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
@@ -33,7 +37,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Sender, channel};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail, ensure};
+use cc67_debug::dap::AttachPoint;
 use cc67_host::Target;
 use clap::Args;
 
@@ -50,6 +55,7 @@ use desk::{Desk, Note};
 pub(super) use link::{CONSOLE_LINES, UNHEARD_LINES};
 pub(super) use listen::MOST_CLIENTS;
 use served::Served;
+pub(super) use wire::{LOST_BYTES, UNREAD_BYTES};
 
 /// Where the vendor's server listens.
 const USUAL: &[&str] = if cfg!(unix) { &["/tmp/kmotionsocket", "tcp:57777"] } else { &["tcp:57777"] };
@@ -61,8 +67,8 @@ pub(super) struct ServeArguments {
     #[arg(value_name = "[N:]FILE")]
     programs: Vec<OsString>,
     /// Listen on this socket or port; may be repeated [default: /tmp/kmotionsocket and tcp:57777, like the vendor's
-    /// server]
-    #[arg(long, value_name = "PATH|tcp:PORT")]
+    /// server]. With pty or tcp-raw:PORT, one client has the board's own byte protocol, as at its USB port
+    #[arg(long, value_name = "PATH|tcp:PORT|pty|tcp-raw:PORT")]
     listen: Vec<String>,
     /// Speed of board time: 1 is real time, N is N times as fast; with `fast`, time passes only while a client waits
     /// for a reply
@@ -163,7 +169,37 @@ pub(super) fn serve(arguments: &ServeArguments) -> Result<Exit> {
     let debugger = arguments.attach.open()?;
     let setup = Setup::new(&arguments.programs, &arguments.board, &arguments.compiler)?;
     let Some(setup) = setup else { return Ok(Exit::Failure) };
-    setup.debugged(debugger, &terms)
+    terms.serve(setup, debugger)
+}
+
+impl Terms<'_> {
+    /// Whether one client has the board's link to itself.
+    pub(super) fn is_on_wire(&self) -> bool {
+        self.addresses.iter().any(|address| listen::is_wire(address))
+    }
+
+    /// Serves the board of a setup until it is ended.
+    pub(super) fn serve(&self, setup: Setup, debugger: Option<AttachPoint>) -> Result<Exit> {
+        if !self.is_on_wire() {
+            return setup.debugged(debugger, self);
+        }
+        let [address] = &self.addresses[..] else {
+            bail!(
+                "the board has one link: `{} {}` cannot be combined with another address",
+                self.option,
+                self.addresses.join(" ")
+            );
+        };
+        ensure!(
+            !self.once || address != "pty",
+            "`--once`: who has opened a terminal is not known; tcp-raw:PORT knows it"
+        );
+        ensure!(
+            self.log.is_none(),
+            "`--log` writes calls of the vendor's library, which do not come over a wire"
+        );
+        setup.with_pc_elsewhere().debugged(debugger, self)
+    }
 }
 
 impl Work for &Terms<'_> {

@@ -108,6 +108,16 @@ impl<T: Target> Served<T> {
         self.rig.session.receive(bytes);
     }
 
+    /// Keeps from now on what it sends, for a client that has its link to itself.
+    pub(super) fn tap_wire(&mut self) {
+        self.rig.session.tap_wire();
+    }
+
+    /// What it has sent since the last time.
+    pub(super) fn take_wire(&mut self) -> Vec<u8> {
+        self.rig.session.take_wire()
+    }
+
     /// Whether it has not taken all of them.
     pub(super) fn is_receiving(&self) -> bool {
         self.rig.session.target().is_receiving()

@@ -1,0 +1,60 @@
+//! A thread for the client that has the board's link to itself: bytes from it to the [desk](super::desk), and back.
+
+use std::io::{ErrorKind, Read, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread;
+use std::time::Duration;
+
+use super::desk::Note;
+use super::wire::WireClient;
+
+/// Bytes on their way to the board, before the client has to wait.
+const UNTAKEN: usize = 4096;
+/// How often a client that is ahead of the board looks whether the board has taken something.
+const PAUSE: Duration = Duration::from_millis(1);
+
+/// Carries bytes between a client and the desk until the client goes.
+pub(super) fn carry(
+    number: u64,
+    desk: &Sender<Note>,
+    mut reader: impl Read,
+    writer: impl Write + Send + 'static,
+) {
+    let (outgoing, inbox) = channel();
+    let (unread, untaken) = (Arc::<AtomicUsize>::default(), Arc::<AtomicUsize>::default());
+    let client = WireClient { number, outgoing, unread: Arc::clone(&unread), untaken: Arc::clone(&untaken) };
+    thread::spawn(move || send(writer, &inbox, &unread));
+    // A desk that is closed takes nothing below.
+    let _ = desk.send(Note::Plugged(client));
+    let mut buffer = [0; UNTAKEN];
+    loop {
+        while untaken.load(Ordering::Relaxed) >= UNTAKEN {
+            thread::sleep(PAUSE);
+        }
+        let count = match reader.read(&mut buffer) {
+            Ok(0) => break,
+            Ok(count) => count,
+            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+            Err(_) => break,
+        };
+        untaken.fetch_add(count, Ordering::Relaxed);
+        let bytes = buffer.get(..count).unwrap_or_default().to_vec();
+        if desk.send(Note::Bytes(number, bytes)).is_err() {
+            break;
+        }
+    }
+    // The desk may have closed before.
+    let _ = desk.send(Note::Unplugged(number));
+}
+
+fn send(mut writer: impl Write, inbox: &Receiver<Vec<u8>>, unread: &AtomicUsize) {
+    while let Ok(bytes) = inbox.recv() {
+        let written = writer.write_all(&bytes).and_then(|()| writer.flush());
+        unread.fetch_sub(bytes.len(), Ordering::Relaxed);
+        if written.is_err() {
+            return;
+        }
+    }
+}
