@@ -12,6 +12,7 @@ mod host;
 mod released;
 mod session;
 mod snapshots;
+mod targets;
 mod threads;
 mod transcripts;
 mod witness;

@@ -26,5 +26,6 @@ mod real_code;
 mod run;
 mod serve;
 mod shell;
+mod targets;
 mod traces;
 mod trial;

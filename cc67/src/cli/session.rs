@@ -311,7 +311,7 @@ fn compile(
     options: &Options,
 ) -> Result<Option<(Vec<UserProgram>, Vec<UserProgram>)>> {
     let all = [files, &offered].concat();
-    let Some(mut programs) = images::programs_with(&all, compiler, options)? else { return Ok(None) };
+    let Some(mut programs) = images::programs(&all, compiler, options)? else { return Ok(None) };
     let offered = programs.split_off(files.len());
     Ok(Some((programs, offered)))
 }

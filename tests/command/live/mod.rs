@@ -15,7 +15,7 @@ use std::process::{Child, Command, Stdio};
 use harness::{Scratch, command};
 
 /// A board that is shown.
-struct Live {
+pub(super) struct Live {
     child: Child,
     /// The address of its page, with the token.
     url: String,
@@ -23,7 +23,7 @@ struct Live {
 
 impl Live {
     /// Starts it in a folder; a program that is wrong is a failure of the test.
-    fn start(folder: &Scratch, arguments: &[&str]) -> Self {
+    pub(super) fn start(folder: &Scratch, arguments: &[&str]) -> Self {
         let mut child = Command::new(command())
             .args(["live", "--no-open", "--port", "0"])
             .args(arguments)
@@ -46,7 +46,7 @@ impl Live {
     }
 
     /// The address of its socket.
-    fn socket(&self) -> String {
+    pub(super) fn socket(&self) -> String {
         self.url.replacen("http://", "ws://", 1).replacen("/?", "/socket?", 1)
     }
 

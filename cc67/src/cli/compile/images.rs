@@ -13,18 +13,9 @@ use crate::cli::args::program::ProgramFile;
 use crate::cli::io::input::read;
 use crate::cli::report::diagnostics;
 
-/// The programs of files; `None` if a source has errors, after all have been compiled.
+/// The programs of files, for the target and the firmware of the options; `None` if a source has errors, after all have
+/// been compiled.
 pub(crate) fn programs(
-    files: &[ProgramFile],
-    compiler: &CompilerArguments,
-    options: &Options,
-) -> Result<Option<Vec<UserProgram>>> {
-    options.firmware.check_version()?;
-    programs_with(files, compiler, options)
-}
-
-/// The same for a target and a firmware of the caller's choice.
-pub(crate) fn programs_with(
     files: &[ProgramFile],
     compiler: &CompilerArguments,
     options: &Options,
