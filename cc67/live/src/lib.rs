@@ -1,7 +1,7 @@
 //! A simulated board on a page in the browser.
 //!
 //! A [`Server`] listens on this computer and serves the page, which is part of the binary. It then [runs](Server::run)
-//! a [`Session`](cc67_host::Session) in real time, on the caller's thread. Pages are views: they receive the board's
+//! a [`Session`] in real time, on the caller's thread. Pages are views: they receive the board's
 //! state and send the requests of a person. A [`LiveView`] shows a session that other code runs.
 //!
 //! ```text
