@@ -33,7 +33,7 @@ fn program(row: &Json) -> String {
 }
 
 /// The list of states of axis 0, to its end.
-fn states(board: &Released) -> Vec<[f64; 6]> {
+pub(super) fn states(board: &Released) -> Vec<[f64; 6]> {
     let memory = board.board.memory();
     let base = board.address("chan").offset(Chan::C.offset());
     let first: u32 = memory.peek(base);

@@ -28,7 +28,7 @@ fn compare(board: &Released, tick: usize, columns: &[&str], values: &[Json], fou
     }
 }
 
-fn compensation(row: &Json, board: &Released) -> Vec<String> {
+pub(super) fn compensation(row: &Json, board: &Released) -> Vec<String> {
     let (mut board, mut found) = (enabled(board), Vec::new());
     board.set(&row["parameters"]);
     let columns: Vec<&str> = list(&row["columns"]).iter().map(text).collect();
