@@ -2,7 +2,7 @@
 
 use std::io::{Read, Write};
 
-use super::client::{Client, DISCONNECT, LOCK, SET_CONSOLE, WRITE_LINE_READ_LINE};
+use super::client::{Client, DISCONNECT, LOCK, SET_CONSOLE, Usual, WRITE_LINE_READ_LINE};
 use super::{HELLO, Server, VERSION};
 
 #[test]
@@ -36,7 +36,8 @@ fn a_client_that_reads_nothing_blocks_only_itself() {
     let mut deaf = server.client();
     assert_eq!(deaf.call(SET_CONSOLE, b"").0, 0);
     // Console lines that are not acknowledged, and requests that nobody reads the answers of.
-    let request = [&[23, 0][..], &WRITE_LINE_READ_LINE.to_le_bytes(), &[0; 4], b"Echo x;Version\0"].concat();
+    let length = if Usual::is_over_pipe() { &[] } else { &[23, 0][..] };
+    let request = [length, &WRITE_LINE_READ_LINE.to_le_bytes(), &[0; 4], b"Echo x;Version\0"].concat();
     for _ in 0..100 {
         // The server may have ended the connection.
         let _ = deaf.stream.write_all(&request);
@@ -58,7 +59,7 @@ fn a_client_that_reads_nothing_blocks_only_itself() {
 fn ten_simultaneous_clients_each_get_their_own_answers() {
     let server = Server::fast("serve-ten", HELLO);
     let clients: Vec<_> = (0..10).map(|number| (number, server.client())).collect();
-    let work = |(number, mut client): (i32, Client<std::net::TcpStream>)| {
+    let work = |(number, mut client): (i32, Client<Usual>)| {
         for round in 0..20 {
             while client.lock() != 0 {}
             client.write_line(&format!("SetPersistDec {} {}", 20 + number, 1000 * number + round));
@@ -76,6 +77,10 @@ fn ten_simultaneous_clients_each_get_their_own_answers() {
 
 #[test]
 fn a_client_of_another_protocol_gets_a_text_answer() {
+    if Usual::is_over_pipe() {
+        println!("not run: a pipe tells messages apart by itself");
+        return;
+    }
     let server = Server::fast("serve-words", HELLO);
     for text in ["GET / HTTP/1.1\r\n\r\n", "\r\n", "Version\r\n"] {
         let mut client = server.client();

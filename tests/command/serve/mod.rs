@@ -12,14 +12,13 @@ mod page;
 mod wire;
 
 use std::io::{BufRead, BufReader};
-use std::net::TcpStream;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 
 use harness::{Scratch, cc67};
 
-use client::Client;
+use client::{Client, Usual};
 
 /// A server and its folder; ended when it goes out of scope.
 struct Server {
@@ -41,7 +40,7 @@ impl Server {
 
     fn start_in(scratch: Scratch, arguments: &[&str], count: usize) -> Self {
         let mut command = Command::new(harness::command());
-        command.args(arguments).current_dir(scratch.path());
+        command.args(arguments.iter().map(|word| Usual::address(word))).current_dir(scratch.path());
         Self::spawn(command, scratch, count)
     }
 
@@ -66,11 +65,10 @@ impl Server {
         Self::start(name, &["serve", "--pace", "fast", "--listen", "tcp:0", "a.c"], source, 1)
     }
 
-    /// One more client, over the first port.
-    fn client(&self) -> Client<TcpStream> {
-        let port = self.places.iter().find_map(|place| place.strip_prefix("tcp:")).expect("a port");
-        let port: u16 = port.parse().expect("a number");
-        Client::new(TcpStream::connect(("127.0.0.1", port)).expect("it listens"))
+    /// One more client, over the first port; or over the first pipe, where they are tested.
+    fn client(&self) -> Client<Usual> {
+        let is_usual = |place: &&String| place.starts_with("tcp:") || place.starts_with(r"\\.\pipe\");
+        Client::new(Usual::connect(self.places.iter().find(is_usual).expect("a port or a pipe")))
     }
 
     /// Waits for a line that has this text.
@@ -282,7 +280,12 @@ fn a_server_ends_after_the_time_that_it_was_given() {
         (&["console", "--serve", "tcp:x"][..], "`--serve tcp:x`: `x` is not a port number"),
         (
             &["serve", "--listen", "usb:1"],
-            "`--listen usb:1`: neither tcp:PORT, tcp-raw:PORT, pty nor the path of a socket",
+            "`--listen usb:1`: neither tcp:PORT, tcp-raw:PORT, pty, pipe[:NAME] nor the path of a socket",
+        ),
+        #[cfg(not(windows))]
+        (
+            &["serve", "--listen", "pipe"],
+            r"`--listen pipe`: \\.\pipe\kmotionpipe is a named pipe, which only Windows has",
         ),
         (&["serve", "--pace", "0"], "expected a number from 0.01 to 1000, or `fast`"),
         (&["serve", "--no-open"], "--live"),
@@ -328,6 +331,7 @@ fn clients_talk_to_the_users_own_firmware() {
 }
 
 /// The first block of a kind in the chapter on PC applications, for another port than the usual one.
+#[cfg(unix)]
 fn of_the_book(kind: &str, port: &str) -> String {
     let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../cc67/book/src/pc-applications.md");
     let page = std::fs::read_to_string(page).expect("the chapter is there");

@@ -1,8 +1,30 @@
 //! Writing to the person in front of the terminal.
 
+use std::fs::File;
 use std::io::{self, IsTerminal, Write};
+use std::path::Path;
+use std::sync::OnceLock;
 
 use compiler::render::human::Color;
+
+/// The file in place of stderr, for a process whose stderr nobody reads.
+static FILE: OnceLock<File> = OnceLock::new();
+
+/// Has everything from now on written to a file instead of stderr.
+pub(crate) fn write_to(path: &Path) -> io::Result<()> {
+    let file = File::create(path)?;
+    // One file is enough.
+    let _ = FILE.set(file);
+    Ok(())
+}
+
+fn write(text: &str) {
+    // Nobody is left to be told when stderr is gone, or the file's disk is full.
+    let _ = match FILE.get() {
+        Some(mut file) => file.write_all(text.as_bytes()),
+        None => io::stderr().write_all(text.as_bytes()),
+    };
+}
 
 /// Prints a message about the request or its inputs as one line.
 pub(crate) fn error(error: &anyhow::Error) {
@@ -11,14 +33,12 @@ pub(crate) fn error(error: &anyhow::Error) {
 
 /// Prints a line of our own to stderr.
 pub(crate) fn note(message: &str) {
-    // Nobody is left to be told when stderr is gone.
-    let _ = writeln!(io::stderr(), "cc67: {message}");
+    write(&format!("cc67: {message}\n"));
 }
 
 /// Prints a text of our own to stderr, apart from the console.
 pub(crate) fn aside(text: &str) {
-    // Nobody is left to be told when stderr is gone.
-    let _ = io::stderr().write_all(text.as_bytes());
+    write(text);
 }
 
 /// Whether a stream shows colours.

@@ -1,7 +1,8 @@
 //! `--home DIR`: the folder in which the vendor's library looks for its compiler, its server and the firmware's files.
 //!
-//! Compiler and server are links to this command, which acts by the name that it is called by. The server is started by
-//! the library when it finds none; it serves then what `cc67 serve --home` was last told to serve.
+//! Compiler and server are links to this command, or copies of it on Windows; it acts by the name that it is called by.
+//! The server is started by the library when it finds none; it serves then what `cc67 serve --home` was last told to
+//! serve.
 
 use std::ffi::{OsStr, OsString};
 use std::fs;
@@ -13,11 +14,14 @@ use kmotiondef::boards::TargetBoard;
 use kmotiondef::headers::EMBEDDED;
 
 use crate::cli::io::output;
+use crate::cli::io::terminal;
 
 /// The name under which the library expects its server.
 const SERVER: &str = "KMotionServer";
 /// The name under which it expects its compiler.
-const COMPILER: &str = "tcc67";
+const COMPILER: &str = if cfg!(windows) { "TCC67" } else { "tcc67" };
+/// The folder of both: on Windows that of the application and of the library, which looks for nothing elsewhere.
+const BINARIES: &str = if cfg!(windows) { r"KMotion\Release" } else { "bin" };
 /// Folders of the firmware's files, and the name of the firmware file in each.
 const FIRMWARE: [(&str, &str); 2] = [("DSP_KFLOP", "DSPKFLOP.out"), ("DSP_KMotion", "DSPKMotion.out")];
 /// Variables of the G-code interpreter that it keeps from one run to the next: home positions, the offset of G92, the
@@ -29,19 +33,23 @@ const OURS: [&str; 2] = ["--home", "--mcodes"];
 const PROGRAMS: &str = "MCodes";
 /// What the server was last to serve: the folder of that command line, and its words, one a line.
 const OPTIONS: &str = "serve.options";
+/// What a server says that the library has started: on Windows nobody reads its output, and a full pipe would stop it.
+const SAID: &str = "server.log";
+/// The explanation of the folder.
+const EXPLANATION: &str = "README.txt";
 
 /// Makes what is missing in the folder.
 ///
 /// `programs` is the folder of the programs that M codes start.
 pub(super) fn make(folder: &Path, programs: Option<&Path>) -> Result<PathBuf> {
     let folder = std::path::absolute(folder).context("--home")?;
-    for part in ["bin", "Data", FIRMWARE[0].0, FIRMWARE[1].0] {
+    for part in [BINARIES, "Data", FIRMWARE[0].0, FIRMWARE[1].0] {
         let part = folder.join(part);
         fs::create_dir_all(&part).with_context(|| format!("cannot make the folder {}", part.display()))?;
     }
     let command = std::env::current_exe().context("cannot find the file of this command")?;
     for name in [COMPILER, SERVER] {
-        link(&command, &folder.join("bin").join(name))?;
+        link(&command, &folder.join(BINARIES).join(name))?;
     }
     let image = firmware::export(TargetBoard::default_board())?;
     for (place, name) in FIRMWARE {
@@ -52,6 +60,7 @@ pub(super) fn make(folder: &Path, programs: Option<&Path>) -> Result<PathBuf> {
         }
     }
     supply(&folder.join(VARIABLES), variables().as_bytes())?;
+    supply(&folder.join(EXPLANATION), explanation().as_bytes())?;
     if let Some(programs) = programs {
         let absolute = fs::canonicalize(programs).map_err(|error| {
             anyhow::anyhow!("`--mcodes {}`: {}", programs.display(), compiler::files::reason(&error))
@@ -64,8 +73,39 @@ pub(super) fn make(folder: &Path, programs: Option<&Path>) -> Result<PathBuf> {
 
 /// What a person types so that a program uses the folder.
 pub(super) fn lines(folder: &Path) -> String {
+    if cfg!(windows) {
+        let binaries = folder.join(BINARIES);
+        let binaries = binaries.display();
+        return format!(
+            "copy FOLDER_OF_THE_LIBRARY\\*.dll \"{binaries}\"\ncopy YOUR_PROGRAM.exe \"{binaries}\"\n\"{binaries}\\YOUR_PROGRAM.exe\"\n"
+        );
+    }
     let folder = folder.display();
     format!("export KMOTIONX_HOME='{folder}'\nexport LD_LIBRARY_PATH=FOLDER_OF_THE_LIBRARY\n./YOUR_PROGRAM\n")
+}
+
+/// Describes the folder for whoever finds it later.
+fn explanation() -> String {
+    let (library, place) = if cfg!(windows) {
+        ("KMotion library", "Put your application and the DLLs of the library beside them.")
+    } else {
+        ("KMotionX library", "Have KMOTIONX_HOME name this folder.")
+    };
+    let end = if cfg!(windows) { "\r\n" } else { "\n" };
+    [
+        format!("This folder was made by `cc67 serve --home` for programs that use the {library}."),
+        String::new(),
+        format!(
+            "{BINARIES}: {SERVER} and {COMPILER} are cc67 under the names that the library starts. {place}"
+        ),
+        "DSP_KFLOP, DSP_KMotion: headers, and a firmware file to link programs with.".to_owned(),
+        "Data: the variables of the G-code interpreter.".to_owned(),
+        format!("{OPTIONS}: what {SERVER} serves, the options of the last `cc67 serve --home`."),
+        String::new(),
+        "No real controller is reached from here. Delete the folder when you no longer need it.".to_owned(),
+    ]
+    .map(|line| line + end)
+    .concat()
 }
 
 /// Notes what is served, for the server that the library starts.
@@ -99,8 +139,14 @@ pub(in crate::cli::commands) fn called_as_server(arguments: &[OsString]) -> Opti
         return None;
     }
     let mut words: Vec<OsString> = ["cc67", "serve", "--once"].map(OsString::from).into();
-    let home = program.parent().and_then(Path::parent);
+    // On Windows it is called by its bare name.
+    let file = if cfg!(windows) { std::env::current_exe().ok()? } else { program.to_owned() };
+    let home = file.ancestors().nth(1 + Path::new(BINARIES).components().count());
     if let Some(text) = home.and_then(|home| fs::read_to_string(home.join(OPTIONS)).ok()) {
+        if let Some(home) = home.filter(|_| cfg!(windows)) {
+            // Where it cannot be written, nobody reads it either.
+            let _ = terminal::write_to(&home.join(SAID));
+        }
         let mut lines = text.lines();
         // Paths among the words are as they were typed there.
         if lines.next().is_some_and(|folder| std::env::set_current_dir(folder).is_ok()) {

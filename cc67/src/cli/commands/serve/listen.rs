@@ -4,8 +4,7 @@
 //! client: one that sends half a message, or reads no reply, keeps nobody else from the board. At a pseudo-terminal and
 //! a raw port the board's own bytes are [carried](super::carry).
 
-use std::io::{Read, Write};
-use std::net::{Ipv4Addr, Shutdown, TcpListener, TcpStream};
+use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
@@ -15,8 +14,10 @@ use std::thread;
 use anyhow::{Context, Result, bail};
 
 use super::carry::carry;
+use super::connection::{self, ClientConnection, Received};
 use super::desk::Note;
-use super::message::{self, Received, Request};
+use super::message::Request;
+use super::pipe;
 use crate::cli::io::pty::Terminal;
 use crate::cli::io::terminal;
 
@@ -28,29 +29,6 @@ const NO_TEXT: &[u8] =
 /// The address of a pseudo-terminal, and how the addresses of ports begin that carry the board's own bytes.
 const TERMINAL: &str = "pty";
 const RAW_PORT: &str = "tcp-raw:";
-/// Bytes of such a text that are read before the connection is closed.
-const TEXT_LIMIT: u64 = 1 << 16;
-
-/// A connection, whatever it goes over.
-trait Stream: Read + Write + Send + 'static {
-    /// Ends what is sent; what comes is still received.
-    fn end(&self);
-}
-
-impl Stream for TcpStream {
-    fn end(&self) {
-        // A client that is gone needs no end.
-        let _ = self.shutdown(Shutdown::Write);
-    }
-}
-
-#[cfg(unix)]
-impl Stream for std::os::unix::net::UnixStream {
-    fn end(&self) {
-        // A client that is gone needs no end.
-        let _ = self.shutdown(Shutdown::Write);
-    }
-}
 
 /// Sockets in folders, which are removed at the end.
 #[derive(Debug, Default)]
@@ -67,7 +45,7 @@ impl Drop for Places {
 
 /// The way from a connection to the desk.
 #[derive(Clone, Debug)]
-struct Door {
+pub(super) struct Door {
     desk: Sender<Note>,
     /// Connections so far.
     numbers: Arc<AtomicU64>,
@@ -85,10 +63,15 @@ pub(super) fn listen(addresses: &[String], option: &str, desk: &Sender<Note>) ->
             listen_on_port(port, &door).with_context(complaint)?;
         } else if let Some(port) = address.strip_prefix(RAW_PORT) {
             carry_on_port(port, &door).with_context(complaint)?;
+        } else if let Some(name) = pipe::name(address) {
+            pipe::listen(&name, &door).with_context(complaint)?;
         } else if address == TERMINAL {
             carry_on_terminal(&door).with_context(complaint)?;
         } else if address.contains(':') && !address.contains('/') {
-            bail!("{}: neither tcp:PORT, tcp-raw:PORT, pty nor the path of a socket", complaint());
+            bail!(
+                "{}: neither tcp:PORT, tcp-raw:PORT, pty, pipe[:NAME] nor the path of a socket",
+                complaint()
+            );
         } else {
             places.0.push(listen_on_path(address, &door).with_context(complaint)?);
         }
@@ -187,7 +170,7 @@ fn listen_on_path(_: &str, _: &Door) -> Result<PathBuf> {
 
 impl Door {
     /// Serves a connection in a thread of its own; one too many is closed.
-    fn enter(&self, stream: impl Stream) {
+    pub(super) fn enter(&self, connection: impl ClientConnection) {
         let number = self.numbers.fetch_add(1, Ordering::Relaxed) + 1;
         if self.present.fetch_add(1, Ordering::Relaxed) >= MOST_CLIENTS {
             self.present.fetch_sub(1, Ordering::Relaxed);
@@ -196,7 +179,7 @@ impl Door {
         }
         let door = self.clone();
         let spawned = thread::Builder::new().spawn(move || {
-            serve(number, stream, &door.desk);
+            serve(number, connection, &door.desk);
             door.present.fetch_sub(1, Ordering::Relaxed);
         });
         if spawned.is_err() {
@@ -207,10 +190,10 @@ impl Door {
 }
 
 /// Answers requests until the client goes, or asks for what does not exist.
-fn serve(number: u64, mut stream: impl Stream, desk: &Sender<Note>) {
-    let mut received = message::read_first(&mut stream);
+fn serve(number: u64, mut connection: impl ClientConnection, desk: &Sender<Note>) {
+    let mut received = connection.receive_first();
     match received {
-        Received::Text => return refuse_text(&mut stream),
+        Received::Text => return connection.refuse(NO_TEXT),
         Received::OldLibrary => {
             terminal::note(&format!(
                 "client {number}: its library is that of KMotion 4.32, whose messages have no length; it needs that of 4.34"
@@ -228,20 +211,11 @@ fn serve(number: u64, mut stream: impl Stream, desk: &Sender<Note>) {
             break;
         }
         let Ok(messages) = inbox.recv() else { break };
-        if message::answer(&mut stream, &messages).is_none() {
+        if connection::answer(&mut connection, &messages).is_none() {
             break;
         }
-        received = message::read(&mut stream);
+        received = connection.receive();
     }
     // The desk may have closed before.
     let _ = desk.send(Note::Left(number));
-}
-
-/// Says what is spoken here, and reads on a little, so that the answer is not lost with the connection.
-fn refuse_text(stream: &mut impl Stream) {
-    if stream.write_all(NO_TEXT).is_ok() {
-        stream.end();
-        // Whatever it is, it is not for us.
-        let _ = std::io::copy(&mut stream.take(TEXT_LIMIT), &mut std::io::sink());
-    }
 }

@@ -1,25 +1,17 @@
 //! Requests and replies as bytes. Source: host-protocol.md section 8.
 //!
-//! A message is its length, two bytes with the low one first, and that number of bytes. Numbers have four bytes, texts
-//! end with a 0. A request is the number of a call, the number of a board and what the call takes; a reply is a 0, the
-//! result and what the call yields.
+//! Numbers have four bytes, texts end with a 0. A request is the number of a call, the number of a board and what the
+//! call takes; a reply is a 0, the result and what the call yields. How messages are told apart is the business of
+//! their [connection](super::connection).
 
-use std::io::{Read, Write};
-
-/// Bytes of a message to us at most.
-const LONGEST: usize = 4096;
 /// Bytes of a message from us at most.
 const LONGEST_REPLY: usize = 2561;
 /// Begins a normal reply.
-const REPLY: u8 = 0;
+pub(super) const REPLY: u8 = 0;
 /// Begins a console line.
 const CONSOLE: u8 = 1;
 /// Begins an error text.
 const ERROR: u8 = 2;
-/// What the client answers to both.
-const ACKNOWLEDGED: u8 = 0xAA;
-/// How the first message of the library of version 4.32 begins, which has no length.
-const OLD_LIBRARY: [u8; 8] = [9, 0, 0, 0, 0, 0, 0, 0];
 
 /// What is requested.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -158,82 +150,6 @@ pub(super) fn error_text(text: &str) -> Vec<u8> {
     [&[ERROR][..], text.as_bytes(), b"\0"].concat()
 }
 
-/// What came over a connection.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Received {
-    /// A message.
-    Message(Vec<u8>),
-    /// The beginning of a text, from somebody who expects to talk to a person or to a web server.
-    Text,
-    /// A message of the library of version 4.32.
-    OldLibrary,
-    /// Nothing: the client is gone, or sends what cannot be a message.
-    Nothing,
-}
-
-/// Reads the first message of a connection, which may be of another kind than ours.
-pub(super) fn read_first(stream: &mut impl Read) -> Received {
-    let mut length = [0; 2];
-    if stream.read_exact(&mut length).is_err() {
-        return Received::Nothing;
-    }
-    if length.iter().all(|byte| matches!(byte, b'\t' | b'\r' | b'\n' | b' '..=b'~')) {
-        return Received::Text;
-    }
-    let [low, high, rest @ ..] = OLD_LIBRARY;
-    if length != [low, high] {
-        return read_body(stream, length);
-    }
-    // The old library has sent no more than this, and waits.
-    let mut begin = [0; 6];
-    if stream.read_exact(&mut begin).is_err() {
-        return Received::Nothing;
-    }
-    if begin == rest {
-        return Received::OldLibrary;
-    }
-    let mut tail = vec![0; usize::from(low) - begin.len()];
-    match stream.read_exact(&mut tail) {
-        Ok(()) => Received::Message([&begin[..], &tail].concat()),
-        Err(_) => Received::Nothing,
-    }
-}
-
-/// Reads a message.
-pub(super) fn read(stream: &mut impl Read) -> Received {
-    let mut length = [0; 2];
-    match stream.read_exact(&mut length) {
-        Ok(()) => read_body(stream, length),
-        Err(_) => Received::Nothing,
-    }
-}
-
-fn read_body(stream: &mut impl Read, length: [u8; 2]) -> Received {
-    let mut bytes = vec![0; usize::from(u16::from_le_bytes(length))];
-    if bytes.len() > LONGEST || stream.read_exact(&mut bytes).is_err() {
-        return Received::Nothing;
-    }
-    Received::Message(bytes)
-}
-
-/// Sends what answers a request: each message before the last is acknowledged by the client. `None` if it is gone.
-pub(super) fn answer(stream: &mut (impl Read + Write), messages: &[Vec<u8>]) -> Option<()> {
-    for bytes in messages {
-        write(stream, bytes)?;
-        if bytes.first() != Some(&REPLY) {
-            let mut answer = [0];
-            stream.read_exact(&mut answer).ok().filter(|()| answer == [ACKNOWLEDGED])?;
-        }
-    }
-    Some(())
-}
-
-/// Sends a message; `None` if the client is gone.
-fn write(stream: &mut impl Write, bytes: &[u8]) -> Option<()> {
-    let length = u16::try_from(bytes.len()).ok()?;
-    stream.write_all(&[&length.to_le_bytes()[..], bytes].concat()).and_then(|()| stream.flush()).ok()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -242,16 +158,11 @@ mod tests {
     const VERSION: &[u8] = b"\0\0\0\0\0\0\0\0Version\0";
 
     #[test]
-    fn the_example_of_the_specification_is_read_and_answered() {
-        let mut stream = &[&[0x10, 0][..], VERSION].concat()[..];
-        let Received::Message(bytes) = read(&mut stream) else { panic!("no message") };
-        let request = Request::read(&bytes).expect("a request");
+    fn the_example_of_the_specification_is_a_request() {
+        let request = Request::read(VERSION).expect("a request");
         assert_eq!(request, Request { call: Call::WriteLineReadLine(b"Version".to_vec()), board: 0 });
-        let mut sent = Vec::new();
-        let reply = Reply::text(0, b"KFLOP 4.34 Build 16:07:06 Aug 14 2018").bytes();
-        assert_eq!(write(&mut sent, &reply), Some(()));
-        assert_eq!(&sent[..7], [0x2B, 0, 0, 0, 0, 0, 0]);
-        assert_eq!(sent.len(), 2 + 0x2B);
+        // The library of version 4.32 gives no name with its request for the token.
+        assert!(Request::read(&[9, 0, 0, 0, 0, 0, 0, 0]).is_some_and(|request| request.call == Call::Lock));
     }
 
     #[test]
@@ -265,22 +176,6 @@ mod tests {
             b"\xFF\xFF\xFF\xFF\0\0\0\0",
         ] {
             assert_eq!(Request::read(bytes), None, "{bytes:?}");
-        }
-        assert_eq!(read(&mut &b"\xFF\xFF"[..]), Received::Nothing);
-        assert_eq!(read(&mut &b"\x05\0abc"[..]), Received::Nothing);
-    }
-
-    #[test]
-    fn other_protocols_are_recognised_by_their_first_bytes() {
-        for (bytes, expect) in [
-            (&b"GET / HTTP/1.1\r\n"[..], Received::Text),
-            (b"\r\n", Received::Text),
-            (&[9, 0, 0, 0, 0, 0, 0, 0], Received::OldLibrary),
-            (b"\x09\0\x09\0\0\0\0\0\0\0\0", Received::Message(b"\x09\0\0\0\0\0\0\0\0".to_vec())),
-            (b"\xFF\xFF\xFF\xFF", Received::Nothing),
-            (b"\x09", Received::Nothing),
-        ] {
-            assert_eq!(read_first(&mut &*bytes), expect, "{bytes:?}");
         }
     }
 

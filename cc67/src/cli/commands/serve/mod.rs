@@ -9,6 +9,8 @@
 //! board     the board under control, with what is written of it
 //! served    what is under control there
 //! page      the page of it
+//! connection messages, over a stream of bytes
+//! pipe      the same over a pipe of Windows
 //! link      what the board has sent and nobody has read yet
 //! carry     a thread for a client that has the board's own bytes
 //! wire      the board's own bytes for one client
@@ -20,6 +22,7 @@
 mod board;
 mod calls;
 mod carry;
+mod connection;
 mod desk;
 pub(super) mod home;
 mod link;
@@ -28,6 +31,7 @@ mod log;
 mod message;
 #[cfg(feature = "live")]
 mod page;
+mod pipe;
 mod served;
 mod wire;
 
@@ -58,7 +62,8 @@ use served::Served;
 pub(super) use wire::{LOST_BYTES, UNREAD_BYTES};
 
 /// Where the vendor's server listens.
-const USUAL: &[&str] = if cfg!(unix) { &["/tmp/kmotionsocket", "tcp:57777"] } else { &["tcp:57777"] };
+const USUAL: &[&str] =
+    if cfg!(windows) { &["pipe", "tcp:57777"] } else { &["/tmp/kmotionsocket", "tcp:57777"] };
 
 /// Arguments of `cc67 serve`.
 #[derive(Debug, Args)]
@@ -66,9 +71,10 @@ pub(super) struct ServeArguments {
     /// Programs to load and start: FILE runs in the lowest free thread, N:FILE in thread N
     #[arg(value_name = "[N:]FILE")]
     programs: Vec<OsString>,
-    /// Listen on this socket or port; may be repeated [default: /tmp/kmotionsocket and tcp:57777, like the vendor's
-    /// server]. With pty or tcp-raw:PORT, one client has the board's own byte protocol, as at its USB port
-    #[arg(long, value_name = "PATH|tcp:PORT|pty|tcp-raw:PORT")]
+    /// Listen on this socket, port or Windows pipe; may be repeated [default: /tmp/kmotionsocket and tcp:57777, on
+    /// Windows pipe and tcp:57777, like the vendor's server]. With pty or tcp-raw:PORT, one client has the board's own
+    /// byte protocol, as at its USB port
+    #[arg(long, value_name = "PATH|pipe[:NAME]|tcp:PORT|pty|tcp-raw:PORT")]
     listen: Vec<String>,
     /// Speed of board time: 1 is real time, N is N times as fast; with `fast`, time passes only while a client waits
     /// for a reply

@@ -1,0 +1,193 @@
+//! A connection to a client, as whole messages.
+//!
+//! Over a socket or a port a message is its length, two bytes with the low one first, and that number of bytes; over a
+//! [pipe](super::pipe) it is what was written at once. What the messages say is the same. Source: host-protocol.md
+//! section 8, wire.md section 7.
+
+use std::io::{Read, Write};
+use std::net::{Shutdown, TcpStream};
+
+use super::message::REPLY;
+
+/// Bytes of a message to us at most.
+pub(super) const LONGEST: usize = 4096;
+/// The client's answer to each message before a reply.
+const ACKNOWLEDGED: u8 = 0xAA;
+/// How the first message of the library of version 4.32 begins, which has no length.
+const OLD_LIBRARY: [u8; 8] = [9, 0, 0, 0, 0, 0, 0, 0];
+/// Bytes of a text that are read before its connection is closed.
+const TEXT_LIMIT: u64 = 1 << 16;
+
+/// What came over a connection.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Received {
+    /// A message.
+    Message(Vec<u8>),
+    /// The beginning of a text, from somebody who expects to talk to a person or to a web server.
+    Text,
+    /// A message of the library of version 4.32.
+    OldLibrary,
+    /// Nothing: the client is gone, or sends what cannot be a message.
+    Nothing,
+}
+
+/// A connection that carries messages in both directions.
+pub(super) trait ClientConnection: Send + 'static {
+    /// Receives the first message, which may be of another kind than ours.
+    fn receive_first(&mut self) -> Received;
+    /// Receives a message.
+    fn receive(&mut self) -> Received;
+    /// Sends a message; `None` if the client is gone.
+    fn send(&mut self, message: &[u8]) -> Option<()>;
+    /// Receives the byte by which the client acknowledges a message; `None` if it is gone.
+    fn receive_byte(&mut self) -> Option<u8>;
+    /// Answers somebody who sends text with a text, and reads on a little, so that it is not lost with the connection.
+    fn refuse(&mut self, text: &[u8]);
+}
+
+/// Sends what answers a request: each message before the last is acknowledged by the client. `None` if it is gone.
+pub(super) fn answer(connection: &mut impl ClientConnection, messages: &[Vec<u8>]) -> Option<()> {
+    for bytes in messages {
+        connection.send(bytes)?;
+        if bytes.first() != Some(&REPLY) {
+            connection.receive_byte().filter(|answer| *answer == ACKNOWLEDGED)?;
+        }
+    }
+    Some(())
+}
+
+/// A connection of bytes.
+pub(super) trait Stream: Read + Write + Send + 'static {
+    /// Ends what is sent; what comes is still received.
+    fn end(&self);
+}
+
+impl Stream for TcpStream {
+    fn end(&self) {
+        // A client that is gone needs no end.
+        let _ = self.shutdown(Shutdown::Write);
+    }
+}
+
+#[cfg(unix)]
+impl Stream for std::os::unix::net::UnixStream {
+    fn end(&self) {
+        // A client that is gone needs no end.
+        let _ = self.shutdown(Shutdown::Write);
+    }
+}
+
+impl<S: Stream> ClientConnection for S {
+    fn receive_first(&mut self) -> Received {
+        read_first(self)
+    }
+
+    fn receive(&mut self) -> Received {
+        read(self)
+    }
+
+    fn send(&mut self, message: &[u8]) -> Option<()> {
+        write(self, message)
+    }
+
+    fn receive_byte(&mut self) -> Option<u8> {
+        let mut byte = [0];
+        self.read_exact(&mut byte).ok()?;
+        let [byte] = byte;
+        Some(byte)
+    }
+
+    fn refuse(&mut self, text: &[u8]) {
+        if self.write_all(text).is_ok() {
+            self.end();
+            // Whatever it is, it is not for us.
+            let _ = std::io::copy(&mut self.take(TEXT_LIMIT), &mut std::io::sink());
+        }
+    }
+}
+
+/// Reads the first message of a stream.
+fn read_first(stream: &mut impl Read) -> Received {
+    let mut length = [0; 2];
+    if stream.read_exact(&mut length).is_err() {
+        return Received::Nothing;
+    }
+    if length.iter().all(|byte| matches!(byte, b'\t' | b'\r' | b'\n' | b' '..=b'~')) {
+        return Received::Text;
+    }
+    let [low, high, rest @ ..] = OLD_LIBRARY;
+    if length != [low, high] {
+        return read_body(stream, length);
+    }
+    // The old library has sent no more than this, and waits.
+    let mut begin = [0; 6];
+    if stream.read_exact(&mut begin).is_err() {
+        return Received::Nothing;
+    }
+    if begin == rest {
+        return Received::OldLibrary;
+    }
+    let mut tail = vec![0; usize::from(low) - begin.len()];
+    match stream.read_exact(&mut tail) {
+        Ok(()) => Received::Message([&begin[..], &tail].concat()),
+        Err(_) => Received::Nothing,
+    }
+}
+
+/// Reads a message.
+fn read(stream: &mut impl Read) -> Received {
+    let mut length = [0; 2];
+    match stream.read_exact(&mut length) {
+        Ok(()) => read_body(stream, length),
+        Err(_) => Received::Nothing,
+    }
+}
+
+fn read_body(stream: &mut impl Read, length: [u8; 2]) -> Received {
+    let mut bytes = vec![0; usize::from(u16::from_le_bytes(length))];
+    if bytes.len() > LONGEST || stream.read_exact(&mut bytes).is_err() {
+        return Received::Nothing;
+    }
+    Received::Message(bytes)
+}
+
+/// Writes a message; `None` if the client is gone.
+fn write(stream: &mut impl Write, bytes: &[u8]) -> Option<()> {
+    let length = u16::try_from(bytes.len()).ok()?;
+    stream.write_all(&[&length.to_le_bytes()[..], bytes].concat()).and_then(|()| stream.flush()).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_example_of_the_specification_is_read_and_written() {
+        let version = b"\0\0\0\0\0\0\0\0Version\0";
+        let mut stream = &[&[0x10, 0][..], version].concat()[..];
+        assert_eq!(read(&mut stream), Received::Message(version.to_vec()));
+        let mut sent = Vec::new();
+        assert_eq!(write(&mut sent, b"\0\0\0\0\0KFLOP 4.34\0"), Some(()));
+        assert_eq!(sent, b"\x10\0\0\0\0\0\0KFLOP 4.34\0");
+    }
+
+    #[test]
+    fn messages_without_their_end_are_nothing() {
+        assert_eq!(read(&mut &b"\xFF\xFF"[..]), Received::Nothing);
+        assert_eq!(read(&mut &b"\x05\0abc"[..]), Received::Nothing);
+    }
+
+    #[test]
+    fn other_protocols_are_recognised_by_their_first_bytes() {
+        for (bytes, expect) in [
+            (&b"GET / HTTP/1.1\r\n"[..], Received::Text),
+            (b"\r\n", Received::Text),
+            (&[9, 0, 0, 0, 0, 0, 0, 0], Received::OldLibrary),
+            (b"\x09\0\x09\0\0\0\0\0\0\0\0", Received::Message(b"\x09\0\0\0\0\0\0\0\0".to_vec())),
+            (b"\xFF\xFF\xFF\xFF", Received::Nothing),
+            (b"\x09", Received::Nothing),
+        ] {
+            assert_eq!(read_first(&mut &*bytes), expect, "{bytes:?}");
+        }
+    }
+}
