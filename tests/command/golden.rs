@@ -78,7 +78,7 @@ fn blessing_writes_only_what_changed() {
     let scratch = folder("bless", &files);
     assert_eq!(
         test(&scratch, &["--bless", "."]).stdout,
-        "written  ./a.expected\n1 passed, 0 failed, 1 written\n"
+        harness::native("written  ./a.expected\n1 passed, 0 failed, 1 written\n")
     );
     assert_eq!(fs::read_to_string(scratch.path().join("a.expected")).expect("it is there"), "1\n2\n3\n");
 }

@@ -105,7 +105,7 @@ fn existing_files_are_not_overwritten() {
     let output = cc67(&scratch, ["init", "."]);
     assert_eq!(
         output.render(),
-        "---- stderr\ncc67: ./first.c already exists; nothing was written\n---- exit 2\n"
+        harness::native("---- stderr\ncc67: ./first.c already exists; nothing was written\n---- exit 2\n")
     );
     let left = fs::read_dir(scratch.path()).expect("the folder is readable").count();
     assert_eq!(left, 1);

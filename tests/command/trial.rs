@@ -37,7 +37,8 @@ fn a_homing_run_is_blessed_then_broken_then_caught() {
     // 1. A project with a homing program; the answer says how to go on.
     let made = bench.step(["init", "--example", "homing", "mill"], 0);
     assert!(
-        made.stdout.contains("cc67 run mill/homing.c") && made.stdout.contains("cc67 test mill"),
+        made.stdout.contains(&harness::native("cc67 run mill/homing.c"))
+            && made.stdout.contains("cc67 test mill"),
         "{}",
         made.stdout
     );

@@ -153,6 +153,12 @@ fn execute<A: AsRef<OsStr>>(
     }
 }
 
+/// A path as this system writes it, from one with slashes.
+#[must_use]
+pub fn native(path: &str) -> String {
+    path.replace('/', std::path::MAIN_SEPARATOR_STR)
+}
+
 /// A folder of its own for one test, removed when it goes out of scope.
 #[derive(Debug)]
 pub struct Scratch(PathBuf);

@@ -200,7 +200,9 @@ fn serve(number: u64, mut connection: impl ClientConnection, desk: &Sender<Note>
             ));
             return;
         }
-        Received::Message(_) | Received::Nothing => {}
+        // Somebody who only looks whether a server listens is not a client that `--once` waits for.
+        Received::Nothing => return,
+        Received::Message(_) => {}
     }
     let (answers, inbox) = channel();
     // A desk that is closed answers nothing below.

@@ -36,12 +36,13 @@ pub(super) fn listen(path: &str, _: &super::listen::Door) -> Result<()> {
 
 #[cfg(windows)]
 mod windows {
+    use std::fs::OpenOptions;
     use std::io::ErrorKind;
     use std::num::NonZeroU32;
     use std::thread;
     use std::time::Duration;
 
-    use anyhow::{Context, anyhow};
+    use anyhow::{Context, anyhow, ensure};
     use interprocess::os::windows::named_pipe::pipe_mode::Messages;
     use interprocess::os::windows::named_pipe::{
         DuplexPipeStream, PipeListenerOptions, PipeMode, WaitTimeout,
@@ -57,11 +58,19 @@ mod windows {
     const BUFFER: u32 = 4096;
     /// How long a client waits for a free instance unless it says otherwise, in milliseconds.
     const WAIT: NonZeroU32 = NonZeroU32::new(10_000).expect("it is not 0");
+    /// The system's number for a pipe all instances of which have a client.
+    const BUSY: i32 = 231;
     /// How long nobody is let in after an instance could not be made.
     const PAUSE: Duration = Duration::from_millis(100);
 
     /// Takes connections at a pipe in the background.
     pub(in crate::cli::commands::serve) fn listen(path: &str, door: &Door) -> Result<()> {
+        // Not each system that has these pipes refuses a second server.
+        let is_served = match OpenOptions::new().read(true).write(true).open(path) {
+            Ok(_) => true,
+            Err(error) => error.raw_os_error() == Some(BUSY),
+        };
+        ensure!(!is_served, "another server listens there");
         let options = PipeListenerOptions::new()
             .path(path)
             .mode(PipeMode::Messages)
