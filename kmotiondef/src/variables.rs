@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 
 use crate::GuestAddr;
 use crate::ctype::{Bool, CType, Char, Const, GuestType, UserCallback, Volatile};
-use crate::limits::VERSION;
+use crate::limits::{N_USER_DATA_VARS, VERSION};
 use crate::place::Place;
 use crate::start::Start::{self, Address, Double, Each, Fields, Float, Int, Text, Words, Zero};
 use crate::start::Stored;
@@ -83,6 +83,25 @@ pub fn variable_around(address: GuestAddr) -> Option<&'static FirmwareVariable> 
         LazyLock::new(|| FIRMWARE_VARIABLES.iter().map(|variable| (variable.address, variable)).collect());
     let (start, variable) = BY_ADDRESS.range(..=address).next_back()?;
     (address.get() - start.get() < variable.size).then_some(*variable)
+}
+
+/// The name that programs use for `size` bytes at an address: an element of `persist.UserData`, a variable and an offset
+/// in it, or the address.
+#[must_use]
+pub fn cell_name(address: GuestAddr, size: u32) -> String {
+    let data = PERSIST.field(Persist::USER_DATA).element(0).address().get();
+    let element = address.get().wrapping_sub(data) / 4;
+    if (element as usize) < N_USER_DATA_VARS {
+        return match size {
+            8 => format!("persist.UserData[{element}] and [{}]", element + 1),
+            _ => format!("persist.UserData[{element}]"),
+        };
+    }
+    match variable_around(address) {
+        Some(variable) if variable.address == address => variable.name.to_owned(),
+        Some(variable) => format!("{} + {}", variable.name, address.get() - variable.address.get()),
+        None => address.to_string(),
+    }
 }
 
 /// Hands every row of the table of firmware variables to the macro `$m`.

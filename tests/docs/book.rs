@@ -260,6 +260,7 @@ const PARTS: &[(&str, &str)] = &[
     ("parse", "Syntax"),
     ("sema", "Types and names"),
     ("lints", "Warnings that look at the whole program"),
+    ("sharing", "Memory that threads and call-backs share"),
     ("bytecode", "Code"),
     ("c67x", "Code for the board's processor"),
     ("link", "Linking"),

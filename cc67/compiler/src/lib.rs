@@ -21,6 +21,7 @@
 //! | [`image`], [`inspect`], [`render`] | writing and showing images; diagnostics for people and tools |
 //! | [`link`], [`object`], [`target`] | units to a program; a unit's code and data, also as a file; the processor |
 //! | [`bytecode`], `c67x`, [`relocation`] | the two back ends; words that the linker completes |
+//! | `sharing` | advice about memory that programs share |
 //! | [`lower`], [`passes`] | typed tree to IR, IR to better IR |
 //! | [`sema`], [`lints`], [`firmware`] | types and meaning; searches for mistakes; what the firmware declares |
 //! | [`ir`], [`typed`], [`ty`] | the two middle forms, and the types of C; IR prints and parses |
@@ -67,6 +68,7 @@ pub mod pp;
 pub mod relocation;
 pub mod render;
 pub mod sema;
+mod sharing;
 pub mod source;
 pub mod stages;
 pub mod target;

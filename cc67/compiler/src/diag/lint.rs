@@ -148,6 +148,8 @@ macro_rules! for_each_lint {
             EndlessWait = "endless-wait", On, pass endless_wait;
             /// A signed and an unsigned value are compared.
             SignCompare = "sign-compare", Extra;
+            /// Memory that another thread or the call-back shares is changed in a way that can be interrupted.
+            Races = "races", On;
             /// The vendor's compiler accepts the construct and generates wrong code for it.
             Vendor = "vendor", Own, pass vendor;
             /// The vendor's compiler uses a wrong address for a parameter, or cannot pass it.

@@ -12,7 +12,7 @@ use std::borrow::Cow;
 use std::fmt;
 use std::hint::black_box;
 use std::panic::resume_unwind;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread;
 
@@ -37,7 +37,7 @@ use crate::pp::{Headers, HeadersRead};
 use crate::source::{FileId, SourceMap};
 use crate::target::Target;
 use crate::typed::Unit;
-use crate::{c67x, files, lints, lower, parse, pp, sema};
+use crate::{c67x, files, lints, lower, parse, pp, sema, sharing};
 
 /// The options of a compilation.
 #[derive(Clone, Debug)]
@@ -211,6 +211,9 @@ fn compile_text(request: CompileRequest<'_>, text: &Arc<Vec<u8>>, headers: Heade
     };
     if is_final {
         lints::check(&unit, &names, &sources, &options.firmware, &mut sink);
+        if !sink.has_errors() {
+            advise_alone(&unit, &sources, &mut sink);
+        }
     }
     let object = (is_final && !sink.has_errors()).then(|| object_of(&unit, &sources, options, &mut sink));
     let object = object.filter(|_| !sink.has_errors());
@@ -219,6 +222,62 @@ fn compile_text(request: CompileRequest<'_>, text: &Arc<Vec<u8>>, headers: Heade
         sink.report(no_main::remark(&included_by));
     }
     (Compilation { name, sources, sink, object, included_by }, is_final)
+}
+
+/// The firmware's pointer to the function that the servo interrupt calls.
+const USER_CALL_BACK: &str = "UserCallBack";
+
+/// Adds advice about what a program shares with its call-back, if it has one.
+fn advise_alone(unit: &Unit, sources: &SourceMap, sink: &mut Sink) {
+    let has_call_back = unit.symbols.values().any(|symbol| symbol.name == USER_CALL_BACK);
+    // The thread makes no difference to what the program shares with its call-back.
+    let thread = ThreadId::all().next().filter(|_| has_call_back);
+    let program = thread.map(|thread| sharing::ThreadProgram::new(thread, unit, sources));
+    let advice = program.iter().flat_map(sharing::advise_alone).collect::<Vec<_>>();
+    advice.into_iter().for_each(|advice| sink.report(advice));
+}
+
+/// A program to be compared with those of other threads.
+#[derive(Debug)]
+pub struct SharingProgram {
+    /// The thread.
+    pub thread: ThreadId,
+    /// The file.
+    pub path: PathBuf,
+    /// Its text.
+    pub text: Vec<u8>,
+}
+
+/// Compares programs of several threads, without those that have errors; returns for each one the advice about the memory that it
+/// shares with the others.
+#[must_use]
+pub fn advise(
+    programs: Vec<SharingProgram>,
+    options: &Options,
+    files: &(dyn pp::Files + Sync),
+) -> Vec<Compilation> {
+    on_large_stack(|| {
+        let read = |SharingProgram { thread, path, text }: SharingProgram| {
+            let mut context = CompileContext::default();
+            let request = CompileRequest { path: &path, options, files };
+            let unit = request.front(text, &mut context).unit;
+            (!context.sink.has_errors()).then_some((thread, path, unit, context.sources))
+        };
+        let units: Vec<_> = programs.into_iter().filter_map(read).collect();
+        let listed: Vec<_> = units
+            .iter()
+            .map(|(thread, _, unit, sources)| sharing::ThreadProgram::new(*thread, unit, sources))
+            .collect();
+        let advice: Vec<_> = listed.iter().map(|program| sharing::advise(program, &listed)).collect();
+        drop(listed);
+        let compilations = units.into_iter().zip(advice).map(|((_, path, _, sources), advice)| {
+            let mut sink = Sink::new();
+            advice.into_iter().for_each(|advice| sink.report(advice));
+            let name = path.to_string_lossy().into_owned();
+            Compilation { name, sources, sink, object: None, included_by: Vec::new() }
+        });
+        compilations.collect()
+    })
 }
 
 /// A request to compile a text.

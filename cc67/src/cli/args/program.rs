@@ -50,6 +50,11 @@ pub(crate) fn assign(arguments: &[impl AsRef<OsStr>]) -> Result<Vec<ProgramFile>
         .collect()
 }
 
+/// Whether an argument names a thread.
+pub(crate) fn names_thread(argument: &OsStr) -> Result<bool> {
+    Ok(split(argument)?.0.is_some())
+}
+
 /// Splits `N:FILE`. A drive letter is not a number, so Windows paths need no care; a name that is not text is all FILE.
 fn split(whole: &OsStr) -> Result<(Option<ThreadId>, PathBuf)> {
     let argument = whole.to_str().unwrap_or_default();

@@ -1,17 +1,25 @@
 //! `cc67 check`: diagnostics only.
+//!
+//! Programs that run together are compared: those of a command line that names threads, a program and those of its first
+//! line, the programs of a project file.
 
-use std::path::PathBuf;
+use std::ffi::OsString;
+use std::iter::once;
+use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clap::Args;
 use kmotiondef::ThreadId;
 use kmotiondef::timing::Timing;
 
+use crate::cli::args::beside::{Head, Project, within};
 use crate::cli::args::compiler::SourceArguments;
+use crate::cli::args::program::{ProgramFile, assign, names_thread};
 use crate::cli::io::exit::Exit;
 use crate::cli::io::input::read;
 use crate::cli::io::output;
 use crate::cli::report::diagnostics;
+use compiler::driver::{SharingProgram, advise};
 use compiler::image;
 use compiler::inspect::Inspection;
 use compiler::pp::Disk;
@@ -20,9 +28,10 @@ use compiler::target::Target;
 /// Arguments of `cc67 check`.
 #[derive(Debug, Args)]
 pub(super) struct CheckArguments {
-    /// Programs to check
-    #[arg(required_unless_present = "explain", value_name = "FILE")]
-    files: Vec<PathBuf>,
+    /// Programs to check, with `N:` in front as programs of threads that run together [default: the programs of
+    /// cc67.toml]
+    #[arg(value_name = "[N:]FILE")]
+    files: Vec<OsString>,
     /// Show the stack that each function needs on the controller, and the worst chain of calls
     #[arg(long)]
     stack: bool,
@@ -30,13 +39,14 @@ pub(super) struct CheckArguments {
     compiler: SourceArguments,
 }
 
-/// Compiles every program and reports what is wrong with it.
+/// Compiles every program and reports what is wrong with it, and with programs that run together.
 pub(super) fn check(arguments: &CheckArguments) -> Result<Exit> {
     let target = if arguments.stack { Target::C67x } else { Target::default() };
     let options = arguments.compiler.resolve(target, Timing::VENDOR)?;
     let levels = arguments.compiler.levels()?;
+    let (programs, groups) = arguments.programs()?;
     let mut has_errors = false;
-    for path in &arguments.files {
+    for path in &programs {
         let text = read(path)?;
         let mut compilation = compiler::compile(path, text, &options, &Disk);
         // Which thread it would run in makes no difference to what can be wrong.
@@ -44,10 +54,57 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<Exit> {
         let linked = compilation.link(thread, &options);
         has_errors |= diagnostics::report(&compilation, &levels, arguments.compiler.format());
         if let Some(linked) = linked.filter(|_| arguments.stack) {
-            let name =
-                if arguments.files.len() > 1 { format!("{}\n", path.display()) } else { String::new() };
+            let name = if programs.len() > 1 { format!("{}\n", path.display()) } else { String::new() };
             output::print(&(name + &Inspection::read(&image::write(&linked)?)?.stack()))?;
         }
     }
+    for group in groups {
+        let read = |ProgramFile { thread, path }| Ok(SharingProgram { thread, text: read(&path)?, path });
+        let group = group.into_iter().map(read).collect::<Result<_>>()?;
+        has_errors |=
+            diagnostics::report_all(&advise(group, &options, &Disk), &levels, arguments.compiler.format());
+    }
     Ok(if has_errors { Exit::Failure } else { Exit::Success })
+}
+
+impl CheckArguments {
+    /// The files to check, and the programs that run together.
+    fn programs(&self) -> Result<(Vec<PathBuf>, Vec<Vec<ProgramFile>>)> {
+        let of_project = || -> Result<Vec<OsString>> {
+            match Project::above(Path::new(""))? {
+                Some(project) if !project.programs().is_empty() => Ok(project.programs().to_vec()),
+                _ => {
+                    bail!("no FILE given, and no cc67.toml here or above with `programs = [\"1:main.c\", …]`")
+                }
+            }
+        };
+        let files = if self.files.is_empty() { of_project()? } else { self.files.clone() };
+        let mut is_together = self.files.is_empty();
+        for file in &files {
+            is_together |= names_thread(file)?;
+        }
+        if is_together {
+            let programs = assign(&files)?;
+            return Ok((programs.iter().map(|program| program.path.clone()).collect(), vec![programs]));
+        }
+        let paths: Vec<PathBuf> = files.into_iter().map(PathBuf::from).collect();
+        let groups = paths.iter().filter_map(|path| group_of(path).transpose()).collect::<Result<_>>()?;
+        Ok((paths, groups))
+    }
+}
+
+/// A program and those that its first line says run beside it; `None` if there are none.
+fn group_of(path: &Path) -> Result<Option<Vec<ProgramFile>>> {
+    let is_source = path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("c"));
+    let Head::Run { also, .. } = (if is_source && path.is_file() { Head::of(path)? } else { Head::None })
+    else {
+        return Ok(None);
+    };
+    if also.is_empty() {
+        return Ok(None);
+    }
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let programs: Vec<_> =
+        once(path.as_os_str().to_owned()).chain(also.iter().map(|program| within(folder, program))).collect();
+    assign(&programs).map(Some)
 }

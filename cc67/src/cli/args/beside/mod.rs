@@ -205,7 +205,7 @@ fn file_or_text(folder: &Path, value: &str) -> OsString {
 }
 
 /// `[N:]FILE` with a file relative to a folder.
-fn within(folder: &Path, program: &str) -> OsString {
+pub(crate) fn within(folder: &Path, program: &str) -> OsString {
     let file = file_of(OsStr::new(program));
     let number = program.strip_suffix(&*file.to_string_lossy()).unwrap_or_default();
     let mut joined = OsString::from(number);

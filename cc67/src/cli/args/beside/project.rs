@@ -4,6 +4,7 @@
 //! machine = "mill.toml"
 //! include = ["include"]
 //! first = ["init.c"]
+//! programs = ["1:main.c", "2:door.c"]
 //!
 //! [run]
 //! for = 5
@@ -35,6 +36,9 @@ const KEYS: &[(&str, &str)] = &[
     ("start", "--first"),
 ];
 
+/// The key of the programs.
+const PROGRAMS: &str = "programs";
+
 /// Commands that have defaults here.
 const COMMANDS: &[&str] = &["run", "test", "live", "debug"];
 
@@ -47,6 +51,8 @@ pub(crate) struct Project {
     common: Vec<OsString>,
     /// Those of each command, as keys and values.
     of_commands: BTreeMap<String, Vec<(String, Vec<OsString>)>>,
+    /// The programs of the threads, which `cc67 check` compares.
+    programs: Vec<OsString>,
 }
 
 impl Project {
@@ -82,11 +88,20 @@ impl Project {
         let table = DeTable::parse(&text)
             .map_err(|error| wrong(error.span().map_or(0, |span| span.start), error.message().to_owned()))?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        let mut project = Self { path: path.to_owned(), common: Vec::new(), of_commands: BTreeMap::new() };
+        let mut project = Self {
+            path: path.to_owned(),
+            common: Vec::new(),
+            of_commands: BTreeMap::new(),
+            programs: Vec::new(),
+        };
         for (key, value) in table.get_ref() {
             let name = key.get_ref().as_ref();
             let at = value.span().start;
-            if let Some((_, option)) = KEYS.iter().find(|(known, _)| *known == name) {
+            if name == PROGRAMS {
+                let values = values(value.get_ref(), &|text| within(folder, text));
+                project.programs =
+                    values.ok_or_else(|| wrong(at, format!("`{name}` must be a text, or several")))?;
+            } else if let Some((_, option)) = KEYS.iter().find(|(known, _)| *known == name) {
                 let word = |text: &str| if name == "board" { text.into() } else { within(folder, text) };
                 let values = values(value.get_ref(), &word);
                 for value in
@@ -112,11 +127,14 @@ impl Project {
                 }
                 project.of_commands.insert(name.to_owned(), options);
             } else {
-                let known = KEYS.iter().map(|(key, _)| *key).chain(COMMANDS.iter().copied());
+                let known =
+                    KEYS.iter().map(|(key, _)| *key).chain([PROGRAMS]).chain(COMMANDS.iter().copied());
                 let hint = match suggest(name, known) {
                     Some(near) => format!("; did you mean `{near}`?"),
-                    None => "; known: machine, board, include, first, [run], [test], [live] and [debug]"
-                        .to_owned(),
+                    None => {
+                        "; known: machine, board, include, first, programs, [run], [test], [live] and [debug]"
+                            .to_owned()
+                    }
                 };
                 return Err(wrong(key.span().start, format!("unknown key `{name}`{hint}")));
             }
@@ -128,6 +146,11 @@ impl Project {
     pub(crate) fn options(&self, command: &str) -> Vec<OsString> {
         let own = self.of_commands.get(command).into_iter().flatten();
         self.common.iter().cloned().chain(own.flat_map(|(_, words)| words.clone())).collect()
+    }
+
+    /// The programs of the threads, `[N:]FILE` each.
+    pub(crate) fn programs(&self) -> &[OsString] {
+        &self.programs
     }
 
     /// The options for a command that it knows itself, and those that the programs it runs are run with.

@@ -1,0 +1,260 @@
+//! Pairs of accesses that can go wrong, as far as the texts of the programs say.
+
+use std::collections::BTreeSet;
+
+use kmotiondef::variables::{CHAN, USER_CALL_BACK, cell_name, variable_around};
+use kmotiondef::{GuestAddr, ThreadId};
+
+use super::Cell;
+use super::accesses::{Action, CellAccess, ThreadProgram, UpdateKind};
+use super::flow::Wait;
+use crate::diag::{Diagnostic, Lint};
+use crate::typed::SymbolId;
+
+/// The way to more.
+const MORE: &str = "`cc67 explain races` has the ways that are right on the board";
+
+/// What executes accesses.
+#[derive(Clone, Copy, Debug)]
+struct SharingContext<'a> {
+    program: &'a ThreadProgram<'a>,
+    accesses: &'a [CellAccess],
+    is_call_back: bool,
+}
+
+/// The advice about a program and its call-back.
+pub(crate) fn advise_alone(program: &ThreadProgram<'_>) -> Vec<Diagnostic> {
+    let [main, call_back] = contexts(program);
+    let found = lost_updates(main, call_back).chain(torn_doubles(main, call_back));
+    found.chain(not_volatile(main, call_back)).collect()
+}
+
+/// The advice for one of several programs about what it shares with the others; of two programs that both change a
+/// cell, the one in the lower thread gets it.
+pub(crate) fn advise(program: &ThreadProgram<'_>, programs: &[ThreadProgram<'_>]) -> Vec<Diagnostic> {
+    let [main, _] = contexts(program);
+    let others = programs.iter().filter(|other| other.thread != program.thread);
+    let found = others
+        .flat_map(contexts)
+        .flat_map(|theirs| lost_updates(main, theirs).chain(torn_doubles(main, theirs)));
+    found.collect()
+}
+
+fn contexts<'a>(program: &'a ThreadProgram<'a>) -> [SharingContext<'a>; 2] {
+    [
+        SharingContext { program, accesses: program.main.as_slice(), is_call_back: false },
+        SharingContext { program, accesses: program.call_back.as_slice(), is_call_back: true },
+    ]
+}
+
+/// Statements of `ours` whose load and store `theirs` can come between.
+fn lost_updates<'a>(
+    ours: SharingContext<'a>,
+    theirs: SharingContext<'a>,
+) -> impl Iterator<Item = Diagnostic> + 'a {
+    let mut seen = BTreeSet::new();
+    let is_told = theirs.program.thread < ours.program.thread && !theirs.is_call_back;
+    let updates = ours.accesses.iter().enumerate().filter_map(|(number, access)| match access.action {
+        Action::Update(kind) => Some((number, access, kind)),
+        _ => None,
+    });
+    updates.filter_map(move |(number, access, kind)| {
+        let mut others = theirs.accesses.iter().enumerate().filter(|(_, other)| {
+            let is_change = match other.action {
+                Action::Update(_) => !is_told,
+                Action::Store(_) | Action::Change => true,
+                Action::Load | Action::Lock | Action::Unlock | Action::Start(_) => false,
+            };
+            is_change && is_same(ours, access, theirs, other)
+        });
+        let (_, other) = others.find(|(place, _)| is_conflict(ours, number, theirs, *place))?;
+        seen.insert(access.cell).then(|| lost_update((ours, access, kind), (theirs, other)))
+    })
+}
+
+fn lost_update(
+    (ours, access, kind): (SharingContext<'_>, &CellAccess, UpdateKind),
+    (theirs, other): (SharingContext<'_>, &CellAccess),
+) -> Diagnostic {
+    let cell = name(ours.program, access);
+    let effect = match other.action {
+        Action::Update(_) | Action::Change => "an update can be lost",
+        Action::Store(_) | Action::Load | Action::Lock | Action::Unlock | Action::Start(_) => {
+            "a store in between is wiped out"
+        }
+    };
+    let message = format!(
+        "{cell} is changed by a load and a store, and {} changes it too: {effect}",
+        who(theirs, other)
+    );
+    let help = match (theirs.is_call_back, kind) {
+        (true, _) => {
+            "let only one of them change it (two cells, of which each changes one); a call-back must not wait for a lock"
+        }
+        (false, UpdateKind::Bits) => "change bits with AtomicSet and AtomicClear",
+        (false, UpdateKind::Number) => "hold the same lock at both places (MutexLock, MutexUnlock)",
+    };
+    Diagnostic::warning(Lint::Races, access.span, message).help(help).note(MORE)
+}
+
+/// Stores of eight bytes in `ours` that `theirs` can read half old.
+fn torn_doubles<'a>(
+    ours: SharingContext<'a>,
+    theirs: SharingContext<'a>,
+) -> impl Iterator<Item = Diagnostic> + 'a {
+    let mut seen = BTreeSet::new();
+    let stores = ours.accesses.iter().enumerate().filter(|(_, access)| {
+        access.size == 8
+            && matches!(access.action, Action::Store(_) | Action::Update(_))
+            && !is_of_axis(access.cell)
+    });
+    stores.filter_map(move |(number, access)| {
+        let same = ours.accesses.iter().filter(|other| {
+            other.cell == access.cell && matches!(other.action, Action::Store(_) | Action::Update(_))
+        });
+        if !access.is_repeated && same.count() < 2 {
+            return None;
+        }
+        let mut loads = theirs.accesses.iter().enumerate().filter(|(_, other)| {
+            other.size == 8 && other.action == Action::Load && is_same(ours, access, theirs, other)
+        });
+        let (_, other) = loads.find(|(place, _)| {
+            is_conflict(ours, number, theirs, *place) && !comes_before(ours, number, theirs, *place)
+        })?;
+        seen.insert(access.cell).then(|| {
+            let (cell, who) = (name(ours.program, access), who(theirs, other));
+            let message = format!("the eight bytes of {cell} are stored as two words, and {who} loads them: half of the value can be old");
+            Diagnostic::warning(Lint::Races, access.span, message)
+                .help("hold the same lock at both places, or set a flag after the value and read the flag first")
+                .note(MORE)
+        })
+    })
+}
+
+/// Variables that a loop of `main` without a call waits for, that the call-back stores and that are not `volatile`.
+fn not_volatile<'a>(
+    main: SharingContext<'a>,
+    call_back: SharingContext<'a>,
+) -> impl Iterator<Item = Diagnostic> + 'a {
+    let mut seen = BTreeSet::new();
+    main.program.waits.iter().filter_map(move |Wait { cell, span }| {
+        let Cell::Variable(symbol, _) = *cell else { return None };
+        let is_stored = |access: &CellAccess| {
+            access.cell == *cell && matches!(access.action, Action::Store(_) | Action::Update(_))
+        };
+        let store = call_back.accesses.iter().find(|access| is_stored(access))?;
+        let is_volatile = is_declared_volatile(main.program, symbol);
+        (!is_volatile && seen.insert(symbol)).then(|| {
+            let name = &main.program.unit.symbols[symbol].name;
+            let message = format!("this loop waits for `{name}`, which {} stores, but the variable is not `volatile`: an optimising compiler may read it only once", who(call_back, store));
+            Diagnostic::warning(Lint::Races, *span, message).help(format!("declare it as `volatile … {name}`"))
+        })
+    })
+}
+
+/// Whether the declaration of a variable says `volatile`.
+fn is_declared_volatile(program: &ThreadProgram<'_>, symbol: SymbolId) -> bool {
+    let span = program.unit.symbols[symbol].span;
+    let Some(file) = program.sources.file_at(span.lo) else { return true };
+    let file = program.sources.file(file);
+    let before = file.text.get(..(span.hi - file.start) as usize).unwrap_or_default();
+    let start = before.iter().rposition(|byte| b";{}".contains(byte)).unwrap_or(0);
+    memchr::memmem::find(&before[start..], b"volatile").is_some()
+}
+
+/// Whether two accesses are of the same cell, which both contexts can reach.
+fn is_same(
+    ours: SharingContext<'_>,
+    access: &CellAccess,
+    theirs: SharingContext<'_>,
+    other: &CellAccess,
+) -> bool {
+    let is_own = ours.program.thread == theirs.program.thread;
+    access.cell == other.cell && (is_own || matches!(access.cell, Cell::Board(_)))
+}
+
+/// Whether nothing orders two accesses.
+fn is_conflict(ours: SharingContext<'_>, number: usize, theirs: SharingContext<'_>, place: usize) -> bool {
+    let (access, other) = (&ours.accesses[number], &theirs.accesses[place]);
+    if access.locks.intersection(&other.locks).next().is_some() {
+        return false;
+    }
+    if theirs.is_call_back && theirs.program.thread == ours.program.thread && !is_called_back(ours, number) {
+        return false;
+    }
+    if access.guards.iter().any(|guard| other.guards.iter().any(|other| guard.excludes(other))) {
+        return false;
+    }
+    let (first, second) =
+        (comes_before(ours, number, theirs, place), comes_before(theirs, place, ours, number));
+    let is_ordered = match (first, second) {
+        (true, true) => true,
+        (true, false) => !access.is_repeated,
+        (false, true) => !other.is_repeated,
+        (false, false) => false,
+    };
+    !is_ordered
+}
+
+/// Whether what `one` does at `number` is done when `other` comes to `place`: because it then stores a flag that the
+/// other has tested, or starts the other.
+fn comes_before(one: SharingContext<'_>, number: usize, other: SharingContext<'_>, place: usize) -> bool {
+    let cell = one.accesses[number].cell;
+    let guards = &other.accesses[place].guards;
+    one.accesses[number..].iter().any(|later| match later.action {
+        Action::Start(thread) => thread == other.program.thread && !other.is_call_back,
+        Action::Store(value) => {
+            later.cell != cell && guards.iter().any(|guard| guard.cell == later.cell && guard.admits(value))
+        }
+        Action::Update(_) => later.cell != cell && guards.iter().any(|guard| guard.cell == later.cell),
+        Action::Load | Action::Change | Action::Lock | Action::Unlock => false,
+    })
+}
+
+/// Whether the call-back is set where a program makes an access.
+fn is_called_back(main: SharingContext<'_>, number: usize) -> bool {
+    let cell = Cell::Board(USER_CALL_BACK.address().get());
+    let sets: Vec<_> = main
+        .accesses
+        .iter()
+        .enumerate()
+        .filter(|(_, access)| access.cell == cell && matches!(access.action, Action::Store(_)))
+        .collect();
+    let before = sets.iter().rev().find(|(place, _)| *place < number);
+    match before {
+        Some((_, access)) => access.action != Action::Store(Some(0)),
+        // A loop may come here again.
+        None => {
+            sets.is_empty()
+                || main.accesses[number].is_repeated && sets.iter().any(|(_, set)| set.is_repeated)
+        }
+    }
+}
+
+/// Whether a cell is of an axis, of which readers take the newest value.
+fn is_of_axis(cell: Cell) -> bool {
+    let Cell::Board(address) = cell else { return false };
+    variable_around(GuestAddr::new(address)).is_some_and(|variable| variable.address == CHAN.address())
+}
+
+/// What the source calls a cell.
+fn name(program: &ThreadProgram<'_>, access: &CellAccess) -> String {
+    match access.cell {
+        Cell::Board(address) => cell_name(GuestAddr::new(address), access.size),
+        Cell::Variable(symbol, 0) => program.unit.symbols[symbol].name.clone(),
+        Cell::Variable(symbol, offset) => format!("{} + {offset}", program.unit.symbols[symbol].name),
+    }
+}
+
+/// Who makes an access, and where.
+fn who(context: SharingContext<'_>, access: &CellAccess) -> String {
+    let ThreadProgram { thread, sources, .. } = context.program;
+    let place = sources.place(access.span).map_or_else(String::new, |place| {
+        format!(" at {}:{}:{}", sources.file(place.file).name, place.line, place.column)
+    });
+    if context.is_call_back {
+        format!("the call-back{place}")
+    } else {
+        format!("thread {}{place}", ThreadId::get(*thread))
+    }
+}
