@@ -14,7 +14,8 @@ use kmotiondef::variables::{
 use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId};
 use vm::bus::Bus;
 use vm::firmware::{
-    Caller, ExecutedPacket, Firmware, Outcome, Pure, SharedAccess, Signature, TickContext, Value,
+    Caller, ExecutedPacket, Firmware, NextAccess, Outcome, Pure, SharedAccess, Signature, SwitchPoint,
+    TickContext, Value,
 };
 use vm::memory::GuestMemory;
 use vm::scheduler::Turn;
@@ -277,11 +278,19 @@ impl Firmware for Kernel {
         Ok(outcome)
     }
 
-    fn accessed(&mut self, access: &SharedAccess<'_>, _: &GuestMemory) {
-        let Parts { races, out, .. } = &mut self.parts;
+    fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory) {
+        let Parts { races, out, switches, .. } = &mut self.parts;
         if let Some(races) = races {
-            races.accessed(access, out);
+            races.accessed(access, memory, out);
         }
+        if let (Some(switches), Some(thread)) = (switches, access.thread) {
+            switches.made(thread, access.at, access.address);
+        }
+    }
+
+    fn switch_at(&mut self, access: &NextAccess) -> Option<SwitchPoint> {
+        let Parts { switches, out, .. } = &mut self.parts;
+        switches.as_mut()?.at(access, out)
     }
 
     fn pure(&self, address: GuestAddr) -> Option<Pure> {
@@ -406,7 +415,8 @@ impl Firmware for Kernel {
     }
 
     fn quiet_ticks(&self, memory: &GuestMemory) -> u64 {
-        let Parts { out, io, machine, servo, pc, world, calls, clock, timing: _, races: _ } = &self.parts;
+        let Parts { out, io, machine, servo, pc, world, calls, clock, timing: _, races: _, switches: _ } =
+            &self.parts;
         let now = clock.tick_start;
         let is_quiet = servo.cache.is_settled()
             && out.console.is_idle()

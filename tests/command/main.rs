@@ -24,6 +24,7 @@ mod profile;
 mod races;
 mod real_code;
 mod run;
+mod schedules;
 mod serve;
 mod shell;
 mod targets;

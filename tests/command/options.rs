@@ -152,6 +152,11 @@ const THE_SAME: &[(&str, &str)] = &[
     ("console --fast", "the default from a script"),
     ("--as", "it matters to programs that race; `command/races.rs` tests it"),
     ("--races", "it reports only what is wrong; `command/races.rs` tests it"),
+    ("--schedule", "it matters to programs that race; `command/schedules.rs` tests it"),
+    ("--schedules", "it matters to programs that race; `command/schedules.rs` tests it"),
+    ("--seed", "it matters to programs that race; `command/schedules.rs` tests it"),
+    ("--explore", "a test starts runs with it; `command/schedules.rs` tests it"),
+    ("--golden", "a test starts runs with it; `command/schedules.rs` tests it"),
     ("test --jobs", "the results are the same with any number of processes"),
 ];
 

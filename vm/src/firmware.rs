@@ -252,8 +252,35 @@ pub struct SharedAccess<'a> {
     pub is_store: bool,
     /// The value as a register slot; 0 for the copy of a block.
     pub value: u64,
-    /// The loads in the same function whose values the stored value depends on.
+    /// The loads in the same function whose values the stored value depends on; for a load, those whose values are used
+    /// together with its own.
     pub made_of: &'a [CodeAddr],
+    /// The instant.
+    pub now: Cycles,
+}
+
+/// A point at which a thread loses the processor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SwitchPoint {
+    /// Before the access.
+    Before,
+    /// Between the two words of a store of eight bytes.
+    BetweenWords,
+}
+
+/// An access to shared memory that a thread is about to make.
+#[derive(Clone, Copy, Debug)]
+pub struct NextAccess {
+    /// The thread.
+    pub thread: ThreadId,
+    /// The instruction.
+    pub at: CodeAddr,
+    /// The place.
+    pub address: GuestAddr,
+    /// The number of bytes.
+    pub size: u32,
+    /// True for a store.
+    pub is_store: bool,
     /// The instant.
     pub now: Cycles,
 }
@@ -347,6 +374,13 @@ pub trait Firmware: Bus {
     /// A program has made an access; reported where the machine [observes](crate::machine::Config::observed) them.
     fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory) {
         let _ = (access, memory);
+    }
+
+    /// Returns where a thread loses the processor at an access to shared memory that it is about to make, if it does; asked
+    /// where the machine [observes](crate::machine::Config::observed) them, again if another slice ends before the access.
+    fn switch_at(&mut self, access: &NextAccess) -> Option<SwitchPoint> {
+        let _ = access;
+        None
     }
 
     /// A thread was stopped by a trap, or the call-back, which the kernel must then take out.

@@ -34,7 +34,7 @@ use self::split::Split;
 use self::steps::{NextStep, Stepping};
 use crate::call::CallArguments;
 use crate::engine::{ContextId, Executor, ForeignSnapshot, FrameView, Hold, Preemption, Slice, Stack, Stop};
-use crate::firmware::{Firmware, Outcome};
+use crate::firmware::{Firmware, Outcome, SwitchPoint};
 use crate::memory::GuestMemory;
 use crate::operand::SigRef;
 use crate::program::Program;
@@ -226,6 +226,15 @@ fn run<F: Firmware + ?Sized>(
         let is_alone = matches!(exit, Exit::Shared);
         if is_alone {
             let access = steps.observer.as_mut().and_then(|observer| observer.about_to(program, context));
+            if let Some(access) = access.as_ref().filter(|_| !context.has_high_word())
+                && let Some(point) = access.switch_at(id, slice)
+            {
+                if point == SwitchPoint::BetweenWords && context.stores_low_word(program, slice)? {
+                    access.report(id, context, slice);
+                }
+                slice.budget = Cycles::default();
+                return Ok(Stop::Preempted);
+            }
             match context.next_step(program, words, slice)? {
                 NextStep::Held => return Ok(Stop::Held),
                 step @ (NextStep::Preempted | NextStep::StoredLowWord) => {

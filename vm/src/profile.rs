@@ -12,7 +12,9 @@ use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 
 use crate::bus::Bus;
 use crate::engine::{ContextId, Executor, ForeignSnapshot, Preemption, Slice, Stack, Stop};
-use crate::firmware::{Caller, Firmware, Outcome, SharedAccess, Signature, TickContext, Value};
+use crate::firmware::{
+    Caller, Firmware, NextAccess, Outcome, SharedAccess, Signature, SwitchPoint, TickContext, Value,
+};
 use crate::interp::{BytecodeEngine, BytecodeSnapshot};
 use crate::memory::GuestMemory;
 use crate::op::Op;
@@ -257,6 +259,10 @@ impl<F: Firmware + ?Sized> Firmware for Metered<'_, F> {
 
     fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory) {
         self.firmware.accessed(access, memory);
+    }
+
+    fn switch_at(&mut self, access: &NextAccess) -> Option<SwitchPoint> {
+        self.firmware.switch_at(access)
     }
 
     fn callback(&self, memory: &GuestMemory) -> GuestAddr {

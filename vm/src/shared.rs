@@ -1,17 +1,18 @@
 //! Memory that threads can share, and what a program does to it as far as its text says.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use kmotiondef::map::{
     CALLBACK_STACK_BASE, IRAM, PROGRAM_BASE, PROGRAM_LIMIT, SDRAM, STACK_BASE, STACK_SIZE,
 };
+use kmotiondef::variables::USER_CALL_BACK;
 use kmotiondef::{CodeAddr, GuestAddr};
 
 use crate::for_each_op;
 use crate::kind::{Name, OpKind};
 use crate::op::Op;
 use crate::operand::{Addr, OperandType};
-use crate::program::Program;
+use crate::program::{Function, Program};
 
 /// Number of instructions before a store that are searched for the loads of its value.
 const REACH: usize = 400;
@@ -26,7 +27,19 @@ pub(crate) const fn is_shared(address: u32) -> bool {
     (in_sdram && !is_stack && !is_program) || in_iram
 }
 
+/// Whether an address is in the space of programs, where a call-back meets the thread that it interrupts.
+#[inline(always)]
+pub(crate) const fn is_of_program(address: u32) -> bool {
+    address >= PROGRAM_BASE && address < PROGRAM_LIMIT
+}
+
 impl Program {
+    /// Whether the program sets the call-back.
+    pub(crate) fn has_call_back(&self) -> bool {
+        let cell = USER_CALL_BACK.address().get();
+        self.ops().iter().any(|op| op.operand::<Addr>(Name::Addr).is_some_and(|Addr(at)| at == cell))
+    }
+
     /// The shared cells of constant address that the program changes by a load and a store: what another thread stores
     /// in between is lost.
     #[must_use]
@@ -86,21 +99,91 @@ pub(crate) fn loads_of(program: &Program, word: usize) -> Vec<CodeAddr> {
     let (Some(op), Some(function)) = (program.ops().get(word), program.function_around(word)) else {
         return Vec::new();
     };
-    let mut wanted: BTreeSet<u16> = registers(op).sources.first().copied().into_iter().collect();
-    let mut loads = Vec::new();
+    registers(op).sources.first().map_or(Vec::new(), |value| origin(program, function, word, *value).loads)
+}
+
+/// Where the value of a register comes from.
+#[derive(Debug, Default)]
+struct Origin {
+    /// The loads that it is made of.
+    loads: Vec<CodeAddr>,
+    /// The registers that it is computed with, itself among them.
+    registers: BTreeSet<u16>,
+}
+
+/// Where the value of `register` at `word` comes from, as the instructions before it are written.
+fn origin(program: &Program, function: &Function, word: usize, register: u16) -> Origin {
+    let mut wanted = BTreeSet::from([register]);
+    let mut found = Origin { loads: Vec::new(), registers: wanted.clone() };
     for at in (function.body.start..word).rev().take(REACH) {
+        if wanted.is_empty() {
+            break;
+        }
         let op = &program.ops()[at];
-        let found = registers(op);
-        if !found.assigned.is_some_and(|register| wanted.remove(&register)) {
+        let used = registers(op);
+        if !used.assigned.is_some_and(|register| wanted.remove(&register)) {
             continue;
         }
         if matches!(op.kind(), OpKind::Load(_)) {
-            loads.push(program.address_of(at));
+            found.loads.push(program.address_of(at));
         } else {
-            wanted.extend(found.sources);
+            found.registers.extend(&used.sources);
+            wanted.extend(used.sources);
         }
     }
-    loads
+    found
+}
+
+/// The loads of a function whose values it uses together: by load, the others, and itself if a loop adds up what it
+/// loads. The limit of a loop belongs to what the loop loads.
+pub(crate) fn loads_together(
+    program: &Program,
+    function: &Function,
+) -> BTreeMap<CodeAddr, BTreeSet<CodeAddr>> {
+    let mut together: BTreeMap<CodeAddr, BTreeSet<CodeAddr>> = BTreeMap::new();
+    let mut join = |one: &[CodeAddr], other: &[CodeAddr]| {
+        for (one, other) in one.iter().flat_map(|one| other.iter().map(move |other| (*one, *other))) {
+            together.entry(one).or_default().insert(other);
+            together.entry(other).or_default().insert(one);
+        }
+    };
+    let mut pointers = Vec::new();
+    for word in function.body.clone() {
+        let op = &program.ops()[word];
+        if let (OpKind::Load(_), Some(base)) = (op.kind(), registers(op).sources.first()) {
+            pointers.push((program.address_of(word), origin(program, function, word, *base).registers));
+        }
+    }
+    for word in function.body.clone() {
+        let op = &program.ops()[word];
+        if op.kind() != OpKind::Arithmetic {
+            continue;
+        }
+        let OpRegisters { assigned, sources } = registers(op);
+        let is_test = assigned.is_some_and(|result| is_tested(program, word, result));
+        let [left, right] = sources[..] else { continue };
+        let origins = [left, right].map(|register| origin(program, function, word, register));
+        let [one, other] = &origins;
+        join(&one.loads, &other.loads);
+        for (sum, (loads, index)) in [(left, (&other.loads, one)), (right, (&one.loads, other))] {
+            if assigned == Some(sum) {
+                join(loads, loads);
+            }
+            if index.loads.is_empty() && is_test {
+                let indexed = pointers.iter().filter(|(_, used)| used.contains(&sum));
+                let indexed: Vec<_> = indexed.map(|(load, _)| *load).collect();
+                join(loads, &indexed);
+            }
+        }
+    }
+    together
+}
+
+/// Whether a branch soon after `word` depends on `result`.
+fn is_tested(program: &Program, word: usize, result: u16) -> bool {
+    let next = program.ops().iter().skip(word + 1).take(4);
+    let mut branches = next.filter(|op| op.kind() == OpKind::Branch);
+    branches.any(|op| registers(op).sources.contains(&result))
 }
 
 #[cfg(test)]
@@ -120,5 +203,23 @@ mod tests {
         assert!(updated(&format!("{load}const_i32 r1, 3\nstore_i32_at r1, 0x10000040")).is_empty());
         let own = load.replace("0x1000", "0x8006").replace("r0, 1", "r0, 1\nstore_i32_at r1, 0x80060040");
         assert!(updated(&own).is_empty());
+    }
+
+    #[test]
+    fn loads_that_are_used_together_are_found() {
+        let together = |body: &str| {
+            let text = format!("@main: func sig0, 4, 0\ntypes 0\ncharge 99\n{body}\nret");
+            let program = program(1, &text);
+            let found = loads_together(&program, &program.functions()[0]);
+            let word =
+                |load: &CodeAddr| program.word_at(*load).unwrap_or(0) - program.functions()[0].body.start;
+            let words = |loads: &BTreeSet<CodeAddr>| loads.iter().map(word).collect::<Vec<_>>();
+            found.iter().map(|(load, others)| (word(load), words(others))).collect::<Vec<_>>()
+        };
+        let loads = "load_i32_at r0, 0x10000040\nload_i32_at r1, 0x10000044\n";
+        let none: Vec<(usize, Vec<usize>)> = Vec::new();
+        assert_eq!(together(&format!("{loads}add_i32 r2, r0, r1")), [(1, vec![2]), (2, vec![1])]);
+        assert_eq!(together(&format!("{loads}add_i32_imm r2, r0, 1\nadd_i32_imm r3, r1, 1")), none);
+        assert_eq!(together("load_i32_at r0, 0x10000040\nadd_i32 r1, r1, r0"), [(1, vec![1])]);
     }
 }

@@ -44,6 +44,7 @@ mod client;
 mod error;
 mod message;
 pub mod remark;
+mod schedule;
 pub mod session;
 mod setup;
 mod state;
@@ -56,6 +57,7 @@ pub use compiler::Options;
 pub use error::{CompileError, HostError, SnapshotError};
 pub use message::fill;
 pub use remark::SourceCall;
+pub use schedule::Schedule;
 pub use session::{
     Attendant, End, Ending, EndingAxis, EndingThread, History, Idle, Input, Interrupter, Session, Setup,
     Snapshot, Timeline, TimelineError, Until, Watch, WatchError,

@@ -151,6 +151,11 @@ pub trait Target {
         Vec::new()
     }
 
+    /// The threads that have run on an engine that does not split statements in the fast form; empty where unknown.
+    fn threads_that_ran(&self) -> Vec<ThreadId> {
+        Vec::new()
+    }
+
     /// Two threads that change the same cell by a load and a store, and the name of the cell; `None` where that is unknown.
     fn contended_cell(&self) -> Option<(ThreadId, ThreadId, String)> {
         None

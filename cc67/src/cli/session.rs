@@ -13,7 +13,8 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use cc67_debug::dap::AttachPoint;
 use cc67_host::{
-    AnyTarget, Attendant, BootedFirmware, BootedTarget, End, HostError, Idle, Session, Target, UserProgram,
+    AnyTarget, Attendant, BootedFirmware, BootedTarget, End, HostError, Idle, Schedule, Session, Target,
+    UserProgram,
 };
 use compiler::Options;
 use compiler::target::Target as CodeTarget;
@@ -140,6 +141,12 @@ impl Setup {
         self
     }
 
+    /// The same by a schedule.
+    pub(crate) fn with_schedule(mut self, schedule: &Schedule) -> Result<Self> {
+        self.session.schedule(schedule)?;
+        Ok(self)
+    }
+
     /// Does the work of a command on the target that was requested.
     pub(crate) fn on_its_target(self, work: impl Work) -> Result<Exit> {
         match self.code {
@@ -255,7 +262,7 @@ impl Described {
         let flashed = flash.contents();
         let config =
             Config { machine, files: disk, machine_file, answers, flash: flashed, ..Config::default() };
-        let session = cc67_host::Setup {
+        let mut session = cc67_host::Setup {
             config,
             options,
             programs: loaded,
@@ -266,6 +273,9 @@ impl Described {
             uart_input: uart.uart_input.as_deref().map(read).transpose()?.unwrap_or_default(),
             hears_uart: uart.uart.is_some() || uart.uart_output.is_some(),
         };
+        if let Some(schedule) = &board.schedule {
+            session.schedule(schedule)?;
+        }
         Ok(Some(Self { session, uart, flash }))
     }
 }

@@ -17,7 +17,7 @@ pub mod surroundings;
 
 pub use snapshot::BoardSnapshot;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::map::FLASH;
 use kmotiondef::structs::Persist;
 use kmotiondef::timing::Timing;
-use kmotiondef::variables::PERSIST;
+use kmotiondef::variables::{PERSIST, cell_name};
 use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
 use vm::engine::Engine;
 use vm::interp::BytecodeEngine;
@@ -35,7 +35,7 @@ use vm::thread::ThreadState;
 
 use crate::board::debug::{CodeDetail, DebugInfo};
 use crate::board::machine_file::{MachineFile, NS_PER_INSTRUCTION};
-use crate::firmware::races;
+use crate::firmware::races::switches::Switches;
 use crate::io::flash::FLASH_SIZE;
 use crate::kernel::Kernel;
 use crate::out::{Event, EventKind, Remark, Request, Speaker};
@@ -60,6 +60,9 @@ pub struct Config {
     pub timing: Timing,
     /// What is connected to the board.
     pub machine_file: MachineFile,
+    /// The numbers of accesses to shared memory, from 1, before which a thread loses the processor; for a board whose
+    /// accesses are [observed](MachineConfig::observed).
+    pub switches: BTreeSet<u64>,
     /// What flash memory holds, [`FLASH_SIZE`] bytes; `None` for a board whose flash was never written.
     pub flash: Option<Vec<u8>>,
 }
@@ -74,6 +77,7 @@ impl Default for Config {
             bss_fill: 0,
             timing: Timing::default(),
             machine_file: MachineFile::default(),
+            switches: BTreeSet::new(),
             flash: None,
         }
     }
@@ -141,6 +145,8 @@ impl<E: Engine> Board<E> {
         kernel.parts.pc.host.answer_with(config.answers.unwrap_or_else(|| connected.pc.answers.clone()));
         kernel.parts.timing = config.timing;
         kernel.parts.races = config.machine.observed.then(Box::default);
+        kernel.parts.switches =
+            (!config.switches.is_empty()).then(|| Box::new(Switches::new(config.switches)));
         connect::install(&mut kernel.parts, connected);
         let servo = connected.cpu.servo_us.map(|time| Cycles::new((time * CYCLES_PER_US) as i64));
         let settings = MachineConfig {
@@ -324,7 +330,7 @@ impl<E: Engine> Board<E> {
             .flat_map(|(index, one)| programs.iter().skip(index + 1).map(move |other| (one, other)));
         pairs.find_map(|((one, cells), (other, theirs))| {
             let cell = cells.intersection(theirs).next()?;
-            Some((*one, *other, races::name_of(cell.get(), 4)))
+            Some((*one, *other, cell_name(*cell, 4)))
         })
     }
 

@@ -57,8 +57,12 @@ impl<E: Engine> Board<E> {
         let extent = start..ends.max().unwrap_or(start);
         let named =
             |object: &ObjectInfo| Named { name: object.name.clone(), start: object.start, size: object.size };
-        let objects = prepared.debug.objects().iter().map(named).collect();
-        self.machine.firmware_mut().0.parts.calls.notices.load(thread, objects);
+        let objects: Arc<[Named]> = prepared.debug.objects().iter().map(named).collect();
+        let parts = &mut self.machine.firmware_mut().0.parts;
+        if let Some(races) = &mut parts.races {
+            races.load(thread, Arc::clone(&objects));
+        }
+        parts.calls.notices.load(thread, objects);
         self.load_code(thread, prepared.code, prepared.entry);
         self.programs_mut().loaded[thread.index()] =
             Some(Loaded { debug: prepared.debug.with_details(details), extent });
@@ -143,6 +147,12 @@ impl<E: Engine> Board<E> {
             }
             other => other,
         };
+        if code.program().is_none() {
+            let (kernel, context) = self.machine.firmware_mut();
+            if kernel.parts.races.is_some() {
+                kernel.parts.out.remark(context.now, Message::NotWatched { thread });
+            }
+        }
         self.machine.load(thread, code, entry);
     }
 

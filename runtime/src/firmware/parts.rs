@@ -12,6 +12,7 @@ use vm::scheduler::Turn;
 
 use super::calls::Calls;
 use super::races::Races;
+use super::races::switches::Switches;
 use crate::io::remark_on;
 use crate::io::{Io, bits};
 use crate::machine::{Lines, Machine};
@@ -49,6 +50,8 @@ pub(crate) struct Parts {
     pub(crate) timing: Timing,
     /// What threads do to memory that they share, where that is looked at.
     pub(crate) races: Option<Box<Races>>,
+    /// The switches of a schedule.
+    pub(crate) switches: Option<Box<Switches>>,
 }
 
 impl Parts {
@@ -70,6 +73,7 @@ impl Parts {
             },
             timing: Timing::Fast,
             races: None,
+            switches: None,
         }
     }
 

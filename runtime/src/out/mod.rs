@@ -16,6 +16,7 @@ use vm::trap::Trap;
 
 pub(crate) use console::Console;
 pub use record::Record;
+pub(crate) use remarks::LOST_AT;
 pub use remarks::{Message, OtherPlace, REMARKS, Remark, RemarkRow, Severity, Speaker};
 
 /// Begins a console line on the wire, and a line to the board that is not echoed.

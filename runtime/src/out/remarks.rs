@@ -225,16 +225,37 @@ macro_rules! messages {
     };
 }
 
+/// The words between a loss and its instant.
+pub(crate) const LOST_AT: &str = " at ";
+
 impl Message {
+    /// Reports whether it says that an update was lost or that half of what was read was old, rather than that this can
+    /// happen.
+    #[must_use]
+    pub fn is_loss(&self) -> bool {
+        match self {
+            Self::RaceUpdate { effect, .. }
+            | Self::RaceStore { effect, .. }
+            | Self::RaceCallBack { effect, .. }
+            | Self::RaceRecord { effect, .. } => effect.contains(LOST_AT),
+            _ => false,
+        }
+    }
+
     /// The second place of a remark about two.
     #[must_use]
     pub const fn other(&self) -> Option<OtherPlace> {
         match self {
             Self::RaceUpdate { other, .. }
             | Self::RaceStore { other, .. }
+            | Self::RaceCallBack { other, .. }
             | Self::RaceClaim { other, .. }
             | Self::RaceTorn { other, .. }
             | Self::RaceTornStore { other, .. }
+            | Self::RaceRecord { other, .. }
+            | Self::ReadEarly { other, .. }
+            | Self::PauseOvertaken { other, .. }
+            | Self::RaceShared { other, .. }
             | Self::RaceRequest { other, .. }
             | Self::RaceRelays { other }
             | Self::OrderEarly { other, .. }
@@ -248,9 +269,18 @@ messages! {
     /// Two threads change a cell by a load and a store, so that one can wipe out what the other has stored.
     RaceUpdate { other: OtherPlace, cell: String, effect: String } = "race-update", Warning, [always],
         "and {other} both change {cell} by a load and a store: {effect}. Hold the same lock at both places (MutexLock, MutexUnlock), or change bits with AtomicSet and AtomicClear";
+    /// A thread changes a cell by a load and a store, and its call-back changes it too.
+    RaceCallBack { other: OtherPlace, cell: String, effect: String } = "race-call-back", Warning, [always],
+        "changes {cell} by a load and a store, and {other} changes it too, which can come in between: {effect}. Let only one of them change it (two cells, of which each changes one), or change bits with AtomicSet and AtomicClear; a call-back must not wait for a lock";
+    /// A schedule switches threads before an access.
+    Switched { does: &'static str, cell: String } = "switched", Warning, [always],
+        "another thread runs {does} {cell}: a switch of the schedule";
+    /// A program whose accesses cannot be watched is loaded.
+    NotWatched { thread: ThreadId } = "not-watched", Warning, [per thread],
+        "the program in thread {thread} is code for the controller's processor, whose accesses `--races` does not see: compile its source without `--engine dsp`, `--timing cc67` and `--target c67x`";
     /// A thread stores to a cell that another changes by a load and a store.
-    RaceStore { other: OtherPlace, cell: String } = "race-store", Warning, [always],
-        "stores to {cell}, which {other} changes by a load and a store: a store in between is wiped out. Hold the same lock at both places (MutexLock, MutexUnlock)";
+    RaceStore { other: OtherPlace, cell: String, effect: String } = "race-store", Warning, [always],
+        "stores to {cell}, which {other} changes by a load and a store: {effect}. Hold the same lock at both places (MutexLock, MutexUnlock)";
     /// Two threads test the same cell and take it if it is free.
     RaceClaim { other: OtherPlace, cell: String } = "race-claim", Warning, [always],
         "and {other} both test whether {cell} is free and then set it: both can find it free. Take it with TestAndSet or MutexLock";
@@ -260,6 +290,18 @@ messages! {
     /// A thread stores a value of eight bytes while another loads it.
     RaceTornStore { other: OtherPlace, cell: String } = "race-torn-store", Warning, [always],
         "stores the eight bytes of {cell} as two words, and {other} loads them: half of the value can be old. Hold the same lock at both places, or set a flag after the value and read the flag first";
+    /// A thread reads values that belong together while another changes them.
+    RaceRecord { other: OtherPlace, cell: String, effect: String } = "race-record", Warning, [always],
+        "reads {cell} together with other cells, which {other} changes: {effect}. Hold the same lock while all of them are stored and while all are read, or set a flag after the last store and read the flag first";
+    /// A thread reads a cell before another stores its first value there.
+    ReadEarly { other: OtherPlace, cell: String } = "read-early", Warning, [always],
+        "reads {cell} once, before {other} stores its first value there, and nothing makes it wait for that. Set a flag after the store and wait for the flag before the read, or start the thread after the store";
+    /// A thread tests a cell and pauses itself, and the one that stores the cell and resumes it can come in between.
+    PauseOvertaken { other: OtherPlace, cell: String } = "pause-overtaken", Warning, [always],
+        "tests {cell} and then pauses itself, but {other} can store it and call ResumeThread in between, which then has no effect: the thread stays paused. Wait in a loop on the cell with WaitNextTimeSlice()";
+    /// Two threads use something that the board has once.
+    RaceShared { other: OtherPlace, what: &'static str } = "race-shared", Warning, [always],
+        "and {other} both use {what}, of which the board has one, and nothing makes one wait for the other: the second call takes it from the first. Hold the same lock from the first call until it is done";
     /// Two threads send requests to the PC without an order between them.
     RaceRequest { other: OtherPlace, cell: String } = "race-request", Warning, [always],
         "and {other} both send requests to the PC through {cell}: the second overwrites the first, and both threads see the answer of one. Hold the same lock from the request to its answer";

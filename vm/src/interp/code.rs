@@ -45,10 +45,13 @@ impl Word {
     pub(super) const HELD: Self = Self::new(BREAK, [BREAK, 0, 0, 0]);
 
     /// The word of an instruction whose accesses to shared memory are reported.
-    fn observed(op: &Op) -> Self {
+    fn observed(op: &Op, has_call_back: bool) -> Self {
         let plain = Self::plain(op);
+        let is_plain =
+            |address| !(observe::is_shared(address) || has_call_back && observe::is_of_program(address));
         match observe::place_of(op) {
-            Some(AccessPlace::Constant(address)) if !observe::is_shared(address) => plain,
+            Some(AccessPlace::Constant(address)) if is_plain(address) => plain,
+            Some(AccessPlace::Register) if has_call_back => Self { handler: SHARED, ..plain },
             Some(AccessPlace::Register) => Self { handler: OBSERVED, ..plain },
             Some(AccessPlace::Constant(_) | AccessPlace::Block) => Self { handler: SHARED, ..plain },
             None => plain,
@@ -103,8 +106,9 @@ impl Encoded {
         let is_observed =
             |pc: usize, op: &Op| observed && !is_held(pc, op) && observe::place_of(op).is_some();
         let mut words = encode(program, &|pc, op| is_held(pc, op) || is_observed(pc, op));
+        let has_call_back = observed && program.has_call_back();
         for (pc, op) in program.ops().iter().enumerate().filter(|(pc, op)| is_observed(*pc, op)) {
-            words[pc] = Word::observed(op);
+            words[pc] = Word::observed(op, has_call_back);
         }
         Self { words, observed }
     }

@@ -3,20 +3,20 @@
 //! A load or store through a register tests its address before it is executed; a constant address is tested once. An
 //! instruction with a shared access leaves the execution, is executed alone and reported; the results stay the same.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use kmotiondef::{CodeAddr, GuestAddr};
 
 use super::context::Context;
 use crate::engine::{ContextId, Slice};
-use crate::firmware::{Firmware, SharedAccess};
+use crate::firmware::{Firmware, NextAccess, SharedAccess, SwitchPoint};
 use crate::kind::{Name, OpKind};
 use crate::op::Op;
 use crate::operand::{Addr, Count, Off, RegI32};
 use crate::program::Program;
-pub(super) use crate::shared::is_shared;
-use crate::shared::{loads_of, registers};
+pub(super) use crate::shared::{is_of_program, is_shared};
+use crate::shared::{loads_of, loads_together, registers};
 
 /// The form of an access's address.
 #[derive(Clone, Copy, Debug)]
@@ -56,9 +56,16 @@ pub(super) fn place_of(op: &Op) -> Option<AccessPlace> {
     }
 }
 
-/// The loads that stored values are made of, by instruction.
+/// Facts about the text of programs, computed when first needed.
 #[derive(Debug, Default)]
-pub(super) struct Observer(BTreeMap<CodeAddr, Arc<[CodeAddr]>>);
+pub(super) struct Observer {
+    /// The loads that stored values depend on, or that are used with a load, by instruction.
+    loads: BTreeMap<CodeAddr, Arc<[CodeAddr]>>,
+    /// The functions whose loads are known.
+    functions: BTreeSet<CodeAddr>,
+    /// Whether programs share their own data with a call-back, by where they begin.
+    has_call_back: BTreeMap<GuestAddr, bool>,
+}
 
 /// An access that is about to be made.
 #[derive(Debug)]
@@ -75,7 +82,22 @@ pub(super) struct Pending {
 impl Observer {
     /// Forgets what it knows of programs.
     pub(super) fn forget(&mut self) {
-        self.0.clear();
+        *self = Self::default();
+    }
+
+    /// What the access of the word `pc` is made of, or used with if it is a load.
+    fn loads_at(&mut self, program: &Program, pc: usize, is_store: bool) -> Arc<[CodeAddr]> {
+        let at = program.address_of(pc);
+        if is_store {
+            return Arc::clone(self.loads.entry(at).or_insert_with(|| loads_of(program, pc).into()));
+        }
+        if let Some(function) = program.function_around(pc)
+            && self.functions.insert(program.address_of(function.body.start))
+        {
+            let together = loads_together(program, function);
+            self.loads.extend(together.into_iter().map(|(at, loads)| (at, loads.into_iter().collect())));
+        }
+        Arc::clone(self.loads.entry(at).or_default())
     }
 
     /// The access that the present instruction of `context` is about to make, if it is to shared memory.
@@ -100,45 +122,54 @@ impl Observer {
                 vec![(address, op.kind().width()?.bytes(), is_store(&op))]
             }
         };
+        let has_call_back = self.has_call_back.entry(program.base());
+        let has_call_back = *has_call_back.or_insert_with(|| program.has_call_back());
         let parts: Vec<_> = parts
             .into_iter()
-            .filter(|(address, ..)| is_shared(*address))
+            .filter(|(address, ..)| is_shared(*address) || has_call_back && is_of_program(*address))
             .map(|(address, size, is_store)| (GuestAddr::new(address), size, is_store))
             .collect();
         if parts.is_empty() {
             return None;
         }
         let stored = registers(&op).sources.first().map_or(0, |register| context.get(*register));
-        let made_of = if is_store(&op) {
-            Arc::clone(self.0.entry(at).or_insert_with(|| loads_of(program, pc).into()))
-        } else {
-            Arc::from([])
-        };
+        let made_of = self.loads_at(program, pc, is_store(&op));
         Some(Pending { op, at, made_of, parts, stored })
     }
 }
 
 impl Pending {
+    /// The point at which the thread loses the processor there, if it does.
+    pub(super) fn switch_at<F: Firmware + ?Sized>(
+        &self,
+        id: ContextId,
+        slice: &mut Slice<'_, F>,
+    ) -> Option<SwitchPoint> {
+        let (thread, (address, size, is_store)) = (id.thread()?, self.parts.first().copied()?);
+        let (at, now) = (self.at, slice.now());
+        slice.firmware.switch_at(&NextAccess { thread, at, address, size, is_store, now })
+    }
+
     /// Reports the access, which has been made.
     pub(super) fn report<F: Firmware + ?Sized>(
-        self,
+        &self,
         id: ContextId,
         context: &Context,
         slice: &mut Slice<'_, F>,
     ) {
         let Self { op, at, made_of, parts, stored } = self;
         let now = slice.now();
-        for (address, size, is_store) in parts {
-            let loaded = registers(&op).assigned.map_or(0, |register| context.get(register));
+        for (address, size, is_store) in parts.iter().copied() {
+            let loaded = registers(op).assigned.map_or(0, |register| context.get(register));
             let value = if op.kind() == OpKind::Block {
                 0
             } else if is_store {
-                stored
+                *stored
             } else {
                 loaded
             };
             let thread = id.thread();
-            let access = SharedAccess { thread, at, address, size, is_store, value, made_of: &made_of, now };
+            let access = SharedAccess { thread, at: *at, address, size, is_store, value, made_of, now };
             slice.firmware.accessed(&access, slice.memory);
         }
     }

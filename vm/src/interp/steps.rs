@@ -7,6 +7,7 @@ use kmotiondef::{Cycles, GuestAddr};
 use super::code::{Word, Words};
 use super::context::Context;
 use super::observe::Observer;
+use super::split::Split;
 use crate::engine::{Preemption, Slice};
 use crate::firmware::Firmware;
 use crate::kind::{Name, OpKind, Width};
@@ -110,6 +111,30 @@ impl Context {
         }
         self.end_step();
         Ok(NextStep::Execute)
+    }
+
+    /// Whether the high word of the present instruction is still to be stored.
+    pub(super) fn has_high_word(&self) -> bool {
+        self.split.as_ref().is_some_and(|split| split.high_word.is_some())
+    }
+
+    /// Stores the low word of the present instruction, which is a store of eight bytes, and leaves the high word for the
+    /// next slice; `false` if it cannot be parted.
+    pub(super) fn stores_low_word<F: Firmware + ?Sized>(
+        &mut self,
+        program: &Program,
+        slice: &mut Slice<'_, F>,
+    ) -> Result<bool, TrapKind> {
+        let Some((address, width, slot)) = self.store_of_two_words(program) else { return Ok(false) };
+        let Some(word) = slice.store_low_word(address, width, slot)? else {
+            // It has been stored as a whole.
+            self.calls.pc += 1;
+            return Ok(true);
+        };
+        let pc = self.calls.pc;
+        let alone = || Split { steps: [(pc, 0)].into(), next: 0, high_word: None };
+        self.split.get_or_insert_with(alone).high_word = Some(word);
+        Ok(true)
     }
 
     /// The present instruction is the last one in steps if none is left.

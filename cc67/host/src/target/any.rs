@@ -93,6 +93,7 @@ impl Target for AnyTarget {
         fn runs_processor_code(&self, thread: ThreadId) -> Option<bool>;
         fn standing_threads(&self) -> Vec<StandingThread>;
         fn standing_axes(&self) -> Vec<StandingAxis>;
+        fn threads_that_ran(&self) -> Vec<ThreadId>;
         fn contended_cell(&self) -> Option<(ThreadId, ThreadId, String)>;
         fn moving(&self) -> Vec<AxisId>;
         fn read(&self, address: GuestAddr, bytes: &mut [u8]) -> Result<(), HostError>;

@@ -123,6 +123,10 @@ impl<E: Engine> Target for Board<E> {
         self.standing_axes()
     }
 
+    fn threads_that_ran(&self) -> Vec<ThreadId> {
+        ThreadId::all().filter(|thread| self.machine().ran().contains(*thread)).collect()
+    }
+
     fn contended_cell(&self) -> Option<(ThreadId, ThreadId, String)> {
         self.contended_cell()
     }

@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, ensure};
+use cc67_host::Schedule;
 use clap::{Args, ValueEnum};
 use compiler::words::suggest;
 use runtime::{Directory, HostFiles, MachineFile, Overlay, REMARKS};
@@ -60,6 +61,9 @@ pub(crate) struct BoardArguments {
     /// twice, values read half old, locks in opposite orders; programs are interpreted
     #[arg(long)]
     pub(crate) races: bool,
+    /// Run by a schedule of `cc67 test --schedules`: a seed, or its parts (start2+7,switch57); as with --as board and --races
+    #[arg(long, value_name = "SEED")]
+    pub(crate) schedule: Option<Schedule>,
     /// Switch a remark off (`-R no-CODE`) or on again (`-R CODE`); `cc67 explain remarks` lists the codes
     #[arg(short = 'R', value_name = "no-CODE")]
     remarks: Vec<String>,
@@ -113,12 +117,17 @@ impl BoardArguments {
         self.engine.unwrap_or_default()
     }
 
+    /// Returns how close to the board the run is.
+    pub(crate) fn form(&self) -> RunForm {
+        if self.schedule.is_some() { RunForm::Board } else { self.form }
+    }
+
     /// Returns how the machine works.
     pub(crate) fn machine_config(&self) -> MachineConfig {
         MachineConfig {
             shortcuts: !self.no_shortcuts,
-            preemption: self.form.preemption(),
-            observed: self.races,
+            preemption: self.form().preemption(),
+            observed: self.races || self.schedule.is_some(),
             ..MachineConfig::default()
         }
     }
@@ -128,6 +137,7 @@ impl BoardArguments {
         ensure!(self.engine.is_none(), "`--engine` does not work with `--boot`");
         ensure!(self.form == RunForm::default(), "`--as` does not work with `--boot`");
         ensure!(!self.races, "`--races` does not work with `--boot`");
+        ensure!(self.schedule.is_none(), "`--schedule` does not work with `--boot`");
         Ok(())
     }
 

@@ -1,5 +1,7 @@
 //! `cc67 run`: compile, load, execute, print the console.
 
+pub(crate) mod schedules;
+
 use std::ffi::{OsStr, OsString};
 use std::io::{self, BufWriter};
 
@@ -24,6 +26,7 @@ use crate::cli::report::seen::Seen;
 use crate::cli::report::state::FinalState;
 use crate::cli::report::trace::{self, Trace};
 use crate::cli::session::{Rig, Setup, Started, Work};
+use schedules::ExploreArguments;
 
 /// Arguments of `cc67 run`.
 #[derive(Debug, Args)]
@@ -60,10 +63,16 @@ pub(super) struct RunArguments {
     trace: TraceArguments,
     #[command(flatten)]
     compiler: CompilerArguments,
+    #[command(flatten)]
+    explore: ExploreArguments,
 }
 
 /// Compiles, loads and runs the programs.
 pub(super) fn run(arguments: &RunArguments) -> Result<Exit> {
+    if arguments.explore.is_requested() {
+        let make = || Setup::new(arguments.started(), &arguments.board, &arguments.compiler);
+        return arguments.explore.explore(arguments.ticks(), arguments.limit.is_some(), make);
+    }
     let setup = Setup::new(arguments.started(), &arguments.board, &arguments.compiler)?;
     match setup {
         Some(setup) => run_setup(arguments, setup),
@@ -85,7 +94,7 @@ fn run_setup(arguments: &RunArguments, setup: Setup) -> Result<Exit> {
 
 fn run_profiled(arguments: &RunArguments, setup: Setup, target: &str) -> Result<Exit> {
     anyhow::ensure!(
-        arguments.board.form == RunForm::Fast,
+        arguments.board.form() == RunForm::Fast,
         "`--profile` accounts for whole statements, which `--as board` splits: leave one out"
     );
     let target = profile::target(target)?;
@@ -123,6 +132,11 @@ impl RunArguments {
         Started { programs: &self.programs, first: &self.beside.first }
     }
 
+    /// The limit of the run.
+    fn ticks(&self) -> Ticks {
+        Ticks::new((self.limit.unwrap_or(DEFAULT_LIMIT) / TIMEBASE).round() as u64)
+    }
+
     /// Runs the board and shows what happens.
     fn execute<T: Target>(&self, rig: &mut Rig<T>) -> Result<Exit> {
         let request = trace::request(&self.trace, &rig.session)?;
@@ -134,7 +148,7 @@ impl RunArguments {
         let mut trace = request.as_ref().map(|request| Trace::begin(&self.trace, request)).transpose()?;
         rig.connect()?;
         let mut seen = Seen::default();
-        let limit = Ticks::new((self.limit.unwrap_or(DEFAULT_LIMIT) / TIMEBASE).round() as u64);
+        let limit = self.ticks();
         let pace = self.realtime.then(|| Pace::new(rig.session.tick()));
         let mut sink = |event| {
             if let Some(trace) = &mut trace {
@@ -163,18 +177,31 @@ impl RunArguments {
         if self.state {
             state.lines().iter().for_each(|line| terminal::note(line));
         }
-        let contended = session.target().contended_cell().filter(|_| self.board.form == RunForm::Fast);
-        if let Some((one, other, cell)) = contended {
-            // It is about the run, not one of the board's remarks.
-            terminal::aside(&format!(
-                "note: threads {one} and {other} both change {cell} by a load and a store. Statements were not split; \
-                 `--as board` splits them as the board does, `--races` names the lines\n"
-            ));
-        }
+        self.say_what_was_not_split(session);
         if let Some(how) = how_it_ended(exit, session, &ending) {
             terminal::note(&how);
         }
         Ok(exit)
+    }
+
+    /// Says after a run of several threads in the fast form that their statements were not split.
+    fn say_what_was_not_split<T: Target>(&self, session: &Session<T>) {
+        if self.board.form() != RunForm::Fast || self.board.races {
+            return;
+        }
+        let ran = session.target().threads_that_ran().len();
+        let who = match session.target().contended_cell() {
+            Some((one, other, cell)) => {
+                format!("threads {one} and {other} both change {cell} by a load and a store")
+            }
+            None if ran > 1 => format!("{ran} threads ran"),
+            None => return,
+        };
+        // It is about the run, not one of the board's remarks.
+        terminal::aside(&format!(
+            "note: {who}. Statements were not split; `--as board` splits them as the board does, `--races` names the \
+             lines that can go wrong\n"
+        ));
     }
 
     /// How the run is shown.

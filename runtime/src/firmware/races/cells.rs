@@ -1,70 +1,97 @@
 //! Accesses of the same cell by several threads.
 
-use std::array;
-
 use kmotiondef::{CodeAddr, Cycles};
 
+use super::conflicts::{Conflict, ConflictKind, Store};
+use super::reports::lost_at;
 use super::{
-    AccessMark, Actor, CLAIM_TIME, CONTEXTS, Races, Suspect, VectorClock, conflict, context, index,
-    is_of_axis, is_request, join, name_of,
+    AccessMark, Actor, CONTEXTS, Races, Suspect, VectorClock, context, index, is_of_axis, is_request, join,
 };
 use crate::out::{Message, OtherPlace, Out};
 
 /// What threads have done with a cell.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cell {
-    uses: [Use; CONTEXTS],
-    writer: Option<Writer>,
+    pub(super) uses: [Use; CONTEXTS],
+    pub(super) writer: Option<Writer>,
     /// How often it was stored to.
     stores: u32,
+    /// Its last change, and how many stores changed it.
+    change: Option<CellChange>,
+    /// A load before its first store, which the storing context did not know of.
+    early: Option<EarlyLoad>,
+}
+
+/// The last store that changed a cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CellChange {
+    /// The context.
+    pub(super) by: usize,
+    /// The instruction.
+    pub(super) at: CodeAddr,
+    /// The number of the change, of all changes of all cells.
+    pub(super) number: u64,
+}
+
+/// A cell that was loaded before its first store.
+#[derive(Clone, Copy, Debug)]
+struct EarlyLoad {
+    actor: Actor,
+    stored: CellChange,
 }
 
 /// What a context has done with a cell.
 #[derive(Clone, Debug, Default)]
-struct Use {
-    load: Option<Load>,
+pub(super) struct Use {
+    pub(super) load: Option<Load>,
     /// Its last store of what it had loaded from the cell before.
-    update: Option<AccessMark>,
+    pub(super) update: Option<AccessMark>,
     /// Its last store after it had found 0 there.
-    claim: Option<(AccessMark, u64)>,
+    pub(super) claim: Option<(AccessMark, u64)>,
     /// Whether it has stored 0 after such a store, and at all.
-    releases: bool,
-    clears: bool,
+    pub(super) releases: bool,
+    pub(super) clears: bool,
     /// Its last request to the PC.
-    request: Option<AccessMark>,
+    pub(super) request: Option<AccessMark>,
     /// Its last load of eight bytes.
-    wide_load: Option<AccessMark>,
-    stores: u32,
+    pub(super) wide_load: Option<AccessMark>,
+    pub(super) stores: u32,
     /// Stores of anything but 0.
-    posts: u32,
-    stored: Option<Cycles>,
+    pub(super) posts: u32,
+    pub(super) stored: Option<Cycles>,
     /// Whether it has loaded the cell while it had no order to execute.
-    is_loaded_at_leisure: bool,
+    pub(super) is_loaded_at_leisure: bool,
+    /// What it had loaded before its last store of something else.
+    pub(super) replaced: Option<u64>,
 }
 
 #[derive(Clone, Debug)]
-struct Load {
-    at: CodeAddr,
+pub(super) struct Load {
+    pub(super) at: CodeAddr,
     /// What the context knew before, without what it has read from the cell since its last store.
-    before: VectorClock,
-    value: u64,
-    now: Cycles,
+    pub(super) before: VectorClock,
+    /// What it knew before it began to load nothing but this cell.
+    pub(super) spun: VectorClock,
+    pub(super) value: u64,
+    pub(super) now: Cycles,
     /// The store whose value it read.
-    store: u32,
+    pub(super) store: u32,
+    /// Its number among the loads of the context, from 1.
+    ordinal: u32,
 }
 
 /// The last store to a cell.
 #[derive(Clone, Debug)]
-struct Writer {
-    context: usize,
-    at: CodeAddr,
-    epoch: u32,
-    clock: VectorClock,
-    now: Cycles,
-    value: u64,
+pub(super) struct Writer {
+    pub(super) context: usize,
+    pub(super) at: CodeAddr,
+    pub(super) epoch: u32,
+    pub(super) clock: VectorClock,
+    pub(super) now: Cycles,
+    pub(super) value: u64,
     /// Whether it has changed both words of eight bytes.
-    tears: bool,
-    locks: Vec<u32>,
+    pub(super) tears: bool,
+    pub(super) locks: Vec<u32>,
 }
 
 impl Races {
@@ -72,13 +99,21 @@ impl Races {
     pub(super) fn loaded(&mut self, actor: Actor, (address, size): (u32, u32), value: u64, out: &mut Out) {
         let own = index(actor.thread);
         let (clock, mark, order) = (self.tracks[own].clock, self.mark(actor), self.tracks[own].order);
+        let last = self.tracks[own].last_load.replace((address, actor.now));
         let cell = self.cells.entry(address).or_default();
         let before = match &cell.uses[own].load {
             Some(load) if load.store == cell.stores => load.before,
             _ => clock,
         };
-        let load = Load { at: actor.at, before, value, now: actor.now, store: cell.stores };
+        let is_spinning = last.is_some_and(|(last, _)| last == address);
+        let spun = match cell.uses[own].replacing() {
+            Some(load) if is_spinning => load.spun,
+            _ => before,
+        };
+        let ordinal = cell.uses[own].load.as_ref().map_or(1, |load| load.ordinal.saturating_add(1));
+        let load = Load { at: actor.at, before, spun, value, now: actor.now, store: cell.stores, ordinal };
         cell.uses[own].load = Some(load);
+        cell.early.take_if(|early| index(early.actor.thread) == own);
         cell.uses[own].is_loaded_at_leisure |= order.is_none();
         if size == 8 {
             cell.uses[own].wide_load = Some(mark.clone());
@@ -90,8 +125,10 @@ impl Races {
         join(&mut self.tracks[own].clock, &writer.clock);
         if size == 8 && writer.tears && is_unordered && !shares_lock && stores > 1 && !is_of_axis(address) {
             let other = OtherPlace { thread: context(writer.context), at: writer.at };
-            let cell = name_of(address, size);
-            self.report(out, actor, writer.at, Message::RaceTorn { other, cell });
+            if !self.reports.knows(actor.at, writer.at) {
+                let cell = self.name_of(address, size);
+                self.report(out, actor, writer.at, Message::RaceTorn { other, cell });
+            }
         }
         if size != 4 {
             return;
@@ -123,51 +160,106 @@ impl Races {
         made_of: &[CodeAddr],
         out: &mut Out,
     ) {
+        self.reports.check(actor.now, out);
         let own = index(actor.thread);
         let (clock, mark) = (self.tracks[own].clock, self.mark(actor));
+        self.tracks[own].last_store = Some(address);
         let cell = self.cells.entry(address).or_default();
-        let used = &cell.uses[own];
-        let source = used.load.clone().filter(|load| made_of.contains(&load.at));
-        let claimed = used.load.clone().filter(|load| {
-            let is_fresh = used.stored.is_none_or(|stored| stored < load.now);
-            let is_soon = actor.now - load.now < CLAIM_TIME;
-            source.is_none() && value != 0 && size == 4 && load.value == 0 && is_fresh && is_soon
-        });
-        let writer = cell.writer.clone();
-        let found = [
-            cell.update_conflict(own, source.as_ref(), &clock, &mark, actor.now, (address, size)),
-            claimed.as_ref().and_then(|load| cell.claim_conflict(own, load, &mark, value, address)),
-            cell.request_conflict(own, &clock, &mark, (address, value)),
-            cell.torn_conflict(own, &clock, &mark, (address, size), value),
+        let store = Store { own, clock, mark: &mark, value, size, address };
+        let source = cell.uses[own].load.clone().filter(|load| made_of.contains(&load.at));
+        let claimed = cell.claim(&store, source.as_ref(), actor.now);
+        let conflicts = [
+            cell.update_conflict(&store, source.as_ref()),
+            claimed.as_ref().and_then(|load| cell.claim_conflict(&store, load)),
+            cell.request_conflict(&store),
+            cell.torn_conflict(&store),
         ];
-        let used = &mut cell.uses[own];
-        used.stores += 1;
-        used.stored = Some(actor.now);
-        used.posts += u32::from(value != 0);
-        if source.is_some() {
-            used.update = Some(mark.clone());
+        let lost = cell.lost(own, source.as_ref());
+        let is_change = size > 8 || cell.writer.as_ref().map_or(0, |writer| writer.value) != value;
+        cell.note(&store, actor, source.as_ref(), claimed.is_some());
+        if is_change {
+            self.note_change(own, address);
+            let change = CellChange { by: own, at: actor.at, number: self.changes };
+            if let Some(cell) = self.cells.get_mut(&address) {
+                cell.note_change(change, source.is_some());
+            }
         }
-        if claimed.is_some() {
-            used.claim = Some((mark.clone(), value));
-        }
-        used.releases |= value == 0 && used.claim.is_some();
-        used.clears |= value == 0;
-        if is_request(address) && value != 0 {
-            used.request = Some(mark.clone());
-        }
-        cell.stores += 1;
-        let old = writer.map_or(0, |writer| writer.value);
-        let tears = size == 8 && (old ^ value) >> 32 != 0 && (old ^ value) as u32 != 0;
-        let (context, epoch) = (own, clock[own]);
-        let AccessMark { at, locks, .. } = mark;
-        cell.writer = Some(Writer { context, at, epoch, clock, now: actor.now, value, tears, locks });
         self.tracks[own].clock[own] += 1;
-        for (at, message) in found.into_iter().flatten() {
-            self.report(out, actor, at, message);
+        for conflict in conflicts.into_iter().flatten() {
+            self.report_conflict(actor, (address, size), conflict, out);
+        }
+        if let Some((conflict, thread)) = lost {
+            self.report_loss(actor, (address, size), conflict, thread, out);
         }
         if value == 0 {
             self.order_done(actor, address, out);
             self.freed(actor, address);
+        }
+    }
+
+    /// Reports what can go wrong.
+    fn report_conflict(&mut self, actor: Actor, (address, size): (u32, u32), found: Conflict, out: &mut Out) {
+        let Conflict { at, by, kind } = found;
+        if self.reports.suspects(actor.at, at) {
+            return;
+        }
+        if let Some((actor, other)) = with_call_back(actor, OtherPlace { thread: context(by), at }) {
+            let (effect, cell) = ("an update can be lost".to_owned(), self.name_of(address, size));
+            return self.report_later(actor, other.at, Message::RaceCallBack { other, cell, effect });
+        }
+        let other = OtherPlace { thread: context(by), at };
+        let cell = self.name_of(address, size);
+        match kind {
+            ConflictKind::Update => {
+                let effect = "an update can be lost".to_owned();
+                self.report_later(actor, at, Message::RaceUpdate { other, cell, effect });
+            }
+            ConflictKind::Store => {
+                let effect = "a store in between is wiped out".to_owned();
+                self.report_later(actor, at, Message::RaceStore { other, cell, effect });
+            }
+            ConflictKind::Claim => self.report(out, actor, at, Message::RaceClaim { other, cell }),
+            ConflictKind::Request => self.report(out, actor, at, Message::RaceRequest { other, cell }),
+            ConflictKind::Torn => self.report(out, actor, at, Message::RaceTornStore { other, cell }),
+        }
+    }
+
+    /// Reports that a store has wiped out another one.
+    fn report_loss(
+        &mut self,
+        actor: Actor,
+        (address, size): (u32, u32),
+        Conflict { at, by, kind }: Conflict,
+        when: Cycles,
+        out: &mut Out,
+    ) {
+        if self.reports.knows(actor.at, at) || !self.reports.suspects(actor.at, at) {
+            return;
+        }
+        let cell = self.name_of(address, size);
+        if let Some((actor, other)) = with_call_back(actor, OtherPlace { thread: context(by), at }) {
+            let effect = lost_at("an update was lost", actor.now);
+            return self.report(out, actor, other.at, Message::RaceCallBack { other, cell, effect });
+        }
+        if kind == ConflictKind::Update {
+            let (other, effect) =
+                (OtherPlace { thread: context(by), at }, lost_at("an update was lost", actor.now));
+            return self.report(out, actor, at, Message::RaceUpdate { other, cell, effect });
+        }
+        let (other, effect) =
+            (OtherPlace { thread: actor.thread, at: actor.at }, lost_at("a store was wiped out", actor.now));
+        let storing = Actor { thread: context(by), at, now: when };
+        self.report(out, storing, actor.at, Message::RaceStore { other, cell, effect });
+    }
+
+    /// Reports cells that were loaded once, before their first store, where nothing made the load wait for the store.
+    pub(super) fn read_early(&mut self, now: Cycles, out: &mut Out) {
+        let early: Vec<_> =
+            self.cells.iter().filter_map(|(address, cell)| Some((*address, cell.early?))).collect();
+        for (address, EarlyLoad { actor, stored }) in early {
+            let other = OtherPlace { thread: context(stored.by), at: stored.at };
+            let cell = self.name_of(address, 4);
+            self.report(out, Actor { now, ..actor }, stored.at, Message::ReadEarly { other, cell });
         }
     }
 
@@ -182,7 +274,7 @@ impl Races {
             let is_parameter = self.cells.get(&cell).is_some_and(|cell| !cell.uses[own].is_loaded_at_leisure);
             if is_parameter {
                 let poster = Actor { thread: context(poster), at: stored_at, now: actor.now };
-                let (cell, order) = (name_of(cell, 4), name_of(address, 4));
+                let (cell, order) = (self.name_of(cell, 4), self.name_of(address, 4));
                 let other = OtherPlace { thread: poster.thread, at: posted_at };
                 self.report(out, poster, posted_at, Message::OrderEarly { cell, order, other });
             }
@@ -190,95 +282,107 @@ impl Races {
     }
 }
 
-/// The other place of a conflict, and what there is to say.
-type Finding = Option<(CodeAddr, Message)>;
+/// The thread and the call-back of two places, if one is the call-back's.
+fn with_call_back(actor: Actor, other: OtherPlace) -> Option<(Actor, OtherPlace)> {
+    match (actor.thread, other.thread) {
+        (Some(_), None) => Some((actor, other)),
+        (None, Some(_)) => {
+            let call_back = OtherPlace { thread: None, at: actor.at };
+            Some((Actor { thread: other.thread, at: other.at, now: actor.now }, call_back))
+        }
+        _ => None,
+    }
+}
 
 impl Cell {
-    /// A store that another context's load and store of the same cell can wipe out, or that can wipe one out.
-    fn update_conflict(
-        &self,
-        own: usize,
-        source: Option<&Load>,
-        clock: &VectorClock,
-        mark: &AccessMark,
-        now: Cycles,
-        (address, size): (u32, u32),
-    ) -> Finding {
-        // What the call-back does, no thread interrupts.
-        let updates: [Option<AccessMark>; CONTEXTS] = array::from_fn(|other| match (other, source) {
-            (0, None) => None,
-            _ => self.uses[other].update.clone(),
-        });
-        let clock = source.map_or(clock, |load| &load.before);
-        let (other, at) = conflict(updates.iter().enumerate(), own, clock, &mark.locks)?;
-        let other = OtherPlace { thread: context(other), at };
-        let cell = name_of(address, size);
-        let Some(load) = source else { return Some((at, Message::RaceStore { other, cell })) };
-        let lost = self.writer.as_ref().filter(|writer| writer.context != own && writer.now > load.now);
-        let effect = match lost {
-            Some(_) => format!("an update was lost at {:.6} s", now.get() as f64 / 200e6),
-            None => "an update can be lost".to_owned(),
-        };
-        Some((at, Message::RaceUpdate { other, cell, effect }))
+    /// Its last store that changed it.
+    pub(super) fn last_change(&self) -> Option<CellChange> {
+        self.change
     }
 
-    /// A store to a cell that was free, which another context takes in the same way.
-    fn claim_conflict(
-        &self,
-        own: usize,
-        load: &Load,
-        mark: &AccessMark,
-        value: u64,
-        address: u32,
-    ) -> Finding {
-        let claims: [Option<AccessMark>; CONTEXTS] = array::from_fn(|other| {
-            let used = &self.uses[other];
-            let (claim, taken) = used.claim.as_ref()?;
-            let differs = *taken != value || used.releases || self.uses[own].releases;
-            differs.then(|| claim.clone())
-        });
-        let (other, at) = conflict(claims.iter().enumerate(), own, &load.before, &mark.locks)?;
-        let other = OtherPlace { thread: context(other), at };
-        Some((at, Message::RaceClaim { other, cell: name_of(address, 4) }))
+    /// Whether a context changes it by a load and a store.
+    pub(super) fn is_updated_by(&self, context: usize) -> bool {
+        self.uses[context].update.is_some()
     }
 
-    /// A request to the PC that can overwrite that of another context.
-    fn request_conflict(
+    /// Its last change, if that is another context's, not its first store, and nothing orders it before what `clock`
+    /// knows.
+    pub(super) fn unordered_writer(
         &self,
         own: usize,
         clock: &VectorClock,
-        mark: &AccessMark,
-        (address, value): (u32, u64),
-    ) -> Finding {
-        if !is_request(address) || value == 0 {
-            return None;
+        locks: &[u32],
+    ) -> Option<CellChange> {
+        let writer = self.writer.as_ref().filter(|writer| writer.context != own && self.stores > 1)?;
+        let is_unordered = writer.epoch > clock[writer.context];
+        let shares_lock = writer.locks.iter().any(|lock| locks.contains(lock));
+        self.change.filter(|_| is_unordered && !shares_lock)
+    }
+
+    /// The clock of `writer` when it stored last, if it has stored often and nothing orders that before what `clock`
+    /// knows.
+    pub(super) fn unordered_epoch(&self, writer: usize, clock: &VectorClock, locks: &[u32]) -> Option<u32> {
+        let last = self.writer.as_ref().filter(|last| last.context == writer && self.stores > 2)?;
+        let is_unordered = last.epoch > clock[writer];
+        let shares_lock = last.locks.iter().any(|lock| locks.contains(lock));
+        (is_unordered && !shares_lock).then_some(last.epoch)
+    }
+
+    /// Takes up a store.
+    fn note(&mut self, store: &Store<'_>, actor: Actor, source: Option<&Load>, is_claim: bool) {
+        let Store { own, clock, mark, value, size, address } = *store;
+        let used = &mut self.uses[own];
+        used.stores += 1;
+        if source.is_none() {
+            used.replaced = used.replacing().map(|load| load.value).or(used.replaced);
         }
-        let requests: [Option<AccessMark>; CONTEXTS] =
-            array::from_fn(|other| self.uses[other].request.clone());
-        let (other, at) = conflict(requests.iter().enumerate(), own, clock, &mark.locks)?;
-        let other = OtherPlace { thread: context(other), at };
-        Some((at, Message::RaceRequest { other, cell: name_of(address, 4) }))
+        used.stored = Some(actor.now);
+        used.posts += u32::from(value != 0);
+        if source.is_some() {
+            used.update = Some(mark.clone());
+        }
+        if is_claim {
+            used.claim = Some((mark.clone(), value));
+        }
+        used.releases |= value == 0 && used.claim.is_some();
+        used.clears |= value == 0;
+        if is_request(address) && value != 0 {
+            used.request = Some(mark.clone());
+        }
+        self.stores += 1;
+        let old = self.writer.as_ref().map_or(0, |writer| writer.value);
+        let tears = size == 8 && (old ^ value) >> 32 != 0 && (old ^ value) as u32 != 0;
+        let AccessMark { at, locks, .. } = mark.clone();
+        let epoch = clock[own];
+        self.writer = Some(Writer { context: own, at, epoch, clock, now: actor.now, value, tears, locks });
     }
 
-    /// A store of eight bytes that another context loads.
-    fn torn_conflict(
-        &self,
-        own: usize,
-        clock: &VectorClock,
-        mark: &AccessMark,
-        (address, size): (u32, u32),
-        value: u64,
-    ) -> Finding {
-        let writer = self.writer.as_ref()?;
-        let changed = writer.value ^ value;
-        let tears = size == 8 && changed >> 32 != 0 && changed as u32 != 0;
-        if !tears || self.uses[own].stores < 2 || is_of_axis(address) {
-            return None;
+    /// Takes up that the last store has changed the cell.
+    fn note_change(&mut self, change: CellChange, is_update: bool) {
+        if self.stores == 1 && !is_update {
+            let clock = self.writer.as_ref().map(|writer| writer.clock).unwrap_or_default();
+            self.early = self.early_load(change, &clock);
         }
-        let loads: [Option<AccessMark>; CONTEXTS] =
-            array::from_fn(|other| self.uses[other].wide_load.clone());
-        let (other, at) = conflict(loads.iter().enumerate(), own, clock, &mark.locks)?;
-        let other = OtherPlace { thread: context(other), at };
-        Some((at, Message::RaceTornStore { other, cell: name_of(address, size) }))
+        self.change = Some(change);
+    }
+
+    /// The only load of another context, if the first store, which makes `stored`, does not come after it.
+    fn early_load(&self, stored: CellChange, clock: &VectorClock) -> Option<EarlyLoad> {
+        let others = self.uses.iter().enumerate().filter(|(other, _)| *other != stored.by && *other != 0);
+        let mut loads = others.filter(|(_, used)| used.stores == 0).filter_map(|(other, used)| {
+            let load = used.load.as_ref().filter(|load| load.ordinal == 1)?;
+            (load.before[other] > clock[other]).then_some((other, load))
+        });
+        loads.next().map(|(other, load)| EarlyLoad {
+            actor: Actor { thread: context(other), at: load.at, now: load.now },
+            stored,
+        })
+    }
+}
+
+impl Use {
+    /// The load after which its next store comes, if it has loaded since its last one.
+    pub(super) fn replacing(&self) -> Option<&Load> {
+        self.load.as_ref().filter(|load| self.stored.is_none_or(|stored| stored < load.now))
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use kmotiondef::GuestAddr;
 
-use super::{AccessMark, Actor, Races, VectorClock, context, index, join, name_of};
+use super::{AccessMark, Actor, Races, VectorClock, context, index, join};
 use crate::out::{Message, OtherPlace, Out};
 
 /// A lock.
@@ -32,7 +32,7 @@ impl Races {
                 .find(|((first, second, other), _)| (*first, *second) == (lock, held) && *other != own);
             if let Some(((.., other), at)) = opposite.map(|(key, mark)| (*key, mark.at)) {
                 let other = OtherPlace { thread: context(other), at };
-                let (lock, held) = (name_of(lock, 4), name_of(held, 4));
+                let (lock, held) = (self.name_of(lock, 4), self.name_of(held, 4));
                 self.report(out, actor, at, Message::LockOrder { other, lock, held });
             }
         }

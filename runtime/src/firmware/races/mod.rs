@@ -11,20 +11,31 @@
 //! vector clocks; a thread's own entry grows with each of its stores.
 
 mod cells;
+mod conflicts;
 mod locks;
+mod records;
+mod reports;
 pub(crate) mod shared;
+pub(crate) mod switches;
+mod wakes;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use kmotiondef::structs::Persist;
-use kmotiondef::variables::{CHAN, PERSIST, variable_around};
+use kmotiondef::variables::{CHAN, PERSIST, USER_CALL_BACK, cell_name, variable_around};
 use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId};
 use vm::firmware::SharedAccess;
-use vm::thread::Threads;
+use vm::memory::GuestMemory;
+use vm::thread::{Progress, ThreadState, Threads};
 
 use self::cells::Cell;
 use self::locks::{Lock, Orders};
-use crate::out::{Message, OtherPlace, Out, Speaker};
+use self::records::JointReads;
+use self::reports::Reports;
+use self::wakes::{Paused, Resumed};
+use crate::firmware::calls::Named;
+use crate::out::{Message, OtherPlace, Out};
 
 /// The seven threads, and before them the call-back.
 const CONTEXTS: usize = 1 + ThreadId::MAX as usize;
@@ -68,6 +79,25 @@ struct Track {
     order: Option<(u32, usize, u32)>,
     /// Parameters that were stored after such an order.
     suspects: Vec<Suspect>,
+    /// What it reads together with other cells.
+    reading: JointReads,
+    /// The cell that it loaded last, and when; the one that it stored last.
+    last_load: Option<(u32, Cycles)>,
+    last_store: Option<u32>,
+    /// Where it paused itself, and where another resumed it, after which cell.
+    paused: Option<Paused>,
+    resumed: Option<Resumed>,
+}
+
+/// Something that the board has once, and whoever uses it second takes it from the first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum SharedThing {
+    /// What executes paths.
+    CoordinateSystem,
+    /// What records axes.
+    Gather,
+    /// The word of 16 outputs of Kanalog.
+    Relays(i32),
 }
 
 /// A parameter that was stored after the order that it belongs to.
@@ -93,9 +123,13 @@ pub(crate) struct Races {
     cells: BTreeMap<u32, Cell>,
     locks: BTreeMap<u32, Lock>,
     orders: Orders,
-    /// Switched outputs of Kanalog, by group of 16.
-    relays: BTreeMap<i32, [Option<AccessMark>; CONTEXTS]>,
-    reported: BTreeSet<(CodeAddr, CodeAddr)>,
+    /// The last uses of what the board has once.
+    things: BTreeMap<SharedThing, [Option<AccessMark>; CONTEXTS]>,
+    reports: Reports,
+    /// The number of stores so far that changed a cell.
+    changes: u64,
+    /// The named objects of the programs that are loaded.
+    objects: [Arc<[Named]>; ThreadId::MAX as usize],
 }
 
 impl Default for Races {
@@ -108,8 +142,10 @@ impl Default for Races {
             cells: BTreeMap::new(),
             locks: BTreeMap::new(),
             orders: Orders::new(),
-            relays: BTreeMap::new(),
-            reported: BTreeSet::new(),
+            things: BTreeMap::new(),
+            reports: Reports::default(),
+            changes: 0,
+            objects: std::array::from_fn(|_| Arc::from([])),
         }
     }
 }
@@ -141,11 +177,18 @@ impl Races {
         track.began = now;
         track.order = None;
         track.suspects.clear();
+        track.reading = JointReads::default();
+    }
+
+    /// A program with these named objects is loaded.
+    pub(crate) fn load(&mut self, thread: ThreadId, objects: Arc<[Named]>) {
+        self.objects[thread.index()] = objects;
     }
 
     /// A thread starts another.
     pub(crate) fn starts(&mut self, actor: Actor, started: ThreadId, threads: &Threads, out: &mut Out) {
-        if actor.thread != Some(started) && threads.state(started).is_active() {
+        let has_begun = !matches!(threads.state(started), ThreadState::Active(Progress::Fresh));
+        if actor.thread != Some(started) && threads.state(started).is_active() && has_begun {
             self.report(out, actor, actor.at, Message::ThreadRestarted { thread: started });
         }
         let own = index(actor.thread);
@@ -155,18 +198,45 @@ impl Races {
     }
 
     /// A program has made an access.
-    pub(crate) fn accessed(&mut self, access: &SharedAccess<'_>, out: &mut Out) {
+    pub(crate) fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory, out: &mut Out) {
         let actor = Actor { thread: access.thread, at: access.at, now: access.now };
         let is_block = access.size > 8;
         let (size, count) = if !is_block { (access.size, 1) } else { (4, access.size / 4) };
-        for number in 0..count {
-            let address = access.address.get() + 4 * number;
-            if access.is_store {
-                self.stored(actor, (address, size), access.value, access.made_of, out);
-            } else {
-                self.loaded(actor, (address, size), access.value, out);
-            }
+        let address = access.address.get();
+        if access.is_store {
+            self.settle(index(actor.thread), out);
+        } else if is_block {
+            self.copies(actor, (address, count), out);
         }
+        for address in (0..count).map(|number| address + 4 * number) {
+            let value =
+                if is_block { memory.peek::<u32>(GuestAddr::new(address)).into() } else { access.value };
+            if access.is_store {
+                self.stored(actor, (address, size), value, access.made_of, out);
+                self.sets_call_back(actor, address, value);
+                continue;
+            }
+            if !access.made_of.is_empty() {
+                self.reads_together(actor, (address, size), access.made_of, out);
+            }
+            self.loaded(actor, (address, size), value, out);
+        }
+    }
+
+    /// A context has stored a cell: if it sets the call-back, that knows what it knows; if it ends it, the reverse.
+    fn sets_call_back(&mut self, actor: Actor, address: u32, value: u64) {
+        if address != USER_CALL_BACK.address().get() {
+            return;
+        }
+        let own = index(actor.thread);
+        let (clock, ended) = (self.tracks[own].clock, self.tracks[0].clock);
+        if value == 0 {
+            join(&mut self.tracks[own].clock, &ended);
+        } else {
+            join(&mut self.tracks[0].clock, &clock);
+            self.tracks[own].clock[own] += 1;
+        }
+        self.tracks[0].clock[0] += 1;
     }
 
     /// A function of the firmware changes a word in one step.
@@ -179,24 +249,40 @@ impl Races {
         if !(144..=167).contains(&bit) {
             return;
         }
+        self.uses(actor, SharedThing::Relays((bit - 144) / 16), out);
+    }
+
+    /// A call uses something that the board has once.
+    pub(crate) fn uses(&mut self, actor: Actor, thing: SharedThing, out: &mut Out) {
         let own = index(actor.thread);
         let (clock, mark) = (self.tracks[own].clock, self.mark(actor));
-        let marks = self.relays.entry((bit - 144) / 16).or_default();
+        let marks = self.things.entry(thing).or_default();
         marks[own] = Some(mark.clone());
         let conflict = conflict(marks.iter().enumerate(), own, &clock, &mark.locks);
         if let Some((other, at)) = conflict {
             let other = OtherPlace { thread: context(other), at };
-            self.report(out, actor, at, Message::RaceRelays { other });
+            let message = match thing {
+                SharedThing::CoordinateSystem => Message::RaceShared { other, what: "the coordinate system" },
+                SharedThing::Gather => Message::RaceShared { other, what: "the gather buffer" },
+                SharedThing::Relays(_) => Message::RaceRelays { other },
+            };
+            self.report(out, actor, at, message);
         }
     }
 
     /// The run is over.
     pub(crate) fn finish(&mut self, threads: &Threads, now: Cycles, out: &mut Out) {
+        for own in 0..CONTEXTS {
+            self.settle(own, out);
+        }
+        self.reports.flush(out);
+        self.read_early(now, out);
         for thread in ThreadId::all().filter(|thread| !threads.state(*thread).is_active()) {
             for (lock, at) in self.tracks[index(Some(thread))].held.clone() {
                 if self.locks.get(&lock).is_some_and(|lock| lock.is_mutex) {
                     let actor = Actor { thread: Some(thread), at, now };
-                    self.report(out, actor, at, Message::LockKept { lock: name_of(lock, 4) });
+                    let lock = self.name_of(lock, 4);
+                    self.report(out, actor, at, Message::LockKept { lock });
                 }
             }
         }
@@ -213,12 +299,17 @@ impl Races {
         self.tracks[own].held.iter().map(|(lock, _)| *lock).collect()
     }
 
-    /// Reports something about two places, once.
-    fn report(&mut self, out: &mut Out, actor: Actor, other: CodeAddr, message: Message) {
-        let pair = (actor.at.min(other), actor.at.max(other));
-        if self.reported.insert(pair) {
-            out.remark_of(actor.now, Speaker::from(actor.thread), Some(actor.at), message);
-        }
+    /// What programs call the memory at an address, their own data included.
+    fn name_of(&self, address: u32, size: u32) -> String {
+        let mut objects = self.objects.iter().flat_map(|objects| objects.iter());
+        let own = objects.find(|object| address.wrapping_sub(object.start) < object.size);
+        own.map_or_else(
+            || cell_name(GuestAddr::new(address), size),
+            |object| match address - object.start {
+                0 => object.name.clone(),
+                offset => format!("{} + {offset}", object.name),
+            },
+        )
     }
 }
 
@@ -239,23 +330,6 @@ fn conflict<'a>(
 /// Whether an address is of an axis: what the servo reads, and of which it takes the newest value.
 fn is_of_axis(address: u32) -> bool {
     variable_around(GuestAddr::new(address)).is_some_and(|variable| variable.address == CHAN.address())
-}
-
-/// What programs call the memory at an address.
-pub(crate) fn name_of(address: u32, size: u32) -> String {
-    let data = PERSIST.field(Persist::USER_DATA).element(0).address().get();
-    let element = address.wrapping_sub(data) / 4;
-    if (element as usize) < kmotiondef::limits::N_USER_DATA_VARS {
-        return match size {
-            8 => format!("persist.UserData[{element}] and [{}]", element + 1),
-            _ => format!("persist.UserData[{element}]"),
-        };
-    }
-    match variable_around(GuestAddr::new(address)) {
-        Some(variable) if variable.address.get() == address => variable.name.to_owned(),
-        Some(variable) => format!("{} + {}", variable.name, address - variable.address.get()),
-        None => GuestAddr::new(address).to_string(),
-    }
 }
 
 /// The code that a program sends to the PC.

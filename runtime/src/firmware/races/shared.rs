@@ -1,10 +1,10 @@
 //! Calls of the firmware that threads meet at: locks, words changed at once, starts, outputs that share a word.
 
 use kmotiondef::firmware::Function;
-use kmotiondef::{GuestAddr, ThreadId};
+use kmotiondef::{Cycles, GuestAddr, ThreadId};
 use vm::firmware::{Caller, Outcome, Value};
 
-use super::Actor;
+use super::{Actor, SharedThing};
 use crate::firmware::parts::Parts;
 
 /// A call that says something about the order of accesses, before it is made.
@@ -38,18 +38,52 @@ pub(crate) fn before(parts: &mut Parts, function: Function, caller: &Caller<'_>)
             races.switched(actor, caller.arguments.get(0), out);
             SharedCall::Other
         }
+        Function::PauseThread => {
+            if actor.thread.is_some() && ThreadId::new(caller.arguments.get(0)) == actor.thread {
+                races.pauses(actor, out);
+            }
+            SharedCall::Other
+        }
+        Function::ResumeThread => {
+            if let Some(resumed) = ThreadId::new(caller.arguments.get(0)) {
+                races.resumes(actor, resumed, out);
+            }
+            SharedCall::Other
+        }
+        Function::MoveXYZABC | Function::iOpenBuf | Function::iExecBuf => {
+            races.uses(actor, SharedThing::CoordinateSystem, out);
+            SharedCall::Other
+        }
+        Function::SetupGatherAllOnAxis | Function::TriggerGather => {
+            races.uses(actor, SharedThing::Gather, out);
+            SharedCall::Other
+        }
         _ => SharedCall::Other,
     }
 }
 
 /// Takes up what a call has come to.
-pub(crate) fn after(parts: &mut Parts, call: SharedCall, outcome: &Outcome<Value>, caller: &Caller<'_>) {
-    let (Parts { races: Some(races), out, .. }, Some(actor)) = (parts, actor(caller)) else { return };
+pub(crate) fn after(parts: &mut Parts, call: SharedCall, outcome: &Outcome<Value>, caller: &mut Caller<'_>) {
+    let (Parts { races: Some(races), switches, out, .. }, Some(actor)) = (parts, actor(caller)) else {
+        return;
+    };
     let is_done = matches!(outcome, Outcome::Done(_));
+    let is_taken = *outcome == Outcome::Done(Value::I32(0));
+    let lock = match call {
+        SharedCall::Lock(lock) => Some(lock).filter(|_| is_done),
+        SharedCall::TestAndSet(lock) => Some(lock).filter(|_| is_taken),
+        SharedCall::Unlock(_) | SharedCall::Change(_) | SharedCall::Other => None,
+    };
+    if let (Some(switches), Some(lock)) = (switches, lock)
+        && switches.after_lock(actor, lock, out)
+    {
+        // The rest of the slice passes.
+        *caller.budget = (*caller.budget).min(Cycles::default());
+    }
     match call {
         SharedCall::Lock(lock) => races.locks(actor, lock, is_done, out),
         SharedCall::Unlock(lock) => races.unlocks(actor, lock),
-        SharedCall::TestAndSet(lock) if *outcome == Outcome::Done(Value::I32(0)) => races.takes(actor, lock),
+        SharedCall::TestAndSet(lock) if is_taken => races.takes(actor, lock),
         SharedCall::Change(place) => {
             races.changed_at_once(actor, place, caller.memory.peek(place), out);
         }

@@ -7,7 +7,7 @@ use super::*;
 /// Accesses of threads 1 and 2, one a word: `1l5` loads element 5, `1u5` loads and stores it, `1s5=3` stores 3, `1L9`
 /// and `1U9` lock and unlock element 9. A place is the number of the word.
 fn codes(steps: &str) -> Vec<&'static str> {
-    let (mut races, mut out) = (Races::default(), Out::default());
+    let (mut races, mut out, memory) = (Races::default(), Out::default(), GuestMemory::new());
     let threads = Threads::new();
     for number in [1, 2] {
         races.begins(ThreadId::new(number).expect("it is a thread"), &threads, Cycles::default());
@@ -29,11 +29,11 @@ fn codes(steps: &str) -> Vec<&'static str> {
         };
         let actor = Actor { thread, at: at(0), now };
         match step.as_bytes()[1] {
-            b'l' => races.accessed(&access(false, &[]), &mut out),
-            b's' => races.accessed(&access(true, &[]), &mut out),
+            b'l' => races.accessed(&access(false, &[]), &memory, &mut out),
+            b's' => races.accessed(&access(true, &[]), &memory, &mut out),
             b'u' => {
-                races.accessed(&access(false, &[]), &mut out);
-                races.accessed(&access(true, &made_of), &mut out);
+                races.accessed(&access(false, &[]), &memory, &mut out);
+                races.accessed(&access(true, &made_of), &memory, &mut out);
             }
             b'L' => races.locks(actor, place, true, &mut out),
             b'U' => races.unlocks(actor, place),

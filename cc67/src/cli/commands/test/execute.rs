@@ -14,6 +14,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::case::Case;
 use super::firmware;
 use super::golden::{self, Shown};
+use super::schedules::FailingSchedule;
 use super::this_command;
 use crate::cli::args::engine::EngineName;
 use crate::cli::io::output;
@@ -35,6 +36,8 @@ pub(super) enum Verdict {
     Skipped(String),
     /// The engines agree on something else.
     Differs(Shown),
+    /// It shows something else, or goes wrong, by a schedule.
+    FailsBySchedule(FailingSchedule),
     /// An engine did not show what the first one did.
     Disagrees(Shown, Executor, Shown),
 }

@@ -5,6 +5,7 @@ use similar::{ChangeTag, TextDiff};
 use super::case::Case;
 use super::execute::Verdict;
 use super::golden::Shown;
+use super::schedules::FailingSchedule;
 use compiler::render::human::Color;
 
 /// Lines around a difference.
@@ -75,6 +76,11 @@ fn failure(case: &Case, verdict: &Verdict, paint: &Paint) -> String {
             let expected = case.expected.as_deref().unwrap_or_default();
             let head = format!("{failed}   {name}: - expected, + shown now\n");
             head + &messages(shown) + &diff(expected, &shown.golden, paint)
+        }
+        Verdict::FailsBySchedule(found) => {
+            let FailingSchedule { seed, smallest, why, notes } = found;
+            let place = format!("`cc67 run --schedule {smallest}`, found with seed {seed}");
+            format!("{failed}   {name}: by a schedule, {why}\n  {place}\n{}", indented(notes))
         }
         Verdict::Disagrees(first, executor, second) => {
             let head = format!(

@@ -35,14 +35,23 @@ struct Test<'a> {
     expected: Option<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     shown: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    schedule: Option<String>,
     #[serde(skip_serializing_if = "str::is_empty")]
     messages: &'a str,
 }
 
 fn test<'a>(case: &'a Case, verdict: &'a Verdict) -> Test<'a> {
     let name = case.name();
-    let plain =
-        |result| Test { name: name.clone(), result, engine: None, expected: None, shown: None, messages: "" };
+    let plain = |result| Test {
+        name: name.clone(),
+        result,
+        engine: None,
+        expected: None,
+        shown: None,
+        schedule: None,
+        messages: "",
+    };
     match verdict {
         Verdict::Passed => plain("passed"),
         Verdict::Blessed => plain("written"),
@@ -56,6 +65,11 @@ fn test<'a>(case: &'a Case, verdict: &'a Verdict) -> Test<'a> {
             shown: Some(&shown.golden),
             messages: &shown.messages,
             ..plain("differs")
+        },
+        Verdict::FailsBySchedule(found) => Test {
+            schedule: Some(found.smallest.to_string()),
+            messages: &found.notes,
+            ..plain("fails by a schedule")
         },
         Verdict::Disagrees(first, executor, second) => Test {
             engine: Some(executor.name()),

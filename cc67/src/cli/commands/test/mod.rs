@@ -11,6 +11,7 @@ mod firmware;
 mod golden;
 mod human;
 mod machine;
+mod schedules;
 
 use std::ffi::OsString;
 use std::io::{self, IsTerminal};
@@ -26,9 +27,11 @@ use crate::cli::io::exit::Exit;
 use crate::cli::io::{output, terminal};
 use execute::{Executor, Verdict};
 use golden::Shown;
+use schedules::ScheduleArguments;
 
 /// Options that are the command's own; all others in `[test]` of a project file are those of its programs.
-const OWN_OPTIONS: &[&str] = &["bless", "force", "engine", "as", "boot", "jobs", "json", "junit"];
+const OWN_OPTIONS: &[&str] =
+    &["bless", "force", "engine", "as", "boot", "schedules", "seed", "jobs", "json", "junit"];
 
 /// Arguments of `cc67 test`.
 #[derive(Debug, Args)]
@@ -52,6 +55,8 @@ pub(super) struct TestArguments {
     /// Run on your own firmware file; skip tests that need the modelled firmware
     #[arg(long, value_name = "FILE", conflicts_with_all = ["engine", "bless", "form"])]
     boot: Option<PathBuf>,
+    #[command(flatten)]
+    schedules: ScheduleArguments,
     /// Number of simultaneous runs, where a program on two engines counts as two [default: the number of processors]
     #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
@@ -126,6 +131,7 @@ pub(super) fn test(arguments: &TestArguments) -> Result<Exit> {
             *verdict = Verdict::Blessed;
         }
     }
+    arguments.schedules.explore(&cases, &mut verdicts, &arguments.options, jobs)?;
     if let Some(path) = &arguments.junit {
         output::write(path, machine::junit(&cases, &verdicts, &took).as_bytes())?;
     }

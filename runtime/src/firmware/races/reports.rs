@@ -1,0 +1,101 @@
+//! What was reported, and what may still come to more.
+//!
+//! A pair of places is reported once. That an update can be lost is known long before one is, if ever; so the report
+//! waits a while for the loss, whose time it then says.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use kmotiondef::{CodeAddr, Cycles};
+
+use super::{Actor, Races};
+use crate::out::{LOST_AT, Message, Out, Speaker};
+
+/// How long a report waits: a second.
+const PATIENCE: Cycles = Cycles::PER_SECOND;
+
+/// Two places, the lower first.
+type PlacePair = (CodeAddr, CodeAddr);
+
+/// A report that waits.
+#[derive(Clone, Debug)]
+struct Waiting {
+    actor: Actor,
+    message: Message,
+}
+
+/// Reports by their places.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Reports {
+    made: BTreeSet<PlacePair>,
+    waiting: BTreeMap<PlacePair, Waiting>,
+    /// When the first of those that wait is made.
+    due: Option<Cycles>,
+}
+
+fn places(one: CodeAddr, other: CodeAddr) -> PlacePair {
+    (one.min(other), one.max(other))
+}
+
+impl Reports {
+    /// Whether there is nothing more to say about two places.
+    pub(super) fn knows(&self, one: CodeAddr, other: CodeAddr) -> bool {
+        self.made.contains(&places(one, other))
+    }
+
+    /// Whether two places are known to be in conflict, reported or not.
+    pub(super) fn suspects(&self, one: CodeAddr, other: CodeAddr) -> bool {
+        let places = places(one, other);
+        self.made.contains(&places) || self.waiting.contains_key(&places)
+    }
+
+    /// Makes a report now.
+    fn make(&mut self, actor: Actor, other: CodeAddr, message: Message, out: &mut Out) {
+        let places = places(actor.at, other);
+        self.waiting.remove(&places);
+        if self.made.insert(places) {
+            out.remark_of(actor.now, Speaker::from(actor.thread), Some(actor.at), message);
+        }
+    }
+
+    /// Makes a report later, unless one with more to say comes first.
+    fn wait(&mut self, actor: Actor, other: CodeAddr, message: Message) {
+        let places = places(actor.at, other);
+        if !self.suspects(actor.at, other) {
+            self.waiting.insert(places, Waiting { actor, message });
+            self.due.get_or_insert(actor.now + PATIENCE);
+        }
+    }
+
+    /// Makes the reports that have waited long enough.
+    pub(super) fn check(&mut self, now: Cycles, out: &mut Out) {
+        if self.due.is_some_and(|due| due <= now) {
+            self.flush(out);
+        }
+    }
+
+    /// Makes the reports that wait.
+    pub(super) fn flush(&mut self, out: &mut Out) {
+        self.due = None;
+        for (places, Waiting { actor, message }) in std::mem::take(&mut self.waiting) {
+            self.made.insert(places);
+            out.remark_of(actor.now, Speaker::from(actor.thread), Some(actor.at), message);
+        }
+    }
+}
+
+impl Races {
+    /// Reports something about two places, once.
+    pub(super) fn report(&mut self, out: &mut Out, actor: Actor, other: CodeAddr, message: Message) {
+        self.reports.make(actor, other, message, out);
+    }
+
+    /// Reports what can happen at two places, unless it does happen soon.
+    pub(super) fn report_later(&mut self, actor: Actor, other: CodeAddr, message: Message) {
+        self.reports.wait(actor, other, message);
+    }
+}
+
+/// What a report says of an update that was lost at an instant.
+pub(super) fn lost_at(what: &str, now: Cycles) -> String {
+    format!("{what}{LOST_AT}{:.6} s", now.get() as f64 / Cycles::PER_SECOND.get() as f64)
+}
