@@ -1,4 +1,4 @@
-// cc67: run also 2:mutex_adder.c
+// cc67: run -R no-race-update also 2:mutex_adder.c
 //
 // mutex.c - why two threads that change the same value need a lock.
 //

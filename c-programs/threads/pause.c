@@ -1,4 +1,4 @@
-// cc67: run also 2:pause_counter.c
+// cc67: run -R no-thread-restarted also 2:pause_counter.c
 //
 // pause.c - stopping another thread and letting it continue where it was.
 //

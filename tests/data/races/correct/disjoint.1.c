@@ -1,0 +1,10 @@
+#include "KMotionDef.h"
+
+main()
+{
+    int i, k;
+
+    for (k = 0; k < 100; k++)
+        for (i = 0; i < 10; i++)
+            persist.UserData[130 + i] += k;
+}

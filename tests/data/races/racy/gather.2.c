@@ -1,0 +1,9 @@
+#include "KMotionDef.h"
+
+main()
+{
+    SetupGatherAllOnAxis(1, 100);  // <-
+    TriggerGather();
+    while (!CheckDoneGather())
+        ;
+}

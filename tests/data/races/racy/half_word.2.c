@@ -1,0 +1,12 @@
+#include "KMotionDef.h"
+
+short *load = (short *)&persist.UserData[50];
+
+main()
+{
+    int i;
+
+    for (i = 0; i < 2000; i++)
+        if (load[0] > 0)
+            load[0] -= 1;  // <-
+}
