@@ -164,7 +164,8 @@ fn a_third_party_parser_gives_the_same_trees() {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     let (mut items, mut wrong) = (0, Vec::new());
     for (reading, path) in handle.join().expect("no parser panics") {
-        let name = path.strip_prefix(harness::root()).expect("it lies there").to_string_lossy().into_owned();
+        let name = path.strip_prefix(harness::root()).expect("it lies there");
+        let name = name.to_string_lossy().replace('\\', "/");
         let is_listed = |list: &[(&str, &str)]| list.iter().any(|(listed, _)| *listed == name);
         match reading {
             Reading::Wrong => *counts.entry("wrong").or_default() += 1,

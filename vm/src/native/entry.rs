@@ -27,6 +27,22 @@ pub(super) unsafe fn enter(begin: Begin, thunk: *const u8, state: *const State) 
     unsafe { begin(state, thunk) }
 }
 
+/// Bytes of the stack between what `leave` has there and the end of what suspends a fiber; far more than it takes.
+/// A fiber that has not begun has not as many on its stack.
+pub(super) const SUSPENSION: usize = 0x1000;
+
+/// Has the stack reach as far as a copy of the suspended fiber: Windows adds memory to a stack only when the stack itself
+/// grows into it, and stops everybody else who reads beyond.
+#[cfg(windows)]
+#[inline(never)]
+fn extend_stack() {
+    let mut room = [const { std::mem::MaybeUninit::<u8>::uninit() }; SUSPENSION];
+    if let Some(lowest) = std::hint::black_box(&mut room).first_mut() {
+        lowest.write(0);
+    }
+    std::hint::black_box(&room);
+}
+
 /// Suspends the fiber with a request and yields the answer.
 ///
 /// # Safety
@@ -45,6 +61,8 @@ unsafe extern "C" fn leave(
     let yielder = unsafe { &*state.yielder.get() };
     let here = 0_u8;
     state.suspended_at.set((&raw const here).addr());
+    #[cfg(windows)]
+    extend_stack();
     // Nothing here or in compiled code needs `Drop`, so the fiber may be discarded while it is suspended.
     yielder.suspend(Request { code, at, stack_pointer, a, b })
 }

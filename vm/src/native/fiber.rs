@@ -16,7 +16,7 @@ use corosensei::stack::{DefaultStack, Stack as _, StackPointer};
 use corosensei::{Coroutine, CoroutineResult};
 
 use super::code::{Entry, MachineCode};
-use super::entry;
+use super::entry::{self, SUSPENSION};
 use super::protected::ProtectedBlocks;
 use super::request::{Reason, Request, Yielder};
 use super::state::{PutBack, State};
@@ -239,10 +239,6 @@ impl Drop for Fiber {
         self.place.is_taken.set(false);
     }
 }
-
-/// Bytes of the stack between what `leave` has there and the end of what suspends a fiber; far more than it takes.
-/// A fiber that has not begun has not as many on its stack.
-const SUSPENSION: usize = 0x1000;
 
 /// A fiber as it was at an instant: all bytes that were on its stack, to be put back to the same place.
 pub(super) struct SavedFiber {
