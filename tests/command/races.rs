@@ -150,6 +150,7 @@ fn the_texts_of_programs_are_compared() {
             "torn_double",
             ["the eight bytes of persist.UserData[60]", "racy/torn_double.2.c:11:9", "half of the value"],
         ),
+        ("counter_pointer", ["persist.UserData[90] is changed", "racy/counter_pointer.2.c:5:5", "MutexLock"]),
         ("lock_forgotten", ["persist.UserData[5] is changed", "racy/lock_forgotten.2.c:10:9", "MutexLock"]),
     ] {
         let said = advice(&format!("racy/{name}.1.c"));

@@ -96,13 +96,13 @@ impl<'a> ThreadProgram<'a> {
         };
         let main = unit.functions.iter().find(|function| unit.symbols[function.symbol].name == "main");
         if let Some(main) = main {
-            walk.function(main.symbol, &Caller::default());
+            walk.function(main.symbol, &[], &Caller::default());
         }
         let main = std::mem::take(&mut walk.found);
         for call_back in walk.call_backs.clone() {
             walk.locks.clear();
             walk.waited.clear();
-            walk.function(call_back, &Caller::default());
+            walk.function(call_back, &[], &Caller::default());
         }
         let call_back = walk.found.accesses;
         Self { thread, unit, sources, main: main.accesses, call_back, waits: main.waits }
@@ -138,12 +138,12 @@ struct AccessWalk<'a> {
 }
 
 impl AccessWalk<'_> {
-    fn function(&mut self, symbol: SymbolId, caller: &Caller) {
+    fn function(&mut self, symbol: SymbolId, arguments: &[Option<Constant>], caller: &Caller) {
         let Some(function) = self.functions.get(&symbol) else { return };
         if caller.active.contains(&symbol) || caller.active.len() == MAX_DEPTH {
             return;
         }
-        let values = Values::new(self.unit, self.pointers, function);
+        let values = Values::new(self.unit, self.pointers, function).with_arguments(function, arguments);
         let conditions = Conditions::new(function, &values);
         let context = |block: BlockId, waited: &BTreeSet<Guard>| Caller {
             guards: caller.guards.iter().chain(waited).copied().chain(conditions.guards(block)).collect(),
@@ -194,7 +194,8 @@ impl AccessWalk<'_> {
             }
             InstKind::Call { callee: Callee::Symbol(callee), arguments, .. } => {
                 let arguments = function.arguments.get(arguments.range()).unwrap_or_default();
-                self.call(values, callee, arguments.first().copied(), span, here);
+                let arguments: Vec<_> = arguments.iter().map(|argument| values.constant(*argument)).collect();
+                self.call(values, callee, &arguments, span, here);
             }
             InstKind::Call { callee: Callee::Pointer(_), .. }
             | InstKind::Copy { .. }
@@ -213,14 +214,14 @@ impl AccessWalk<'_> {
         &mut self,
         values: &Values<'_>,
         callee: SymbolId,
-        first: Option<Operand>,
+        arguments: &[Option<Constant>],
         span: Span,
         here: &Caller,
     ) {
         if self.functions.contains_key(&callee) {
-            return self.function(callee, here);
+            return self.function(callee, arguments, here);
         }
-        let first = first.and_then(|first| values.constant(first));
+        let first = arguments.first().copied().flatten();
         let cell = first.and_then(|first| values.cell_of(first));
         let name = &self.unit.symbols[callee].name;
         let called = FirmwareCall::ALL.iter().find(|function| function.name() == name);
@@ -234,7 +235,7 @@ impl AccessWalk<'_> {
                 self.locks.retain(|lock| Some(*lock) != cell);
             }
             Some(FirmwareCall::AtomicSet | FirmwareCall::AtomicClear) => {
-                self.note(cell, 4, Action::Change, span, here)
+                self.note(cell, 4, Action::Change, span, here);
             }
             Some(FirmwareCall::StartThread) => {
                 if let Some(Constant::I32(number)) = first

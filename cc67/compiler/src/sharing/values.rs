@@ -43,6 +43,8 @@ pub(super) struct Values<'a> {
     unit: &'a Unit,
     pointers: &'a Pointers,
     writes: BTreeMap<ValueId, Vec<InstKind>>,
+    /// The constants that the caller passes.
+    passed: BTreeMap<ValueId, Constant>,
 }
 
 impl<'a> Values<'a> {
@@ -54,7 +56,15 @@ impl<'a> Values<'a> {
                 writes.entry(value).or_default().push(inst.kind);
             }
         }
-        Self { unit, pointers, writes }
+        Self { unit, pointers, writes, passed: BTreeMap::new() }
+    }
+
+    /// The same where the caller passes these arguments.
+    pub(super) fn with_arguments(mut self, function: &Function, arguments: &[Option<Constant>]) -> Self {
+        let passed = function.params.iter().zip(arguments);
+        let passed = passed.filter_map(|(value, constant)| Some((*value, (*constant)?)));
+        self.passed = passed.filter(|(value, _)| !self.writes.contains_key(value)).collect();
+        self
     }
 
     /// The only instruction that writes a value.
@@ -80,6 +90,9 @@ impl<'a> Values<'a> {
             Operand::Constant(constant) => return Some(constant),
             Operand::Value(value) => value,
         };
+        if let Some(constant) = self.passed.get(&value) {
+            return Some(*constant);
+        }
         match self.only_write(value)? {
             InstKind::Copy { src, .. } => self.constant_within(src, depth),
             InstKind::Load { address: Address { base: Base::Symbol(symbol), offset: 0 }, .. } => {

@@ -130,7 +130,7 @@ impl Races {
                 self.report(out, actor, writer.at, Message::RaceTorn { other, cell });
             }
         }
-        if size != 4 {
+        if size < 4 {
             return;
         }
         if let Some((posted, poster, epoch)) = order.filter(|(posted, ..)| *posted != address) {
@@ -146,7 +146,7 @@ impl Races {
         // A status that is never cleared is no order.
         let clears = |address| self.cells.get(&address).is_some_and(|cell| cell.uses[own].clears);
         let is_better = order.is_none_or(|(posted, ..)| !clears(posted) && clears(address));
-        if posts > 0 && value != 0 && is_better {
+        if size == 4 && posts > 0 && value != 0 && is_better {
             self.tracks[own].order = Some((address, writer.context, writer.epoch));
         }
     }
