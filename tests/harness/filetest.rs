@@ -17,7 +17,8 @@
 //!
 //! An annotation `//~ what` after a line is a diagnostic expected there: the name of a warning's
 //! switch, or `error`; `what: text` asks for that text in its message. `//~^` means the line
-//! above, `//~^^` the one above that. A file with annotations has no other diagnostics than these.
+//! above, `//~^^` the one above that. With `-if-case-matters` after `what` it is expected only where names of files are
+//! told apart by upper and lower case. A file with annotations has no other diagnostics than these.
 //! Without `says`, `snapshot` or annotations, stderr must be empty.
 
 use std::borrow::Cow;
@@ -277,6 +278,11 @@ fn annotations(file: &str, text: &str) -> Vec<Remark> {
             let wanted = annotation.trim_start_matches('^');
             let up = annotation.len() - wanted.len();
             let (what, text) = wanted.split_once(": ").unwrap_or((wanted, ""));
+            let what = match what.trim().strip_suffix("-if-case-matters") {
+                Some(_) if !does_case_matter() => continue,
+                Some(what) => what,
+                None => what,
+            };
             remarks.push(Remark {
                 file: file.to_owned(),
                 line: index + 1 - up,
@@ -286,6 +292,11 @@ fn annotations(file: &str, text: &str) -> Vec<Remark> {
         }
     }
     remarks
+}
+
+/// Whether names of files are told apart by upper and lower case here.
+fn does_case_matter() -> bool {
+    !crate::root().join("CARGO.TOML").exists()
 }
 
 /// The diagnostics in rendered text that name a place.

@@ -2,7 +2,7 @@
 //@ prints: requested 5 at 2.500000
 #include "kmotiondef.h"
 #include "parts\PcRequests.c"
-//~^ note: pcrequests.c
+//~^ note-if-case-matters: pcrequests.c
 #include "..\habits\parts\machine.h"
 
 main()

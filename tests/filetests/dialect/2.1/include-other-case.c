@@ -1,7 +1,7 @@
 //@ prints: beside
 #include "kmotiondef.H"
 #include "Parts\WHERE.h"
-//~^ note: parts/where.h
+//~^ note-if-case-matters: parts/where.h
 
 main() { printf("%s\n", WHERE); }
 //@ cycles: 2866
