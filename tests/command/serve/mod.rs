@@ -270,6 +270,27 @@ fn the_log_is_a_script_that_repeats_the_session() {
 }
 
 #[test]
+fn the_log_names_requests_that_have_no_answer() {
+    let arguments = ["serve", "--pace", "fast", "--listen", "tcp:0", "--log", "log.txt", "a.c"];
+    let server = Server::start("serve-unanswered", &arguments, HELLO, 1);
+    let mut client = server.client();
+    assert_eq!(client.try_ask("bogus"), Err(1));
+    client.send(&[&client::LOCK.to_le_bytes()[..], &4711_i32.to_le_bytes(), b"\0"].concat());
+    assert_eq!(client.reply().0, 2);
+    assert_eq!(client.ask("Version"), VERSION);
+    client.send(&[&99_i32.to_le_bytes()[..], &[0; 4]].concat());
+    server.says("client 1: there is no call 99 with these arguments, its connection is closed");
+    let log = std::fs::read_to_string(server.scratch.path().join("log.txt")).expect("a log");
+    for text in [
+        "the board: error, invalid command\n",
+        "client 1: the board has not answered\n",
+        "client 1: KMotionLock for board 4711, which is not there\n",
+    ] {
+        assert!(log.contains(text), "{text}{log}");
+    }
+}
+
+#[test]
 fn a_server_ends_after_the_time_that_it_was_given() {
     let scratch = Scratch::new("serve-end");
     scratch.write("a.c", HELLO);

@@ -20,6 +20,8 @@ use crate::cli::report::trace::Trace;
 
 /// Ticks in which the board takes a line at the latest.
 const TAKEN_WITHIN: u64 = 11_111;
+/// How the board's message about a command begins that it does not take (host-protocol.md section 2).
+const REFUSED: &[u8] = b"error, ";
 
 /// A board under control, and what came over its link.
 pub(super) struct ServedBoard<'a, T: Target> {
@@ -227,7 +229,12 @@ impl<'a, T: Target> ServedBoard<'a, T> {
                 }
             }
             EventKind::Echo(bytes) => self.link.echo(bytes),
-            EventKind::ConsoleLine(line) => self.link.console(line.clone(), self.is_heard),
+            EventKind::ConsoleLine(line) => {
+                if line.starts_with(REFUSED) {
+                    self.log(&format!("the board: {}", String::from_utf8_lossy(line)));
+                }
+                self.link.console(line.clone(), self.is_heard);
+            }
             EventKind::Aborted | EventKind::UartSent(_) | EventKind::Trace(_) | EventKind::Loaded(..) => {}
             EventKind::Remark(_)
             | EventKind::Trap(_)

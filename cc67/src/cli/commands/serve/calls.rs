@@ -18,7 +18,7 @@ const ANSWER_WITHIN: u32 = 3000;
 /// How long each line is waited for until `Ready` comes.
 const READY_WITHIN: u32 = 100;
 /// The identifiers of the boards: there is one.
-const LOCATIONS: [i32; 1] = [1];
+pub(super) const LOCATIONS: [i32; 1] = [1];
 /// The generation of the firmware.
 const FIRMWARE: i32 = 2;
 /// The result of a line that does not come in time.
@@ -160,8 +160,14 @@ impl<T: Target> Desk<'_, T> {
                 (Wanted::Answer | Wanted::Line, LinkLine::Console(line)) => self.show(line),
             }
         }
-        self.has_passed(waiting, time).then(|| match waiting.wanted {
-            Wanted::Answer => Reply::text(1, b""),
+        if !self.has_passed(waiting, time) {
+            return None;
+        }
+        Some(match waiting.wanted {
+            Wanted::Answer => {
+                self.board.log(&format!("client {}: the board has not answered", waiting.client));
+                Reply::text(1, b"")
+            }
             Wanted::Line => Reply::text(TIMEOUT, b""),
             Wanted::Ready { .. } if self.board.link.has_partial_line() => {
                 Reply::number(Readiness::Partial as i32)

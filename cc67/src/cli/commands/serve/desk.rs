@@ -16,11 +16,12 @@ use kmotiondef::limits::TIMEBASE;
 
 use super::Terms;
 use super::board::ServedBoard;
-use super::calls::SILENT;
+use super::calls::{LOCATIONS, SILENT};
 use super::message::{self, Reply, Request};
 use super::wire::WireClient;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::pace::{Pace, now};
+use crate::cli::io::terminal;
 
 /// How often a board at the pace of a clock is brought up to it while nobody asks anything.
 const BEAT: Duration = Duration::from_millis(10);
@@ -48,6 +49,8 @@ pub(super) enum Note {
     Came(u64, Sender<Vec<Vec<u8>>>),
     /// A request of a client.
     Asked(u64, Request),
+    /// A message of a client that is not a request: its bytes.
+    Unknown(u64, Vec<u8>),
     /// A client is gone.
     Left(u64),
     /// A client that has the board's link to itself.
@@ -221,6 +224,11 @@ impl<'a, T: Target> Desk<'a, T> {
             Note::Came(client, answers) => {
                 self.clients.insert(client, answers);
             }
+            Note::Unknown(client, message) => {
+                let text = format!("client {client}: {}, its connection is closed", unknown(&message));
+                terminal::note(&text);
+                self.board.log(&text);
+            }
             Note::Left(client) => return self.left(client),
             Note::Plugged(_) | Note::Bytes(..) | Note::Unplugged(_) => return self.wire(note),
             Note::Asked(..) if self.page.stopped.is_some() => self.page.held.push(note),
@@ -230,7 +238,7 @@ impl<'a, T: Target> Desk<'a, T> {
                     self.answer(client, reply);
                 }
                 if self.board.is_logged() {
-                    self.board.log(&format!("client {client}: {}", request.call.name()));
+                    self.board.log(&format!("client {client}: {}", request.name(&LOCATIONS)));
                 }
             }
         }
@@ -244,7 +252,7 @@ impl<'a, T: Target> Desk<'a, T> {
             Note::Plugged(client) => wire.plug(client),
             Note::Bytes(client, bytes) => wire.take(client, &bytes, now()),
             Note::Unplugged(client) => wire.unplug(client),
-            Note::Came(..) | Note::Asked(..) | Note::Left(_) | Note::End => {}
+            Note::Came(..) | Note::Asked(..) | Note::Unknown(..) | Note::Left(_) | Note::End => {}
         }
         if self.terms.once && wire.is_unplugged() { Course::Leave } else { Course::Continue }
     }
@@ -439,5 +447,13 @@ impl<'a, T: Target> Desk<'a, T> {
     /// Whether the board keeps pace with a clock.
     pub(super) const fn is_clocked(&self) -> bool {
         self.clock.is_some()
+    }
+}
+
+/// A message that is not a request, by the number of the call at its beginning.
+fn unknown(message: &[u8]) -> String {
+    match message.first_chunk() {
+        Some(code) => format!("there is no call {} with these arguments", i32::from_le_bytes(*code)),
+        None => format!("a message of {} bytes is not a request", message.len()),
     }
 }

@@ -208,7 +208,11 @@ fn serve(number: u64, mut connection: impl ClientConnection, desk: &Sender<Note>
     // A desk that is closed answers nothing below.
     let _ = desk.send(Note::Came(number, answers));
     while let Received::Message(bytes) = &received {
-        let Some(request) = Request::read(bytes) else { break };
+        let Some(request) = Request::read(bytes) else {
+            // A desk that is closed needs no news.
+            let _ = desk.send(Note::Unknown(number, bytes.clone()));
+            break;
+        };
         if desk.send(Note::Asked(number, request)).is_err() {
             break;
         }

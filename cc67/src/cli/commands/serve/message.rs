@@ -91,6 +91,16 @@ impl Request {
         Some(Self { call, board })
     }
 
+    /// Its name for a log, with its board if that is not there.
+    pub(super) fn name(&self, locations: &[i32]) -> String {
+        let name = self.call.name();
+        if self.is_for(locations) {
+            name
+        } else {
+            format!("{name} for board {}, which is not there", self.board)
+        }
+    }
+
     /// Whether it is for the first of the boards that are connected, the only one there is.
     pub(super) fn is_for(&self, locations: &[i32]) -> bool {
         self.board == 0 || locations.first() == Some(&self.board)
