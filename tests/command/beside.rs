@@ -30,10 +30,8 @@ fn scratch(name: &str) -> Scratch {
 fn a_run_uses_the_files_next_to_the_program_and_says_so() {
     let scratch = scratch("beside");
     let said = "cc67: running sub/prog.c with sub/prog.toml; its first line: --set persist.5=7 --stim \"persist 6 = 8\" also 2:other.c (--no-sidecar ignores it)\n";
-    let unsplit = "note: 2 threads ran. Statements were not split; `--as board` splits them as the board does, `--races` names the lines that can go wrong\n";
-    let said = &format!("{said}{unsplit}");
     for (options, stdout, stderr) in [
-        (&[][..], "other\n1 7 8\n", said.as_str()),
+        (&[][..], "other\n1 7 8\n", said),
         (&["--set", "persist.5=9"], "other\n1 9 8\n", said),
         (&["--no-sidecar", "--machine", "sub/prog.toml"], "1 0 0\n", ""),
     ] {
@@ -92,6 +90,6 @@ fn first_programs_run_to_their_end_before_the_others_start() {
         let text = format!("#include \"KMotionDef.h\"\nmain() {{ {text}; printf(\"{name}\\n\"); }}");
         fs::write(scratch.path().join(format!("{name}.c")), text).expect("a file");
     }
-    let output = cc67(&scratch, ["run", "--as", "board", "--first", "a.c", "--first", "b.c", "c.c", "d.c"]);
+    let output = cc67(&scratch, ["run", "--first", "a.c", "--first", "b.c", "c.c", "d.c"]);
     assert_eq!((output.stdout.as_str(), output.stderr.as_str(), output.code), ("a\nb\nc\nd\n", "", 0));
 }

@@ -37,6 +37,28 @@ fn errors_of_order_are_found_and_replayed() {
 }
 
 #[test]
+fn correct_programs_lose_nothing_by_any_schedule() {
+    let folder = harness::root().join("tests/data/races/correct");
+    let scratch = Scratch::new("schedules-correct");
+    scratch.write("none.expected", "");
+    let golden = scratch.path().join("none.expected").to_string_lossy().into_owned();
+    for path in harness::files(&folder, "c") {
+        let first = path.file_name().and_then(|name| name.to_str()).expect("a name").to_owned();
+        // One program of this pair starts the other.
+        if !first.ends_with(".1.c") || first.starts_with("start_thread") {
+            continue;
+        }
+        let second = first.replace(".1.c", ".2.c");
+        let number = 1 + usize::from(folder.join(&second).exists());
+        let programs = [first.as_str(), second.as_str()].into_iter().take(number);
+        let options = ["run", "--for", "0.5", "--explore", "1..9", "--golden", golden.as_str()];
+        let output = cc67(&folder, options.into_iter().chain(programs));
+        assert_eq!(output.code, 0, "{first}: {}", output.render());
+        assert!(!output.stdout.contains("has seen a loss"), "{first}: {}", output.stdout);
+    }
+}
+
+#[test]
 fn a_schedule_is_named_by_its_seed_or_its_parts() {
     let scratch = Scratch::new("schedules-names");
     scratch

@@ -20,7 +20,7 @@ use crate::{HostError, Setup};
 pub struct Schedule {
     /// By thread, the number of ticks that its start is late.
     starts: BTreeMap<ThreadId, u64>,
-    /// The number of ticks that statements of the stimulus with a time are late; negative for early.
+    /// The number of ticks that statements of the stimulus with a time after the start are late; negative for early.
     input: i64,
     /// The numbers of the accesses to shared memory before which a thread is switched, from 1.
     switches: BTreeSet<u64>,
@@ -92,7 +92,10 @@ impl Setup {
     /// The stimulus does not take the delayed starts.
     pub fn schedule(&mut self, schedule: &Schedule) -> Result<(), HostError> {
         for rule in &mut self.stimulus.rules {
-            if let Trigger::At(time) = &mut rule.trigger {
+            // What holds from the start is no event.
+            if let Trigger::At(time) = &mut rule.trigger
+                && *time > Cycles::default()
+            {
                 let shifted = *time + Cycles::new(schedule.input * Cycles::PER_TICK.get());
                 *time = shifted.max(Cycles::default());
             }

@@ -93,18 +93,17 @@ impl CheckArguments {
     }
 }
 
-/// A program and those that its first line says run beside it; `None` if there are none.
+/// A program and those that its first line says run beside it; `None` if it is no source.
 fn group_of(path: &Path) -> Result<Option<Vec<ProgramFile>>> {
     let is_source = path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("c"));
-    let Head::Run { also, .. } = (if is_source && path.is_file() { Head::of(path)? } else { Head::None })
-    else {
-        return Ok(None);
-    };
-    if also.is_empty() {
+    if !is_source || !path.is_file() {
         return Ok(None);
     }
+    let also = match Head::of(path)? {
+        Head::Run { also, .. } => also,
+        Head::Part | Head::None => Vec::new(),
+    };
     let folder = path.parent().unwrap_or(Path::new(""));
-    let programs: Vec<_> =
-        once(path.as_os_str().to_owned()).chain(also.iter().map(|program| within(folder, program))).collect();
-    assign(&programs).map(Some)
+    let also = also.iter().map(|program| within(folder, program));
+    assign(&once(path.as_os_str().to_owned()).chain(also).collect::<Vec<_>>()).map(Some)
 }

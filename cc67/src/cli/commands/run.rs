@@ -194,7 +194,8 @@ impl RunArguments {
             Some((one, other, cell)) => {
                 format!("threads {one} and {other} both change {cell} by a load and a store")
             }
-            None if ran > 1 => format!("{ran} threads ran"),
+            // Programs that share nothing are not split differently on the board.
+            None if self.state && ran > 1 => format!("{ran} threads ran"),
             None => return,
         };
         // It is about the run, not one of the board's remarks.

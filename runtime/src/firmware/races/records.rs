@@ -35,6 +35,8 @@ struct Part {
     changed_by: Option<usize>,
     /// What the context knew before it began to read the parts.
     before: VectorClock,
+    /// Its own entry in its clock at the load.
+    epoch: u32,
 }
 
 /// What a context reads together.
@@ -85,7 +87,14 @@ impl Races {
             parts.find(|part| part.changed_by == Some(by) && number > part.changes)
         });
         if reading.parts.len() < MOST {
-            reading.parts.push(Part { at: actor.at, address, changes, changed_by: None, before });
+            reading.parts.push(Part {
+                at: actor.at,
+                address,
+                changes,
+                changed_by: None,
+                before,
+                epoch: clock[own],
+            });
         }
         let (Some(CellChange { by, at, .. }), Some(part)) = (change, older.or(first)) else { return };
         let counts = |address: &u32| self.cells.get(address).is_some_and(|cell| cell.is_updated_by(by));
@@ -151,13 +160,16 @@ impl Races {
         }
     }
 
-    /// A context has changed a cell: whoever has read it has an old value now.
+    /// A context has changed a cell: whoever has read it has an old value now, unless the reader has stored something
+    /// since that let the context change it.
     pub(super) fn note_change(&mut self, own: usize, address: u32) {
         self.changes += 1;
+        let known = self.tracks[own].clock;
         let others = self.tracks.iter_mut().enumerate().filter(|(other, _)| *other != own);
-        for (_, track) in others {
-            let parts = track.reading.parts.iter_mut();
-            for part in parts.filter(|part| part.address == address && part.changed_by.is_none()) {
+        for (other, track) in others {
+            let parts = &mut track.reading.parts;
+            parts.retain(|part| part.address != address || part.epoch > known[other]);
+            for part in parts.iter_mut().filter(|part| part.address == address && part.changed_by.is_none()) {
                 part.changed_by = Some(own);
             }
         }
