@@ -6,6 +6,7 @@ mod board_options;
 mod boot;
 mod boot_debug;
 mod console;
+mod controller;
 mod doctor;
 mod drop_in;
 mod editor;

@@ -44,6 +44,7 @@ const COMMANDS: &[(&str, &[&str], &str)] = &[
 
 /// Commands without trials, each with the reason.
 const WITHOUT_TRIALS: &[(&str, &str)] = &[
+    ("boards", "what it shows depends on the computer; `command/controller.rs` tests it"),
     ("live", "what it shows is in a browser; `command/live` tests it there"),
     ("serve", "what it shows is on a socket; `command/serve` tests it there"),
     ("compare", "it needs a firmware file; `command/boot.rs` tests it"),
@@ -107,6 +108,7 @@ const SAMPLES: &[(&str, &[&str], &[&str])] = &[
     ("--assist", &["--assist"], &["--for=3"]),
     ("-R", &["-Rno-thread-empty"], &[]),
     ("--boot", &["--boot=missing.out"], &[]),
+    ("--on", &["--on=lpt1"], &[]),
     // Traces and plots.
     ("--trace", &["--trace=t.csv"], &[]),
     ("--trace-bits", &["--trace-bits=b.csv"], &[]),
@@ -157,6 +159,10 @@ const THE_SAME: &[(&str, &str)] = &[
     ("--seed", "it matters to programs that race; `command/schedules.rs` tests it"),
     ("--explore", "a test starts runs with it; `command/schedules.rs` tests it"),
     ("--golden", "a test starts runs with it; `command/schedules.rs` tests it"),
+    ("--yes", "it matters to a controller; `command/controller.rs` tests it"),
+    ("run --force", "it matters to a controller; `command/controller.rs` tests it"),
+    ("debug --force", "it matters to a controller; `command/controller.rs` tests it"),
+    ("console --force", "it matters to a controller; `command/controller.rs` tests it"),
     ("test --jobs", "the results are the same with any number of processes"),
 ];
 

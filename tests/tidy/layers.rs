@@ -143,6 +143,10 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
         ],
     ),
     (
+        "cc67/controller",
+        &[("target", &["controller"]), ("files and images", &["files", "image"]), ("words", &["clock"])],
+    ),
+    (
         "cc67/host",
         &[
             ("clients", &["client"]),

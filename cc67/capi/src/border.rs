@@ -41,6 +41,7 @@ impl From<HostError> for Outcome {
             | HostError::Unmapped(_)
             | HostError::Stimulus(_)
             | HostError::Firmware(_)
+            | HostError::Link(_)
             | HostError::Flash(_)
             | HostError::Unsupported(_)
             | HostError::Snapshot(_)

@@ -65,6 +65,9 @@ pub enum HostError {
     /// A firmware file does not start, or does not take what it is given.
     #[error("{0}")]
     Firmware(String),
+    /// A connected controller does not do what it is told, or is not connected any more.
+    #[error("{0}")]
+    Link(String),
     /// A firmware file does not start from what a flash holds.
     #[error("the flash does not work with this firmware: {0}")]
     Flash(#[from] FlashError),

@@ -79,6 +79,11 @@ pub trait Target {
         if self.can(capability) { Ok(()) } else { Err(Unsupported { target: self.name(), capability }) }
     }
 
+    /// The reason why a connected target cannot be reached any more; `None` of one that can be.
+    fn lost(&self) -> Option<&str> {
+        None
+    }
+
     /// Number of the last tick that is over.
     fn tick(&self) -> Ticks;
 

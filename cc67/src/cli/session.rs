@@ -3,6 +3,7 @@
 //!
 //! Every command that has a board takes this way, so an option of a board reaches all of them.
 
+pub(crate) mod controller;
 mod flash;
 mod line;
 
@@ -10,13 +11,15 @@ use std::ffi::OsString;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail, ensure};
+use cc67_controller::{Controller, ControllerLink};
 use cc67_debug::dap::AttachPoint;
 use cc67_host::{
     AnyTarget, Attendant, BootedFirmware, BootedTarget, End, HostError, Idle, Schedule, Session, Target,
     UserProgram,
 };
 use compiler::Options;
+use compiler::firmware::Firmware;
 use compiler::target::Target as CodeTarget;
 use kmotiondef::Ticks;
 use runtime::stimulus::Stimulus;
@@ -46,13 +49,22 @@ pub(crate) struct Setup {
     code: CodeFor,
     uart: UartArguments,
     flash: Flash,
+    controller: Option<Connected>,
 }
 
-/// What programs are compiled for: an engine of the modelled board, or a firmware file.
+/// A controller that answers, and whether it takes programs that were linked for another firmware.
+#[derive(Debug)]
+struct Connected {
+    connection: ControllerLink,
+    is_forced: bool,
+}
+
+/// What programs are compiled for: an engine of the modelled board, a firmware file, or a connected controller.
 #[derive(Clone, Debug)]
 enum CodeFor {
     Engine(EngineName),
     Firmware(BootedFirmware),
+    Controller(Firmware),
 }
 
 impl CodeFor {
@@ -61,6 +73,10 @@ impl CodeFor {
         match self {
             Self::Engine(engine) => engine.options(compiler),
             Self::Firmware(firmware) => Ok(firmware.options(compiler.resolve()?)),
+            Self::Controller(firmware) => {
+                let options = compiler.resolve()?;
+                Ok(Options { target: CodeTarget::C67x, firmware: firmware.clone(), ..options })
+            }
         }
     }
 }
@@ -84,6 +100,14 @@ impl Setup {
         board: &BoardArguments,
         compiler: &CompilerArguments,
     ) -> Result<Option<Self>> {
+        if let Some(address) = &board.controller.on {
+            board.refuse_with_controller()?;
+            let connection = controller::connect(address, &board.controller)?;
+            let firmware = controller::firmware(&connection, compiler.resolve()?.firmware, compiler)?;
+            let setup = Self::compiled(started, board, compiler, CodeFor::Controller(firmware))?;
+            let connected = Connected { connection, is_forced: board.controller.force };
+            return Ok(setup.map(|setup| Self { controller: Some(connected), ..setup }));
+        }
         let Some(file) = &board.boot else { return Self::of_model(started, board, compiler) };
         board.refuse_with_boot()?;
         Self::of_firmware(started, board, compiler, &boot(file)?)
@@ -120,13 +144,13 @@ impl Setup {
         }
         let described = Described::read(started, board, compiler, options)?;
         let Some(Described { session, uart, flash }) = described else { return Ok(None) };
-        Ok(Some(Self { session, code, uart, flash }))
+        Ok(Some(Self { session, code, uart, flash, controller: None }))
     }
 
     /// The firmware file that was requested, if one was.
     pub(crate) fn firmware(&self) -> Option<BootedFirmware> {
         match &self.code {
-            CodeFor::Engine(_) => None,
+            CodeFor::Engine(_) | CodeFor::Controller(_) => None,
             CodeFor::Firmware(firmware) => Some(firmware.clone()),
         }
     }
@@ -160,6 +184,7 @@ impl Setup {
                 anyhow::bail!("this cc67 is built without the native engine")
             }
             CodeFor::Engine(_) | CodeFor::Firmware(_) => work.on(self.rig_of_any()?),
+            CodeFor::Controller(_) => work.on(self.rig_of_controller()?),
         }
     }
 
@@ -181,10 +206,22 @@ impl Setup {
         self.rig_with(|session, _| session.session_on_firmware(firmware))
     }
 
+    /// The connected controller, with the programs loaded and started.
+    fn rig_of_controller(mut self) -> Result<Rig<Controller>> {
+        let Some(Connected { connection, is_forced }) = self.controller.take() else {
+            bail!("no controller is connected");
+        };
+        self.rig_with(|session, _| connection.session(session, is_forced, controller::progress()))
+    }
+
     /// The target that was requested; the modelled board on the interpreter.
     pub(crate) fn rig_of_any(self) -> Result<Rig<AnyTarget>> {
+        ensure!(
+            self.controller.is_none(),
+            "this does not work with `--on` yet: `cc67 run`, `cc67 console` and `cc67 live` do"
+        );
         self.rig_with(|session, code| match code {
-            CodeFor::Engine(_) => session.session_on_any(None),
+            CodeFor::Engine(_) | CodeFor::Controller(_) => session.session_on_any(None),
             CodeFor::Firmware(firmware) => session.session_on_any(Some(firmware)),
         })
     }
@@ -193,7 +230,7 @@ impl Setup {
         self,
         make: impl FnOnce(cc67_host::Setup, &CodeFor) -> Result<Session<T>, HostError>,
     ) -> Result<Rig<T>> {
-        let Self { session, code, uart, mut flash } = self;
+        let Self { session, code, uart, mut flash, controller: _ } = self;
         let session = make(session, &code).map_err(|error| match (&error, flash.file()) {
             (HostError::Flash(why), Some((path, _))) => {
                 anyhow::anyhow!("the flash {} does not work with `--boot`: {why}", path.display())

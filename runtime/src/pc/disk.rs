@@ -68,12 +68,49 @@ impl DiskRequest {
     }
 }
 
-/// What the board is told.
+/// The PC's answer to a request that reads a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum DiskReply {
+pub enum FileAnswer {
+    /// A line of the file, without its end.
     Line(Vec<u8>),
+    /// The end of the file.
     End,
+    /// The file cannot be read, or none is open.
     Failure,
+}
+
+/// A request for a file that was served.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ServedFile {
+    /// The answer to the board; `None` for a request that has none.
+    pub answer: Option<FileAnswer>,
+    /// The reason why it could not be done, in a sentence.
+    pub remark: Option<String>,
+}
+
+/// The files of a PC to which a board is connected that is not simulated.
+///
+/// Requests are those of `fopen`, `fprintf`, `fgets` and `fclose` in programs. Source: host-protocol.md section 6.
+#[derive(Clone, Debug)]
+pub struct FileServer(Disk);
+
+impl FileServer {
+    /// Serves the files of a folder or of memory.
+    #[must_use]
+    pub fn new(files: Box<dyn HostFiles>) -> Self {
+        Self(Disk::new(files))
+    }
+
+    /// Does what a request with a code from 1 to 7 says.
+    pub fn serve(&mut self, code: u8, text: &[u8]) -> ServedFile {
+        let Some((request, text)) = DiskRequest::read(&[&[code], text].concat())
+            .map(|(request, text)| (request, String::from_utf8_lossy(text).into_owned()))
+        else {
+            return ServedFile { answer: None, remark: Some(format!("unknown request {code} for a file")) };
+        };
+        let remark = self.0.serve(request, &text, Cycles::new(0)).map(|message| message.to_string());
+        ServedFile { answer: self.0.answers.pop_front().map(|(_, answer)| answer), remark }
+    }
 }
 
 /// The disk, and what is open on it.
@@ -86,7 +123,7 @@ pub(crate) struct Disk {
     /// From a request to its answer.
     pub(crate) latency: Cycles,
     /// Answers on their way, and when they arrive.
-    answers: VecDeque<(Cycles, DiskReply)>,
+    answers: VecDeque<(Cycles, FileAnswer)>,
 }
 
 impl Disk {
@@ -154,14 +191,14 @@ impl Disk {
     /// Sends the next line, or says that there is none.
     fn answer(&mut self, now: Cycles) {
         let answer = match &mut self.reading {
-            None => DiskReply::Failure,
-            Some(lines) => lines.next().map_or(DiskReply::End, DiskReply::Line),
+            None => FileAnswer::Failure,
+            Some(lines) => lines.next().map_or(FileAnswer::End, FileAnswer::Line),
         };
         self.answers.push_back((now + self.latency, answer));
     }
 
     /// The answer that has arrived by now.
-    fn arrived(&mut self, now: Cycles) -> Option<DiskReply> {
+    fn arrived(&mut self, now: Cycles) -> Option<FileAnswer> {
         let is_due = self.answers.front().is_some_and(|(due, _)| *due <= now);
         if is_due { self.answers.pop_front().map(|(_, answer)| answer) } else { None }
     }
@@ -184,9 +221,9 @@ impl Disk {
     pub(crate) fn slice(&mut self, context: &mut TickContext<'_>) -> bool {
         let Some(answer) = self.arrived(context.now) else { return false };
         match answer {
-            DiskReply::Line(line) => deliver(context.memory, &line),
-            DiskReply::End => context.memory.set(READ_DISK_BUFFER_STATUS, NO_MORE),
-            DiskReply::Failure => context.memory.set(READ_DISK_BUFFER_STATUS, FAILED),
+            FileAnswer::Line(line) => deliver(context.memory, &line),
+            FileAnswer::End => context.memory.set(READ_DISK_BUFFER_STATUS, NO_MORE),
+            FileAnswer::Failure => context.memory.set(READ_DISK_BUFFER_STATUS, FAILED),
         }
         true
     }

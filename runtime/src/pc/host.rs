@@ -28,7 +28,7 @@ const POLL_TICKS: u64 = 1111;
 /// How long a request waits for an absent PC before this is reported: 5 s.
 const PATIENCE: Cycles = Cycles::new(5 * Cycles::PER_SECOND.get());
 /// Longest string the PC reads, in words.
-const STRING_WORDS: u32 = 50;
+pub(super) const STRING_WORDS: u32 = 50;
 /// Success.
 const DONE: i32 = 0;
 /// The request cannot be met.
@@ -89,6 +89,16 @@ impl Host {
     /// Gives it its next answer.
     pub(crate) fn answer_next(&mut self, setting: &str) -> Result<(), AnswerError> {
         self.answers.set_next(setting)
+    }
+
+    /// Returns what it answers and holds.
+    pub(super) const fn answers(&self) -> &Answers {
+        &self.answers
+    }
+
+    /// Returns whether it leaves a request without an answer.
+    pub(super) fn is_silent(&self, code: i32) -> bool {
+        self.answers.silent.contains(&code)
     }
 
     /// Whether a job runs on it when the board starts.
@@ -226,7 +236,7 @@ fn miss(host: &mut Host, out: &mut Out, context: &TickContext<'_>) {
 }
 
 /// Meets a request; what it stores comes before the answer.
-fn answer(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, code: i32) -> i32 {
+pub(super) fn answer(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, code: i32) -> i32 {
     let parameters: [i32; 3] = std::array::from_fn(|index| context.memory.get(data(index + 1)));
     if let Some(text) = requests::shown(code, parameters[0]) {
         say(out, context, text);

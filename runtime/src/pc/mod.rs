@@ -8,12 +8,14 @@ pub(crate) mod files;
 mod gcode;
 pub(crate) mod host;
 mod link;
+mod remote;
 mod requests;
 
 pub use answers::{AnswerError, Answers, HELP as ANSWERS_HELP};
 pub use boxes::OpenBox;
 pub(crate) use downloads::Downloads;
 pub(crate) use link::{Arrival, ByteLink};
+pub use remote::{RemoteBoard, RequestServer};
 
 use kmotiondef::Cycles;
 

@@ -21,18 +21,18 @@ use harness::{Scratch, cc67};
 use client::{Client, Usual};
 
 /// A server and its folder; ended when it goes out of scope.
-struct Server {
+pub(crate) struct Server {
     child: Child,
     scratch: Scratch,
     /// Where it listens, in the order in which it says so.
-    places: Vec<String>,
+    pub(crate) places: Vec<String>,
     /// What else it says.
     lines: Receiver<String>,
 }
 
 impl Server {
     /// A server for a program `a.c` with these arguments, which listens at `count` places.
-    fn start(name: &str, arguments: &[&str], source: &str, count: usize) -> Self {
+    pub(crate) fn start(name: &str, arguments: &[&str], source: &str, count: usize) -> Self {
         let scratch = Scratch::new(name);
         scratch.write("a.c", source);
         Self::start_in(scratch, arguments, count)

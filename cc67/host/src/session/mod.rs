@@ -133,6 +133,18 @@ pub struct Session<T = Board> {
 
 /// What the session is, and what the board shows at the present instant.
 impl<T: Target> Session<T> {
+    /// A session with a target of another crate, whose programs are loaded.
+    #[must_use]
+    pub fn on_target(
+        target: T,
+        options: Options,
+        programs: Vec<UserProgram>,
+        offered: Vec<UserProgram>,
+    ) -> Self {
+        let offered = offered.into_iter().map(|program| (program.clone(), program.debug_info())).collect();
+        Self::new(target, options, programs, offered)
+    }
+
     pub(crate) fn new(
         target: T,
         options: Options,

@@ -11,6 +11,7 @@ use runtime::{Directory, HostFiles, MachineFile, Overlay, REMARKS};
 use vm::engine::Preemption;
 use vm::machine::Config as MachineConfig;
 
+use super::controller::ControllerArguments;
 use super::engine::EngineName;
 use super::heading;
 use super::pc::PcArguments;
@@ -90,6 +91,8 @@ pub(crate) struct BoardArguments {
     #[arg(skip)]
     pub(crate) keeps_files: bool,
     #[command(flatten)]
+    pub(crate) controller: ControllerArguments,
+    #[command(flatten)]
     pub(crate) uart: UartArguments,
     #[command(flatten)]
     pub(crate) pc: PcArguments,
@@ -138,6 +141,30 @@ impl BoardArguments {
         ensure!(self.form == RunForm::default(), "`--as` does not work with `--boot`");
         ensure!(!self.races, "`--races` does not work with `--boot`");
         ensure!(self.schedule.is_none(), "`--schedule` does not work with `--boot`");
+        Ok(())
+    }
+
+    /// Refuses an option that a connected controller does not know.
+    pub(crate) fn refuse_with_controller(&self) -> Result<()> {
+        let refused = [
+            ("--boot", self.boot.is_some()),
+            ("--engine", self.engine.is_some()),
+            ("--as", self.form != RunForm::default()),
+            ("--races", self.races),
+            ("--schedule", self.schedule.is_some()),
+            ("--assist", self.assist),
+            ("--machine", self.machine.is_some()),
+            ("--stim", !self.stim.is_empty()),
+            ("--flash", self.pc.has_flash()),
+            ("--uart", self.uart.uart.is_some()),
+            ("--uart-input", self.uart.uart_input.is_some()),
+            ("--uart-output", self.uart.uart_output.is_some()),
+            ("--board-faults", self.board_faults),
+            ("--no-shortcuts", self.no_shortcuts),
+        ];
+        for (option, is_given) in refused {
+            ensure!(!is_given, "`{option}` is about a simulated board: it does not work with `--on`");
+        }
         Ok(())
     }
 

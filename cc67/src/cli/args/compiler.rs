@@ -206,6 +206,11 @@ impl CompilerArguments {
         self.source.resolve(self.target().unwrap_or_default(), self.timing())
     }
 
+    /// Returns whether the options say which firmware programs are linked against.
+    pub(crate) const fn names_firmware(&self) -> bool {
+        self.source.board.is_some() || self.source.firmware.is_some()
+    }
+
     /// Returns the code that the board's time is counted for, and the waits of its memory.
     pub(crate) fn timing(&self) -> Timing {
         match self.timing {

@@ -4,6 +4,8 @@
 pub(crate) const PROGRAMS: &str = "Programs";
 /// The board and its surroundings.
 pub(crate) const BOARD: &str = "Board";
+/// A connected controller.
+pub(crate) const CONTROLLER: &str = "Connected controller";
 /// The board's connections to a PC and to other computers.
 pub(crate) const PC: &str = "PC, files and serial port";
 /// Recordings of a run.
@@ -14,4 +16,4 @@ pub(crate) const COMPILER: &str = "Compiler";
 pub(crate) const EXPERTS: &str = "For experts";
 
 /// The order of the headings, after the options of the command itself.
-pub(crate) const ORDER: &[&str] = &[PROGRAMS, BOARD, TRACES, PC, COMPILER, EXPERTS];
+pub(crate) const ORDER: &[&str] = &[PROGRAMS, BOARD, CONTROLLER, TRACES, PC, COMPILER, EXPERTS];

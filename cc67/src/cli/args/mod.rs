@@ -6,6 +6,7 @@ pub(crate) mod attach;
 pub(crate) mod beside;
 pub(crate) mod board;
 pub(crate) mod compiler;
+pub(crate) mod controller;
 pub(crate) mod engine;
 pub(crate) mod heading;
 pub(crate) mod pc;

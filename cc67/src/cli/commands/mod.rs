@@ -2,6 +2,7 @@
 //!
 //! A subcommand has arguments, does its work with what is below it, and says by an exit code how that went.
 
+mod boards;
 mod build;
 mod check;
 mod compare;
@@ -114,6 +115,8 @@ subcommands! {
         Plot(plot::PlotArguments) as arguments => plot::plot(arguments);
     }
     "Boards and PCs" {
+        /// List the controllers that are connected to this computer
+        Boards(boards::BoardsArguments) as arguments => boards::boards(arguments);
         /// Send script commands to a simulated board, interactively or from a script
         Console(console::ConsoleArguments) as arguments => console::console(arguments);
         /// Serve a simulated board to programs that use the vendor's client library

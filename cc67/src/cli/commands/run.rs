@@ -6,7 +6,7 @@ use std::ffi::{OsStr, OsString};
 use std::io::{self, BufWriter};
 
 use anyhow::Result;
-use cc67_host::{Ending, Session, Target};
+use cc67_host::{End, Ending, Session, Target};
 use clap::Args;
 use kmotiondef::limits::TIMEBASE;
 use kmotiondef::{AxisId, ThreadId, Ticks};
@@ -25,7 +25,7 @@ use crate::cli::report::screen::{Audience, Screen, Style, no_run};
 use crate::cli::report::seen::Seen;
 use crate::cli::report::state::FinalState;
 use crate::cli::report::trace::{self, Trace};
-use crate::cli::session::{Rig, Setup, Started, Work};
+use crate::cli::session::{Rig, Setup, Started, Work, controller};
 use schedules::ExploreArguments;
 
 /// Arguments of `cc67 run`.
@@ -86,6 +86,10 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit> {
 }
 
 fn run_setup(arguments: &RunArguments, setup: Setup) -> Result<Exit> {
+    let is_connected = arguments.board.controller.on.is_some();
+    for (option, is_given) in [("--profile", arguments.profile.is_some()), ("--state", arguments.state)] {
+        anyhow::ensure!(!(is_connected && is_given), "`{option}` does not work with `--on` yet");
+    }
     match &arguments.profile {
         Some(target) => run_profiled(arguments, setup, target),
         None => setup.on_its_target(arguments),
@@ -124,7 +128,7 @@ impl Work for &RunArguments {
 impl RunArguments {
     /// The programs, if what is beside them should be used.
     pub(super) fn with_sidecars(&self) -> Option<&[OsString]> {
-        (!self.beside.no_sidecar).then_some(&self.programs)
+        (!self.beside.no_sidecar && self.board.controller.on.is_none()).then_some(&self.programs)
     }
 
     /// The programs and the order in which they start.
@@ -134,7 +138,9 @@ impl RunArguments {
 
     /// The limit of the run.
     fn ticks(&self) -> Ticks {
-        Ticks::new((self.limit.unwrap_or(DEFAULT_LIMIT) / TIMEBASE).round() as u64)
+        // A program on a controller runs as long as it wants, and a person ends it.
+        let usual = if self.board.controller.on.is_some() { f64::INFINITY } else { DEFAULT_LIMIT };
+        Ticks::new((self.limit.unwrap_or(usual) / TIMEBASE).round() as u64)
     }
 
     /// Runs the board and shows what happens.
@@ -148,6 +154,7 @@ impl RunArguments {
         let mut trace = request.as_ref().map(|request| Trace::begin(&self.trace, request)).transpose()?;
         rig.connect()?;
         let mut seen = Seen::default();
+        let is_connected = self.board.controller.on.is_some();
         let limit = self.ticks();
         let pace = self.realtime.then(|| Pace::new(rig.session.tick()));
         let mut sink = |event| {
@@ -159,12 +166,19 @@ impl RunArguments {
         };
         interrupt::ends(rig.session.interrupter())?;
         let end = rig.run(limit, pace.as_ref(), &mut sink);
+        if is_connected && end == End::Interrupted {
+            controller::stop(&mut rig.session, &mut sink);
+        }
         rig.finish(&mut sink)?;
         let (session, ending) = (&rig.session, rig.session.ending());
         let (exit, why) = seen.exit(end, self.limit.is_some());
         let active = active(session);
         // 2,000 bits are looked at only if somebody looks at the result.
-        let state = if self.json || self.state { FinalState::of(session) } else { FinalState::default() };
+        let state = if (self.json || self.state) && !is_connected {
+            FinalState::of(session)
+        } else {
+            FinalState::default()
+        };
         screen.end(exit, why, session.tick(), &active, &ending, &state);
         if screen.finish().map_err(|error| output::lost_output(&error))? == Audience::Gone {
             return Ok(Exit::Success);
@@ -178,6 +192,9 @@ impl RunArguments {
             state.lines().iter().for_each(|line| terminal::note(line));
         }
         self.say_what_was_not_split(session);
+        if let Some(why) = session.target().lost() {
+            anyhow::bail!("{why}");
+        }
         if let Some(how) = how_it_ended(exit, session, &ending) {
             terminal::note(&how);
         }

@@ -10,6 +10,8 @@ use crate::lines::Incoming;
 
 /// Ends each command line: its reply says that all before it was executed.
 const FENCE: &str = "Version";
+/// Words of the gather buffer in a line.
+const WORDS_PER_LINE: u32 = 8;
 /// Commands that take more lines, which cannot be typed one by one.
 const MULTI_LINE: [&str; 4] = ["LOADDATA", "LOADFLASH", "SETGATHERHEX", "READDISKDATA"];
 
@@ -66,6 +68,37 @@ impl Client {
         result
     }
 
+    /// Reads words of the gather buffer.
+    ///
+    /// # Errors
+    /// The board does not answer, or with something else.
+    pub fn gather(&mut self, offset: u32, count: u32) -> Result<Vec<u32>, WireError> {
+        let command = format!("GetGatherHex {offset} {count}");
+        let lines = self.ask_lines(&command, count.div_ceil(WORDS_PER_LINE) as usize)?;
+        let words = lines.iter().flat_map(|line| line.split_ascii_whitespace());
+        let words = words.map(|word| u32::from_str_radix(word, 16).ok()).collect::<Option<Vec<_>>>();
+        words
+            .filter(|words| words.len() == count as usize)
+            .ok_or_else(|| self.unexpected(&command, &lines.join(" / ")))
+    }
+
+    /// Stores words in the gather buffer.
+    ///
+    /// # Errors
+    /// The board refuses them or does not answer.
+    pub fn set_gather(&mut self, offset: u32, words: &[u32]) -> Result<(), WireError> {
+        let command = format!("SetGatherHex {offset} {}", words.len());
+        let line =
+            |words: &[u32]| words.iter().map(|word| format!("{word:08X}")).collect::<Vec<_>>().join(" ");
+        let data = words.chunks(WORDS_PER_LINE as usize).map(|words| line(words).into_bytes());
+        let mut lines: Vec<_> = std::iter::once(command.clone().into_bytes()).chain(data).collect();
+        lines.push(FENCE.as_bytes().to_vec());
+        self.link.claim(ANSWER_WITHIN)?;
+        let result = self.exchange(&lines, &command, ANSWER_WITHIN);
+        self.link.release();
+        result.map(drop)
+    }
+
     /// Sends lines, the last of which asks for the version, and returns the lines of replies before that.
     pub(super) fn exchange(
         &mut self,
@@ -90,6 +123,8 @@ impl Client {
     /// Lines of replies until that to the fence, or the board's refusal of our command.
     fn replies(&mut self, command: &str, within: Duration) -> Result<Vec<String>, WireError> {
         let mut lines = Vec::new();
+        // The command may ask for the version itself.
+        let mut fences = command.split(';').filter(|part| part.trim().eq_ignore_ascii_case(FENCE)).count();
         let mut end = now() + within;
         let mut unwritten = self.link.unwritten();
         loop {
@@ -100,9 +135,10 @@ impl Client {
             match item {
                 Some(Incoming::Reply(line)) => {
                     let line = String::from_utf8_lossy(&line).into_owned();
-                    if line == self.version {
+                    if line == self.version && fences == 0 {
                         return Ok(lines);
                     }
+                    fences -= usize::from(line == self.version);
                     lines.push(line);
                 }
                 Some(_) => {}

@@ -220,7 +220,8 @@ impl Client {
     }
 
     /// The error of an answer that makes no sense.
-    fn unexpected(&self, command: &str, answer: &str) -> WireError {
+    #[must_use]
+    pub fn unexpected(&self, command: &str, answer: &str) -> WireError {
         WireError::Unexpected {
             place: self.place().to_owned(),
             command: command.to_owned(),

@@ -14,7 +14,7 @@ use std::io::{self, BufRead, IsTerminal};
 use std::sync::mpsc::RecvTimeoutError;
 use std::time::Duration;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use cc67_host::{End, Target};
 use clap::Args;
 use kmotiondef::limits::TIMEBASE;
@@ -183,11 +183,18 @@ impl<'a, T: Target> Console<'a, T> {
                 return Ok(Exit::Success);
             }
         }
-        let limit = self.after(self.arguments.limit.unwrap_or(DEFAULT_LIMIT));
+        let is_connected = self.arguments.board.controller.on.is_some();
+        let usual = match (is_connected, self.arguments.programs.is_empty()) {
+            (false, _) => DEFAULT_LIMIT,
+            // Programs on a controller go on without this command; those that are named here are waited for.
+            (true, true) => 0.0,
+            (true, false) => f64::INFINITY,
+        };
+        let limit = self.after(self.arguments.limit.unwrap_or(usual));
         let shown = &mut self.shown;
         let end = self.rig.run(limit, None, &mut |event| shown.note(&event));
         let exit = self.leave()?;
-        if end == End::Limit && self.arguments.limit.is_none() && exit == Exit::Success {
+        if end == End::Limit && self.arguments.limit.is_none() && !is_connected && exit == Exit::Success {
             self.shown
                 .screen
                 .note(&format!("still running {DEFAULT_LIMIT} s of board time after the last line"));
@@ -231,6 +238,9 @@ impl<'a, T: Target> Console<'a, T> {
             trace.know_axes(axes);
         }
         self.shown.finish(self.rig.session.tick())?;
+        if let Some(why) = self.rig.session.target().lost() {
+            bail!("{why}");
+        }
         Ok(self.shown.seen.exit(End::AllEnded, true).0)
     }
 

@@ -1,0 +1,23 @@
+//! The options of a connected controller.
+
+use cc67_controller::Address;
+use clap::Args;
+
+use super::heading;
+
+/// The controller that takes the place of the simulated board, and the risks that its user accepts.
+#[derive(Debug, Args)]
+#[command(next_help_heading = heading::CONTROLLER)]
+pub(crate) struct ControllerArguments {
+    /// Use a connected controller in place of a simulated board: usb[:LOCATION], serial:PATH, server[:PATH|:HOST:PORT],
+    /// tcp:HOST:PORT; `cc67 boards` lists what is connected
+    #[arg(long, value_name = "BOARD")]
+    pub(crate) on: Option<Address>,
+    /// With --on, load programs also if they were linked for another firmware than the controller runs; their calls may
+    /// then jump anywhere
+    #[arg(long, requires = "on")]
+    pub(crate) force: bool,
+    /// With --on, connect without the question of the first time; for scripts
+    #[arg(long, requires = "on")]
+    pub(crate) yes: bool,
+}

@@ -1,0 +1,129 @@
+//! Connected controllers: the question of the first time, the connection, the firmware that programs are linked for.
+
+use std::fs;
+use std::io::{self, BufRead, IsTerminal};
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, bail};
+use cc67_controller::{Address, ControllerLink, Progress};
+use cc67_host::{EventSink, Session, Target};
+use compiler::firmware::Firmware;
+use kmotiondef::ThreadId;
+
+use crate::cli::args::compiler::CompilerArguments;
+use crate::cli::args::controller::ControllerArguments;
+use crate::cli::io::terminal;
+
+/// What a person should know before the first connection of a project.
+const FIRST_TIME: &str = "\
+This connects to a real controller, and programs on it move real machines.
+
+  - cc67's link, downloads and code have run on the released firmware in emulation, never on a controller.
+  - Switch the drives off for the first trials, and keep the emergency stop within reach.
+  - Connecting starts nothing. A program that is started moves whatever it wants, and continues when cc67 ends.
+";
+
+/// Connects to the controller at an address, after a person has agreed.
+pub(super) fn connect(address: &Address, arguments: &ControllerArguments) -> Result<ControllerLink> {
+    if !arguments.yes {
+        agree()?;
+    }
+    let connection = ControllerLink::open(address)?;
+    terminal::note(&format!("connected to {}: {}", connection.place(), connection.version().trim_end()));
+    Ok(connection)
+}
+
+/// Asks for agreement once for each project folder.
+fn agree() -> Result<()> {
+    let folder = std::env::current_dir().context("cannot find the present folder")?;
+    let folder = folder.display().to_string();
+    let record = record();
+    let agreed = record.as_ref().and_then(|path| fs::read_to_string(path).ok()).unwrap_or_default();
+    if agreed.lines().any(|line| line == folder) {
+        return Ok(());
+    }
+    terminal::aside(FIRST_TIME);
+    if !(io::stdin().is_terminal() && io::stderr().is_terminal()) {
+        bail!("nobody is here to agree to that: `--yes` does");
+    }
+    terminal::aside("Connect? [y/N] ");
+    let mut answer = String::new();
+    io::stdin().lock().read_line(&mut answer).context("cannot read the answer")?;
+    if !matches!(answer.trim(), "y" | "Y" | "yes") {
+        bail!("not connected");
+    }
+    let Some(path) = record else { return Ok(()) };
+    let kept = path.parent().map_or(Ok(()), fs::create_dir_all);
+    // Without this file the question comes again, which does no harm.
+    if let Err(error) = kept.and_then(|()| fs::write(&path, format!("{agreed}{folder}\n"))) {
+        terminal::note(&format!("the answer cannot be kept in {}: {error}", path.display()));
+    }
+    Ok(())
+}
+
+/// The file with the project folders for which a person has agreed.
+fn record() -> Option<PathBuf> {
+    let named = |name| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+    let state = if cfg!(windows) {
+        named("LOCALAPPDATA")
+    } else {
+        named("XDG_STATE_HOME").or_else(|| Some(named("HOME")?.join(".local/state")))
+    };
+    Some(state?.join("cc67").join("controllers"))
+}
+
+/// Returns what programs for a controller are linked against: what the options name, or else its own firmware.
+pub(super) fn firmware(
+    connection: &ControllerLink,
+    named: Firmware,
+    compiler: &CompilerArguments,
+) -> Result<Firmware> {
+    if compiler.names_firmware() {
+        return Ok(named);
+    }
+    let Some(board) = connection.board() else {
+        bail!(
+            "{}: its firmware `{}` is not known; `--firmware FILE` names the file of that firmware",
+            connection.place(),
+            connection.version().trim_end()
+        );
+    };
+    Ok(if board.is_default() { Firmware::default() } else { Firmware::Board(board) })
+}
+
+/// Returns what reports the progress of downloads.
+pub(super) fn progress() -> impl FnMut(ThreadId, Progress) + Send + 'static {
+    |thread, Progress { done, total }| {
+        let is_shown = io::stderr().is_terminal();
+        if is_shown && total > 0 {
+            terminal::aside(&format!("\rthread {thread}: {done} of {total} bytes loaded"));
+            if done == total {
+                terminal::aside("\r\x1b[K");
+            }
+        }
+    }
+}
+
+/// Stops the programs of a session after Ctrl-C, and offers to disable the axes.
+pub(crate) fn stop<T: Target>(session: &mut Session<T>, events: EventSink<'_>) {
+    let programs: Vec<ThreadId> = session.debug().into_iter().map(|(thread, _)| thread).collect();
+    let active: Vec<_> = programs.into_iter().filter(|thread| session.thread(*thread).is_active()).collect();
+    active.iter().for_each(|thread| session.stop(*thread));
+    let stopped = active.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+    let left: Vec<_> = active.iter().filter(|thread| session.thread(**thread).is_active()).collect();
+    match (active.is_empty(), left.is_empty()) {
+        (true, _) => {}
+        (false, true) => terminal::note(&format!("thread {stopped} stopped; enabled axes stay enabled")),
+        (false, false) => terminal::note(&format!("thread {stopped} may still run: use the emergency stop")),
+    }
+    if session.target().lost().is_some() || !io::stdin().is_terminal() {
+        return;
+    }
+    terminal::aside("Disable all axes? [y/N] ");
+    let mut answer = String::new();
+    if io::stdin().lock().read_line(&mut answer).is_ok() && matches!(answer.trim(), "y" | "Y" | "yes") {
+        for axis in kmotiondef::AxisId::all() {
+            session.exchange(format!("DisableAxis{axis}").as_bytes(), events);
+        }
+    }
+}

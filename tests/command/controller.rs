@@ -1,0 +1,205 @@
+//! A controller at the other end of a link: the model, or a firmware file, that is served on a pseudo-terminal or a port.
+
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use harness::{Output, Scratch, cc67, cc67_with_input, files, root};
+
+use crate::serve::Server;
+
+/// Prints, and changes an element of `persist.UserData`.
+const PROGRAM: &str = "\
+#include \"KMotionDef.h\"
+main()
+{
+    int i;
+    for (i = 0; i < 3; i++) printf(\"count %d\\n\", i);
+    persist.UserData[5] = i;
+}
+";
+
+/// Prints until somebody ends it.
+const ENDLESS: &str = "\
+#include \"KMotionDef.h\"
+main()
+{
+    for (;;) { Delay_sec(0.01); persist.UserData[6]++; }
+}
+";
+
+/// A board that is served on a link, and its address.
+fn served(name: &str, options: &[&str]) -> (Server, String) {
+    let listen = if cfg!(unix) { ["serve", "--listen", "pty"] } else { ["serve", "--listen", "tcp-raw:0"] };
+    let arguments = [&listen[..], options, &["--load", "7:a.c"]].concat();
+    let server = Server::start(name, &arguments, ENDLESS, 1);
+    let place = server.places[0].clone();
+    (server, place)
+}
+
+fn on(scratch: &Scratch, words: &[&str], place: &str, more: &[&str]) -> Output {
+    let arguments = [words, &["--yes", "--on", place], more].concat();
+    cc67(scratch, arguments)
+}
+
+#[test]
+fn a_program_is_loaded_and_runs() {
+    let scratch = Scratch::new("controller-run");
+    scratch.write("a.c", PROGRAM);
+    let (_server, place) = served("controller-run-board", &[]);
+    for _ in 0..2 {
+        let output = on(&scratch, &["run"], &place, &["a.c"]);
+        assert_eq!((output.code, output.stdout.as_str()), (0, "count 0\ncount 1\ncount 2\n"), "{output:?}");
+        assert!(output.stderr.starts_with("cc67: connected to "), "{}", output.stderr);
+    }
+    let output = on(&scratch, &["run"], &place, &["--time", "--for", "0.5", "3:a.c"]);
+    assert_eq!((output.code, output.stdout.lines().count()), (0, 3), "{output:?}");
+}
+
+/// The programs of c-programs that run alone, without a stimulus or a machine.
+fn programs() -> Vec<PathBuf> {
+    files(&root().join("c-programs"), "c").into_iter().filter(|path| is_alone(path)).collect()
+}
+
+fn is_alone(path: &Path) -> bool {
+    let text = fs::read_to_string(path).expect("text");
+    let has = |extension| path.with_extension(extension).exists();
+    text.starts_with("// cc67: run\n") && has("expected") && !has("stim") && !has("toml")
+}
+
+/// Programs whose console shows board times, the board's restart, or what only a simulated board has.
+const OTHER: &[&str] = &["start_up.c", "signal_tower.c"];
+
+/// The console that a program prints on the model.
+fn expected(path: &Path) -> String {
+    let text = fs::read_to_string(path.with_extension("expected")).expect("text");
+    text.split("---- ").next().unwrap_or_default().to_owned()
+}
+
+/// Runs each program on a board of its own.
+fn run_all(name: &str, options: &[&str]) -> usize {
+    let scratch = Scratch::new(name);
+    let mut wrong = Vec::new();
+    let all: Vec<_> =
+        programs().into_iter().filter(|path| !OTHER.iter().any(|other| path.ends_with(other))).collect();
+    for path in &all {
+        let (_server, place) = served(&format!("{name}-board"), options);
+        let file = path.to_str().expect("text");
+        let output = on(&scratch, &["run"], &place, &["--files", "files", file]);
+        if output.code != 0 || output.stdout != expected(path) {
+            wrong.push(format!("{file}: {output:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), all.len(), wrong.join("\n"));
+    all.len()
+}
+
+#[test]
+fn programs_print_behind_a_link_what_they_print_on_the_model() {
+    let count = run_all("controller-all", &["--pace", "20"]);
+    assert!(count >= 40, "{count}");
+}
+
+#[test]
+fn programs_print_the_same_on_the_firmware_behind_a_link() {
+    let Ok(firmware) = env::var("CC67_FIRMWARE") else {
+        println!("not tried: CC67_FIRMWARE names no firmware file");
+        return;
+    };
+    run_all("controller-boot", &["--pace", "1", "--boot", &firmware]);
+}
+
+#[test]
+fn threads_that_were_active_before_are_neither_waited_for_nor_stopped() {
+    let scratch = Scratch::new("controller-others");
+    scratch.write("a.c", PROGRAM);
+    let (_server, place) = served("controller-others-board", &[]);
+    let console = |input: &str| cc67_with_input(&scratch, ["console", "--yes", "--on", &place], input);
+    assert_eq!(console("Execute7\n").code, 0, "it ends, and thread 7 runs on");
+    let output = on(&scratch, &["run"], &place, &["a.c"]);
+    assert_eq!((output.code, output.stdout.as_str()), (0, "count 0\ncount 1\ncount 2\n"), "{output:?}");
+    assert_eq!(console("CheckThread7\n").stdout, "1\n");
+}
+
+#[test]
+fn the_console_shows_replies_and_refusals() {
+    let scratch = Scratch::new("controller-console");
+    let (_server, place) = served("controller-console-board", &[]);
+    let input = "Version\nSetPersistDec 5 42\nGetPersistDec 5\nBOGUS\nVersion;CheckThread1\n";
+    let output = cc67_with_input(&scratch, ["console", "--yes", "--on", &place], input);
+    let version = "KFLOP 4.34 Build 16:07:06 Aug 14 2018";
+    let expect = format!("{version}\n42\nerror, invalid command\n{version}\n0\n");
+    assert_eq!((output.code, output.stdout), (0, expect), "{}", output.stderr);
+}
+
+#[test]
+fn programs_for_another_firmware_are_refused_unless_forced() {
+    let scratch = Scratch::new("controller-firmware");
+    scratch.write("a.c", PROGRAM);
+    let (_server, place) = served("controller-firmware-board", &[]);
+    let other = ["--board", "kflop-5.3.2", "a.c"];
+    let output = on(&scratch, &["run"], &place, &other);
+    assert_eq!(output.code, 2, "{output:?}");
+    for text in ["another firmware", "board:   KFLOP 4.34", "program: KFLOP 5.3.2", "--force"] {
+        assert!(output.stderr.contains(text), "{}", output.stderr);
+    }
+    scratch.write("pure.c", "main() { int i, n = 0; for (i = 0; i < 9; i++) n += i; }\n");
+    let output = on(&scratch, &["run"], &place, &["--force", "--board", "kflop-5.3.2", "pure.c"]);
+    assert_eq!(output.code, 0, "{output:?}");
+    let built = cc67(&scratch, ["build", "--board", "kflop-5.3.2", "a.c", "-o", "a(1).out"]);
+    assert_eq!(built.code, 0, "{built:?}");
+    let output = on(&scratch, &["run"], &place, &["a(1).out"]);
+    assert!(output.code == 2 && output.stderr.contains("another firmware"), "{output:?}");
+    let built = cc67(&scratch, ["build", "--thread", "2", "a.c", "-o", "b.out"]);
+    assert_eq!(built.code, 0, "{built:?}");
+    let output = on(&scratch, &["run"], &place, &["1:b.out"]);
+    assert!(output.code == 2 && output.stderr.contains("not for thread 1"), "{output:?}");
+    assert_eq!(on(&scratch, &["run"], &place, &["2:b.out"]).code, 0, "the board is in order");
+}
+
+#[test]
+fn options_of_a_simulated_board_and_missing_consent_are_refused_by_name() {
+    let scratch = Scratch::new("controller-options");
+    scratch.write("a.c", PROGRAM);
+    for (option, value) in [
+        ("--machine", Some("m.toml")),
+        ("--stim", Some("t=0.5 bit 136=1")),
+        ("--races", None),
+        ("--engine", Some("bytecode")),
+        ("--flash", Some("flash.bin")),
+    ] {
+        let words: Vec<_> = [Some(option), value, Some("a.c")].into_iter().flatten().collect();
+        let output = on(&scratch, &["run"], "tcp:localhost:1", &words);
+        let expect = format!("`{option}` is about a simulated board");
+        assert!(output.code == 2 && output.stderr.contains(&expect), "{output:?}");
+    }
+    let output = cc67(&scratch, ["run", "--on", "tcp:localhost:1", "a.c"]);
+    assert!(output.code == 2 && output.stderr.contains("Switch the drives off"), "{output:?}");
+    let output = cc67(&scratch, ["run", "--on", "lpt1", "a.c"]);
+    assert!(output.code == 2 && output.stderr.contains("serial:PATH"), "{output:?}");
+    let output = on(&scratch, &["debug"], "tcp:localhost:1", &["a.c"]);
+    assert!(output.code == 2, "{output:?}");
+}
+
+#[test]
+fn boards_lists_what_is_connected_or_says_where_it_looked() {
+    let scratch = Scratch::new("controller-boards");
+    let output = cc67(&scratch, ["boards", "--quiet", "--json"]);
+    match output.code {
+        0 => assert!(output.stdout.lines().all(|line| line.contains("\"address\"")), "{output:?}"),
+        code => assert!(code == 1 && output.stderr.contains("no controller found: looked for"), "{output:?}"),
+    }
+}
+
+#[test]
+fn a_board_that_goes_away_ends_the_run_with_one_message() {
+    let scratch = Scratch::new("controller-lost");
+    scratch.write("endless.c", ENDLESS);
+    let arguments = ["serve", "--listen", "tcp-raw:0", "--for", "1", "--load", "7:a.c"];
+    let server = Server::start("controller-lost-board", &arguments, ENDLESS, 1);
+    let place = server.places[0].clone();
+    let output = on(&scratch, &["run"], &place, &["endless.c"]);
+    assert_eq!(output.code, 2, "{output:?}");
+    let lines: Vec<_> = output.stderr.lines().skip(1).collect();
+    assert!(lines.len() == 1 && lines[0].contains("disconnected"), "{output:?}");
+}
