@@ -9,17 +9,19 @@ use crate::found::FoundBoard;
 /// The system does not tell.
 pub fn boards() -> Result<Vec<FoundBoard>, WireError> {
     #[cfg(feature = "usb")]
-    let mut found = match crate::transport::usb_boards() {
-        // A system without USB, such as a container.
-        Err(WireError::Open { error, .. }) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
-        found => found?,
-    };
+    let mut found = if has_usb() { crate::transport::usb_boards()? } else { Vec::new() };
     #[cfg(not(feature = "usb"))]
     let mut found = Vec::new();
     #[cfg(feature = "serial")]
     found.extend(serial_boards());
     found.extend(server());
     Ok(found)
+}
+
+/// Returns whether the system has USB at all; containers have none.
+#[cfg(feature = "usb")]
+fn has_usb() -> bool {
+    !cfg!(target_os = "linux") || std::path::Path::new("/sys/bus/usb/devices").exists()
 }
 
 /// Serial ports that say that they are a board.
