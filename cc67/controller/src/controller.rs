@@ -296,7 +296,7 @@ impl Controller {
         let line = String::from_utf8_lossy(line).into_owned();
         match self.client.get_mut().send_line(&line) {
             Ok(lines) => {
-                self.pending.extend(lines.into_iter().map(|line| EventKind::Reply(line.into_bytes())))
+                self.pending.extend(lines.into_iter().map(|line| EventKind::Reply(line.into_bytes())));
             }
             // The board's own words come as a line of its console.
             Err(WireError::Refused { message, .. }) => {
@@ -325,7 +325,7 @@ fn elements(address: GuestAddr, bytes: &[u8]) -> Option<Vec<(usize, u32)>> {
 fn element(address: GuestAddr) -> Option<usize> {
     let start = PERSIST.field(Persist::USER_DATA).element(0).address();
     let offset = address.get().checked_sub(start.get())? as usize;
-    (offset % 4 == 0 && offset / 4 < N_USER_DATA_VARS).then_some(offset / 4)
+    (offset.is_multiple_of(4) && offset / 4 < N_USER_DATA_VARS).then_some(offset / 4)
 }
 
 /// A controller for the PC that answers its requests.

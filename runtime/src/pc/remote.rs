@@ -61,6 +61,15 @@ pub trait RemoteBoard {
     fn command(&mut self, line: &str) -> Result<(), Self::Error>;
 }
 
+/// The copy before a request is answered.
+struct Before {
+    user_data: Vec<u32>,
+    /// The elements that the request names.
+    named: Range<usize>,
+    /// The feed and the rapid override.
+    overrides: [f32; 2],
+}
+
 /// The answers of a PC to programs on a remote board.
 #[derive(Debug)]
 pub struct RequestServer {
@@ -103,9 +112,11 @@ impl RequestServer {
         for (index, word) in (PC_COMM_PERSIST..).zip(words) {
             self.memory.poke(element(index), word);
         }
-        let before = self.user_data();
-        let stored = self.named(code, &parameters);
-        let overrides = self.overrides();
+        let before = Before {
+            user_data: self.user_data(),
+            named: self.named(code, &parameters),
+            overrides: self.overrides(),
+        };
         let mut out = Out::default();
         let mut context = TickContext {
             memory: &mut self.memory,
@@ -114,7 +125,7 @@ impl RequestServer {
             now: Cycles::default(),
         };
         let result = host::answer(&mut self.host, &mut out, &mut context, code);
-        self.store(board, code, (&before, stored), overrides)?;
+        self.store(board, code, &before)?;
         board.set_user_data(PC_COMM_PERSIST, result.cast_unsigned())?;
         let said = out.take_events().into_iter().filter_map(|event| match event.kind {
             EventKind::Host(text) => Some(text),
@@ -172,18 +183,12 @@ impl RequestServer {
     }
 
     /// Stores on the board what the answer has changed.
-    fn store<B: RemoteBoard>(
-        &mut self,
-        board: &mut B,
-        code: i32,
-        (before, named): (&[u32], Range<usize>),
-        overrides: [f32; 2],
-    ) -> Result<(), B::Error> {
+    fn store<B: RemoteBoard>(&mut self, board: &mut B, code: i32, before: &Before) -> Result<(), B::Error> {
         let is_read =
             matches!(requests::deed(code), Some(Deed::Variables(Way::Set) | Deed::Tool(_, Way::Set)));
-        for (index, (old, new)) in before.iter().zip(self.user_data()).enumerate() {
+        for (index, (old, new)) in before.user_data.iter().zip(self.user_data()).enumerate() {
             // What the board has there now is not known unless it was read.
-            if *old != new || !is_read && named.contains(&index) {
+            if *old != new || !is_read && before.named.contains(&index) {
                 board.set_user_data(index, new)?;
             }
         }
@@ -195,7 +200,9 @@ impl RequestServer {
             }
             Some(Deed::Override(..)) => {
                 let now = self.overrides();
-                for (name, (old, new)) in ["SetFRO", "SetRapidFRO"].iter().zip(overrides.iter().zip(now)) {
+                for (name, (old, new)) in
+                    ["SetFRO", "SetRapidFRO"].iter().zip(before.overrides.iter().zip(now))
+                {
                     if *old != new {
                         board.command(&format!("{name} {new}"))?;
                     }
