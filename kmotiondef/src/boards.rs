@@ -21,6 +21,7 @@
 //! | `ADDRESS NAME` | a name that the firmware has |
 
 mod header;
+mod moved;
 mod prototype;
 
 use std::collections::BTreeMap;
@@ -34,6 +35,7 @@ use crate::map::{PROGRAM_BASE, PROGRAM_LIMIT, PROGRAM_SIZE};
 use crate::structs::STRUCTURES;
 use crate::variables::{FIRMWARE_VARIABLES, variable_named};
 
+pub use moved::{MovedObject, moved_objects};
 pub use prototype::FunctionType;
 
 /// The files of facts.
@@ -423,10 +425,22 @@ impl TargetBoard {
         found.into_iter().map(|(name, change)| Difference { name, change }).collect()
     }
 
+    /// The addresses of the variables of the tables on this board.
+    #[must_use]
+    pub fn moved_objects(&self) -> Vec<MovedObject> {
+        moved_objects(|name| self.variable(name), self.own_structures())
+    }
+
+    /// The layouts of structures that are not those of the default board.
+    #[must_use]
+    pub fn own_structures(&self) -> &[StructureLayout] {
+        self.facts.as_ref().map_or(&[], |facts| &facts.structures)
+    }
+
     /// The layouts of all structures.
     #[must_use]
     pub fn structures(&self) -> Vec<StructureLayout> {
-        let own = self.facts.as_ref().map_or(&[][..], |facts| &facts.structures);
+        let own = self.own_structures();
         let of_table = |structure: &crate::structs::Structure| StructureLayout {
             name: structure.name,
             size: structure.size,

@@ -3,7 +3,7 @@
 //! It composes the parts and defines their order; the parts themselves do the work.
 
 use kmotiondef::AccessSize;
-use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, Function, function_at};
+use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, FirmwareFunction, Function, function_at};
 use kmotiondef::function::{Attributes, Polled};
 use kmotiondef::limits::MAX_GATHER_DATA;
 use kmotiondef::map::{FPGA, TIMER0};
@@ -23,7 +23,9 @@ use vm::trap::{Trap, TrapKind};
 
 use crate::commands::Scripts;
 use crate::firmware::calls::WrongWait;
-use crate::firmware::dispatch::{HANDLERS, signatures};
+use crate::firmware::dispatch::{Answer, HANDLERS, signatures};
+use crate::firmware::later::{self, Callee, Callees, LATER_FUNCTIONS};
+use crate::firmware::level::ModelledBoard;
 use crate::firmware::parts::Parts;
 use crate::firmware::races::shared;
 use crate::firmware::{math, serial, waits};
@@ -54,7 +56,9 @@ const TIMER_CYCLES: Cycles = Cycles::new(20);
 /// The board's firmware, and what is around the board.
 #[derive(Clone, Debug)]
 pub struct Kernel {
+    /// Those of the functions of the table, then those of later ones.
     signatures: Vec<Signature>,
+    callees: Callees,
     pub(crate) parts: Parts,
     pub(crate) scripts: Scripts,
 }
@@ -63,12 +67,43 @@ impl Kernel {
     /// A kernel at power-up whose PC keeps its files in `files`.
     #[must_use]
     pub fn new(files: Box<dyn HostFiles>) -> Self {
-        Self { signatures: signatures(), parts: Parts::new(Pc::new(files)), scripts: Scripts::default() }
+        Self::of_board(ModelledBoard::default(), files)
+    }
+
+    /// The same with the firmware of a board.
+    #[must_use]
+    pub fn of_board(board: ModelledBoard, files: Box<dyn HostFiles>) -> Self {
+        let mut signatures = signatures();
+        signatures.extend(later::signatures());
+        let mut parts = Parts { level: board, ..Parts::new(Pc::new(files)) };
+        let method = parts.level.board().variable("StandardDerivativeMethod");
+        parts.servo.cache.derivative_method = method;
+        parts.servo.planner = parts.level.behaviour().planner;
+        Self { signatures, callees: Callees::of(parts.level.board()), parts, scripts: Scripts::default() }
+    }
+
+    /// The row of the function at an address, if the table has it.
+    fn row(&self, address: GuestAddr) -> Option<&'static FirmwareFunction> {
+        match self.callees.at(address)? {
+            Callee::Row(number) => Some(&FIRMWARE_FUNCTIONS[number]),
+            Callee::Later(_) => None,
+        }
+    }
+
+    fn call_later(&mut self, number: usize, caller: &mut Caller<'_>) -> Answer {
+        let function = &LATER_FUNCTIONS[number];
+        if caller.woken.is_none() {
+            caller.spend(function.cost);
+        }
+        if let Some(thread) = caller.thread {
+            self.parts.calls.waits.act(thread, caller.now());
+        }
+        (function.handler)(&mut self.parts, caller)
     }
 
     /// Everything that the firmware keeps is as at power-up; what is outside of the board is left alone.
     pub(crate) fn restart(&mut self) {
-        let Self { parts, scripts, signatures: _ } = self;
+        let Self { parts, scripts, signatures: _, callees: _ } = self;
         parts.calls.restart();
         parts.out.console = Console::default();
         parts.out.forget_remarks(&["uart-overrun", "uart-commands", "line-in-parts", "percent-twice"]);
@@ -250,18 +285,28 @@ impl Bus for Kernel {
 /// The firmware function at `address` if it only computes its result from its arguments.
 #[must_use]
 pub fn pure_function(address: GuestAddr) -> Option<Pure> {
-    let row = &FIRMWARE_FUNCTIONS[function_at(address)?];
+    pure(&FIRMWARE_FUNCTIONS[function_at(address)?])
+}
+
+fn pure(row: &FirmwareFunction) -> Option<Pure> {
     let function = row.attributes.is_pure.then(|| math::pure(row.rust_name)).flatten()?;
     Some(Pure { cost: row.cost, function })
 }
 
 impl Firmware for Kernel {
     fn signature(&self, address: GuestAddr) -> Option<&Signature> {
-        self.signatures.get(function_at(address)?)
+        match self.callees.at(address)? {
+            Callee::Row(number) => self.signatures.get(number),
+            Callee::Later(number) => self.signatures.get(FIRMWARE_FUNCTIONS.len() + number),
+        }
     }
 
     fn call(&mut self, address: GuestAddr, caller: &mut Caller<'_>) -> Result<Outcome<Value>, TrapKind> {
-        let number = function_at(address).ok_or(TrapKind::UnknownFirmwareFunction { addr: address })?;
+        let callee = self.callees.at(address);
+        let number = match callee.ok_or(TrapKind::UnknownFirmwareFunction { addr: address })? {
+            Callee::Row(number) => number,
+            Callee::Later(number) => return self.call_later(number, caller),
+        };
         let row = &FIRMWARE_FUNCTIONS[number];
         match (caller.woken, self.parts.timing.wait_states()) {
             (None, _) => caller.spend(row.cost),
@@ -294,15 +339,15 @@ impl Firmware for Kernel {
     }
 
     fn pure(&self, address: GuestAddr) -> Option<Pure> {
-        pure_function(address)
+        pure(self.row(address)?)
     }
 
     fn is_variadic(&self, address: GuestAddr) -> bool {
-        function_at(address).is_some_and(|number| FIRMWARE_FUNCTIONS[number].is_variadic)
+        self.row(address).is_some_and(|row| row.is_variadic)
     }
 
     fn changed_registers(&self, address: GuestAddr) -> u64 {
-        function_at(address).map_or(0, |number| FIRMWARE_FUNCTIONS[number].attributes.changed_registers)
+        self.row(address).map_or(0, |row| row.attributes.changed_registers)
     }
 
     fn begins(&mut self, thread: ThreadId, context: &mut TickContext<'_>) {
@@ -415,8 +460,20 @@ impl Firmware for Kernel {
     }
 
     fn quiet_ticks(&self, memory: &GuestMemory) -> u64 {
-        let Parts { out, io, machine, servo, pc, world, calls, clock, timing: _, races: _, switches: _ } =
-            &self.parts;
+        let Parts {
+            out,
+            io,
+            machine,
+            servo,
+            pc,
+            world,
+            calls,
+            clock,
+            timing: _,
+            races: _,
+            switches: _,
+            level: _,
+        } = &self.parts;
         let now = clock.tick_start;
         let is_quiet = servo.cache.is_settled()
             && out.console.is_idle()

@@ -54,6 +54,7 @@ mod world;
 
 pub use board::machine_file::{MachineFile, MachineFileError};
 pub use board::{Board, BoardSnapshot, Config, RunEnd, debug, loader, machine_file, standing, surroundings};
+pub use firmware::level::ModelledBoard;
 pub use io::flash::FLASH_SIZE;
 pub use io::konnect::{KonnectBoard, Port};
 pub use io::snapamp::{Quantity, Side};

@@ -1,6 +1,7 @@
 //! A desk for tests of firmware functions: a kernel, memory and threads without a machine.
 
 use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_named};
+use kmotiondef::limits::VERSION;
 use kmotiondef::map::PROGRAM_BASE;
 use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
 use vm::call::CallArguments;
@@ -26,7 +27,7 @@ pub(crate) struct Desk {
 /// Guest memory as a board has it at power-up.
 pub(crate) fn powered_memory() -> GuestMemory {
     let mut memory = GuestMemory::new();
-    power_up::fill(&mut memory, power_up::Before::Zero);
+    power_up::fill(&mut memory, VERSION.trim_end(), power_up::Before::Zero);
     memory
 }
 

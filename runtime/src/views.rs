@@ -13,6 +13,9 @@ pub(crate) trait Typed {
     /// Stores a value in a place.
     fn set<T: Scalar>(&mut self, place: Place<T>, value: T::Value);
 
+    /// The address of a place in this memory.
+    fn locate<T>(&self, place: Place<T>) -> GuestAddr;
+
     /// The value of a field of an axis.
     fn axis<T: Scalar>(&self, axis: AxisId, field: Field<T>) -> T::Value {
         self.get(chan(axis).field(field))
@@ -26,8 +29,13 @@ pub(crate) trait Typed {
 
 impl Typed for GuestMemory {
     #[inline]
+    fn locate<T>(&self, place: Place<T>) -> GuestAddr {
+        self.place_of(place.address())
+    }
+
+    #[inline]
     fn get<T: Scalar>(&self, place: Place<T>) -> T::Value {
-        let address = self.place_of(place.address());
+        let address = self.locate(place);
         T::Value::from_bits(match T::SIZE {
             1 => u64::from(self.peek::<u8>(address)),
             2 => u64::from(self.peek::<u16>(address)),
@@ -38,7 +46,7 @@ impl Typed for GuestMemory {
 
     #[inline]
     fn set<T: Scalar>(&mut self, place: Place<T>, value: T::Value) {
-        let (address, bits) = (self.place_of(place.address()), value.into_bits());
+        let (address, bits) = (self.locate(place), value.into_bits());
         match T::SIZE {
             1 => self.poke(address, bits as u8),
             2 => self.poke(address, bits as u16),
@@ -63,7 +71,7 @@ impl<'a> AxisView<'a> {
         let all: Option<&mut [u8; CHANS_SIZE]> = if memory.is_by_tables() {
             memory.block_mut(CHAN.address())
         } else {
-            memory.block_mut(memory.place_of(CHAN.address()))
+            memory.block_mut(memory.locate(CHAN))
         };
         let all = all.expect("the axis structures lie in RAM");
         let (chans, _) = all.as_chunks_mut();
@@ -117,6 +125,6 @@ pub(crate) fn chan(axis: AxisId) -> Place<Chan> {
 }
 
 /// The axis whose structure starts at an address.
-pub(crate) fn axis_at(address: GuestAddr) -> Option<AxisId> {
-    AxisId::all().find(|&axis| chan(axis).address() == address)
+pub(crate) fn axis_at(memory: &GuestMemory, address: GuestAddr) -> Option<AxisId> {
+    AxisId::all().find(|&axis| memory.locate(chan(axis)) == address)
 }

@@ -8,6 +8,7 @@ mod cost_threads;
 mod devices;
 mod disk_files;
 mod fidelity;
+mod firmware_5;
 mod host;
 mod released;
 mod session;

@@ -19,7 +19,7 @@ use kmotiondef::{ThreadId, Ticks};
 use runtime::commands::COMMANDS;
 use runtime::loader::{LoadError, prepare};
 use runtime::stimulus::Stimulus;
-use runtime::{Board, Config, Event, EventKind, MachineFile, RunEnd};
+use runtime::{Board, Config, Event, EventKind, MachineFile, ModelledBoard, RunEnd};
 use vm::engine::Engine;
 use vm::interp::BytecodeEngine;
 use vm::machine::Config as MachineConfig;
@@ -318,7 +318,7 @@ pub fn read_file(bytes: &[u8]) -> bool {
         // What links need not be a program that the machine accepts.
         let _ = compiler::link::link(std::slice::from_ref(&object), &options);
     }
-    let prepared = prepare(bytes, thread_1(), |_| false);
+    let prepared = prepare(bytes, thread_1(), &ModelledBoard::default(), |_| false);
     match &prepared {
         Ok(_) => assert!(read.is_ok()),
         Err(LoadError::NotAnImage(error)) => assert_eq!(Err(error), read.as_ref()),

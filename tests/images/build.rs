@@ -3,6 +3,7 @@
 use std::fs;
 
 use harness::{Scratch, cc67, vendor};
+use kmotiondef::boards::TargetBoard;
 
 /// Runs the command, which must succeed, and returns what it printed.
 #[track_caller]
@@ -247,10 +248,10 @@ fn a_program_is_built_for_another_board() {
     let refused = cc67(&scratch, ["run", "a(1).out"]);
     let expect = "linked against firmware of version 5.3.2; the board runs KFLOP 4.34";
     assert!(refused.stderr.contains(expect), "{}", refused.stderr);
-    let refused = cc67(&scratch, ["run", "--board", "kflop-5.3.2", "a.c"]);
+    let refused = cc67(&scratch, ["run", "--board", "kogna-5.3.2", "a.c"]);
     assert_eq!(refused.code, 2);
     let expect =
-        "`--board`: the program is for `KFLOP 5.3.2 Build 18:10:31 Jan 31 2024`, the simulated board runs";
+        "`--board`: kogna-5.3.2 is not simulated; programs can be built for it, and run on kflop-4.34";
     assert!(refused.stderr.contains(expect), "{}", refused.stderr);
     succeed(&scratch, &["build", "--board", "kogna-5.3.2", "--thread", "2", "a.c"]);
     let shown = cc67(&scratch, ["inspect", "a(2).out"]).stdout.to_lowercase();
@@ -260,9 +261,14 @@ fn a_program_is_built_for_another_board() {
 #[test]
 fn the_board_of_a_project_is_that_of_its_programs() {
     let scratch = Scratch::new("board-of-project");
-    scratch.write("cc67.toml", "board = \"kflop-5.3.2\"\n").write("a.c", HELLO);
-    let output = cc67(&scratch, ["run", "a.c"]);
-    assert!(output.stderr.contains("`--board`: the program is for `KFLOP 5.3.2"), "{}", output.stderr);
+    let source = "#include \"KMotionDef.h\"\nmain() { printf(\"%p %g\\n\", &persist, 0.05); }\n";
+    scratch.write("cc67.toml", "board = \"kflop-5.3.2\"\n").write("a.c", source);
+    let persist = TargetBoard::named("kflop-5.3.2").and_then(|board| board.variable("persist"));
+    let expect = format!("{:x} 0.05\n", persist.expect("it has one").get());
+    for engine in ["native", "bytecode", "dsp"] {
+        let output = cc67(&scratch, ["run", "--engine", engine, "a.c"]);
+        assert_eq!(output.stdout, expect, "{engine}: {}", output.stderr);
+    }
 }
 
 #[test]

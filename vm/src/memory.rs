@@ -272,6 +272,12 @@ impl GuestMemory {
         self.places.of(address)
     }
 
+    /// The address of the tables for a place.
+    #[must_use]
+    pub fn table_of(&self, place: GuestAddr) -> GuestAddr {
+        self.places.table_of(place)
+    }
+
     /// Chooses what accesses and divisions do that a program should not make.
     pub const fn set_faults(&mut self, faults: Faults) {
         self.faults = faults;

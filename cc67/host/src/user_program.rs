@@ -13,7 +13,7 @@ use compiler::render::vendor;
 use compiler::{Options, files, image};
 use kmotiondef::ThreadId;
 use runtime::debug::{CodeDetail, DebugInfo};
-use runtime::loader::{LoadError, prepare};
+use runtime::loader::{LoadError, board_of, prepare};
 
 use crate::error::{CompileError, HostError};
 
@@ -83,7 +83,7 @@ impl UserProgram {
     /// Names and lines of its code; none of an image that cannot be loaded.
     #[must_use]
     pub fn debug_info(&self) -> DebugInfo {
-        let prepared = prepare(&self.image, self.thread, |_| false);
+        let prepared = prepare(&self.image, self.thread, &board_of(&self.image), |_| false);
         prepared.map(|prepared| prepared.debug.with_details(self.details.clone())).unwrap_or_default()
     }
 

@@ -11,7 +11,7 @@ use std::ffi::OsString;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use cc67_controller::{Controller, ControllerLink};
 use cc67_debug::dap::AttachPoint;
 use cc67_host::{
@@ -22,8 +22,9 @@ use compiler::Options;
 use compiler::firmware::Firmware;
 use compiler::target::Target as CodeTarget;
 use kmotiondef::Ticks;
+use kmotiondef::boards::BOARDS;
 use runtime::stimulus::Stimulus;
-use runtime::{Board, Config, Event};
+use runtime::{Board, Config, Event, ModelledBoard};
 use vm::engine::Engine;
 #[cfg(feature = "native")]
 use vm::native::NativeEngine;
@@ -141,6 +142,7 @@ impl Setup {
         let options = code.options(compiler)?;
         if matches!(code, CodeFor::Engine(_)) {
             options.firmware.check_version()?;
+            modelled(&options)?;
         }
         let described = Described::read(started, board, compiler, options)?;
         let Some(Described { session, uart, flash }) = described else { return Ok(None) };
@@ -297,8 +299,17 @@ impl Described {
         let machine = board.machine_config();
         let disk = board.files(&machine_file);
         let flashed = flash.contents();
-        let config =
-            Config { machine, files: disk, machine_file, answers, flash: flashed, ..Config::default() };
+        // A booted firmware is its own board.
+        let modelled = modelled(&options).unwrap_or_default();
+        let config = Config {
+            board: modelled,
+            machine,
+            files: disk,
+            machine_file,
+            answers,
+            flash: flashed,
+            ..Config::default()
+        };
         let mut session = cc67_host::Setup {
             config,
             options,
@@ -315,6 +326,20 @@ impl Described {
         }
         Ok(Some(Self { session, uart, flash }))
     }
+}
+
+/// The model of the board that programs are compiled for.
+fn modelled(options: &Options) -> Result<ModelledBoard> {
+    let board = options.firmware.board();
+    let unknown = || {
+        let known = BOARDS.iter().filter(|board| ModelledBoard::of(board).is_some()).map(|board| board.name);
+        let known = known.collect::<Vec<_>>().join(", ");
+        anyhow!(
+            "`--board`: {} is not simulated; programs can be built for it, and run on {known}",
+            board.name
+        )
+    };
+    ModelledBoard::of(board).ok_or_else(unknown)
 }
 
 /// Programs that start, and those that run to their end before.

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use coff::{Contents, Image, SectionFlags, SectionNumber, StorageClass, Target};
 use kmotiondef::GuestAddr;
+use kmotiondef::boards::{TargetBoard, moved_objects};
 use kmotiondef::map::{IRAM, ROM_SIZE, Region, SDRAM};
-use kmotiondef::variables::FIRMWARE_VARIABLES;
 use vm::memory::GuestMemory;
 use vm::memory::places::Places;
 
@@ -100,7 +100,8 @@ impl FirmwareFile {
         let rom = rom_functions(&image);
         let mut functions = functions(&image);
         functions.extend(rom.iter().map(|(address, function)| (*address, function.name.to_owned())));
-        let places = places(&symbols);
+        let version = version_text(&symbols, &sections);
+        let places = places(&symbols, &version);
         Ok(Self { entry, sections, symbols, functions, rom, places })
     }
 
@@ -119,13 +120,7 @@ impl FirmwareFile {
     /// The version as the firmware itself tells it; empty if it does not.
     #[must_use]
     pub fn version(&self) -> String {
-        let Some(at) = self.symbols.get(VERSION) else { return String::new() };
-        let holder = self.sections.iter().find_map(|one| {
-            let bytes = one.bytes.as_ref()?;
-            bytes.get(usize::try_from(at.checked_sub(one.address)?).ok()?..)
-        });
-        let text = holder.unwrap_or_default().iter().take(VERSION_LENGTH).take_while(|byte| **byte != 0);
-        text.map(|byte| char::from(*byte)).collect()
+        version_text(&self.symbols, &self.sections)
     }
 
     /// The function that an address belongs to, and how far into it.
@@ -202,12 +197,24 @@ fn symbols(image: &Image) -> BTreeMap<String, u32> {
     symbols
 }
 
-/// Where the firmware keeps the variables of the tables.
-fn places(symbols: &BTreeMap<String, u32>) -> Places {
-    Places::new(FIRMWARE_VARIABLES.iter().filter_map(|variable| {
-        let place = symbols.get(variable.name)?;
-        Some((variable.address, variable.size, GuestAddr::new(*place)))
-    }))
+/// The version as a firmware itself tells it; empty if it does not.
+fn version_text(symbols: &BTreeMap<String, u32>, sections: &[Loaded]) -> String {
+    let Some(at) = symbols.get(VERSION) else { return String::new() };
+    let holder = sections.iter().find_map(|one| {
+        let bytes = one.bytes.as_ref()?;
+        bytes.get(usize::try_from(at.checked_sub(one.address)?).ok()?..)
+    });
+    let text = holder.unwrap_or_default().iter().take(VERSION_LENGTH).take_while(|byte| **byte != 0);
+    text.map(|byte| char::from(*byte)).collect()
+}
+
+/// Where the firmware keeps the variables of the tables; an unknown version has the structures of the default board.
+fn places(symbols: &BTreeMap<String, u32>, version: &str) -> Places {
+    let board = TargetBoard::of_version(version.trim_ascii_end());
+    let layouts = board.map_or(&[][..], TargetBoard::own_structures);
+    let address = |name: &str| symbols.get(name).copied().map(GuestAddr::new);
+    let objects = moved_objects(address, layouts);
+    Places::new(objects.into_iter().map(|object| (object.table, object.size, object.place)))
 }
 
 /// Functions of the processor's ROM by address: absolute symbols inside of it.

@@ -13,6 +13,8 @@ use crate::board::code;
 use crate::board::power_up::{self, Before};
 use crate::io::flash;
 use crate::out::Message;
+use crate::servo::independent;
+use crate::servo::moves::Planner;
 use crate::views::Typed;
 
 impl<E: Engine> Board<E> {
@@ -24,7 +26,11 @@ impl<E: Engine> Board<E> {
         if before == Before::Flashed {
             flash::restore(memory);
         }
-        power_up::fill(memory, before);
+        let version = self.level().board().version;
+        power_up::fill(self.machine.memory_mut(), version, before);
+        if self.machine.firmware().parts.servo.planner == Planner::Direct {
+            independent::prepare(self.machine.memory_mut());
+        }
         if before == Before::Flashed {
             ThreadId::all().for_each(|thread| self.load_flashed(thread));
             let starts = self.memory().get(PERSIST.field(Persist::RUN_ON_START_UP));
@@ -41,12 +47,18 @@ impl<E: Engine> Board<E> {
         }
     }
 
+    /// Tells memory where the firmware keeps its variables.
+    pub(super) fn set_places(&mut self) {
+        let places = self.level().places();
+        self.machine.memory_mut().set_places(places);
+    }
+
     /// Makes a program of what flash has brought back for a thread.
     pub(super) fn load_flashed(&mut self, thread: ThreadId) {
         let Some(text) = flash::text(self.memory(), thread) else { return };
         let length = text.end.get() - text.start.get();
         let bytes = self.memory().read_bytes(text.start, length).unwrap_or_default();
-        match code::bare(bytes, text.start) {
+        match code::bare(bytes, text.start, self.level()) {
             Ok(code) => {
                 let entry = self.memory().get(PERSIST.field(Persist::ENTRY_POINTS).element(thread.index()));
                 self.hand_over(thread, code, GuestAddr::new(entry));
@@ -83,6 +95,8 @@ impl<E: Engine> Board<E> {
         let is_strict = self.machine.firmware().parts.io.flash.chip().is_some();
         let memory = self.machine.memory_mut();
         *memory = GuestMemory::new();
+        self.set_places();
+        let memory = self.machine.memory_mut();
         let stored = memory.poke_bytes(FLASH.base, &flash);
         debug_assert!(stored.is_ok(), "flash is mapped");
         self.machine.firmware_mut().0.restart();

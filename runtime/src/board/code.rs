@@ -6,8 +6,7 @@ use vm::dsp;
 use vm::loaded::{Image, Loaded as Code};
 use vm::verify::{VerifyError, VerifyErrorKind, verify_image};
 
-/// Where a thread's outermost function returns to.
-const THREAD_DONE: GuestAddr = Function::ThreadDone.row().address;
+use crate::firmware::level::ModelledBoard;
 
 /// Bytecode in a text that begins at `base`.
 ///
@@ -17,9 +16,10 @@ pub(super) fn program(bytes: &[u8], base: GuestAddr) -> Result<Code, VerifyError
     verify_image(bytes, base).map(|program| Code::Program(program.into()))
 }
 
-/// Code of the real processor, `length` bytes from `base` on, and where its functions begin.
-pub(super) fn image(base: GuestAddr, length: u32, functions: Vec<u32>) -> Code {
-    let image = Image::new(base..base.offset(length), THREAD_DONE);
+/// Code of the real processor, `length` bytes from `base` on, and where its functions begin; `board` is the one that
+/// executes it.
+pub(super) fn image(base: GuestAddr, length: u32, functions: Vec<u32>, board: &ModelledBoard) -> Code {
+    let image = Image::new(base..base.offset(length), thread_done(board));
     Code::Image(image.with_functions(functions).into())
 }
 
@@ -27,13 +27,18 @@ pub(super) fn image(base: GuestAddr, length: u32, functions: Vec<u32>) -> Code {
 ///
 /// # Errors
 /// The rule that it breaks as bytecode, if the real processor could not execute it either.
-pub(super) fn bare(bytes: &[u8], base: GuestAddr) -> Result<Code, VerifyError> {
+pub(super) fn bare(bytes: &[u8], base: GuestAddr, board: &ModelledBoard) -> Result<Code, VerifyError> {
     match program(bytes, base) {
         Err(VerifyError { kind: VerifyErrorKind::NotAProgram, .. }) if dsp::is_code(bytes) => {
             // Where the code ends and the data begins is not known: nothing is protected.
             let code = base..base.offset(bytes.len() as u32);
-            Ok(Code::Image(Image::unprotected(code, THREAD_DONE).into()))
+            Ok(Code::Image(Image::unprotected(code, thread_done(board)).into()))
         }
         other => other,
     }
+}
+
+/// The address to which a thread's outermost function returns.
+fn thread_done(board: &ModelledBoard) -> GuestAddr {
+    board.address(Function::ThreadDone.name()).unwrap_or(Function::ThreadDone.row().address)
 }

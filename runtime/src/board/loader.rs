@@ -6,7 +6,6 @@
 
 use coff::{Contents, FileFlags, Image, Line, Section, SectionFlags, SectionNumber, StorageClass, Target};
 use kmotiondef::boards::{BOARDS, TargetBoard};
-use kmotiondef::limits::{VERSION, VERSION_STAMP};
 use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT, PROGRAM_SIZE, program_base};
 use kmotiondef::{GuestAddr, ThreadId};
 use vm::loaded::Loaded as Code;
@@ -14,6 +13,7 @@ use vm::verify::VerifyError;
 
 use crate::board::code;
 use crate::board::debug::{DebugInfo, FunctionInfo, ObjectInfo};
+use crate::firmware::level::ModelledBoard;
 
 /// An image that can be loaded without failing.
 #[derive(Debug)]
@@ -67,21 +67,24 @@ pub enum LoadError {
     #[error("code for target {0}, not for the simulated board")]
     OtherTarget(Target),
     /// Linked against another firmware.
-    #[error("linked against firmware of {}; the board runs {}", version(*found), VERSION.trim_end())]
+    #[error("linked against firmware of {}; the board runs {board}", version(*found))]
     OtherFirmware {
         /// The image's stamp.
         found: i16,
+        /// The version of the board's firmware.
+        board: &'static str,
     },
     /// Linked against another build of this version.
     #[error(
-        "linked against another build of firmware {}: its file has the time stamp {found}, not {board}",
-        version(VERSION_STAMP)
+        "linked against another build of firmware version {number}: its file has the time stamp {found}, not {board}"
     )]
     OtherBuild {
         /// The time stamp in the image.
         found: u32,
         /// That of the board's firmware.
         board: u32,
+        /// The version's number.
+        number: &'static str,
     },
     /// An object, or an image with something left to link.
     #[error("an object that is not linked yet; `cc67 build` links it")]
@@ -132,7 +135,16 @@ pub enum LoadError {
     Entry(GuestAddr),
 }
 
-/// Checks an image for `thread`; `holds` says in which threads' spaces a program lies, apart from
+/// The board that an image is linked for, as its version stamp says; the default board of one that says nothing.
+#[must_use]
+pub fn board_of(image: &[u8]) -> ModelledBoard {
+    let image = Image::read(image).ok();
+    let stamp = image.and_then(|image| image.program).map(|program| program.version_stamp);
+    let mut boards = BOARDS.iter().filter(|board| Some(board.version_stamp()) == stamp);
+    boards.find_map(ModelledBoard::of).unwrap_or_default()
+}
+
+/// Checks an image for `thread` of a board; `holds` says in which threads' spaces a program lies, apart from
 /// the one that the image replaces.
 ///
 /// # Errors
@@ -140,17 +152,18 @@ pub enum LoadError {
 pub fn prepare(
     bytes: &[u8],
     thread: ThreadId,
+    board: &ModelledBoard,
     holds: impl Fn(ThreadId) -> bool,
 ) -> Result<Prepared, LoadError> {
     let image = Image::read(bytes).map_err(LoadError::NotAnImage)?;
-    check_origin(&image)?;
+    check_origin(&image, board.board())?;
     let header = image.program.ok_or(LoadError::Missing("entry point"))?;
     let text = image.section(".text").ok_or(LoadError::Missing("section .text"))?;
     check_thread(text, thread)?;
     check_sections(&image, thread, holds)?;
     let base = GuestAddr::new(text.address);
     let code = match image.target {
-        Target::C6000 => code::image(base, text.data().len() as u32, functions(&image)),
+        Target::C6000 => code::image(base, text.data().len() as u32, functions(&image), board),
         _ => code::program(text.data(), base).map_err(LoadError::Refused)?,
     };
     let entry = GuestAddr::new(header.entry);
@@ -161,7 +174,7 @@ pub fn prepare(
     Ok(Prepared { code, entry, sections, debug: debug(&image) })
 }
 
-fn check_origin(image: &Image) -> Result<(), LoadError> {
+fn check_origin(image: &Image, board: &TargetBoard) -> Result<(), LoadError> {
     match image.target {
         Target::CC67 | Target::C6000 => {}
         other => return Err(LoadError::OtherTarget(other)),
@@ -173,13 +186,15 @@ fn check_origin(image: &Image) -> Result<(), LoadError> {
     match image.program {
         Some(header)
             if states_firmware(image.target, header.version_stamp)
-                && header.version_stamp != VERSION_STAMP =>
+                && header.version_stamp != board.version_stamp() =>
         {
-            Err(LoadError::OtherFirmware { found: header.version_stamp })
+            Err(LoadError::OtherFirmware { found: header.version_stamp, board: board.version })
         }
         Some(header) if states_firmware(image.target, header.version_stamp) => {
-            match (image.timestamp, TargetBoard::default_board().time_stamp) {
-                (found @ 1.., Some(board)) if found != board => Err(LoadError::OtherBuild { found, board }),
+            match (image.timestamp, board.time_stamp) {
+                (found @ 1.., Some(stamp)) if found != stamp => {
+                    Err(LoadError::OtherBuild { found, board: stamp, number: board.number() })
+                }
                 _ => Ok(()),
             }
         }

@@ -35,6 +35,7 @@ use vm::thread::ThreadState;
 
 use crate::board::debug::{CodeDetail, DebugInfo};
 use crate::board::machine_file::{MachineFile, NS_PER_INSTRUCTION};
+use crate::firmware::level::ModelledBoard;
 use crate::firmware::races::switches::Switches;
 use crate::io::flash::FLASH_SIZE;
 use crate::kernel::Kernel;
@@ -46,6 +47,8 @@ use crate::views::Typed;
 /// Settings of a board.
 #[derive(Debug)]
 pub struct Config {
+    /// The board and its firmware.
+    pub board: ModelledBoard,
     /// Settings of the machine: servo time, shortcuts, stacks.
     pub machine: MachineConfig,
     /// Whether the built-in PC polls and answers.
@@ -70,6 +73,7 @@ pub struct Config {
 impl Default for Config {
     fn default() -> Self {
         Self {
+            board: ModelledBoard::default(),
             machine: MachineConfig::default(),
             host: true,
             answers: None,
@@ -140,7 +144,7 @@ impl<E: Engine> Board<E> {
     #[must_use]
     pub fn with_engine(config: Config, engine: E) -> Self {
         let connected = &config.machine_file;
-        let mut kernel = Kernel::new(config.files);
+        let mut kernel = Kernel::of_board(config.board, config.files);
         kernel.parts.pc.host.connect(config.host && connected.pc.is_connected);
         kernel.parts.pc.host.answer_with(config.answers.unwrap_or_else(|| connected.pc.answers.clone()));
         kernel.parts.timing = config.timing;
@@ -164,6 +168,7 @@ impl<E: Engine> Board<E> {
             let stored = board.machine.memory_mut().poke_bytes(FLASH.base, &flash);
             debug_assert!(stored.is_ok() && flash.len() == FLASH_SIZE, "flash has its size");
         }
+        board.set_places();
         board.power_up(connected.boards.strict_flash);
         let (kernel, context) = board.machine.firmware_mut();
         connect::play(&mut kernel.parts, connected, context.memory);

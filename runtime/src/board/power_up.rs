@@ -2,9 +2,11 @@
 
 use kmotiondef::start::{Start, Stored};
 use kmotiondef::structs::{STRUCTURES, Structure, StructureField};
-use kmotiondef::variables::{FIRMWARE_VARIABLES, FirmwareVariable};
+use kmotiondef::variables::{FIRMWARE_VARIABLES, FirmwareVariable, VERSION_AND_BUILD_TIME};
 use kmotiondef::{CType, GuestAddr};
 use vm::memory::GuestMemory;
+
+use crate::views::Typed;
 
 /// What memory holds before it is filled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,9 +25,15 @@ impl Before {
 }
 
 /// Stores the power-up value of every firmware variable.
-pub(crate) fn fill(memory: &mut GuestMemory, before: Before) {
+///
+/// Addresses are those of the tables until a value is stored.
+pub(crate) fn fill(memory: &mut GuestMemory, version: &str, before: Before) {
     for variable in FIRMWARE_VARIABLES {
         start_variable(memory, variable, before);
+    }
+    let ends = ["\n", "\0"].into_iter().flat_map(str::bytes);
+    for (offset, byte) in (0..).zip(version.bytes().chain(ends)) {
+        memory.poke(memory.locate(VERSION_AND_BUILD_TIME).offset(offset), byte);
     }
 }
 
@@ -42,7 +50,7 @@ fn start_variable(memory: &mut GuestMemory, variable: &FirmwareVariable, before:
 /// Makes room for a value: what was flashed there goes.
 fn clear(memory: &mut GuestMemory, address: GuestAddr, size: u32, before: Before) {
     if before == Before::Flashed {
-        let cleared = memory.poke_bytes(address, &vec![0; size as usize]);
+        let cleared = memory.poke_bytes(memory.place_of(address), &vec![0; size as usize]);
         debug_assert!(cleared.is_ok(), "variables are mapped");
     }
 }
@@ -90,6 +98,7 @@ fn start_structure(
 
 /// Stores one value; memory is zero before.
 fn store(memory: &mut GuestMemory, address: GuestAddr, start: Start, ty: CType, index: u32) {
+    let address = memory.place_of(address);
     match start {
         Start::Zero | Start::Fields => {}
         Start::Int(value) => memory.poke(address, value),
@@ -105,7 +114,7 @@ fn store(memory: &mut GuestMemory, address: GuestAddr, start: Start, ty: CType, 
                 memory.poke(address.offset(offset), byte);
             }
         }
-        Start::Address(value) => memory.poke(address, value.get()),
+        Start::Address(value) => memory.poke(address, memory.place_of(value).get()),
         Start::Words(words) => {
             for (index, word) in (0..).zip(words) {
                 memory.poke(address.offset(4 * index), *word);
@@ -128,18 +137,16 @@ fn each(memory: &mut GuestMemory, address: GuestAddr, element: CType, count: u32
 #[cfg(test)]
 mod tests {
     use kmotiondef::AxisId;
+    use kmotiondef::limits::VERSION;
     use kmotiondef::structs::{Chan, Gather, Iir};
-    use kmotiondef::variables::{
-        ADC_BUFFER_IN, CH3, CHAN, CS0_TIME_BASE, DAC_BUFFER, GATHER, VERSION_AND_BUILD_TIME,
-    };
+    use kmotiondef::variables::{ADC_BUFFER_IN, CH3, CHAN, CS0_TIME_BASE, DAC_BUFFER, GATHER};
 
     use super::*;
-    use crate::views::Typed;
 
     #[test]
     fn variables_and_fields_have_their_power_up_values() {
         let mut memory = GuestMemory::new();
-        fill(&mut memory, Before::Zero);
+        fill(&mut memory, VERSION.trim_end(), Before::Zero);
         let axis = AxisId::new(3).expect("3 is an axis");
         assert_eq!(memory.get(CH3), CHAN.element(3).address());
         assert_eq!(memory.get(CS0_TIME_BASE), 9e-5);

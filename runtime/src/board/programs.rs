@@ -17,6 +17,7 @@ use crate::board::code;
 use crate::board::debug::{CodeDetail, DebugInfo, ObjectInfo, SourcePlace};
 use crate::board::loader::{Fill, LoadError, Placed, prepare};
 use crate::firmware::calls::Named;
+use crate::firmware::level::ModelledBoard;
 use crate::out::{EventKind, Message};
 use crate::views::Typed;
 
@@ -39,7 +40,7 @@ impl<E: Engine> Board<E> {
         image: &[u8],
         details: Arc<[CodeDetail]>,
     ) -> Result<(), LoadError> {
-        let prepared = prepare(image, thread, |other| self.is_taken(other, thread))?;
+        let prepared = prepare(image, thread, self.level(), |other| self.is_taken(other, thread))?;
         if self.thread(thread).is_active() {
             let (kernel, context) = self.machine.firmware_mut();
             kernel.parts.out.remark(context.now, Message::ProgramReplaced { thread });
@@ -67,6 +68,11 @@ impl<E: Engine> Board<E> {
         self.programs_mut().loaded[thread.index()] =
             Some(Loaded { debug: prepared.debug.with_details(details), extent });
         Ok(())
+    }
+
+    /// The firmware that the board is modelled after.
+    pub(super) fn level(&self) -> &ModelledBoard {
+        &self.machine.firmware().parts.level
     }
 
     /// What is known about programs, to change it; snapshots keep what they have.
@@ -175,7 +181,7 @@ impl<E: Engine> Board<E> {
         image: Vec<u8>,
         details: Arc<[CodeDetail]>,
     ) -> Result<DebugInfo, LoadError> {
-        let debug = prepare(&image, thread, |_| false)?.debug.with_details(details.clone());
+        let debug = prepare(&image, thread, self.level(), |_| false)?.debug.with_details(details.clone());
         self.programs_mut().offered.insert((thread, name.into()), (image, details));
         Ok(debug)
     }
@@ -235,7 +241,7 @@ impl<E: Engine> Board<E> {
         let mut error = None;
         for end in ends {
             let text = self.memory().read_bytes(base, end.get() - base.get()).unwrap_or_default();
-            match code::bare(text, base) {
+            match code::bare(text, base, self.level()) {
                 Ok(code) => return Ok(Some(code)),
                 // What the longest stretch lacks is what the text lacks.
                 Err(wrong) => error = Some(wrong),

@@ -2,6 +2,7 @@
 
 use kmotiondef::structs::{Chan, Iir};
 use kmotiondef::{AxisId, Field};
+use vm::memory::GuestMemory;
 
 use super::arguments::Values;
 use super::numbers::{plain, precise};
@@ -39,7 +40,8 @@ pub(super) fn single(session: &mut Session<'_, '_>, values: &Values, field: Fiel
 /// Reports or sets a double.
 pub(super) fn double(session: &mut Session<'_, '_>, values: &Values, field: Field<f64>) -> Answer {
     if values.is_question() {
-        return precise(session.memory().axis(values.axis(), field)).into();
+        let dialect = session.parts.level.behaviour().text;
+        return precise(dialect, session.memory().axis(values.axis(), field)).into();
     }
     session.memory().set_axis(values.axis(), field, values.real(1));
     Answer::Nothing
@@ -89,6 +91,6 @@ pub(super) fn zero(session: &mut Session<'_, '_>, values: &Values) -> Answer {
 }
 
 /// The address of an axis, as firmware functions take it.
-pub(super) fn pointer(axis: AxisId) -> kmotiondef::GuestAddr {
-    crate::views::chan(axis).address()
+pub(super) fn pointer(memory: &GuestMemory, axis: AxisId) -> kmotiondef::GuestAddr {
+    memory.locate(crate::views::chan(axis))
 }

@@ -1,6 +1,5 @@
 //! The board as a whole: version, restart, flash, and which link it listens to.
 
-use kmotiondef::limits::VERSION;
 use kmotiondef::variables::DO_RS232_CMDS;
 
 use super::arguments::Values;
@@ -20,8 +19,8 @@ const UART_CLOCK: i32 = 16_666_666 / 16;
 /// The rates that the board knows.
 const RATES: [i32; 5] = [9600, 19_200, 38_400, 57_600, 115_200];
 
-pub(super) fn version(_: &mut Session<'_, '_>, _: &Values) -> Answer {
-    VERSION.trim_end().to_owned().into()
+pub(super) fn version(session: &mut Session<'_, '_>, _: &Values) -> Answer {
+    session.parts.level.board().version.to_owned().into()
 }
 
 /// The rest of the command as a console line.

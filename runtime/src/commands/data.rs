@@ -99,7 +99,7 @@ impl Data {
     }
 
     /// Room for a line of a file.
-    pub(super) fn disk(count: usize) -> Self {
-        Self::new(DataKind::Disk, READ_DISK_BUFFER.address(), count)
+    pub(super) fn disk(memory: &GuestMemory, count: usize) -> Self {
+        Self::new(DataKind::Disk, memory.locate(READ_DISK_BUFFER), count)
     }
 }

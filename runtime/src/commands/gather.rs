@@ -55,7 +55,16 @@ fn go(servo: &mut Servo, context: &mut TickContext<'_>, axis: AxisId, distance: 
         context.memory.set_axis(axis, Chan::DEST, dest);
         servo.jump(axis, dest);
     } else if let Some(limits) = moves::limits(context.memory, axis, None) {
-        moves::start_move_to(context.memory, axis, dest, &limits, kmotiondef::modes::LastMotion::Move);
+        let planner = servo.planner;
+        let limits = (&limits, limits.a);
+        moves::start_move_to(
+            context.memory,
+            axis,
+            dest,
+            limits,
+            kmotiondef::modes::LastMotion::Move,
+            planner,
+        );
     }
 }
 
@@ -142,7 +151,7 @@ pub(super) fn set_hex(session: &mut Session<'_, '_>, values: &Values) -> Answer 
 /// The PC's answer to a request for a line of a file.
 pub(super) fn read_disk_data(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (status, count) = (values.integer(0), values.count(1));
-    let data = Data::disk(count);
+    let data = Data::disk(session.memory(), count);
     if status == 1 && count > 0 {
         return Answer::Data(data);
     }
@@ -176,10 +185,10 @@ pub(super) fn inject(session: &mut Session<'_, '_>, values: &Values) -> Answer {
         memory.poke(start.offset(sample * INJECTED * DOUBLE), level * amplitude);
     }
     let items = [
-        (GatherType::Double, chan.field(Chan::DEST_OFFSET).address()),
-        (GatherType::Double, chan.field(Chan::POSITION).address()),
-        (GatherType::Double, chan.field(Chan::DEST).address()),
-        (GatherType::Float, chan.field(Chan::OUTPUT).address()),
+        (GatherType::Double, memory.locate(chan.field(Chan::DEST_OFFSET))),
+        (GatherType::Double, memory.locate(chan.field(Chan::POSITION))),
+        (GatherType::Double, memory.locate(chan.field(Chan::DEST))),
+        (GatherType::Float, memory.locate(chan.field(Chan::OUTPUT))),
         (GatherType::End, GuestAddr::NULL),
     ];
     for (index, (kind, address)) in items.into_iter().enumerate() {

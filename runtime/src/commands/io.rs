@@ -62,7 +62,7 @@ pub(super) fn get_virtual_bits(session: &mut Session<'_, '_>, values: &Values) -
         return Answer::Nothing;
     }
     let memory = &*session.memory();
-    let start = VIRTUAL_BITS_EX.address();
+    let start = memory.locate(VIRTUAL_BITS_EX);
     let word = |index: usize| format!("{:X}", memory.peek::<u32>(start.offset(4 * index as u32)));
     let answer = (first..first + count).map(word).collect::<Vec<_>>().join(" ").into();
     if first + count > VIRTUAL_WORDS { Answer::Stopped(Box::new(answer)) } else { answer }

@@ -6,7 +6,7 @@
 
 use std::collections::VecDeque;
 
-use kmotiondef::limits::VERSION;
+use kmotiondef::boards::TargetBoard;
 use vm::firmware::TickContext;
 
 use super::arguments::{LineReader, Message as MistakeText, Mistake, Values};
@@ -85,8 +85,8 @@ impl Output {
 }
 
 /// What the board calls itself: its version up to the build.
-fn board_name() -> &'static str {
-    VERSION.split_once(" Build").map_or(VERSION, |(name, _)| name)
+fn board_name(board: &TargetBoard) -> &'static str {
+    board.version.split_once(" Build").map_or(board.version, |(name, _)| name)
 }
 
 /// One end of the link, and the bytes on their way to it.
@@ -143,7 +143,7 @@ impl Turn<'_, '_> {
         }
         let is_alive = !(self.side)(&mut self.parts.pc).is_dead();
         if self.link.data.is_none() && std::mem::take(&mut self.link.prompts) && is_alive {
-            for line in [board_name(), "Ready"] {
+            for line in [board_name(self.parts.level.board()), "Ready"] {
                 self.out.push(Output::Reply(line.into()));
             }
         }
@@ -161,7 +161,8 @@ impl Turn<'_, '_> {
 
     /// One command.
     fn part(&mut self, part: &[u8]) {
-        let Some((command, length)) = find(part) else {
+        let has_later = self.parts.level.behaviour().has_later_commands;
+        let Some((command, length)) = find(part, has_later) else {
             if let Some(message) = absent::explain(part) {
                 self.parts.out.remark(self.context.now, message);
             }

@@ -27,7 +27,7 @@ mod status;
 mod table;
 
 pub use arguments::Argument;
-pub use table::COMMANDS;
+pub use table::{COMMANDS, LATER_COMMANDS};
 
 use vm::firmware::TickContext;
 
@@ -140,7 +140,7 @@ impl Argument {
 }
 
 /// The command that a text in upper case begins with, and the length of its word: the longest that matches.
-fn find(text: &[u8]) -> Option<(&'static Command, usize)> {
+fn find(text: &[u8], has_later: bool) -> Option<(&'static Command, usize)> {
     let matches = |command: &&Command| {
         let length = command.name.len();
         let word = text.get(..length).is_some_and(|word| word.eq_ignore_ascii_case(command.name.as_bytes()));
@@ -148,14 +148,16 @@ fn find(text: &[u8]) -> Option<(&'static Command, usize)> {
         let has_sign = command.name == "DisableAxis" && text.get(length) == Some(&b'-');
         word && (has_sign || text.get(length).is_none_or(|byte| matches!(byte, b' ' | b'=' | b'0'..=b'9')))
     };
-    let longest = COMMANDS.iter().filter(matches).max_by_key(|command| command.name.len())?;
+    let later = LATER_COMMANDS.iter().filter(|_| has_later);
+    // Of two with one name the last counts.
+    let longest = COMMANDS.iter().chain(later).filter(matches).max_by_key(|command| command.name.len())?;
     Some((longest, longest.name.len()))
 }
 
 /// The command that a line begins with, in whatever case.
 #[must_use]
 pub fn command_at(line: &str) -> Option<&'static Command> {
-    find(line.to_ascii_uppercase().as_bytes()).map(|(command, _)| command)
+    find(line.to_ascii_uppercase().as_bytes(), false).map(|(command, _)| command)
 }
 
 /// The command of this name, in whatever case.
@@ -184,7 +186,7 @@ mod tests {
             ("CHECKTHREAD+1", None),
             ("", None),
         ] {
-            assert_eq!(find(text.as_bytes()).map(|(command, _)| command.name), expect, "{text}");
+            assert_eq!(find(text.as_bytes(), false).map(|(command, _)| command.name), expect, "{text}");
         }
     }
 

@@ -1,6 +1,6 @@
 //! Numbers as replies show them: by the board's own formatter.
 
-use crate::text::{Arguments, format};
+use crate::text::{Arguments, Dialect, format_counted};
 
 /// One number for the formatter.
 struct One(f64);
@@ -26,8 +26,12 @@ impl Arguments for One {
 }
 
 fn formatted(pattern: &str, value: f64) -> String {
-    let Ok(text) = format(pattern.as_bytes(), &mut One(value));
-    String::from_utf8_lossy(&text).into_owned()
+    formatted_in(Dialect::Firmware4, pattern, value)
+}
+
+fn formatted_in(dialect: Dialect, pattern: &str, value: f64) -> String {
+    let Ok(formatted) = format_counted(dialect, pattern.as_bytes(), &mut One(value));
+    String::from_utf8_lossy(&formatted.text).into_owned()
 }
 
 /// `%f`.
@@ -47,8 +51,8 @@ pub(super) fn plain(value: f64) -> String {
 }
 
 /// `%.13g`, for positions and what goes with them.
-pub(super) fn precise(value: f64) -> String {
-    formatted("%.13g", value)
+pub(super) fn precise(dialect: Dialect, value: f64) -> String {
+    formatted_in(dialect, "%.13g", value)
 }
 
 /// `%.6f`, or `%.9g` from 1e10 up, for times.
@@ -66,8 +70,8 @@ mod tests {
             (plain(1000.0), "1000.000000"),
             (plain(1.5e9), "1.5e+09"),
             (plain(-1e30), "-1e+30"),
-            (precise(123_456_789.123), "123456789.123"),
-            (precise(1e20), "1e+20"),
+            (precise(Dialect::Firmware4, 123_456_789.123), "123456789.123"),
+            (precise(Dialect::Firmware4, 1e20), "1e+20"),
             (time(-0.001), "-0.001000"),
             (limit(-1e12), "-999999995904.000163"),
             (limit(255.0), "255.000000"),

@@ -2,6 +2,7 @@
 //!
 //! Layout: gather-persist-console.md section 3, host-protocol.md section 5.
 
+use kmotiondef::boards::StructureLayout;
 use kmotiondef::limits::{N_DACS, N_PC_COMM_PERSIST, PC_COMM_PERSIST, TIMEBASE};
 use kmotiondef::structs::{Chan, MainStatus, Persist};
 use kmotiondef::variables::{
@@ -40,6 +41,21 @@ impl Record {
         let bytes = value.into_bits().to_le_bytes();
         self.0[start..start + T::SIZE as usize].copy_from_slice(&bytes[..T::SIZE as usize]);
     }
+
+    /// The bytes of a record of another version: the same fields where its layout has them.
+    fn arranged(&self, layout: &StructureLayout, version: i32) -> Vec<u8> {
+        let mut bytes = vec![0; layout.size as usize];
+        for field in MainStatus::STRUCTURE.fields {
+            if let Some(there) = layout.fields.iter().find(|there| there.name == field.name) {
+                let (from, to) = (field.offset as usize, there.offset as usize);
+                let size = field.size.min(there.size) as usize;
+                bytes[to..to + size].copy_from_slice(&self.0[from..from + size]);
+            }
+        }
+        let first = (version << 16) | (layout.size as i32 / 4);
+        bytes[..4].copy_from_slice(&first.to_le_bytes());
+        bytes
+    }
 }
 
 /// The record of this instant.
@@ -68,7 +84,10 @@ pub(crate) fn record(parts: &Parts, context: &TickContext<'_>) -> Vec<u8> {
     }
     record.set(MainStatus::VIRTUAL_BITS, memory.get(VIRTUAL_BITS));
     record.set(MainStatus::VIRTUAL_BITS_EX0, memory.get(VIRTUAL_BITS_EX.element(0)));
-    record.0
+    match parts.level.status() {
+        Some(layout) => record.arranged(layout, parts.level.behaviour().status_version),
+        None => record.0,
+    }
 }
 
 /// Seconds since power-up.

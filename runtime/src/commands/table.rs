@@ -29,17 +29,30 @@ const POSITIVE_REAL: &[Argument] = &[AXIS, Assign, POSITIVE];
 /// A target of an axis, and a target with another number.
 const TARGET: &[Argument] = &[AXIS, Equals, Real];
 const TARGET_AND: &[Argument] = &[AXIS, Equals, Real, Real];
+const TARGET_AND_TWO: &[Argument] = &[AXIS, Equals, Real, Real, Real];
 
 macro_rules! commands {
-    ($($name:literal $arguments:expr => $run:expr, $help:literal;)*) => {
-        /// Every script command of the board.
-        pub const COMMANDS: &[Command] = &[
+    ($(#[$doc:meta])+ $list:ident: $($name:literal $arguments:expr => $run:expr, $help:literal;)*) => {
+        $(#[$doc])+
+        pub const $list: &[Command] = &[
             $(Command { name: $name, arguments: $arguments, help: $help, run: $run }),*
         ];
     };
 }
 
 commands! {
+    /// Commands that firmware 4.34 lacks, or takes with other limits.
+    LATER_COMMANDS:
+    "MoveAtVelAccel" TARGET_AND_TWO => motion::move_at_vel_accel, "moves an axis to a destination at a speed and an acceleration";
+    "MoveRelAtVelAccel" TARGET_AND_TWO => motion::move_rel_at_vel_accel, "moves an axis by a distance at a speed and an acceleration";
+    "JogAtAccel" TARGET_AND => motion::jog_at_accel, "moves an axis at a speed, reached with an acceleration; 0 stops it";
+    "GetAllDestVelHex" &[] => motion::destinations_and_velocities, "reports destination and speed of all axes, in hexadecimal";
+    "GetVirtualBits" &[Integer(0, 31), Integer(0, 32)] => io::get_virtual_bits, "reports words of extended virtual bits, in hexadecimal";
+}
+
+commands! {
+    /// Every script command of firmware 4.34.
+    COMMANDS:
     // Programs.
     "Execute" &[THREAD] => programs::execute, "starts a thread at its entry point";
     "Kill" &[THREAD] => programs::kill, "stops a thread";

@@ -74,6 +74,7 @@ impl Sink for GuestArguments<'_> {
     fn store(&mut self, value: Scanned<'_>) -> Result<(), TrapKind> {
         let place = self.address()?;
         match value {
+            Scanned::Byte(value) => self.memory.store(place, value),
             Scanned::Short(value) => self.memory.store(place, value),
             Scanned::Int(value) => self.memory.store(place, value),
             Scanned::Long(value) => {
@@ -94,25 +95,29 @@ impl Sink for GuestArguments<'_> {
 
 /// Formats the values after `...`.
 pub(crate) fn formatted(
+    parts: &Parts,
     caller: &mut Caller<'_>,
     pattern: GuestAddr,
     arguments: Varargs,
 ) -> Result<Vec<u8>, TrapKind> {
     let pattern = text(caller, pattern)?;
     let mut arguments = GuestArguments { memory: caller.memory, at: arguments.0.get() };
-    let formatted = format_counted(&pattern, &mut arguments)?;
+    let formatted = format_counted(parts.level.behaviour().text, &pattern, &mut arguments)?;
     caller.spend(Cycles::new(formatted.cycles.into()));
     Ok(formatted.text)
 }
 
 /// Converts `text` under a pattern into the places after `...`.
 pub(crate) fn converted(
+    parts: &Parts,
     caller: &mut Caller<'_>,
     text: &[u8],
     pattern: &[u8],
     places: Varargs,
 ) -> Result<i32, TrapKind> {
-    let found = scan(text, pattern, &mut GuestArguments { memory: caller.memory, at: places.0.get() })?;
+    let dialect = parts.level.behaviour().text;
+    let mut places = GuestArguments { memory: caller.memory, at: places.0.get() };
+    let found = scan(dialect, text, pattern, &mut places)?;
     caller.spend(Cycles::new(found.cycles.into()));
     Ok(found.result)
 }
@@ -159,7 +164,7 @@ pub(crate) fn printf(
     if let Some(outcome) = resumed(parts, caller) {
         return Ok(outcome);
     }
-    let text = formatted(caller, pattern, arguments)?;
+    let text = formatted(parts, caller, pattern, arguments)?;
     spend_queueing(caller, cut(&text));
     Ok(put(parts, caller, cut(&text), text.len() as i32))
 }
@@ -223,7 +228,7 @@ fn print_one(
         return Ok(outcome);
     }
     let pattern = text(caller, pattern)?;
-    let formatted = format_counted(&pattern, &mut value)?;
+    let formatted = format_counted(parts.level.behaviour().text, &pattern, &mut value)?;
     caller.spend(Cycles::new(formatted.cycles.into()));
     spend_queueing(caller, cut(&formatted.text));
     Ok(put(parts, caller, cut(&formatted.text), 0))
@@ -283,7 +288,7 @@ pub(crate) fn sprintf(
     pattern: GuestAddr,
     arguments: Varargs,
 ) -> Result<i32, TrapKind> {
-    let text = formatted(caller, pattern, arguments)?;
+    let text = formatted(parts, caller, pattern, arguments)?;
     parts.check_room(caller, Function::sprintf, to, text.len() + 1);
     store(caller, to, text)
 }
@@ -300,14 +305,14 @@ pub(crate) fn vsprintf(
 
 /// At most `size` bytes with the terminator; returns the full length.
 pub(crate) fn snprintf(
-    _: &mut Parts,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     to: GuestAddr,
     size: u32,
     pattern: GuestAddr,
     arguments: Varargs,
 ) -> Result<i32, TrapKind> {
-    let mut text = formatted(caller, pattern, arguments)?;
+    let mut text = formatted(parts, caller, pattern, arguments)?;
     let length = text.len() as i32;
     if let Some(room) = (size as usize).checked_sub(1) {
         text.truncate(room);
@@ -328,14 +333,14 @@ pub(crate) fn vsnprintf(
 }
 
 pub(crate) fn sscanf(
-    _: &mut Parts,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     string: GuestAddr,
     pattern: GuestAddr,
     places: Varargs,
 ) -> Result<i32, TrapKind> {
     let (string, pattern) = (text(caller, string)?, text(caller, pattern)?);
-    converted(caller, &string, &pattern, places)
+    converted(parts, caller, &string, &pattern, places)
 }
 
 #[cfg(test)]

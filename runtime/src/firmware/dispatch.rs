@@ -121,7 +121,7 @@ impl<T: IntoOutcome> IntoOutcome for Result<T, TrapKind> {
 }
 
 /// A Rust function that takes `Parameters` after parts and caller.
-trait FirmwareFunction<Parameters> {
+pub(super) trait FirmwareFunction<Parameters> {
     /// The classes of its arguments.
     const PARAMETERS: &'static [Class];
     /// The class of its result.
@@ -195,8 +195,17 @@ macro_rules! handlers {
 }
 kmotiondef::for_each_firmware_fn!(handlers);
 
+/// Calls a Rust function with the caller's arguments.
+pub(super) fn handler_of<P, F: FirmwareFunction<P>>(
+    function: F,
+    parts: &mut Parts,
+    caller: &mut Caller<'_>,
+) -> Answer {
+    function.invoke(parts, caller)
+}
+
 /// The signature of a Rust function as classes.
-fn signature_of<P, F: FirmwareFunction<P>>(_: F) -> Signature {
+pub(super) fn signature_of<P, F: FirmwareFunction<P>>(_: F) -> Signature {
     Signature { params: F::PARAMETERS.to_vec(), result: F::RESULT }
 }
 

@@ -167,7 +167,7 @@ pub(crate) fn fprintf(
     if let Some(outcome) = resumed(parts, caller) {
         return Ok(outcome);
     }
-    let text = formatted(caller, pattern, arguments)?;
+    let text = formatted(parts, caller, pattern, arguments)?;
     let line = printed(DiskRequest::Write, cut(&text))?;
     spend_queueing(caller, cut(&text));
     caller.spend(Cycles::new(55 * cut(&text).len() as i64));
@@ -213,7 +213,7 @@ fn sent(parts: &mut Parts, caller: &Caller<'_>) -> Option<Outcome<i32>> {
 
 /// The line in the board's buffer.
 fn buffered(caller: &Caller<'_>) -> Result<Vec<u8>, TrapKind> {
-    caller.memory.read_c_string(READ_DISK_BUFFER.address(), MAX_READ_DISK_LENGTH as u32)
+    caller.memory.read_c_string(caller.memory.locate(READ_DISK_BUFFER), MAX_READ_DISK_LENGTH as u32)
 }
 
 /// Converts the next line, at most 128 characters of it. At the end of the file the last line is converted again.
@@ -233,7 +233,7 @@ pub(crate) fn fscanf(
     let Some(is_there) = arrival(parts, caller) else { return Ok(Outcome::Wait(Wake::Retry)) };
     let pattern = text(caller, pattern)?;
     let line = buffered(caller)?;
-    let count = converted(caller, cut(&line), &pattern, places)?;
+    let count = converted(parts, caller, cut(&line), &pattern, places)?;
     if !is_there {
         return Ok(Outcome::Done(count));
     }

@@ -24,9 +24,9 @@ pub(crate) fn setup_gather_all_on_axis(parts: &mut Parts, caller: &mut Caller<'_
     };
     let chan = chan(axis);
     let items = [
-        (GatherType::Double, chan.field(Chan::DEST).address()),
-        (GatherType::Double, chan.field(Chan::POSITION).address()),
-        (GatherType::Float, chan.field(Chan::OUTPUT).address()),
+        (GatherType::Double, caller.memory.locate(chan.field(Chan::DEST))),
+        (GatherType::Double, caller.memory.locate(chan.field(Chan::POSITION))),
+        (GatherType::Float, caller.memory.locate(chan.field(Chan::OUTPUT))),
         // The amplifier's analog words: a board without one reads a word of zeros, and nothing.
         (GatherType::Adc, GuestAddr::NULL),
         (GatherType::Null, GuestAddr::NULL),

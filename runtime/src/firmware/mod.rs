@@ -10,6 +10,8 @@ pub(crate) mod files;
 pub(crate) mod gather;
 pub(crate) mod io;
 pub(crate) mod konnect;
+pub(crate) mod later;
+pub(crate) mod level;
 pub(crate) mod math;
 pub(crate) mod motion;
 pub(crate) mod parts;

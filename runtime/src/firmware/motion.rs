@@ -20,7 +20,7 @@ use crate::servo::cache::Change;
 use crate::servo::coordinated::system;
 use crate::servo::independent::{has_motion, is_planned, present, run, start, state, write};
 use crate::servo::input::turn_resolver;
-use crate::servo::moves::{limits, start_move_to};
+use crate::servo::moves::{Accelerations, limits, limits_with, start_jog, start_move_to};
 use crate::servo::profile::{self, LEAD, MAX_STATES, Mode, MotionState, Ramp};
 use crate::servo::{four_phase, hold, switching, three_phase};
 use crate::views::{Typed, axis_at};
@@ -203,13 +203,17 @@ fn is_place(parts: &mut Parts, caller: &Caller<'_>, function: Function, value: f
     value.is_finite()
 }
 
-/// One of the four moves.
+/// One of the moves.
 struct MoveRequest {
     function: Function,
     axis: i32,
     target: f64,
     is_relative: bool,
     velocity: Option<f32>,
+    /// Its own accelerations.
+    own: Option<Accelerations>,
+    /// True if the target is brought within the soft limits.
+    is_soft: bool,
 }
 
 fn request(parts: &mut Parts, caller: &mut Caller<'_>, request: &MoveRequest) -> Outcome<()> {
@@ -221,6 +225,7 @@ fn request(parts: &mut Parts, caller: &mut Caller<'_>, request: &MoveRequest) ->
         (Some(_), Some(Continuation::Target(target))) => target,
         _ => request.target + if request.is_relative { caller.memory.axis(axis, Chan::DEST) } else { 0.0 },
     };
+    let target = if request.is_soft { within_soft_limits(caller.memory, axis, target) } else { target };
     if !may_move(parts, caller, axis, request.function) {
         return Outcome::Done(());
     }
@@ -249,9 +254,10 @@ fn request(parts: &mut Parts, caller: &mut Caller<'_>, request: &MoveRequest) ->
         return Outcome::Done(());
     }
     notice_hurry(parts, caller, axis, request.function);
-    match limits(caller.memory, axis, request.velocity) {
-        Some(limits) => {
-            if start_move_to(caller.memory, axis, target, &limits, LastMotion::Move) {
+    match limits_with(caller.memory, axis, request.velocity, request.own) {
+        Some((limits, decel)) => {
+            let planner = parts.servo.planner;
+            if start_move_to(caller.memory, axis, target, (&limits, decel), LastMotion::Move, planner) {
                 costs::spend(caller, costs::FULL_SPEED);
             }
         }
@@ -268,7 +274,15 @@ pub(crate) fn move_to(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, x: 
     request(
         parts,
         caller,
-        &MoveRequest { function: Function::Move, axis, target: x, is_relative: false, velocity: None },
+        &MoveRequest {
+            function: Function::Move,
+            axis,
+            target: x,
+            is_relative: false,
+            velocity: None,
+            own: None,
+            is_soft: false,
+        },
     )
 }
 
@@ -276,7 +290,15 @@ pub(crate) fn move_rel(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, dx
     request(
         parts,
         caller,
-        &MoveRequest { function: Function::MoveRel, axis, target: dx, is_relative: true, velocity: None },
+        &MoveRequest {
+            function: Function::MoveRel,
+            axis,
+            target: dx,
+            is_relative: true,
+            velocity: None,
+            own: None,
+            is_soft: false,
+        },
     )
 }
 
@@ -291,7 +313,15 @@ pub(crate) fn move_at_vel(
     request(
         parts,
         caller,
-        &MoveRequest { function: Function::MoveAtVel, axis, target: x, is_relative: false, velocity },
+        &MoveRequest {
+            function: Function::MoveAtVel,
+            axis,
+            target: x,
+            is_relative: false,
+            velocity,
+            own: None,
+            is_soft: false,
+        },
     )
 }
 
@@ -306,11 +336,121 @@ pub(crate) fn move_rel_at_vel(
     request(
         parts,
         caller,
-        &MoveRequest { function: Function::MoveRelAtVel, axis, target: dx, is_relative: true, velocity },
+        &MoveRequest {
+            function: Function::MoveRelAtVel,
+            axis,
+            target: dx,
+            is_relative: true,
+            velocity,
+            own: None,
+            is_soft: false,
+        },
+    )
+}
+
+/// A target brought within the soft limits of an axis.
+fn within_soft_limits(memory: &GuestMemory, axis: AxisId, target: f64) -> f64 {
+    let limit = |field| f64::from(memory.axis(axis, field));
+    target.min(limit(Chan::SOFT_LIMIT_POS)).max(limit(Chan::SOFT_LIMIT_NEG))
+}
+
+/// A move to a place with its own accelerations.
+fn accelerated(
+    parts: &mut Parts,
+    caller: &mut Caller<'_>,
+    (axis, target): (i32, f64),
+    velocity: f32,
+    own: Accelerations,
+) -> Outcome<()> {
+    let velocity = Some(velocity);
+    let (function, own) = (Function::MoveAtVel, Some(own));
+    request(
+        parts,
+        caller,
+        &MoveRequest { function, axis, target, is_relative: false, velocity, own, is_soft: false },
+    )
+}
+
+pub(crate) fn move_at_vel_accel(
+    parts: &mut Parts,
+    caller: &mut Caller<'_>,
+    axis: i32,
+    x: f64,
+    velocity: f32,
+    accel: f32,
+) -> Outcome<()> {
+    accelerated(parts, caller, (axis, x), velocity, Accelerations { accel, decel: accel })
+}
+
+pub(crate) fn move_at_vel_accel_decel(
+    parts: &mut Parts,
+    caller: &mut Caller<'_>,
+    axis: i32,
+    x: f64,
+    velocity: f32,
+    accel: f32,
+    decel: f32,
+) -> Outcome<()> {
+    accelerated(parts, caller, (axis, x), velocity, Accelerations { accel, decel })
+}
+
+pub(crate) fn move_rel_at_vel_accel(
+    parts: &mut Parts,
+    caller: &mut Caller<'_>,
+    axis: i32,
+    dx: f64,
+    velocity: f32,
+    accel: f32,
+) -> Outcome<()> {
+    let (function, own) = (Function::MoveRelAtVel, Some(Accelerations { accel, decel: accel }));
+    let velocity = Some(velocity);
+    request(
+        parts,
+        caller,
+        &MoveRequest { function, axis, target: dx, is_relative: true, velocity, own, is_soft: false },
+    )
+}
+
+pub(crate) fn move_rel_at_vel_accel_decel_soft(
+    parts: &mut Parts,
+    caller: &mut Caller<'_>,
+    axis: i32,
+    dx: f64,
+    velocity: f32,
+    accel: f32,
+    decel: f32,
+) -> Outcome<()> {
+    let (function, own) = (Function::MoveRelAtVel, Some(Accelerations { accel, decel }));
+    let velocity = Some(velocity);
+    request(
+        parts,
+        caller,
+        &MoveRequest { function, axis, target: dx, is_relative: true, velocity, own, is_soft: true },
     )
 }
 
 pub(crate) fn jog(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, velocity: f64) -> Outcome<()> {
+    begin_jog(parts, caller, axis, velocity, None)
+}
+
+pub(crate) fn jog_at_accel(
+    parts: &mut Parts,
+    caller: &mut Caller<'_>,
+    axis: i32,
+    velocity: f64,
+    accel: f64,
+) -> Outcome<()> {
+    begin_jog(parts, caller, axis, velocity, Some(accel as f32))
+}
+
+/// A jog, with its own acceleration if it has one.
+fn begin_jog(
+    parts: &mut Parts,
+    caller: &mut Caller<'_>,
+    axis: i32,
+    velocity: f64,
+    accel: Option<f32>,
+) -> Outcome<()> {
     axis_check::goes_on(parts, caller);
     let Some(axis) = checked(parts, caller, Function::Jog, axis) else { return Outcome::Done(()) };
     let is_enabled = caller.memory.axis(axis, Chan::ENABLE) != 0;
@@ -336,7 +476,8 @@ pub(crate) fn jog(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, velocit
         axis_check::moved(parts, caller, Function::Jog, axis);
     }
     // Any speed will do: only acceleration and jerk limit a jog.
-    let Some(limits) = limits(caller.memory, axis, Some(1.0)) else {
+    let own = accel.map(|accel| Accelerations { accel, decel: accel });
+    let Some((limits, _)) = limits_with(caller.memory, axis, Some(1.0), own) else {
         no_limits(parts, caller, axis, Function::Jog);
         return Outcome::Done(());
     };
@@ -344,9 +485,7 @@ pub(crate) fn jog(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, velocit
     if point.v != velocity {
         notice_hurry(parts, caller, axis, Function::Jog);
     }
-    let states = profile::jog(point, velocity, &limits);
-    run(caller.memory, axis, &states);
-    caller.memory.set_axis(axis, Chan::LAST_MOTION_TYPE, LastMotion::Jog.get());
+    start_jog(caller.memory, axis, velocity, &limits, parts.servo.planner);
     Outcome::Done(())
 }
 
@@ -413,7 +552,9 @@ pub(crate) fn move_xyzabc(
             axis_check::moved(parts, caller, Function::MoveXYZABC, axis);
             match limits(caller.memory, axis, None) {
                 Some(limits) => {
-                    start_move_to(caller.memory, axis, target, &limits, LastMotion::Multi);
+                    let planner = parts.servo.planner;
+                    let limits = (&limits, limits.a);
+                    start_move_to(caller.memory, axis, target, limits, LastMotion::Multi, planner);
                 }
                 None => no_limits(parts, caller, axis, Function::MoveXYZABC),
             }
@@ -454,7 +595,7 @@ pub(crate) fn start_move(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) 
 
 /// The axis whose structure a program points at.
 fn pointed(parts: &mut Parts, caller: &Caller<'_>, function: Function, chan: GuestAddr) -> Option<AxisId> {
-    let axis = axis_at(chan);
+    let axis = axis_at(caller.memory, chan);
     if axis.is_none() {
         parts.out.diagnose(caller, Message::NotAnAxis { function, chan });
     }
@@ -526,7 +667,7 @@ pub(crate) fn setup_for_motion_end(parts: &mut Parts, caller: &mut Caller<'_>, c
 }
 
 pub(crate) fn write_3ph(parts: &mut Parts, caller: &mut Caller<'_>, chan: GuestAddr, v: f32, angle: f64) {
-    match axis_at(chan) {
+    match axis_at(caller.memory, chan) {
         Some(axis) => {
             three_phase(caller.memory, axis, v);
             apply(parts, caller.memory, axis, v, angle);

@@ -11,6 +11,7 @@ use vm::memory::GuestMemory;
 use vm::scheduler::Turn;
 
 use super::calls::Calls;
+use super::level::ModelledBoard;
 use super::races::Races;
 use super::races::switches::Switches;
 use crate::io::remark_on;
@@ -45,6 +46,8 @@ pub(crate) struct Parts {
     pub(crate) pc: Pc,
     pub(crate) world: World,
     pub(crate) calls: Calls,
+    /// The firmware that it is modelled after.
+    pub(crate) level: ModelledBoard,
     pub(crate) clock: Clock,
     /// Whose time is counted.
     pub(crate) timing: Timing,
@@ -65,6 +68,7 @@ impl Parts {
             pc,
             world: World::default(),
             calls: Calls::default(),
+            level: ModelledBoard::default(),
             clock: Clock {
                 tick_start: Cycles::default(),
                 slice_start: Cycles::default(),

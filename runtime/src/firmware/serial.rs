@@ -50,10 +50,10 @@ pub(crate) fn connect(parts: &mut Parts, caller: &mut Caller<'_>, divisor: i32) 
 
 /// Empties both rings and starts the service.
 fn begin(parts: &mut Parts, memory: &mut GuestMemory) {
-    memory.set(P_RS232_REC_IN, RS232_REC_BUF.address());
-    memory.set(P_RS232_REC_OUT, RS232_REC_BUF.address());
-    memory.set(P_RS232_TX_IN, RS232_TX_BUF.address());
-    memory.set(P_RS232_TX_OUT, RS232_TX_BUF.address());
+    memory.set(P_RS232_REC_IN, memory.locate(RS232_REC_BUF));
+    memory.set(P_RS232_REC_OUT, memory.locate(RS232_REC_BUF));
+    memory.set(P_RS232_TX_IN, memory.locate(RS232_TX_BUF));
+    memory.set(P_RS232_TX_OUT, memory.locate(RS232_TX_BUF));
     memory.set(DO_RS232_CMDS, 1);
     parts.calls.serial.is_on = true;
 }
@@ -74,7 +74,7 @@ pub(crate) fn write(parts: &mut Parts, memory: &mut GuestMemory, bytes: &[u8]) {
 fn fill(parts: &mut Parts, memory: &mut GuestMemory) {
     while let Some(&byte) = parts.calls.serial.replies.front() {
         let place = memory.get(P_RS232_TX_IN);
-        let after = next(place, RS232_TX_BUF.address());
+        let after = next(place, memory.locate(RS232_TX_BUF));
         if after == memory.get(P_RS232_TX_OUT) {
             break;
         }
@@ -90,7 +90,8 @@ pub(crate) fn rs232_get_char(_: &mut Parts, caller: &mut Caller<'_>) -> Result<O
         return Ok(Outcome::Wait(Wake::Retry));
     }
     let byte: i8 = caller.memory.load(out)?;
-    caller.memory.set(P_RS232_REC_OUT, next(out, RS232_REC_BUF.address()));
+    let after = next(out, caller.memory.locate(RS232_REC_BUF));
+    caller.memory.set(P_RS232_REC_OUT, after);
     Ok(Outcome::Done(byte.into()))
 }
 
@@ -100,7 +101,7 @@ pub(crate) fn rs232_put_char(
     byte: u8,
 ) -> Result<Outcome<()>, TrapKind> {
     let place = caller.memory.get(P_RS232_TX_IN);
-    let after = next(place, RS232_TX_BUF.address());
+    let after = next(place, caller.memory.locate(RS232_TX_BUF));
     if after == caller.memory.get(P_RS232_TX_OUT) {
         return Ok(Outcome::Wait(Wake::Retry));
     }
@@ -125,7 +126,7 @@ pub(crate) fn tick(parts: &mut Parts, context: &mut TickContext<'_>) -> bool {
     let out = memory.get(P_RS232_TX_OUT);
     if out != memory.get(P_RS232_TX_IN) && parts.io.uart.is_free(context.now) {
         parts.io.uart.send(memory.peek(out), context.now);
-        memory.set(P_RS232_TX_OUT, next(out, RS232_TX_BUF.address()));
+        memory.set(P_RS232_TX_OUT, next(out, memory.locate(RS232_TX_BUF)));
     }
     true
 }
@@ -134,7 +135,7 @@ pub(crate) fn tick(parts: &mut Parts, context: &mut TickContext<'_>) -> bool {
 fn receive(parts: &mut Parts, context: &mut TickContext<'_>) {
     let Some(byte) = parts.io.uart.receive(context.now) else { return };
     let place = context.memory.get(P_RS232_REC_IN);
-    let after = next(place, RS232_REC_BUF.address());
+    let after = next(place, context.memory.locate(RS232_REC_BUF));
     context.memory.poke(place, byte);
     context.memory.set(P_RS232_REC_IN, after);
     if after == context.memory.get(P_RS232_REC_OUT) {
@@ -157,7 +158,7 @@ pub(crate) fn slice(parts: &mut Parts, context: &mut TickContext<'_>) {
     let mut bytes = Vec::new();
     while out != received && bytes.len() < RS232BUFSZ {
         bytes.push(context.memory.peek(out));
-        out = next(out, RS232_REC_BUF.address());
+        out = next(out, context.memory.locate(RS232_REC_BUF));
     }
     context.memory.set(P_RS232_REC_OUT, received);
     parts.pc.uart.receive(&bytes);

@@ -47,9 +47,15 @@ fn found(start: GuestAddr, index: Option<usize>) -> GuestAddr {
     index.map_or(GuestAddr::NULL, |index| start.offset(index as u32))
 }
 
-/// −1, 0 or 1.
-fn order<T: Ord>(a: &T, b: &T) -> i32 {
-    a.cmp(b) as i32
+/// The result of a comparison of two byte strings, as the firmware has it: a sign, or the difference of the first bytes
+/// that differ, where a string that has ended counts as 0.
+fn order(parts: &Parts, a: &[u8], b: &[u8]) -> i32 {
+    if !parts.level.behaviour().compares_by_difference {
+        return a.cmp(b) as i32;
+    }
+    let at = (0..a.len().max(b.len())).find(|&at| a.get(at) != b.get(at));
+    let byte = |text: &[u8], at: usize| i32::from(text.get(at).copied().unwrap_or(0));
+    at.map_or(0, |at| byte(a, at) - byte(b, at))
 }
 
 /// What `memcpy` costs beyond its 32 cycles (costs.md section 4).
@@ -118,13 +124,13 @@ pub(crate) fn memccpy(
 }
 
 pub(crate) fn memcmp(
-    _: &mut Parts,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     a: GuestAddr,
     b: GuestAddr,
     length: u32,
 ) -> Result<i32, TrapKind> {
-    Ok(order(&block(caller, a, length)?, &block(caller, b, length)?))
+    Ok(order(parts, &block(caller, a, length)?, &block(caller, b, length)?))
 }
 
 pub(crate) fn memchr(
@@ -197,22 +203,22 @@ pub(crate) fn strncat(
 }
 
 pub(crate) fn strcmp(
-    _: &mut Parts,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     a: GuestAddr,
     b: GuestAddr,
 ) -> Result<i32, TrapKind> {
-    Ok(order(&text(caller, a)?, &text(caller, b)?))
+    Ok(order(parts, &text(caller, a)?, &text(caller, b)?))
 }
 
 pub(crate) fn strncmp(
-    _: &mut Parts,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     a: GuestAddr,
     b: GuestAddr,
     limit: u32,
 ) -> Result<i32, TrapKind> {
-    Ok(order(&text_up_to(caller, a, limit)?, &text_up_to(caller, b, limit)?))
+    Ok(order(parts, &text_up_to(caller, a, limit)?, &text_up_to(caller, b, limit)?))
 }
 
 pub(crate) fn strchr(_: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr, byte: i32) -> AddressResult {

@@ -4,28 +4,79 @@ use kmotiondef::{GuestAddr, ThreadId};
 use vm::firmware::{Caller, Outcome, Wake};
 use vm::trap::TrapKind;
 
+use super::level::MutexRule;
 use super::parts::Parts;
 
 /// Waits until a lock is free, then takes it.
-///
-/// A lock holds its owner's thread number plus one. Anything that is no other thread's identity counts as free.
 pub(crate) fn mutex_lock(
-    _: &mut Parts,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     mutex: GuestAddr,
 ) -> Result<Outcome<()>, TrapKind> {
-    let owner: i32 = caller.memory.load(mutex)?;
-    let own = i32::from(caller.thread.map_or(0, ThreadId::get)) + 1;
-    if ThreadId::new(owner - 1).is_some() && owner != own {
-        return Ok(Outcome::Wait(Wake::Retry));
+    let word: i32 = caller.memory.load(mutex)?;
+    let own = i32::from(caller.thread.map_or(0, ThreadId::get));
+    let taken = match parts.level.behaviour().mutexes {
+        MutexRule::Owner => owned(word, own),
+        MutexRule::Counted => counted(word, own, caller),
+    };
+    match taken {
+        Some(taken) => {
+            caller.memory.store(mutex, taken)?;
+            Ok(Outcome::Done(()))
+        }
+        None => Ok(Outcome::Wait(Wake::Retry)),
     }
-    caller.memory.store(mutex, own)?;
-    Ok(Outcome::Done(()))
 }
 
-/// Frees a lock, whoever owns it.
-pub(crate) fn mutex_unlock(_: &mut Parts, caller: &mut Caller<'_>, mutex: GuestAddr) -> Result<(), TrapKind> {
-    caller.memory.store(mutex, 0_i32)
+/// The word of a lock after it is taken; `None` if another thread has it.
+///
+/// The word is the owner's number plus one. Anything that is no other thread's identity counts as free.
+fn owned(word: i32, own: i32) -> Option<i32> {
+    let is_taken = ThreadId::new(word - 1).is_some() && word != own + 1;
+    (!is_taken).then_some(own + 1)
+}
+
+/// The owner of a lock that counts, and its locks.
+const fn owner_and_count(word: i32) -> (i32, i32) {
+    (word >> COUNT_BITS, word & COUNT_MASK)
+}
+/// Bits of the count of locks.
+const COUNT_BITS: u32 = 16;
+const COUNT_MASK: i32 = (1 << COUNT_BITS) - 1;
+
+/// As [`owned`], for a word of the owner and a count of its locks.
+fn counted(word: i32, own: i32, caller: &Caller<'_>) -> Option<i32> {
+    let (owner, count) = owner_and_count(word);
+    if owner == own || word == 0 {
+        return Some((own << COUNT_BITS) + count + 1);
+    }
+    // The primary thread is always active.
+    let is_active =
+        owner == 0 || ThreadId::new(owner).is_some_and(|owner| caller.threads.state(owner).is_active());
+    // Odd and kept: a lock that is taken over names the thread after the one that takes it.
+    if is_active && count == 0 {
+        return Some((own << COUNT_BITS) + 1);
+    }
+    (!is_active).then_some(((own + 1) << COUNT_BITS) + 1)
+}
+
+/// Frees a lock: whoever owns it, or one of the owner's locks.
+pub(crate) fn mutex_unlock(
+    parts: &mut Parts,
+    caller: &mut Caller<'_>,
+    mutex: GuestAddr,
+) -> Result<(), TrapKind> {
+    if parts.level.behaviour().mutexes == MutexRule::Owner {
+        return caller.memory.store(mutex, 0_i32);
+    }
+    let word: i32 = caller.memory.load(mutex)?;
+    let (owner, count) = owner_and_count(word);
+    let own = i32::from(caller.thread.map_or(0, ThreadId::get));
+    if count == 0 || owner != own {
+        parts.out.console.message("Mutex Error");
+        return Ok(());
+    }
+    caller.memory.store(mutex, if count == 1 { 0 } else { word - 1 })
 }
 
 /// `*place |= mask`.
@@ -48,6 +99,28 @@ pub(crate) fn atomic_clear(
 ) -> Result<(), TrapKind> {
     let value: i32 = caller.memory.load(place)?;
     caller.memory.store(place, value & mask)
+}
+
+/// `*place |= mask`, 16 bits of both.
+pub(crate) fn atomic_set_16(
+    _: &mut Parts,
+    caller: &mut Caller<'_>,
+    place: GuestAddr,
+    mask: i32,
+) -> Result<(), TrapKind> {
+    let value: u16 = caller.memory.load(place)?;
+    caller.memory.store(place, value | mask as u16)
+}
+
+/// `*place &= mask`, 16 bits of both.
+pub(crate) fn atomic_clear_16(
+    _: &mut Parts,
+    caller: &mut Caller<'_>,
+    place: GuestAddr,
+    mask: i32,
+) -> Result<(), TrapKind> {
+    let value: u16 = caller.memory.load(place)?;
+    caller.memory.store(place, value & mask as u16)
 }
 
 /// Stores `value` where 0 was; returns what was there.

@@ -230,7 +230,7 @@ impl Disk {
 }
 
 fn deliver(memory: &mut GuestMemory, line: &[u8]) {
-    let buffer = memory.place_of(READ_DISK_BUFFER.address());
+    let buffer = memory.locate(READ_DISK_BUFFER);
     for (index, byte) in (0..).zip(line.iter().chain(&[0])) {
         memory.poke(buffer.offset(index), *byte);
     }

@@ -168,7 +168,7 @@ fn data(offset: usize) -> Place<i32> {
 /// An element of `UserData` that a parameter names.
 fn named(memory: &GuestMemory, index: i32, count: usize) -> Option<GuestAddr> {
     let index = usize::try_from(index).ok().filter(|index| index + count <= N_USER_DATA_VARS)?;
-    Some(memory.place_of(PERSIST.field(Persist::USER_DATA).element(index).address()))
+    Some(memory.locate(PERSIST.field(Persist::USER_DATA).element(index)))
 }
 
 /// Doubles in `UserData`, by their index as such.

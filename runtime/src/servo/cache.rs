@@ -7,7 +7,7 @@
 
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::timing::WaitStates;
-use kmotiondef::{AxisId, Cycles};
+use kmotiondef::{AxisId, Cycles, GuestAddr};
 use vm::memory::GuestMemory;
 
 use super::duration::duration;
@@ -35,6 +35,8 @@ pub(crate) enum Change {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cache {
     plans: [AxisPlan; N_CHANNELS],
+    /// The variable that says whether the derivative gain acts on the error; `None` in firmware 4.34, which has none.
+    pub(crate) derivative_method: Option<GuestAddr>,
     /// Whether the plans, and what follows from them, are what memory says.
     has_plans: bool,
     /// Whether an axis depends on another by them.
@@ -106,7 +108,7 @@ impl Cache {
     pub(super) fn make_plans(&mut self, memory: &mut GuestMemory, wiring: &Wiring) {
         if !self.has_plans {
             for axis in AxisId::all() {
-                self.plans[axis.index()] = AxisPlan::of(memory, wiring, axis);
+                self.plans[axis.index()] = AxisPlan::of(memory, wiring, axis, self.derivative_method);
             }
             self.is_coupled = AxisId::all().any(|axis| self.plans[axis.index()].is_coupled(axis));
             self.has_slaves = self.plans.iter().any(|plan| plan.is_slave);
@@ -123,7 +125,7 @@ impl Cache {
     /// Whether the settings still come to what is known.
     fn plans_hold(&self, memory: &mut GuestMemory, wiring: &Wiring) -> bool {
         AxisId::all().zip(&self.plans).all(|(axis, plan)| {
-            let now = AxisPlan::of(memory, wiring, axis);
+            let now = AxisPlan::of(memory, wiring, axis, self.derivative_method);
             // A setting that is no number equals itself in print only.
             *plan == now || format!("{plan:?}") == format!("{now:?}")
         })

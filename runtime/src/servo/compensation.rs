@@ -40,6 +40,7 @@ pub(crate) fn advance(own: &AxisMemory, gains: &Gains, chan: &mut AxisView<'_>, 
     chan.set(Chan::INTEGRATOR, integrator);
     let moved = position - chan.get(Chan::LAST_POSITION);
     chan.set(Chan::LAST_POSITION, position);
+    let moved = if gains.derives_error { moved - own.velocity * TIMEBASE } else { moved };
     let pid = gains.p * error + f64::from(integrator) - gains.d * moved;
     let [first, second, last] = &gains.filters;
     let filtered = filter(chan, Chan::IIR.element(0), first, pid);

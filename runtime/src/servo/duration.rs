@@ -11,7 +11,7 @@ use kmotiondef::variables::CHAN;
 use kmotiondef::{Cycles, GuestType};
 use vm::memory::GuestMemory;
 
-use crate::views::field_of;
+use crate::views::{Typed, field_of};
 
 /// Without an enabled axis.
 const IDLE: i64 = 2006;
@@ -21,7 +21,9 @@ const ENCODER: i64 = 44;
 /// What the servo interrupt takes of a tick.
 pub(crate) fn duration(memory: &GuestMemory) -> Cycles {
     const SIZE: usize = Chan::SIZE as usize;
-    let Some(all) = memory.block::<{ SIZE * N_CHANNELS }>(CHAN.address()) else { return Cycles::new(IDLE) };
+    let Some(all) = memory.block::<{ SIZE * N_CHANNELS }>(memory.locate(CHAN)) else {
+        return Cycles::new(IDLE);
+    };
     let enabled = all.as_chunks::<SIZE>().0.iter().filter(|chan| field_of(chan, Chan::ENABLE) != 0);
     let axes = enabled.map(|chan| {
         // As measured: a number below the modes costs what the first one does, one above them nothing.

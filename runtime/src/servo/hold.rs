@@ -11,10 +11,10 @@ use vm::memory::GuestMemory;
 use super::coordinated::feedhold::{self, HoldState};
 use super::coordinated::path;
 use super::coordinated::system::{is_member, members};
-use super::independent::{has_motion, is_moving, present, run};
-use super::moves::{limits, start_move_to};
+use super::independent::{has_motion, is_moving};
+use super::moves::{limits, start_jog, start_move_to};
+use super::spindle;
 use super::state::Servo;
-use super::{profile, spindle};
 use crate::views::Typed;
 
 /// Ends the path that an axis belongs to, whether one runs or not (coordinated-motion.md section 3.4): it is
@@ -87,12 +87,10 @@ pub(crate) fn moving_members(memory: &GuestMemory) -> Vec<AxisId> {
 /// Decelerates an axis to rest.
 pub(crate) fn stop_axis(servo: &mut Servo, memory: &mut GuestMemory, axis: AxisId) {
     if let Some(limits) = limits(memory, axis, Some(1.0)) {
-        let states = profile::jog(present(memory, axis), 0.0, &limits);
-        run(memory, axis, &states);
-        // The axis is jogged to rest; what it did is kept for a resume.
         let kind = LastMotion::new(memory.axis(axis, Chan::LAST_MOTION_TYPE));
+        start_jog(memory, axis, 0.0, &limits, servo.planner);
+        // The axis is jogged to rest; what it did is kept for a resume.
         servo.axes[axis.index()].held = Some(kind.unwrap_or(LastMotion::Jog));
-        memory.set_axis(axis, Chan::LAST_MOTION_TYPE, LastMotion::Jog.get());
     }
 }
 
@@ -114,7 +112,7 @@ pub(crate) fn resume_axis(servo: &mut Servo, memory: &mut GuestMemory, axis: Axi
     }
     let target = memory.axis(axis, Chan::LAST_MOTION_DEST);
     if let Some(limits) = limits(memory, axis, None) {
-        start_move_to(memory, axis, target, &limits, kind);
+        start_move_to(memory, axis, target, (&limits, limits.a), kind, servo.planner);
         memory.set_axis(axis, Chan::LAST_MOTION_TYPE, LastMotion::Multi.get());
     }
 }

@@ -64,6 +64,26 @@ pub(crate) fn run(memory: &mut GuestMemory, axis: AxisId, states: &[MotionState]
     start(memory, axis);
 }
 
+/// The same, with the mode of the first state left as it is if that matters.
+pub(crate) fn run_kept(memory: &mut GuestMemory, axis: AxisId, states: &[MotionState]) {
+    let mode = list(memory, axis).element(0).field(TripCoeff::TRAJECTORY_MODE);
+    let kept = memory.get(mode);
+    write(memory, axis, 0, states);
+    // Any other number acts as that of a polynomial.
+    if kept == Mode::Off.number() || kept == Mode::Exponential.number() {
+        memory.set(mode, kept);
+    }
+    start(memory, axis);
+}
+
+/// Gives the first state of every axis a mode, which a jog from rest keeps.
+pub(crate) fn prepare(memory: &mut GuestMemory) {
+    for axis in AxisId::all() {
+        let mode = list(memory, axis).element(0).field(TripCoeff::TRAJECTORY_MODE);
+        memory.set(mode, Mode::Independent.number());
+    }
+}
+
 /// Whether a list is being executed.
 pub(crate) fn has_motion(memory: &GuestMemory, axis: AxisId) -> bool {
     !memory.axis(axis, Chan::PCOEFF).is_null()

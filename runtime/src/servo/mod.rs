@@ -10,6 +10,7 @@ pub(crate) mod cache;
 mod closed_form;
 mod compensation;
 pub(crate) mod coordinated;
+mod direct;
 mod dsp;
 mod duration;
 #[cfg(test)]

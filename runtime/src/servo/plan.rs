@@ -5,10 +5,9 @@
 //! again as soon as a thread, the call-back, the PC or the world has done anything. Builds with debug assertions
 //! compare it in every tick.
 
-use kmotiondef::AxisId;
-use kmotiondef::Field;
 use kmotiondef::modes::{BacklashMode, InputMode, OutputMode};
 use kmotiondef::structs::{Chan, Iir};
+use kmotiondef::{AxisId, Field, GuestAddr};
 use vm::memory::GuestMemory;
 
 use crate::machine::COUNTS_PER_TICK;
@@ -57,6 +56,8 @@ pub(crate) struct Gains {
     pub(crate) p: f64,
     pub(crate) i: f64,
     pub(crate) d: f64,
+    /// True if the derivative gain acts on the error, not on the position alone.
+    pub(crate) derives_error: bool,
     pub(crate) max_i: f64,
     pub(crate) max_err: f64,
     pub(crate) max_output: f64,
@@ -96,7 +97,13 @@ impl AxisPlan {
     }
 
     /// What an axis has set.
-    pub(super) fn of(memory: &mut GuestMemory, wiring: &Wiring, axis: AxisId) -> Self {
+    pub(super) fn of(
+        memory: &mut GuestMemory,
+        wiring: &Wiring,
+        axis: AxisId,
+        derivative_method: Option<GuestAddr>,
+    ) -> Self {
+        let derives_error = derivative_method.is_some_and(|method| memory.peek::<i32>(method) != 0);
         let input = input(memory, wiring, axis);
         let chan = AxisView::of(memory, axis);
         if chan.get(Chan::ENABLE) == 0 {
@@ -114,7 +121,7 @@ impl AxisPlan {
             soft_limit_pos: chan.get(Chan::SOFT_LIMIT_POS).into(),
             max_following_error: chan.get(Chan::MAX_FOLLOWING_ERROR),
             reach: COUNTS_PER_TICK * f64::from(chan.get(Chan::INPUT_GAIN0)).abs(),
-            gains: gains(&chan),
+            gains: Gains { derives_error, ..gains(&chan) },
         }
     }
 }
@@ -154,6 +161,7 @@ fn gains(chan: &AxisView<'_>) -> Gains {
         p: gain(Chan::P),
         i: gain(Chan::I),
         d: gain(Chan::D),
+        derives_error: false,
         max_i: limit(Chan::MAX_I),
         max_err: limit(Chan::MAX_ERR),
         max_output: limit(Chan::MAX_OUTPUT),

@@ -130,14 +130,26 @@ impl Limits {
 
 /// A list under construction and the point it has reached.
 #[derive(Clone, Debug)]
-struct Path {
-    states: Vec<MotionState>,
-    end: Point,
+pub(super) struct Path {
+    pub(super) states: Vec<MotionState>,
+    pub(super) end: Point,
+    /// The square root: on the board a single, or a double.
+    root: fn(f64) -> f64,
 }
 
 impl Path {
     fn from(start: Point) -> Self {
-        Self { states: Vec::new(), end: start }
+        Self { states: Vec::new(), end: start, root }
+    }
+
+    /// The same with square roots that are doubles.
+    pub(super) fn exact(start: Point) -> Self {
+        Self::from(start).exactly()
+    }
+
+    /// The same path, continued with square roots that are doubles.
+    pub(super) fn exactly(self) -> Self {
+        Self { root: libm::sqrt, ..self }
     }
 
     /// Appends `duration` seconds of constant `jerk`; without a state where there is nothing to do.
@@ -153,7 +165,7 @@ impl Path {
     }
 
     /// Appends `duration` seconds of constant `jerk`, even if they are none or, by rounding, less.
-    fn append(&mut self, duration: f64, jerk: f64) {
+    pub(super) fn append(&mut self, duration: f64, jerk: f64) {
         let Point { x, v, a } = self.end;
         let state = MotionState {
             mode: Mode::Independent,
@@ -174,13 +186,13 @@ impl Path {
     }
 
     /// Appends the change to velocity `target`, reached with acceleration 0, in the shortest time.
-    fn change(&mut self, target: f64, limits: &Limits) {
+    pub(super) fn change(&mut self, target: f64, limits: &Limits) {
         let Point { v, a, .. } = self.end;
         let gain = target - v;
         let ramp_down = divide(a * a.abs(), 2.0 * limits.j);
         let sign = if gain >= ramp_down { 1.0 } else { -1.0 };
         let jerk = sign * limits.j;
-        let last = root((divide(gain, jerk) + divide(a * a, 2.0 * limits.j * limits.j)).max(0.0));
+        let last = (self.root)((divide(gain, jerk) + divide(a * a, 2.0 * limits.j * limits.j)).max(0.0));
         if last * limits.j <= limits.a {
             self.append(last - divide(a, jerk), jerk);
             self.append(last, -jerk);
@@ -356,7 +368,7 @@ fn constant(point: &Point) -> MotionState {
 }
 
 /// The 20 ticks at constant velocity; the acceleration pauses meanwhile.
-fn lead(start: Point) -> Path {
+pub(super) fn lead(start: Point) -> Path {
     let mut path = Path::from(Point { a: 0.0, ..start });
     path.push(LEAD, 0.0);
     path.end.a = start.a;

@@ -41,7 +41,7 @@ pub(crate) struct Setup {
 
 /// Sets the measurement up; it begins with the next tick.
 pub(crate) fn configure(memory: &mut GuestMemory, setup: &Setup) {
-    let position = chan(setup.axis).field(Chan::POSITION).address();
+    let position = memory.locate(chan(setup.axis).field(Chan::POSITION));
     let ticks = f64::from((f64::from(setup.update_time) / TIMEBASE) as i32).max(1.0);
     let counts = f64::from(setup.counts);
     set(memory, Spindle::P_ENCODER_POS, position);

@@ -7,6 +7,7 @@ use vm::memory::GuestMemory;
 
 use super::cache::Cache;
 use super::coordinated::{Coordinated, path};
+use super::moves::Planner;
 use super::stop::StopRequest;
 use super::{independent, recorder};
 use crate::io::Io;
@@ -46,6 +47,8 @@ pub(crate) struct Servo {
     pub(crate) cache: Cache,
     pub(super) coordinated: Coordinated,
     pub(super) stop_request: StopRequest,
+    /// The way in which the firmware plans moves of single axes.
+    pub(crate) planner: Planner,
 }
 
 impl Servo {

@@ -8,7 +8,7 @@ use kmotiondef::GuestAddr;
 use kmotiondef::variables::{ADC_BUFFER_IN, CHAN, DAC_BUFFER, LAST_PWM};
 use vm::memory::GuestMemory;
 
-use crate::views::CHANS_SIZE;
+use crate::views::{CHANS_SIZE, Typed};
 
 /// Bytes of the amplifiers' words, the analog outputs and the analog inputs.
 const PWM_SIZE: usize = 64;
@@ -79,10 +79,10 @@ impl Stillness {
     pub(super) fn end(&mut self, memory: &GuestMemory) -> bool {
         self.is_still = self.is_known && self.is_seen(memory);
         if !self.is_still {
-            copy(memory, CHAN.address(), &mut self.chans);
-            copy(memory, LAST_PWM.address(), &mut self.pwm);
-            copy(memory, DAC_BUFFER.address(), &mut self.dac);
-            copy(memory, ADC_BUFFER_IN.address(), &mut self.adc);
+            copy(memory, memory.locate(CHAN), &mut self.chans);
+            copy(memory, memory.locate(LAST_PWM), &mut self.pwm);
+            copy(memory, memory.locate(DAC_BUFFER), &mut self.dac);
+            copy(memory, memory.locate(ADC_BUFFER_IN), &mut self.adc);
             self.is_known = true;
         }
         self.is_still
@@ -94,14 +94,14 @@ impl Stillness {
     }
 
     fn has_seen_axes(&self, memory: &GuestMemory) -> bool {
-        memory.block(CHAN.address()) == Some(&*self.chans)
+        memory.block(memory.locate(CHAN)) == Some(&*self.chans)
     }
 
     /// Those of the words of the outputs and the analog inputs.
     fn has_seen_outputs(&self, memory: &GuestMemory) -> bool {
-        memory.block(LAST_PWM.address()) == Some(&self.pwm)
-            && memory.block(DAC_BUFFER.address()) == Some(&self.dac)
-            && memory.block(ADC_BUFFER_IN.address()) == Some(&self.adc)
+        memory.block(memory.locate(LAST_PWM)) == Some(&self.pwm)
+            && memory.block(memory.locate(DAC_BUFFER)) == Some(&self.dac)
+            && memory.block(memory.locate(ADC_BUFFER_IN)) == Some(&self.adc)
     }
 }
 

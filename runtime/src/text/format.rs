@@ -6,8 +6,8 @@
 //! `printf-edge.jsonl`, which the tests below replay. One thing is ours: `%lld` takes a `long long`, which the board's
 //! compiler has not.
 
-use super::cost;
 use super::decimal::{Keep, digits};
+use super::{Dialect, cost};
 
 /// Where the values of the conversions come from.
 pub(crate) trait Arguments {
@@ -29,6 +29,7 @@ const MAX_FIELD: usize = 4096;
 /// One conversion between `%` and its letter.
 #[derive(Clone, Copy, Debug, Default)]
 struct Spec {
+    dialect: Dialect,
     left: bool,
     plus: bool,
     space: bool,
@@ -39,6 +40,13 @@ struct Spec {
     short: bool,
     long: bool,
     long_long: bool,
+}
+
+impl Spec {
+    /// True for the rules of firmware 5.
+    fn is_nearer_to_c(&self) -> bool {
+        self.dialect == Dialect::Firmware5
+    }
 }
 
 /// A formatted text, and what the board would have spent on it.
@@ -57,20 +65,24 @@ impl Formatted {
     }
 }
 
-/// Formats `arguments` under `format`.
+/// Formats `arguments` under `format` as firmware 4.34 does.
 pub(crate) fn format<A: Arguments>(format: &[u8], arguments: &mut A) -> Result<Vec<u8>, A::Error> {
-    format_counted(format, arguments).map(|formatted| formatted.text)
+    format_counted(Dialect::Firmware4, format, arguments).map(|formatted| formatted.text)
 }
 
 /// Formats `arguments` under `format`, and counts what that costs on the board.
-pub(crate) fn format_counted<A: Arguments>(format: &[u8], arguments: &mut A) -> Result<Formatted, A::Error> {
+pub(crate) fn format_counted<A: Arguments>(
+    dialect: Dialect,
+    format: &[u8],
+    arguments: &mut A,
+) -> Result<Formatted, A::Error> {
     let mut out = Formatted { text: Vec::with_capacity(format.len() + 16), cycles: 0 };
     let mut rest = format;
     let mut plain = 0_u32;
     while let Some((&byte, tail)) = rest.split_first() {
         rest = tail;
         if byte == b'%' {
-            let (spec, letter, tail) = parse(rest, arguments)?;
+            let (spec, letter, tail) = parse(dialect, rest, arguments)?;
             rest = tail;
             convert(&spec, letter, arguments, &mut out)?;
         } else {
@@ -88,8 +100,12 @@ pub(crate) fn format_counted<A: Arguments>(format: &[u8], arguments: &mut A) -> 
 type Parsed<'f> = (Spec, u8, &'f [u8]);
 
 /// Reads flags, width, precision and length up to the conversion letter.
-fn parse<'f, A: Arguments>(format: &'f [u8], arguments: &mut A) -> Result<Parsed<'f>, A::Error> {
-    let mut spec = Spec::default();
+fn parse<'f, A: Arguments>(
+    dialect: Dialect,
+    format: &'f [u8],
+    arguments: &mut A,
+) -> Result<Parsed<'f>, A::Error> {
+    let mut spec = Spec { dialect, ..Spec::default() };
     let mut rest = format;
     while let Some((&flag, tail)) = rest.split_first() {
         match flag {
@@ -142,6 +158,7 @@ fn number<'f, A: Arguments>(
 /// Reads one `h`, `l`, `ll` or `L`.
 fn length<'f>(format: &'f [u8], spec: &mut Spec) -> &'f [u8] {
     let (length, taken) = match format {
+        [b'h', b'h', ..] if spec.is_nearer_to_c() => return &format[2..],
         [b'h', ..] => (&mut spec.short, 1),
         [b'l', b'l', ..] => (&mut spec.long_long, 2),
         [b'l', ..] => (&mut spec.long, 1),
@@ -169,7 +186,10 @@ fn convert<A: Arguments>(
         }
         b'd' | b'i' => signed(spec, (arguments.word()? as i32).into(), out),
         b'u' | b'x' | b'X' | b'o' => unsigned(spec, arguments.word()?.into(), letter, out),
-        b'p' => pad(spec, b"", format!("{:x}", arguments.word()?).as_bytes(), out),
+        b'p' => {
+            let prefix = if spec.alternate && spec.is_nearer_to_c() { "0x" } else { "" };
+            pad(spec, b"", format!("{prefix}{:x}", arguments.word()?).as_bytes(), out);
+        }
         b'c' => {
             out.spend(cost::CHARACTER);
             pad(spec, blank(spec), &[arguments.word()? as u8], out);
@@ -181,6 +201,7 @@ fn convert<A: Arguments>(
             out.spend(cost::text(shown as u32));
             pad(&unzeroed(spec), b"", &text[..shown], out);
         }
+        b'F' if spec.is_nearer_to_c() => float(spec, arguments.double()?, b'f', out),
         b'f' | b'e' | b'E' | b'g' | b'G' => float(spec, arguments.double()?, letter, out),
         b'%' => {
             out.spend(cost::PERCENT);
@@ -242,7 +263,11 @@ fn unsigned(spec: &Spec, value: u64, letter: u8, out: &mut Formatted) {
     let count = digits.len() as u32;
     out.spend(if letter == b'u' { cost::decimal(count, false) } else { cost::hexadecimal(count) });
     let prefix = if spec.alternate && !digits.is_empty() { prefix } else { "" };
-    pad(&filled(spec), blank(spec), format!("{prefix}{digits}").as_bytes(), out);
+    if !spec.is_nearer_to_c() {
+        return pad(&filled(spec), blank(spec), format!("{prefix}{digits}").as_bytes(), out);
+    }
+    let is_needless = letter == b'o' && digits.starts_with('0');
+    pad(&filled(spec), if is_needless { b"" } else { prefix.as_bytes() }, digits.as_bytes(), out);
 }
 
 /// Digits of a signed integer after their sign.
@@ -255,7 +280,9 @@ fn integer(spec: &Spec, head: &[u8], text: &str, out: &mut Formatted) {
 /// Digits with the zeros that the precision asks for; 0 has none if it asks for none.
 fn precise(spec: &Spec, text: &str) -> String {
     let precision = spec.precision.unwrap_or(1);
-    if precision == 0 && text == "0" { String::new() } else { format!("{text:0>precision$}") }
+    // Odd and kept: in firmware 5 it has one with the flag `#`.
+    let is_shown = spec.is_nearer_to_c() && spec.alternate;
+    if precision == 0 && text == "0" && !is_shown { String::new() } else { format!("{text:0>precision$}") }
 }
 
 /// An integer with a precision is filled with blanks.
@@ -296,7 +323,8 @@ fn float_cycles(spec: &Spec, magnitude: f64, letter: u8) -> u32 {
 
 /// `%f`. Odd and kept: without decimals, values below 0.1 show their first decimal or nothing behind the point.
 fn fixed(spec: &Spec, magnitude: f64, precision: usize) -> Vec<u8> {
-    if precision > 0 || !(f64::MIN_POSITIVE..0.1).contains(&magnitude) {
+    let is_small = (f64::MIN_POSITIVE..0.1).contains(&magnitude);
+    if precision > 0 || !is_small || spec.is_nearer_to_c() {
         return digits(magnitude, Keep::Decimals(precision)).fixed(precision, spec.alternate);
     }
     let first = digits(magnitude, Keep::Decimals(1));
@@ -311,7 +339,7 @@ fn general(spec: &Spec, magnitude: f64, precision: usize, letter: u8) -> Vec<u8>
         let shown = if spec.alternate { precision } else { significant(&found.digits) };
         return found.scientific(shown - 1, spec.alternate, letter - (b'g' - b'e'));
     }
-    if exponent < -1 {
+    if exponent < -1 && !spec.is_nearer_to_c() {
         // Odd and kept: zeros at the end stay below 0.1, and as many zeros as digits are wanted end the text.
         let zeros = exponent.unsigned_abs() as usize - 1;
         let decimals = if zeros >= precision { precision } else { zeros + precision };
@@ -420,7 +448,8 @@ pub(super) mod tests {
 
     /// The text of a call and what it costs.
     pub(in crate::text) fn counted(pattern: &[u8], list: Vec<Argument>) -> Formatted {
-        let Ok(formatted) = format_counted(pattern, &mut List { list: list.into_iter(), taken: 0 });
+        let Ok(formatted) =
+            format_counted(Dialect::Firmware4, pattern, &mut List { list: list.into_iter(), taken: 0 });
         formatted
     }
 
@@ -435,6 +464,23 @@ pub(super) mod tests {
         let mut found = printf(&pattern, list);
         found.truncate(SEEN);
         assert_eq!(String::from_utf8_lossy(&found), expect, "{text}");
+    }
+
+    #[test]
+    fn printed_text_of_firmware_5_matches_the_recording() {
+        let (mut wrong, mut compared) = (Vec::new(), 0);
+        for row in rows("fw5-text.jsonl") {
+            let (Some(text), Some(expect)) = (row["printf"].as_str(), row["out"].as_str()) else { continue };
+            let (pattern, list) = call(text);
+            let mut list = List { list: list.into_iter(), taken: 0 };
+            let Ok(found) = format_counted(Dialect::Firmware5, &pattern, &mut list);
+            let seen = &found.text[..found.text.len().min(SEEN)];
+            if String::from_utf8_lossy(seen) != expect {
+                wrong.push(format!("{text}: {:?}, recorded {expect:?}", String::from_utf8_lossy(seen)));
+            }
+            compared += 1;
+        }
+        assert!(wrong.is_empty() && compared == 1534, "{compared}\n{}", wrong.join("\n"));
     }
 
     #[test]

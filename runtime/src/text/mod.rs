@@ -6,9 +6,20 @@ mod format;
 mod number;
 mod scan;
 mod scanned;
+mod strict;
 #[cfg(test)]
 pub(crate) mod vectors;
 
 pub(crate) use format::{Arguments, format, format_counted};
 pub(crate) use number::{float_prefix, integer_prefix};
 pub(crate) use scan::{Scanned, Sink, scan};
+
+/// The rules of `printf` and `sscanf` that a firmware follows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Dialect {
+    /// Those of firmware 4.34.
+    #[default]
+    Firmware4,
+    /// Those of firmware 5, which are nearer to C.
+    Firmware5,
+}

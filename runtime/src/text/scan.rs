@@ -5,12 +5,14 @@
 //! their width, `%ld` stores eight bytes (gather-persist-console.md section 4.2). Recorded in `scanf.jsonl` and
 //! `printf-scanf.jsonl`, which the tests below replay.
 
-use super::cost;
 use super::scanned::{Base, float_value, integer_value};
+use super::{Dialect, cost, strict};
 
 /// One converted value, as it is stored.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Scanned<'t> {
+    /// An 8-bit integer (`%hhd`).
+    Byte(i8),
     /// A 16-bit integer (`%hd`).
     Short(i16),
     /// A 32-bit integer.
@@ -37,10 +39,12 @@ pub(crate) trait Sink {
 
 /// The letter before the conversion's that says how large its variable is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Length {
+pub(super) enum Length {
     /// None, and for integers `L` and `ll`, which change nothing.
     #[default]
     Plain,
+    /// `hh`, in firmware 5.
+    Byte,
     /// `h`.
     Short,
     /// `l`; for floats `L` too.
@@ -51,9 +55,9 @@ enum Length {
 
 /// One conversion between `%` and its letter.
 #[derive(Clone, Copy, Debug, Default)]
-struct Spec {
-    discard: bool,
-    width: Option<usize>,
+pub(super) struct Spec {
+    pub(super) discard: bool,
+    pub(super) width: Option<usize>,
     length: Length,
 }
 
@@ -77,7 +81,15 @@ pub(crate) struct Conversions {
 }
 
 /// Converts `text` under `format`.
-pub(crate) fn scan<S: Sink>(text: &[u8], format: &[u8], sink: &mut S) -> Result<Conversions, S::Error> {
+pub(crate) fn scan<S: Sink>(
+    dialect: Dialect,
+    text: &[u8],
+    format: &[u8],
+    sink: &mut S,
+) -> Result<Conversions, S::Error> {
+    if dialect == Dialect::Firmware5 {
+        return strict::scan(text, format, sink);
+    }
     let mut scanner = Scanner { text, at: 0, stored: 0, cycles: 0, behind_character: false };
     let result = obey(&mut scanner, format, sink)?;
     Ok(Conversions { result, cycles: scanner.cycles })
@@ -86,14 +98,14 @@ pub(crate) fn scan<S: Sink>(text: &[u8], format: &[u8], sink: &mut S) -> Result<
 /// Obeys the directives of a format; the result of the call.
 fn obey<S: Sink>(scanner: &mut Scanner<'_>, format: &[u8], sink: &mut S) -> Result<i32, S::Error> {
     let mut rest = format;
-    if scanner.has_nothing_for(format) {
+    if has_nothing_for(scanner.text, format) {
         return Ok(-1);
     }
     while let Some((&byte, tail)) = rest.split_first() {
         rest = tail;
         let next = if byte == b'%' {
             scanner.behind_character = false;
-            let (spec, tail) = parse(rest);
+            let (spec, tail) = parse(rest, Dialect::Firmware4);
             let Some((&letter, tail)) = tail.split_first() else { break };
             let (set, tail) = if letter == b'[' { bracketed(tail) } else { (&[][..], tail) };
             rest = tail;
@@ -111,7 +123,7 @@ fn obey<S: Sink>(scanner: &mut Scanner<'_>, format: &[u8], sink: &mut S) -> Resu
 }
 
 /// Reads `*`, width and length.
-fn parse(format: &[u8]) -> (Spec, &[u8]) {
+pub(super) fn parse(format: &[u8], dialect: Dialect) -> (Spec, &[u8]) {
     let mut spec = Spec::default();
     let mut rest = format;
     if let Some(tail) = rest.strip_prefix(b"*") {
@@ -122,6 +134,7 @@ fn parse(format: &[u8]) -> (Spec, &[u8]) {
     let (digits, tail) = rest.split_at(count);
     spec.width = std::str::from_utf8(digits).ok().and_then(|text| text.parse().ok());
     let (length, taken) = match tail {
+        [b'h', b'h', ..] if dialect == Dialect::Firmware5 => (Length::Byte, 2),
         [b'h', ..] => (Length::Short, 1),
         [b'l', b'l', ..] => (Length::LongLong, 2),
         [b'L', ..] => (Length::LongLong, 1),
@@ -133,11 +146,18 @@ fn parse(format: &[u8]) -> (Spec, &[u8]) {
 }
 
 /// The characters up to `]`, a leading `]` or `^]` included, and what follows.
-fn bracketed(format: &[u8]) -> (&[u8], &[u8]) {
+pub(super) fn bracketed(format: &[u8]) -> (&[u8], &[u8]) {
     let first = usize::from(format.first() == Some(&b'^')) + 1;
     let end = format.iter().skip(first).position(|&byte| byte == b']').map(|index| index + first);
     let end = end.unwrap_or(format.len());
     (&format[..end], format.get(end + 1..).unwrap_or(&[]))
+}
+
+/// Reports whether the first directive is a conversion and the text is used up, by the white space before it at most.
+pub(super) fn has_nothing_for(text: &[u8], format: &[u8]) -> bool {
+    let directives = format.trim_ascii_start();
+    let text = if directives.len() < format.len() { text.trim_ascii_start() } else { text };
+    directives.first() == Some(&b'%') && text.is_empty()
 }
 
 struct Scanner<'t> {
@@ -156,13 +176,6 @@ impl<'t> Scanner<'t> {
 
     fn skip_space(&mut self) {
         self.at += self.rest().iter().take_while(|byte| byte.is_ascii_whitespace()).count();
-    }
-
-    /// Whether the first directive is a conversion and the text is used up, by the white space before it at most.
-    fn has_nothing_for(&self, format: &[u8]) -> bool {
-        let directives = format.trim_ascii_start();
-        let text = if directives.len() < format.len() { self.text.trim_ascii_start() } else { self.text };
-        directives.first() == Some(&b'%') && text.is_empty()
     }
 
     /// An ordinary character, or white space.
@@ -242,7 +255,7 @@ impl<'t> Scanner<'t> {
 }
 
 /// The bytes that belong to a string conversion.
-fn span(window: &[u8], belongs: impl Fn(u8) -> bool) -> (Scanned<'_>, usize) {
+pub(super) fn span(window: &[u8], belongs: impl Fn(u8) -> bool) -> (Scanned<'_>, usize) {
     let count = window.iter().take_while(|&&byte| belongs(byte)).count();
     (Scanned::Text(&window[..count]), count)
 }
@@ -256,15 +269,20 @@ fn integer<'t>(spec: &Spec, letter: u8, window: &'t [u8]) -> (Scanned<'t>, usize
         _ => Base::Hexadecimal,
     };
     let (value, used) = integer_value(window, base);
-    let value = match spec.length {
+    (converted(spec, value), used)
+}
+
+/// An integer as a conversion stores it.
+pub(super) fn converted(spec: &Spec, value: u64) -> Scanned<'static> {
+    match spec.length {
+        Length::Byte => Scanned::Byte(value as i8),
         Length::Short => Scanned::Short(value as i16),
         Length::Long => Scanned::Long(value),
         Length::Plain | Length::LongLong => Scanned::Int(value as i32),
-    };
-    (value, used)
+    }
 }
 
-fn float<'t>(spec: &Spec, text: &'t [u8]) -> (Scanned<'t>, usize) {
+pub(super) fn float<'t>(spec: &Spec, text: &'t [u8]) -> (Scanned<'t>, usize) {
     let (value, used) = float_value(text);
     let is_double = matches!(spec.length, Length::Long | Length::LongLong);
     (if is_double { Scanned::Double(value) } else { Scanned::Float(single(value)) }, used)
@@ -336,6 +354,7 @@ mod tests {
 
         fn store(&mut self, value: Scanned<'_>) -> Result<(), Infallible> {
             let bytes = match value {
+                Scanned::Byte(value) => value.to_le_bytes().to_vec(),
                 Scanned::Short(value) => value.to_le_bytes().to_vec(),
                 Scanned::Int(value) => value.to_le_bytes().to_vec(),
                 Scanned::Long(value) => value.to_le_bytes().to_vec(),
@@ -353,13 +372,13 @@ mod tests {
     }
 
     /// Makes the call of a row.
-    fn call(row: &Json) -> (i32, Variables) {
+    fn call(row: &Json, dialect: Dialect) -> (i32, Variables) {
         let field = |name: &str| row[name].as_str().unwrap_or_default();
         let mut parts = split(field("sscanf")).into_iter();
         let pattern = parts.next().unwrap_or_default();
         let mut variables =
             Variables::new(parts.map(|part| part.trim_start_matches('&').to_owned()).collect());
-        let Ok(found) = scan(&unquote(field("text")), &unquote(&pattern), &mut variables);
+        let Ok(found) = scan(dialect, &unquote(field("text")), &unquote(&pattern), &mut variables);
         (found.result, variables)
     }
 
@@ -370,7 +389,7 @@ mod tests {
     }
 
     fn check(row: &Json) {
-        let (result, variables) = call(row);
+        let (result, variables) = call(row, Dialect::Firmware4);
         assert_eq!(Some(i64::from(result)), row["result"].as_i64(), "{row}");
         for (key, expect) in row.as_object().expect("an object") {
             match (key.split_once('_'), expect) {
@@ -401,7 +420,7 @@ mod tests {
 
     /// A row of the older vectors: all variables, as text; the ints lie one after another.
     fn check_text(row: &Json) {
-        let (result, variables) = call(row);
+        let (result, variables) = call(row, Dialect::Firmware4);
         let expect = |name: &str| row[name].as_str().unwrap_or_default();
         assert_eq!(result.to_string(), expect("result"), "{row}");
         assert_eq!(variables.value("i0").to_string(), expect("i0"), "{row}");
@@ -409,6 +428,19 @@ mod tests {
             assert_eq!(format!("{:.6}", variables.value(name)), expect(name), "{row}");
         }
         assert_eq!(variables.text("s0"), expect("s0"), "{row}");
+    }
+
+    #[test]
+    fn conversions_of_firmware_5_match_the_recording() {
+        let rows = rows("fw5-text.jsonl");
+        let rows: Vec<&Json> = rows.iter().filter(|row| row["sscanf"].is_string()).collect();
+        assert_eq!(rows.len(), 331);
+        for row in rows {
+            let (result, variables) = call(row, Dialect::Firmware5);
+            let found = [f64::from(result), variables.value("i0"), variables.value("i1")];
+            let expect = ["result", "i0", "i1"].map(|name| row[name].as_f64().expect("a number"));
+            assert_eq!(found, expect, "{row}");
+        }
     }
 
     #[test]

@@ -48,7 +48,7 @@ pub(super) fn integer_value(text: &[u8], base: Base) -> (u64, usize) {
 }
 
 /// The value of the digits up to the first that is none in this base.
-fn magnitude(digits: &[u8], radix: u32) -> u64 {
+pub(super) fn magnitude(digits: &[u8], radix: u32) -> u64 {
     digits
         .iter()
         .map_while(|&byte| char::from(byte).to_digit(radix))
@@ -56,7 +56,7 @@ fn magnitude(digits: &[u8], radix: u32) -> u64 {
 }
 
 /// The 40 bits of a value that stops at the limits of its type.
-fn limited(magnitude: u64, negative: bool, is_signed: bool) -> u64 {
+pub(super) fn limited(magnitude: u64, negative: bool, is_signed: bool) -> u64 {
     let limit = 1_u64 << if is_signed { LONG_BITS - 1 } else { LONG_BITS };
     let magnitude = if is_signed && negative { magnitude.min(limit) } else { magnitude.min(limit - 1) };
     let value = if negative { magnitude.wrapping_neg() } else { magnitude };

@@ -50,6 +50,15 @@ impl Places {
             Some(objects) => place_in(objects, address),
         }
     }
+
+    /// The address of the tables for a place; one that belongs to no object stays.
+    #[must_use]
+    pub fn table_of(&self, place: GuestAddr) -> GuestAddr {
+        let objects = self.0.iter().flat_map(|objects| objects.iter());
+        let holds = |object: &&Object| place.get().wrapping_sub(object.place) < object.size;
+        let object = objects.into_iter().find(holds);
+        object.map_or(place, |object| GuestAddr::new(object.table + (place.get() - object.place)))
+    }
 }
 
 #[inline(never)]
@@ -72,6 +81,9 @@ mod tests {
             [(0xFF, 0xFF), (0x100, 0x900), (0x10F, 0x90F), (0x110, 0x110), (0x204, 0x204)]
         {
             assert_eq!(places.of(at(address)), at(expect), "{address:#x}");
+        }
+        for (place, expect) in [(0x900, 0x100), (0x90F, 0x10F), (0x910, 0x910), (0x204, 0x204)] {
+            assert_eq!(places.table_of(at(place)), at(expect), "{place:#x}");
         }
         assert_eq!(Places::new([(at(0x200), 8, at(0x200))]), Places::default());
     }

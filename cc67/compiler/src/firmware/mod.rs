@@ -57,11 +57,10 @@ impl Firmware {
     }
 }
 
-/// The firmware of the simulated board is not that of the file.
+/// The firmware of a file is none that is known.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{what} `{file}`, the simulated board runs `{board}`")]
+#[error("`--firmware`: the firmware file is of `{file}`, the simulated board runs `{board}`")]
 pub struct VersionMismatch {
-    what: &'static str,
     file: String,
     board: &'static str,
 }
@@ -76,21 +75,21 @@ impl Firmware {
         }
     }
 
-    /// Compares the version with that of the simulated board, byte for byte as the vendor's host
+    /// Compares the version with that of the [board](Self::board), byte for byte as the vendor's host
     /// library does: a program that is linked for another firmware calls wrong addresses.
     ///
     /// # Errors
     /// If they differ, or the file does not state its version.
     pub fn check_version(&self) -> Result<(), VersionMismatch> {
-        let board = TargetBoard::default_board().version;
-        let (what, version) = match self {
-            Self::Board(own) => ("`--board`: the program is for", Some(own.version)),
-            Self::File(file) => ("`--firmware`: the firmware file is of", file.version()),
+        let board = self.board().version;
+        let version = match self {
+            Self::Board(own) => Some(own.version),
+            Self::File(file) => file.version(),
         };
         if version == Some(board) {
             return Ok(());
         }
-        Err(VersionMismatch { what, file: version.unwrap_or("unknown version").to_owned(), board })
+        Err(VersionMismatch { file: version.unwrap_or("unknown version").to_owned(), board })
     }
 }
 

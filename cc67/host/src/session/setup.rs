@@ -49,7 +49,8 @@ impl Setup {
         let offered = offered.into_iter().map(|program| offer(&mut board, program));
         let offered = offered.collect::<Result<_, _>>()?;
         for (address, bytes) in &values {
-            let stored = board.memory_mut().poke_bytes(*address, bytes);
+            let place = board.memory().place_of(*address);
+            let stored = board.memory_mut().poke_bytes(place, bytes);
             stored.map_err(|_| HostError::Unmapped(*address))?;
         }
         if !stimulus.is_empty() {

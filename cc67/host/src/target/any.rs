@@ -96,6 +96,7 @@ impl Target for AnyTarget {
         fn threads_that_ran(&self) -> Vec<ThreadId>;
         fn contended_cell(&self) -> Option<(ThreadId, ThreadId, String)>;
         fn moving(&self) -> Vec<AxisId>;
+        fn place_of(&self, address: GuestAddr) -> GuestAddr;
         fn read(&self, address: GuestAddr, bytes: &mut [u8]) -> Result<(), HostError>;
         fn knows(&self, item: Item) -> bool;
         fn value(&self, item: Item) -> f64;

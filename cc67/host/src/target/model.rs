@@ -58,6 +58,10 @@ impl<E: Engine> Target for Board<E> {
         }
     }
 
+    fn place_of(&self, address: GuestAddr) -> GuestAddr {
+        self.memory().place_of(address)
+    }
+
     fn tick(&self) -> Ticks {
         self.tick()
     }

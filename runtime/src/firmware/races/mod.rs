@@ -197,20 +197,22 @@ impl Races {
         self.tracks[own].clock[own] += 1;
     }
 
-    /// A program has made an access.
+    /// A program has made an access; rules and names are about addresses of the tables.
     pub(crate) fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory, out: &mut Out) {
         let actor = Actor { thread: access.thread, at: access.at, now: access.now };
         let is_block = access.size > 8;
         let (size, count) = if !is_block { (access.size, 1) } else { (4, access.size / 4) };
-        let address = access.address.get();
+        let address = memory.table_of(access.address).get();
         if access.is_store {
             self.settle(index(actor.thread), out);
         } else if is_block {
             self.copies(actor, (address, count), out);
         }
         for address in (0..count).map(|number| address + 4 * number) {
-            let value =
-                if is_block { memory.peek::<u32>(GuestAddr::new(address)).into() } else { access.value };
+            let value = match is_block {
+                true => memory.peek::<u32>(memory.place_of(GuestAddr::new(address))).into(),
+                false => access.value,
+            };
             if access.is_store {
                 self.stored(actor, (address, size), value, access.made_of, out);
                 self.sets_call_back(actor, address, value);

@@ -86,17 +86,18 @@ impl Outcome {
         let session = &rig.session;
         self.ticks = session.tick();
         let data = PERSIST.field(Persist::USER_DATA).address();
-        self.user_data = (0..200).map(|index| session.peek(data.offset(4 * index))).collect();
+        self.user_data = (0..200).map(|index| session.peek_object(data.offset(4 * index))).collect();
         self.axes = AxisId::all()
             .map(|axis| {
                 let base = CHAN.address().offset(Chan::STRUCTURE.size * axis.index() as u32);
                 (
-                    session.peek(base.offset(Chan::DEST.offset())),
-                    session.peek(base.offset(Chan::POSITION.offset())),
+                    session.peek_object(base.offset(Chan::DEST.offset())),
+                    session.peek_object(base.offset(Chan::POSITION.offset())),
                 )
             })
             .collect();
-        let directions = [0, 1].map(|word| session.peek::<u32>(BIT_DIR_SHADOW.element(word).address()));
+        let directions =
+            [0, 1].map(|word| session.peek_object::<u32>(BIT_DIR_SHADOW.element(word).address()));
         let pins = (0..PINS).map(|pin| Pin {
             is_output: directions[usize::from(pin >= 32)] >> (pin % 32) & 1 != 0,
             is_high: Bit::new(pin).is_some_and(|bit| session.bit(bit)),
