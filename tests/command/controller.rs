@@ -177,8 +177,10 @@ fn options_of_a_simulated_board_and_missing_consent_are_refused_by_name() {
     assert!(output.code == 2 && output.stderr.contains("Switch the drives off"), "{output:?}");
     let output = cc67(&scratch, ["run", "--on", "lpt1", "a.c"]);
     assert!(output.code == 2 && output.stderr.contains("serial:PATH"), "{output:?}");
-    let output = on(&scratch, &["debug"], "tcp:localhost:1", &["a.c"]);
-    assert!(output.code == 2, "{output:?}");
+    for command in [&["debug"][..], &["live"], &["serve"], &["console", "--serve=tcp:0"]] {
+        let output = on(&scratch, command, "tcp:localhost:1", &["a.c"]);
+        assert!(output.code == 2 && output.stderr.contains("does not work with `--on` yet"), "{output:?}");
+    }
 }
 
 #[test]

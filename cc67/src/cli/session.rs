@@ -220,7 +220,7 @@ impl Setup {
     pub(crate) fn rig_of_any(self) -> Result<Rig<AnyTarget>> {
         ensure!(
             self.controller.is_none(),
-            "this does not work with `--on` yet: `cc67 run`, `cc67 console` and `cc67 live` do"
+            "this does not work with `--on` yet: `cc67 run` and `cc67 console` do"
         );
         self.rig_with(|session, code| match code {
             CodeFor::Engine(_) | CodeFor::Controller(_) => session.session_on_any(None),

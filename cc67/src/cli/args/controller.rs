@@ -1,5 +1,6 @@
 //! The options of a connected controller.
 
+use anyhow::{Result, ensure};
 use cc67_controller::Address;
 use clap::Args;
 
@@ -9,7 +10,7 @@ use super::heading;
 #[derive(Debug, Args)]
 #[command(next_help_heading = heading::CONTROLLER)]
 pub(crate) struct ControllerArguments {
-    /// Use a connected controller in place of a simulated board: usb[:LOCATION], serial:PATH, server[:PATH|:HOST:PORT],
+    /// Use a connected controller in place of a simulated board (run, console): usb[:LOCATION], serial:PATH, server[:PATH|:HOST:PORT],
     /// tcp:HOST:PORT; `cc67 boards` lists what is connected
     #[arg(long, value_name = "BOARD")]
     pub(crate) on: Option<Address>,
@@ -20,4 +21,15 @@ pub(crate) struct ControllerArguments {
     /// With --on, connect without the question of the first time; for scripts
     #[arg(long, requires = "on")]
     pub(crate) yes: bool,
+}
+
+impl ControllerArguments {
+    /// Refuses a controller in a command that has only simulated boards.
+    pub(crate) fn refuse_in(&self, command: &str) -> Result<()> {
+        ensure!(
+            self.on.is_none(),
+            "`cc67 {command}` does not work with `--on` yet: `cc67 run` and `cc67 console` do"
+        );
+        Ok(())
+    }
 }

@@ -78,6 +78,9 @@ pub(super) struct ConsoleArguments {
 
 /// Talks to a board until the input ends.
 pub(super) fn console(arguments: &ConsoleArguments) -> Result<Exit> {
+    if arguments.serve.is_some() {
+        arguments.board.controller.refuse_in("console --serve")?;
+    }
     let setup = Setup::new(&arguments.programs, &arguments.board, &arguments.compiler)?;
     let Some(setup) = setup else { return Ok(Exit::Failure) };
     match &arguments.serve {

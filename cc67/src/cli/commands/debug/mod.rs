@@ -88,6 +88,7 @@ impl LaunchArguments {
 
 /// Debugs programs.
 pub(super) fn debug(arguments: &DebugArguments) -> Result<Exit> {
+    arguments.board.controller.refuse_in("debug")?;
     anyhow::ensure!(
         arguments.programs.is_empty() || arguments.dap.is_none() && arguments.listen.is_none(),
         "with `--dap` and `--listen` the editor names the programs: leave them out"

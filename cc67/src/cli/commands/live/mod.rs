@@ -91,6 +91,7 @@ fn speed(text: &str) -> Result<f64, String> {
 
 /// Shows a board until it is interrupted.
 pub(super) fn live(arguments: &LiveArguments) -> Result<Exit> {
+    arguments.board.controller.refuse_in("live")?;
     let UartArguments { uart_input, uart_output, uart } = &arguments.board.uart;
     if uart_input.is_some() || uart_output.is_some() || uart.is_some() {
         bail!("`cc67 live`: the serial port cannot be connected yet");

@@ -149,6 +149,7 @@ pub(super) struct Terms<'a> {
 
 /// Serves clients until it is ended.
 pub(super) fn serve(arguments: &ServeArguments) -> Result<Exit> {
+    arguments.board.controller.refuse_in("serve")?;
     let given = arguments.listen.clone();
     let pace = match arguments.pace {
         PaceName::Clock(speed) => Some(speed),
