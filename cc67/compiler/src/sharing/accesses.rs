@@ -21,6 +21,9 @@ use crate::typed::{SymbolId, Unit};
 /// The most accesses of a program that are looked at.
 const MAX_ACCESSES: usize = 4000;
 
+/// The most blocks of a function that is looked at: the conditions of each are found from those of all others.
+const MAX_BLOCKS: usize = 500;
+
 /// The deepest chain of calls that is followed.
 const MAX_DEPTH: usize = 12;
 
@@ -84,6 +87,10 @@ impl<'a> ThreadProgram<'a> {
         let lower = |function| lower::lower(unit, function, &definitions, Timing::default(), &mut signatures);
         let functions: BTreeMap<_, _> =
             unit.functions.iter().map(lower).map(|function| (function.symbol, function)).collect();
+        if functions.values().any(|function| function.layout.len() > MAX_BLOCKS) {
+            let (main, call_back, waits) = (Vec::new(), Vec::new(), Vec::new());
+            return Self { thread, unit, sources, main, call_back, waits };
+        }
         let pointers = Pointers::new(unit, functions.values());
         let mut walk = AccessWalk {
             unit,
