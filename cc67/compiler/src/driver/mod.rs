@@ -229,7 +229,10 @@ const USER_CALL_BACK: &str = "UserCallBack";
 
 /// Adds advice about what a program shares with its call-back, if it has one.
 fn advise_alone(unit: &Unit, sources: &SourceMap, sink: &mut Sink) {
-    let has_call_back = unit.symbols.values().any(|symbol| symbol.name == USER_CALL_BACK);
+    // The header of the board declares it, too.
+    let names_it =
+        |text: &[u8]| text.windows(USER_CALL_BACK.len()).any(|word| word == USER_CALL_BACK.as_bytes());
+    let has_call_back = sources.files().any(|(_, file)| file.path.is_some() && names_it(&file.text));
     // The thread makes no difference to what the program shares with its call-back.
     let thread = ThreadId::all().next().filter(|_| has_call_back);
     let program = thread.map(|thread| sharing::ThreadProgram::new(thread, unit, sources));
