@@ -49,7 +49,7 @@ fn scratch(name: &str) -> Scratch {
     scratch
 }
 
-/// What a view prints on each board; board times are left out by `without_times`.
+/// Checks the output of a view on each board; board times are left out by `without_times`.
 fn each(view: impl Fn(&str, &[String]) -> Output, expect: &str) {
     for (name, options) in boards() {
         let output = view(&name, &options);

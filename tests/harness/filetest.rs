@@ -294,7 +294,7 @@ fn annotations(file: &str, text: &str) -> Vec<Remark> {
     remarks
 }
 
-/// Whether names of files are told apart by upper and lower case here.
+/// Returns whether names of files are told apart by upper and lower case here.
 fn does_case_matter() -> bool {
     !crate::root().join("CARGO.TOML").exists()
 }

@@ -27,14 +27,14 @@ pub(crate) const fn is_shared(address: u32) -> bool {
     (in_sdram && !is_stack && !is_program) || in_iram
 }
 
-/// Whether an address is in the space of programs, where a call-back meets the thread that it interrupts.
+/// Returns whether an address is in the space of programs, where a call-back meets the thread that it interrupts.
 #[inline(always)]
 pub(crate) const fn is_of_program(address: u32) -> bool {
     address >= PROGRAM_BASE && address < PROGRAM_LIMIT
 }
 
 impl Program {
-    /// Whether the program sets the call-back.
+    /// Returns whether the program sets the call-back.
     pub(crate) fn has_call_back(&self) -> bool {
         let cell = USER_CALL_BACK.address().get();
         self.ops().iter().any(|op| op.operand::<Addr>(Name::Addr).is_some_and(|Addr(at)| at == cell))
@@ -102,7 +102,7 @@ pub(crate) fn loads_of(program: &Program, word: usize) -> Vec<CodeAddr> {
     registers(op).sources.first().map_or(Vec::new(), |value| origin(program, function, word, *value).loads)
 }
 
-/// Where the value of a register comes from.
+/// The origin of the value of a register.
 #[derive(Debug, Default)]
 struct Origin {
     /// The loads that it is made of.
@@ -111,7 +111,7 @@ struct Origin {
     registers: BTreeSet<u16>,
 }
 
-/// Where the value of `register` at `word` comes from, as the instructions before it are written.
+/// Returns the origin of the value of `register` at `word`, as the instructions before it are written.
 fn origin(program: &Program, function: &Function, word: usize, register: u16) -> Origin {
     let mut wanted = BTreeSet::from([register]);
     let mut found = Origin { loads: Vec::new(), registers: wanted.clone() };
@@ -179,7 +179,7 @@ pub(crate) fn loads_together(
     together
 }
 
-/// Whether a branch soon after `word` depends on `result`.
+/// Returns whether a branch soon after `word` depends on `result`.
 fn is_tested(program: &Program, word: usize, result: u16) -> bool {
     let next = program.ops().iter().skip(word + 1).take(4);
     let mut branches = next.filter(|op| op.kind() == OpKind::Branch);

@@ -91,10 +91,10 @@ impl ControllerLink {
     }
 }
 
-/// What is told about each piece of a download.
+/// A receiver of the progress after each piece of a download.
 type ProgressSink = Box<dyn FnMut(ThreadId, Progress) + Send>;
 
-/// How programs are loaded.
+/// The terms of a load.
 struct Loading {
     /// The version of the firmware that sources are linked for.
     linked_for: String,

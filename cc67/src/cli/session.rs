@@ -60,7 +60,7 @@ struct Connected {
     is_forced: bool,
 }
 
-/// What programs are compiled for: an engine of the modelled board, a firmware file, or a connected controller.
+/// The target that programs are compiled for: an engine of the modelled board, a firmware file, or a connected controller.
 #[derive(Clone, Debug)]
 enum CodeFor {
     Engine(EngineName),

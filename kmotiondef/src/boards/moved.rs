@@ -1,4 +1,4 @@
-//! Where a firmware keeps the variables of the tables.
+//! The places of a firmware for the variables of the tables.
 
 use super::StructureLayout;
 use crate::ctype::CType;

@@ -66,7 +66,7 @@ pub struct BootedBoard<A = ()> {
     file: Arc<FirmwareFile>,
     core: Core,
     hardware: Hardware<A>,
-    /// What it has sent.
+    /// The lines that it has sent.
     sent: SentLines,
     /// The cycle in which the timer's interrupt began to wait.
     waits_since: u64,

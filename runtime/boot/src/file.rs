@@ -208,7 +208,7 @@ fn version_text(symbols: &BTreeMap<String, u32>, sections: &[Loaded]) -> String 
     text.map(|byte| char::from(*byte)).collect()
 }
 
-/// Where the firmware keeps the variables of the tables; an unknown version has the structures of the default board.
+/// Returns the places of the firmware for the variables of the tables; an unknown version has the structures of the default board.
 fn places(symbols: &BTreeMap<String, u32>, version: &str) -> Places {
     let board = TargetBoard::of_version(version.trim_ascii_end());
     let layouts = board.map_or(&[][..], TargetBoard::own_structures);

@@ -6,7 +6,7 @@ const ESCAPE: u8 = 0x1B;
 /// console line with the text `C`.
 const ABORTED: &[u8] = b"\x1bC\r";
 
-/// What kind of line the firmware sent.
+/// The kind of a line that the firmware sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sent {
     /// Console text.
@@ -24,7 +24,7 @@ pub enum Sent {
 pub struct SentLine {
     /// The cycle of its first byte, since power-up.
     pub cycle: u64,
-    /// What it is.
+    /// The kind.
     pub kind: Sent,
     /// Its text.
     pub text: Vec<u8>,

@@ -106,7 +106,7 @@ impl ModelledBoard {
         self.board.own_structures().iter().find(|layout| layout.name == MainStatus::STRUCTURE.name)
     }
 
-    /// Where its firmware keeps the variables of the tables.
+    /// Returns the places of its firmware for the variables of the tables.
     pub(crate) fn places(&self) -> Places {
         if self.board.is_default() {
             return Places::default();

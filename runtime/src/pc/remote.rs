@@ -1,6 +1,6 @@
 //! The PC's answers to a board that is not simulated: the same requests and answers, through commands.
 //!
-//! What a request reads is fetched into a copy of the board's memory, the answer is computed there, and what has changed
+//! The data that a request reads are fetched into a copy of the board's memory, the answer is computed there, and what has changed
 //! is stored on the board; the element that the program waits for comes last.
 
 use std::ops::Range;

@@ -9,7 +9,7 @@ use super::scan::{
 use super::scanned::{Base, limited, magnitude};
 use super::{Dialect, cost};
 
-/// Why a call ends before its format does.
+/// The reason why a call ends before its format does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Refusal {
     /// The text does not match, or the format ends.

@@ -22,7 +22,7 @@ pub(super) const SET_CONSOLE: i32 = 14;
 
 /// A stream of bytes, or a pipe of Windows, that connects a client.
 pub(super) trait Link: Read + Write + Send {
-    /// Whether each write is a message; else the length of each comes before it.
+    /// Returns whether each write is a message; else the length of each comes before it.
     fn is_pipe(&self) -> bool {
         false
     }
@@ -51,7 +51,7 @@ impl Usual {
         Self::Port(TcpStream::connect(("127.0.0.1", port)).expect("it listens"))
     }
 
-    /// Whether most tests go over a pipe.
+    /// Returns whether most tests go over a pipe.
     pub(super) fn is_over_pipe() -> bool {
         cfg!(windows) && std::env::var_os("CC67_TEST_PIPE").is_some()
     }

@@ -58,7 +58,7 @@ impl<S: Read + Write> Wire<S> {
         assert_eq!(self.until(answer.as_bytes()), "", "{line}");
     }
 
-    /// What each client may see: an abort, a reply, an echo, an error, a console line, a file request.
+    /// Checks all that a client may see: an abort, a reply, an echo, an error, a console line, a file request.
     fn sees_the_board(&mut self) {
         self.send(b"half a command\x03");
         assert_eq!(self.until(b"\x1bC\r"), "half a command", "echoed, and then dropped");

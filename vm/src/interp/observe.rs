@@ -63,7 +63,7 @@ pub(super) struct Observer {
     loads: BTreeMap<CodeAddr, Arc<[CodeAddr]>>,
     /// The functions whose loads are known.
     functions: BTreeSet<CodeAddr>,
-    /// Whether programs share their own data with a call-back, by where they begin.
+    /// The programs, by their start, and whether each shares its own data with a call-back.
     has_call_back: BTreeMap<GuestAddr, bool>,
 }
 
@@ -85,7 +85,7 @@ impl Observer {
         *self = Self::default();
     }
 
-    /// What the access of the word `pc` is made of, or used with if it is a load.
+    /// Returns the loads that the access of the word `pc` is made of, or used with if it is a load.
     fn loads_at(&mut self, program: &Program, pc: usize, is_store: bool) -> Arc<[CodeAddr]> {
         let at = program.address_of(pc);
         if is_store {

@@ -113,7 +113,7 @@ impl Context {
         Ok(NextStep::Execute)
     }
 
-    /// Whether the high word of the present instruction is still to be stored.
+    /// Returns whether the high word of the present instruction is still to be stored.
     pub(super) fn has_high_word(&self) -> bool {
         self.split.as_ref().is_some_and(|split| split.high_word.is_some())
     }

@@ -39,7 +39,7 @@ pub(crate) struct ThreadProgram<'a> {
     pub(super) waits: Vec<Wait>,
 }
 
-/// What is done to a cell.
+/// An action on a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Action {
     /// It is loaded.
@@ -58,7 +58,7 @@ pub(super) enum Action {
     Start(ThreadId),
 }
 
-/// How a cell is made of its old value.
+/// The operation that makes a cell of its old value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum UpdateKind {
     /// By arithmetic.
@@ -116,14 +116,14 @@ impl<'a> ThreadProgram<'a> {
     }
 }
 
-/// What a walk has found.
+/// The findings of a walk.
 #[derive(Debug, Default)]
 struct Listed {
     accesses: Vec<CellAccess>,
     waits: Vec<Wait>,
 }
 
-/// What holds where a function is called.
+/// The state at a call.
 #[derive(Clone, Debug, Default)]
 struct Caller {
     guards: BTreeSet<Guard>,
@@ -140,7 +140,7 @@ struct AccessWalk<'a> {
     call_backs: BTreeSet<SymbolId>,
     found: Listed,
     locks: BTreeSet<Cell>,
-    /// What functions that have returned have waited for.
+    /// The guards that functions which have returned have waited for.
     waited: BTreeSet<Guard>,
 }
 

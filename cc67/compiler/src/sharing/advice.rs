@@ -14,7 +14,7 @@ use crate::typed::SymbolId;
 /// The way to more.
 const MORE: &str = "`cc67 explain races` has the ways that are right on the board";
 
-/// What executes accesses.
+/// The context that executes accesses.
 #[derive(Clone, Copy, Debug)]
 struct SharingContext<'a> {
     program: &'a ThreadProgram<'a>,
@@ -152,7 +152,7 @@ fn not_volatile<'a>(
     })
 }
 
-/// Whether the declaration of a variable says `volatile`.
+/// Returns whether the declaration of a variable says `volatile`.
 fn is_declared_volatile(program: &ThreadProgram<'_>, symbol: SymbolId) -> bool {
     let span = program.unit.symbols[symbol].span;
     let Some(file) = program.sources.file_at(span.lo) else { return true };
@@ -162,7 +162,7 @@ fn is_declared_volatile(program: &ThreadProgram<'_>, symbol: SymbolId) -> bool {
     memchr::memmem::find(&before[start..], b"volatile").is_some()
 }
 
-/// Whether two accesses are of the same cell, which both contexts can reach.
+/// Returns whether two accesses are of the same cell, which both contexts can reach.
 fn is_same(
     ours: SharingContext<'_>,
     access: &CellAccess,
@@ -173,7 +173,7 @@ fn is_same(
     access.cell == other.cell && (is_own || matches!(access.cell, Cell::Board(_)))
 }
 
-/// Whether nothing orders two accesses.
+/// Returns whether nothing orders two accesses.
 fn is_conflict(ours: SharingContext<'_>, number: usize, theirs: SharingContext<'_>, place: usize) -> bool {
     let (access, other) = (&ours.accesses[number], &theirs.accesses[place]);
     if access.locks.intersection(&other.locks).next().is_some() {
@@ -196,7 +196,7 @@ fn is_conflict(ours: SharingContext<'_>, number: usize, theirs: SharingContext<'
     !is_ordered
 }
 
-/// Whether what `one` does at `number` is done when `other` comes to `place`: because it then stores a flag that the
+/// Returns whether what `one` does at `number` is done when `other` comes to `place`: because it then stores a flag that the
 /// other has tested, or starts the other.
 fn comes_before(one: SharingContext<'_>, number: usize, other: SharingContext<'_>, place: usize) -> bool {
     let cell = one.accesses[number].cell;
@@ -211,7 +211,7 @@ fn comes_before(one: SharingContext<'_>, number: usize, other: SharingContext<'_
     })
 }
 
-/// Whether the call-back is set where a program makes an access.
+/// Returns whether the call-back is set where a program makes an access.
 fn is_called_back(main: SharingContext<'_>, number: usize) -> bool {
     let cell = Cell::Board(USER_CALL_BACK.address().get());
     let sets: Vec<_> = main
@@ -231,13 +231,13 @@ fn is_called_back(main: SharingContext<'_>, number: usize) -> bool {
     }
 }
 
-/// Whether a cell is of an axis, of which readers take the newest value.
+/// Returns whether a cell is of an axis, of which readers take the newest value.
 fn is_of_axis(cell: Cell) -> bool {
     let Cell::Board(address) = cell else { return false };
     variable_around(GuestAddr::new(address)).is_some_and(|variable| variable.address == CHAN.address())
 }
 
-/// What the source calls a cell.
+/// Returns the name of a cell in the source.
 fn name(program: &ThreadProgram<'_>, access: &CellAccess) -> String {
     match access.cell {
         Cell::Board(address) => cell_name(GuestAddr::new(address), access.size),
@@ -246,7 +246,7 @@ fn name(program: &ThreadProgram<'_>, access: &CellAccess) -> String {
     }
 }
 
-/// Who makes an access, and where.
+/// Returns the context of an access, and its place.
 fn who(context: SharingContext<'_>, access: &CellAccess) -> String {
     let ThreadProgram { thread, sources, .. } = context.program;
     let place = sources.place(access.span).map_or_else(String::new, |place| {

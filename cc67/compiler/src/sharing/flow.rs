@@ -22,14 +22,14 @@ pub(super) struct Guard {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Test {
     op: CompareOp,
-    /// Whether the constant is on the left.
+    /// True if the constant is on the left.
     is_swapped: bool,
     constant: i32,
     outcome: bool,
 }
 
 impl Guard {
-    /// Whether no value of the cell lets both conditions hold.
+    /// Returns whether no value of the cell lets both conditions hold.
     pub(super) fn excludes(&self, other: &Self) -> bool {
         let constants = [self.test, other.test].map(|test| test.map(|test| test.constant));
         let [Some(one), Some(two)] = constants else { return false };
@@ -38,7 +38,7 @@ impl Guard {
         self.cell == other.cell && !values.any(|value| self.admits(Some(value)) && other.admits(Some(value)))
     }
 
-    /// Whether the stored value can be the one that was waited for; an unknown value can.
+    /// Returns whether the stored value can be the one that was waited for; an unknown value can.
     pub(super) fn admits(&self, stored: Option<i32>) -> bool {
         let (Some(Test { op, is_swapped, constant, outcome }), Some(stored)) = (self.test, stored) else {
             return true;
@@ -118,13 +118,13 @@ impl Conditions {
         waits.collect()
     }
 
-    /// Whether a block is in a loop of its function.
+    /// Returns whether a block is in a loop of its function.
     pub(super) fn is_repeated(&self, block: BlockId) -> bool {
         self.repeated.contains(&block)
     }
 }
 
-/// Whether an instruction changes no memory and calls nothing.
+/// Returns whether an instruction changes no memory and calls nothing.
 const fn is_idle(inst: &Inst) -> bool {
     !matches!(
         inst.kind,

@@ -73,7 +73,7 @@ impl<'a> Values<'a> {
         Some(*kind)
     }
 
-    /// Whether an instruction ends the thread.
+    /// Returns whether an instruction ends the thread.
     pub(super) fn ends_thread(&self, inst: &Inst) -> bool {
         let InstKind::Call { callee: Callee::Symbol(callee), .. } = inst.kind else { return false };
         self.unit.symbols[callee].name == FirmwareCall::ThreadDone.name()

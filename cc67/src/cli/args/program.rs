@@ -50,7 +50,7 @@ pub(crate) fn assign(arguments: &[impl AsRef<OsStr>]) -> Result<Vec<ProgramFile>
         .collect()
 }
 
-/// Whether an argument names a thread.
+/// Returns whether an argument names a thread.
 pub(crate) fn names_thread(argument: &OsStr) -> Result<bool> {
     Ok(split(argument)?.0.is_some())
 }

@@ -14,7 +14,7 @@ use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::args::controller::ControllerArguments;
 use crate::cli::io::terminal;
 
-/// What a person should know before the first connection of a project.
+/// The facts that a person should know before the first connection of a project.
 const FIRST_TIME: &str = "\
 This connects to a real controller, and programs on it move real machines.
 

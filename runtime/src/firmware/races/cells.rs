@@ -61,7 +61,7 @@ pub(super) struct Use {
     pub(super) stored: Option<Cycles>,
     /// Whether it has loaded the cell while it had no order to execute.
     pub(super) is_loaded_at_leisure: bool,
-    /// What it had loaded before its last store of something else.
+    /// The value that it had loaded before its last store of something else.
     pub(super) replaced: Option<u64>,
 }
 
@@ -70,7 +70,7 @@ pub(super) struct Load {
     pub(super) at: CodeAddr,
     /// What the context knew before, without what it has read from the cell since its last store.
     pub(super) before: VectorClock,
-    /// What it knew before it began to load nothing but this cell.
+    /// Its knowledge before it began to load nothing but this cell.
     pub(super) spun: VectorClock,
     pub(super) value: u64,
     pub(super) now: Cycles,
@@ -300,7 +300,7 @@ impl Cell {
         self.change
     }
 
-    /// Whether a context changes it by a load and a store.
+    /// Returns whether a context changes it by a load and a store.
     pub(super) fn is_updated_by(&self, context: usize) -> bool {
         self.uses[context].update.is_some()
     }

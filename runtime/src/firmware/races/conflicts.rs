@@ -26,7 +26,7 @@ pub(super) struct Conflict {
     pub(super) kind: ConflictKind,
 }
 
-/// What can go wrong between two places.
+/// A fault that is possible between two places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ConflictKind {
     /// Both change the cell by a load and a store.

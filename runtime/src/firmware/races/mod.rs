@@ -79,12 +79,12 @@ struct Track {
     order: Option<(u32, usize, u32)>,
     /// Parameters that were stored after such an order.
     suspects: Vec<Suspect>,
-    /// What it reads together with other cells.
+    /// The cells that it reads together.
     reading: JointReads,
     /// The cell that it loaded last, and when; the one that it stored last.
     last_load: Option<(u32, Cycles)>,
     last_store: Option<u32>,
-    /// Where it paused itself, and where another resumed it, after which cell.
+    /// The place where it paused itself, and the place where another resumed it, after which cell.
     paused: Option<Paused>,
     resumed: Option<Resumed>,
 }
@@ -92,9 +92,9 @@ struct Track {
 /// Something that the board has once, and whoever uses it second takes it from the first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum SharedThing {
-    /// What executes paths.
+    /// The part of the board that executes paths.
     CoordinateSystem,
-    /// What records axes.
+    /// The part of the board that records axes.
     Gather,
     /// The word of 16 outputs of Kanalog.
     Relays(i32),
@@ -301,7 +301,7 @@ impl Races {
         self.tracks[own].held.iter().map(|(lock, _)| *lock).collect()
     }
 
-    /// What programs call the memory at an address, their own data included.
+    /// Returns the name in programs for the memory at an address, their own data included.
     fn name_of(&self, address: u32, size: u32) -> String {
         let mut objects = self.objects.iter().flat_map(|objects| objects.iter());
         let own = objects.find(|object| address.wrapping_sub(object.start) < object.size);

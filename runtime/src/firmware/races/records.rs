@@ -21,7 +21,7 @@ const MOST: usize = 64;
 /// The most stores of a writer from one to another of a record that it stores at a time.
 const RECORD_STORES: u32 = 8;
 
-/// How often two cells are stored and read together until they count as parts of a record.
+/// The number of times that two cells are stored and read together until they count as parts of a record.
 const TIMES: u32 = 2;
 
 /// A load of a cell whose value is used with those of others.
@@ -29,23 +29,23 @@ const TIMES: u32 = 2;
 struct Part {
     at: CodeAddr,
     address: u32,
-    /// How many changes there had been.
+    /// The number of changes until then.
     changes: u64,
-    /// Who changed the cell first since.
+    /// The context that changed the cell first since.
     changed_by: Option<usize>,
-    /// What the context knew before it began to read the parts.
+    /// The knowledge of the context before it began to read the parts.
     before: VectorClock,
     /// Its own entry in its clock at the load.
     epoch: u32,
 }
 
-/// What a context reads together.
+/// The cells that a context reads together.
 #[derive(Clone, Debug, Default)]
 pub(super) struct JointReads {
     parts: Vec<Part>,
-    /// What it has read half changed, or could have.
+    /// The pairs that it has read half changed, or could have.
     found: Vec<Half>,
-    /// How often it has read pairs of cells that another context changes together.
+    /// The number of times that it has read pairs of cells which another context changes together.
     pairs: BTreeMap<[u32; 2], u32>,
 }
 
@@ -56,7 +56,7 @@ struct Half {
     cell: u32,
     size: u32,
     other: OtherPlace,
-    /// Whether it was.
+    /// True if it was.
     is_seen: bool,
 }
 
@@ -108,7 +108,7 @@ impl Races {
         }
     }
 
-    /// Whether two cells are changed by another context at about the same time, each time `own` reads both, and nothing
+    /// Returns whether two cells are changed by another context at about the same time, each time `own` reads both, and nothing
     /// orders that before what `clock` knows.
     fn is_record(&mut self, own: usize, writer: usize, cells: [u32; 2], clock: &VectorClock) -> bool {
         let locks = self.locks_of(own);

@@ -1,4 +1,4 @@
-//! What was reported, and what may still come to more.
+//! Reports: those that were made, and those that may still grow.
 //!
 //! A pair of places is reported once. That an update can be lost is known long before one is, if ever; so the report
 //! waits a while for the loss, whose time it then says.
@@ -10,7 +10,7 @@ use kmotiondef::{CodeAddr, Cycles};
 use super::{Actor, Races};
 use crate::out::{LOST_AT, Message, Out, Speaker};
 
-/// How long a report waits: a second.
+/// The time that a report waits: a second.
 const PATIENCE: Cycles = Cycles::PER_SECOND;
 
 /// Two places, the lower first.
@@ -37,12 +37,12 @@ fn places(one: CodeAddr, other: CodeAddr) -> PlacePair {
 }
 
 impl Reports {
-    /// Whether there is nothing more to say about two places.
+    /// Returns whether there is nothing more to say about two places.
     pub(super) fn knows(&self, one: CodeAddr, other: CodeAddr) -> bool {
         self.made.contains(&places(one, other))
     }
 
-    /// Whether two places are known to be in conflict, reported or not.
+    /// Returns whether two places are known to be in conflict, reported or not.
     pub(super) fn suspects(&self, one: CodeAddr, other: CodeAddr) -> bool {
         let places = places(one, other);
         self.made.contains(&places) || self.waiting.contains_key(&places)
@@ -95,7 +95,7 @@ impl Races {
     }
 }
 
-/// What a report says of an update that was lost at an instant.
+/// Returns the part of a report about an update that was lost at an instant.
 pub(super) fn lost_at(what: &str, now: Cycles) -> String {
     format!("{what}{LOST_AT}{:.6} s", now.get() as f64 / Cycles::PER_SECOND.get() as f64)
 }

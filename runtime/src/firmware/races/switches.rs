@@ -62,7 +62,7 @@ impl Switches {
         Some(point)
     }
 
-    /// Whether a thread is switched after it has taken a lock.
+    /// Returns whether a thread is switched after it has taken a lock.
     pub(crate) fn after_lock(&mut self, actor: Actor, lock: GuestAddr, out: &mut Out) -> bool {
         let is_switched = self.count();
         if is_switched {

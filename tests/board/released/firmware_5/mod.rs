@@ -1,6 +1,6 @@
 //! Firmware 5.3.2: `data/vectors/fw5.jsonl` and `fw5-text.jsonl`, asked of the firmware itself.
 //!
-//! Where `CC67_FIRMWARE_5` names no file, each test says so. The rows of kind `session` are compared beside the model of
+//! Without a file in `CC67_FIRMWARE_5` each test says so. The rows of kind `session` are compared beside the model of
 //! the hardware, in the crate of booted firmware.
 
 mod moves;

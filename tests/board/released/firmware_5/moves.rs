@@ -19,7 +19,7 @@ fn value(recorded: &Json) -> f64 {
     if recorded == NAN { f64::NAN } else { number(recorded) }
 }
 
-/// Whether a number is the recorded one, except for the last digits of a root.
+/// Returns whether a number is the recorded one, except for the last digits of a root.
 fn is_close(found: f64, recorded: f64, scale: f64) -> bool {
     found == recorded
         || found.is_nan() && recorded.is_nan()

@@ -10,7 +10,7 @@ use super::{compare, firmware_5, of_kinds};
 
 /// Ticks after which a program that has not ended waits forever.
 const FOREVER: u32 = 2000;
-/// What the code of a program, twenty iterations at most, may take more or less than the vendor's, seconds.
+/// The time in seconds by which the code of a program, twenty iterations at most, may differ from the vendor's.
 const CODE: f64 = 8e-6;
 /// Relative difference of a number that depends on the last digits of a function in the processor's ROM.
 const ROM: f64 = 2.0 * f64::EPSILON;

@@ -26,7 +26,7 @@ pub(crate) struct ExploreArguments {
     /// Run by each of these schedules, seeds FROM..TO or several with `;` between them, and print those that fail
     #[arg(long, hide = true, requires = "golden")]
     explore: Option<String>,
-    /// What each of them should show
+    /// The expected output of each program
     #[arg(long, hide = true)]
     golden: Option<PathBuf>,
 }
@@ -38,12 +38,12 @@ pub(crate) struct Failing {
     pub(crate) number: u64,
     /// The schedule as text.
     pub(crate) schedule: String,
-    /// What is wrong.
+    /// The failure.
     pub(crate) why: String,
 }
 
 impl ExploreArguments {
-    /// Whether schedules are explored.
+    /// Returns whether schedules are explored.
     pub(super) fn is_requested(&self) -> bool {
         self.explore.is_some()
     }
@@ -80,7 +80,7 @@ fn schedules(list: &str) -> Result<Vec<(u64, Schedule)>> {
     (0..).zip(list.split(';')).map(parse).collect()
 }
 
-/// What a run has shown.
+/// The output of a run.
 #[derive(Debug, Default)]
 struct ScheduledRun {
     console: String,
@@ -113,7 +113,7 @@ impl ScheduledRun {
         }
     }
 
-    /// How it differs from what is expected, if it does.
+    /// Returns the difference from the expected output, if there is one.
     fn difference(&self, expected: &str) -> Option<String> {
         let code = self.exit.map_or(0, |exit| exit as u8);
         let end = if code == 0 { String::new() } else { format!("---- exit {code}\n") };

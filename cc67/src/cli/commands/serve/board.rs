@@ -20,7 +20,7 @@ use crate::cli::report::trace::Trace;
 
 /// Ticks in which the board takes a line at the latest.
 const TAKEN_WITHIN: u64 = 11_111;
-/// How the board's message about a command begins that it does not take (host-protocol.md section 2).
+/// The beginning of the board's message about a command that it refuses (host-protocol.md section 2).
 const REFUSED: &[u8] = b"error, ";
 
 /// A board under control, and what came over its link.
@@ -126,12 +126,12 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         }
     }
 
-    /// Whether the board has not taken all bytes that it was sent.
+    /// Returns whether the board has not taken all bytes that it was sent.
     pub(super) fn is_receiving(&self) -> bool {
         self.board.is_receiving()
     }
 
-    /// Whether the board has not taken all that a client has sent who has the link to itself.
+    /// Returns whether the board has not taken all that a client has sent who has the link to itself.
     pub(super) fn is_feeding(&self) -> bool {
         self.wire.as_ref().is_some_and(|wire| wire.has_incoming() || self.is_receiving())
     }

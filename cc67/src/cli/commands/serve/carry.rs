@@ -12,7 +12,7 @@ use super::wire::WireClient;
 
 /// Bytes on their way to the board, before the client has to wait.
 const UNTAKEN: usize = 4096;
-/// How often a client that is ahead of the board looks whether the board has taken something.
+/// The pause after which a client that is ahead of the board looks whether the board has taken something.
 const PAUSE: Duration = Duration::from_millis(1);
 
 /// Carries bytes between a client and the desk until the client goes.

@@ -13,12 +13,12 @@ use super::message::REPLY;
 pub(super) const LONGEST: usize = 4096;
 /// The client's answer to each message before a reply.
 const ACKNOWLEDGED: u8 = 0xAA;
-/// How the first message of the library of version 4.32 begins, which has no length.
+/// The beginning of the first message of the library of version 4.32, which has no length.
 const OLD_LIBRARY: [u8; 8] = [9, 0, 0, 0, 0, 0, 0, 0];
 /// Bytes of a text that are read before its connection is closed.
 const TEXT_LIMIT: u64 = 1 << 16;
 
-/// What came over a connection.
+/// A message of a connection.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Received {
     /// A message.

@@ -245,7 +245,7 @@ impl<'a, T: Target> Desk<'a, T> {
         Course::Continue
     }
 
-    /// What the client does that has the link to itself.
+    /// Takes up an event of the client that has the link to itself.
     fn wire(&mut self, note: Note) -> Course {
         let Some(wire) = &mut self.board.wire else { return Course::Continue };
         match note {

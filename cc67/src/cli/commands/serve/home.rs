@@ -33,7 +33,7 @@ const OURS: [&str; 2] = ["--home", "--mcodes"];
 const PROGRAMS: &str = "MCodes";
 /// What the server was last to serve: the folder of that command line, and its words, one a line.
 const OPTIONS: &str = "serve.options";
-/// What a server says that the library has started: on Windows nobody reads its output, and a full pipe would stop it.
+/// The file with the output of a server that the library has started: on Windows nobody reads it, and a full pipe would stop the server.
 const SAID: &str = "server.log";
 /// The explanation of the folder.
 const EXPLANATION: &str = "README.txt";

@@ -79,7 +79,7 @@ pub(super) fn listen(addresses: &[String], option: &str, desk: &Sender<Note>) ->
     Ok(places)
 }
 
-/// Whether an address is for a client that has the board's link to itself.
+/// Returns whether an address is for a client that has the board's link to itself.
 pub(super) fn is_wire(address: &str) -> bool {
     address == TERMINAL || address.starts_with(RAW_PORT)
 }

@@ -180,7 +180,7 @@ pub(super) fn serve(arguments: &ServeArguments) -> Result<Exit> {
 }
 
 impl Terms<'_> {
-    /// Whether one client has the board's link to itself.
+    /// Returns whether one client has the board's link to itself.
     pub(super) fn is_on_wire(&self) -> bool {
         self.addresses.iter().any(|address| listen::is_wire(address))
     }

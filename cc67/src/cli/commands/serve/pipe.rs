@@ -56,11 +56,11 @@ mod windows {
 
     /// Bytes of the buffers of a pipe.
     const BUFFER: u32 = 4096;
-    /// How long a client waits for a free instance unless it says otherwise, in milliseconds.
+    /// The time that a client waits for a free instance unless it says otherwise, in milliseconds.
     const WAIT: NonZeroU32 = NonZeroU32::new(10_000).expect("it is not 0");
     /// The system's number for a pipe all instances of which have a client.
     const BUSY: i32 = 231;
-    /// How long nobody is let in after an instance could not be made.
+    /// The pause after an instance could not be made, in which nobody is let in.
     const PAUSE: Duration = Duration::from_millis(100);
 
     /// Takes connections at a pipe in the background.
@@ -97,7 +97,7 @@ mod windows {
     #[derive(Debug)]
     pub(in crate::cli::commands::serve) struct PipeConnection {
         stream: DuplexPipeStream<Messages>,
-        /// Whether the length of each message comes before it, as a message of its own.
+        /// True if the length of each message comes before it, as a message of its own.
         has_lengths: bool,
     }
 

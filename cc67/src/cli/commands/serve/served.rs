@@ -113,7 +113,7 @@ impl<T: Target> Served<T> {
         self.rig.session.tap_wire();
     }
 
-    /// What it has sent since the last time.
+    /// Returns the bytes that it has sent since the last time.
     pub(super) fn take_wire(&mut self) -> Vec<u8> {
         self.rig.session.take_wire()
     }

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 pub(in crate::cli::commands) const UNREAD_BYTES: usize = 1 << 16;
 /// Bytes on their way to the client, before further ones are lost: a firmware file answers whoever reads nothing.
 pub(in crate::cli::commands) const LOST_BYTES: usize = 1 << 20;
-/// How long after the last byte a client is served without delay.
+/// The time after the last byte in which a client is served without delay.
 const LIVELY: Duration = Duration::from_secs(2);
 
 /// A client that is connected.
@@ -53,7 +53,7 @@ impl WireEnd {
         }
     }
 
-    /// Whether nobody is connected.
+    /// Returns whether nobody is connected.
     pub(super) const fn is_unplugged(&self) -> bool {
         self.client.is_none()
     }
@@ -66,7 +66,7 @@ impl WireEnd {
         }
     }
 
-    /// Whether bytes for the board wait.
+    /// Returns whether bytes for the board wait.
     pub(super) fn has_incoming(&self) -> bool {
         !self.incoming.is_empty()
     }
@@ -93,12 +93,12 @@ impl WireEnd {
         false
     }
 
-    /// Whether the client may wait for the board.
+    /// Returns whether the client may wait for the board.
     pub(super) fn is_lively(&self, time: Instant) -> bool {
         self.last.is_some_and(|last| time < last + LIVELY)
     }
 
-    /// Whether programs that print have to wait from now on, or no longer have to; nothing if that has not changed.
+    /// Returns whether programs that print have to wait from now on, or no longer have to; `None` if that has not changed.
     pub(super) fn hold_back(&mut self) -> Option<bool> {
         let unread = self.client.as_ref().map(|client| client.unread.load(Ordering::Relaxed));
         let limit = if self.is_held_back { UNREAD_BYTES / 2 } else { UNREAD_BYTES };

@@ -37,9 +37,9 @@ pub(super) struct FailingSchedule {
     pub(super) seed: u64,
     /// The smallest schedule that fails.
     pub(super) smallest: Schedule,
-    /// What is wrong then.
+    /// The failure then.
     pub(super) why: String,
-    /// What the board remarks then.
+    /// The remarks of the board then.
     pub(super) notes: String,
 }
 
