@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -313,12 +314,11 @@ fn link(error: WireError) -> HostError {
     HostError::Link(error.to_string())
 }
 
-/// The elements of `persist.UserData` that bytes are, with the value of each.
-fn elements(address: GuestAddr, bytes: &[u8]) -> Option<Vec<(usize, u32)>> {
+/// The elements of `persist.UserData` in the bytes from an address on; `None` where there are others.
+fn elements(address: GuestAddr, length: usize) -> Option<Range<usize>> {
     let first = element(address)?;
-    let words = bytes.chunks(4).map(|word| Some(u32::from_le_bytes(word.try_into().ok()?)));
-    let words: Vec<u32> = words.collect::<Option<_>>()?;
-    (first + words.len() <= N_USER_DATA_VARS).then(|| (first..).zip(words).collect())
+    let end = first + length / 4;
+    (length.is_multiple_of(4) && end <= N_USER_DATA_VARS).then_some(first..end)
 }
 
 /// The element of `persist.UserData` at an address.
@@ -476,27 +476,26 @@ impl Target for Controller {
     }
 
     fn read(&self, address: GuestAddr, bytes: &mut [u8]) -> Result<(), HostError> {
-        let Some(elements) = elements(address, bytes) else {
+        let Some(elements) = elements(address, bytes.len()) else {
             return Err(HostError::Link(
                 "no command of the controller reads memory besides persist.UserData".to_owned(),
             ));
         };
-        let Some((first, _)) = elements.first() else { return Ok(()) };
-        let words =
-            Commands(&mut self.client.borrow_mut()).user_data(*first, elements.len()).map_err(link)?;
+        let mut client = self.client.borrow_mut();
+        let words = Commands(&mut client).user_data(elements.start, elements.len()).map_err(link)?;
         bytes.chunks_mut(4).zip(words).for_each(|(place, word)| place.copy_from_slice(&word.to_le_bytes()));
         Ok(())
     }
 
     fn write(&mut self, address: GuestAddr, bytes: &[u8]) -> Result<(), HostError> {
-        let Some(elements) = elements(address, bytes) else {
+        let Some(elements) = elements(address, bytes.len()) else {
             return Err(HostError::Link(
                 "no command of the controller writes memory besides persist.UserData and programs".to_owned(),
             ));
         };
         let mut board = Commands(self.client.get_mut());
-        for (index, word) in elements {
-            board.set_user_data(index, word).map_err(link)?;
+        for (index, word) in elements.zip(bytes.as_chunks().0) {
+            board.set_user_data(index, u32::from_le_bytes(*word)).map_err(link)?;
         }
         Ok(())
     }

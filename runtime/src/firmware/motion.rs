@@ -1,29 +1,32 @@
-//! Single axes: enabling, independent moves, commutation. Source: axes-and-motion.md sections 3 to 6 and 12.
+//! Single axes: enabling, independent moves. Source: axes-and-motion.md sections 3 to 6 and 12.
+
+mod structure;
+
+pub(crate) use structure::{
+    do_resolver_input2, setup_for_motion_end, setup_for_motion_pause, setup_for_move, stop_motion, write_3ph,
+    write_4ph,
+};
 
 use kmotiondef::firmware::Function;
 use kmotiondef::limits::TIMEBASE;
 use kmotiondef::modes::{InputMode, LastMotion, OutputMode};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::{COORD_SYSTEM0, CS0_STOPPING_STATE};
-use kmotiondef::{AxisId, Cycles, GuestAddr};
+use kmotiondef::{AxisId, Cycles};
 use vm::firmware::{Caller, Outcome, Wake};
 use vm::memory::GuestMemory;
-use vm::trap::TrapKind;
 
 use super::calls::Continuation;
 use super::parts::Parts;
 use super::{axis_check, costs};
 use crate::io::bits;
-use crate::machine::Drive;
 use crate::out::Message;
-use crate::servo::cache::Change;
 use crate::servo::coordinated::system;
-use crate::servo::independent::{has_motion, is_planned, present, run, start, state, write};
-use crate::servo::input::turn_resolver;
+use crate::servo::independent::{has_motion, is_planned, present, run, start, state};
 use crate::servo::moves::{Accelerations, limits, limits_with, start_jog, start_move_to};
-use crate::servo::profile::{self, LEAD, MAX_STATES, Mode, MotionState, Ramp};
-use crate::servo::{four_phase, hold, switching, three_phase};
-use crate::views::{Typed, axis_at};
+use crate::servo::profile::{LEAD, Mode, MotionState};
+use crate::servo::{hold, switching};
+use crate::views::Typed;
 use chips::stepgen::generator_of;
 
 /// What the board prints when a program names an axis that does not exist.
@@ -590,116 +593,6 @@ pub(crate) fn check_done_xyzabc(_: &mut Parts, caller: &mut Caller<'_>) -> i32 {
 pub(crate) fn start_move(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) {
     if let Some(axis) = checked(parts, caller, Function::StartMove, axis) {
         start(caller.memory, axis);
-    }
-}
-
-/// The axis whose structure a program points at.
-fn pointed(parts: &mut Parts, caller: &Caller<'_>, function: Function, chan: GuestAddr) -> Option<AxisId> {
-    let axis = axis_at(caller.memory, chan);
-    if axis.is_none() {
-        parts.out.diagnose(caller, Message::NotAnAxis { function, chan });
-    }
-    axis
-}
-
-pub(crate) fn stop_motion(parts: &mut Parts, caller: &mut Caller<'_>, chan: GuestAddr) {
-    if let Some(axis) = pointed(parts, caller, Function::StopMotion, chan) {
-        caller.memory.set_axis(axis, Chan::PCOEFF, GuestAddr::NULL);
-    }
-}
-
-#[expect(clippy::too_many_arguments, reason = "the C function has nine parameters")]
-pub(crate) fn setup_for_move(
-    parts: &mut Parts,
-    caller: &mut Caller<'_>,
-    from: f64,
-    to: f64,
-    velocity: f32,
-    chan: GuestAddr,
-    offset: i32,
-    abrupt_start: i32,
-    abrupt_end: i32,
-    starts: i32,
-    count: GuestAddr,
-) -> Result<(), TrapKind> {
-    let Some(axis) = pointed(parts, caller, Function::SetupForMove, chan) else { return Ok(()) };
-    let Some(limits) = limits(caller.memory, axis, Some(velocity)) else {
-        no_limits(parts, caller, axis, Function::SetupForMove);
-        return Ok(());
-    };
-    let ramps = [abrupt_start, abrupt_end].map(|flag| if flag != 0 { Ramp::Abrupt } else { Ramp::Smooth });
-    // Without the end, which comes from SetupForMotionEnd.
-    let states = profile::bare_move(from, to, ramps, &limits);
-    write(caller.memory, axis, index(offset), &states);
-    if !count.is_null() {
-        caller.memory.store(count, states.len() as i32)?;
-    }
-    if starts != 0 {
-        start(caller.memory, axis);
-    }
-    Ok(())
-}
-
-/// An index into a state list; out of range it writes nothing.
-fn index(offset: i32) -> usize {
-    usize::try_from(offset).unwrap_or(MAX_STATES)
-}
-
-pub(crate) fn setup_for_motion_pause(
-    parts: &mut Parts,
-    caller: &mut Caller<'_>,
-    x: f64,
-    chan: GuestAddr,
-    offset: i32,
-    time: f64,
-) {
-    if let Some(axis) = pointed(parts, caller, Function::SetupForMotionPause, chan) {
-        write(caller.memory, axis, index(offset), &[MotionState::hold(x, time)]);
-    }
-}
-
-pub(crate) fn setup_for_motion_end(parts: &mut Parts, caller: &mut Caller<'_>, chan: GuestAddr, offset: i32) {
-    if let Some(axis) = pointed(parts, caller, Function::SetupForMotionEnd, chan) {
-        let before = index(offset).checked_sub(1).map(|before| state(caller.memory, axis, before));
-        let end = before.map_or(0.0, |before| before.at(before.t).x);
-        write(caller.memory, axis, index(offset), &[MotionState::off(0.0, end)]);
-    }
-}
-
-pub(crate) fn write_3ph(parts: &mut Parts, caller: &mut Caller<'_>, chan: GuestAddr, v: f32, angle: f64) {
-    match axis_at(caller.memory, chan) {
-        Some(axis) => {
-            three_phase(caller.memory, axis, v);
-            apply(parts, caller.memory, axis, v, angle);
-        }
-        None => parts.out.console.message("Error Invalid Chan Pointer Write3PH"),
-    }
-}
-
-pub(crate) fn write_4ph(parts: &mut Parts, caller: &mut Caller<'_>, chan: GuestAddr, v: f32, angle: f64) {
-    if let Some(axis) = pointed(parts, caller, Function::Write4PH, chan) {
-        four_phase(caller.memory, axis, v, angle);
-        apply(parts, caller.memory, axis, v, angle);
-    }
-}
-
-/// A vector on the phases of a disabled axis turns its rotor; of an enabled one the servo is stronger.
-fn apply(parts: &mut Parts, memory: &GuestMemory, axis: AxisId, v: f32, angle: f64) {
-    if memory.axis(axis, Chan::ENABLE) == 0 {
-        parts.servo.cache.invalidate(Change::Motion);
-        parts.machine.loads[axis].drive = Drive::Vector(f64::from(v), angle);
-    }
-}
-
-pub(crate) fn do_resolver_input2(
-    parts: &mut Parts,
-    caller: &mut Caller<'_>,
-    chan: GuestAddr,
-    x: f32,
-    y: f32,
-) {
-    if let Some(axis) = pointed(parts, caller, Function::DoResolverInput2, chan) {
-        turn_resolver(caller.memory, axis, (x, y));
     }
 }
 

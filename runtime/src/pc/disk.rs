@@ -59,7 +59,12 @@ impl DiskRequest {
     /// The request that a console line is, and what follows its code.
     fn read(line: &[u8]) -> Option<(Self, &[u8])> {
         let (code, text) = line.split_first()?;
-        Self::ALL.into_iter().find(|request| request.code() == *code).map(|request| (request, text))
+        Self::of_code(*code).map(|request| (request, text))
+    }
+
+    /// The request with a code.
+    fn of_code(code: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|request| request.code() == code)
     }
 
     /// The character that it is sent as.
@@ -103,11 +108,10 @@ impl FileServer {
 
     /// Does what a request with a code from 1 to 7 says.
     pub fn serve(&mut self, code: u8, text: &[u8]) -> ServedFile {
-        let Some((request, text)) = DiskRequest::read(&[&[code], text].concat())
-            .map(|(request, text)| (request, String::from_utf8_lossy(text).into_owned()))
-        else {
+        let Some(request) = DiskRequest::of_code(code) else {
             return ServedFile { answer: None, remark: Some(format!("unknown request {code} for a file")) };
         };
+        let text = String::from_utf8_lossy(text);
         let remark = self.0.serve(request, &text, Cycles::new(0)).map(|message| message.to_string());
         ServedFile { answer: self.0.answers.pop_front().map(|(_, answer)| answer), remark }
     }

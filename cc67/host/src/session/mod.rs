@@ -133,7 +133,7 @@ pub struct Session<T = Board> {
 
 /// What the session is, and what the board shows at the present instant.
 impl<T: Target> Session<T> {
-    /// A session with a target of another crate, whose programs are loaded.
+    /// A session with a target whose programs are loaded.
     #[must_use]
     pub fn on_target(
         target: T,

@@ -83,8 +83,7 @@ impl Setup {
         let (options, programs, offered) =
             (self.options.clone(), self.programs.clone(), self.offered.clone());
         let target = BootedTarget::begin(firmware, self)?;
-        let offered = offered.into_iter().map(|program| (program.clone(), program.debug_info())).collect();
-        Ok(Session::new(target, options, programs, offered))
+        Ok(Session::on_target(target, options, programs, offered))
     }
 
     /// The modelled board, or a firmware file if one is named.

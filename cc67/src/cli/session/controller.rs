@@ -46,10 +46,7 @@ fn agree() -> Result<()> {
     if !(io::stdin().is_terminal() && io::stderr().is_terminal()) {
         bail!("nobody is here to agree to that: `--yes` does");
     }
-    terminal::aside("Connect? [y/N] ");
-    let mut answer = String::new();
-    io::stdin().lock().read_line(&mut answer).context("cannot read the answer")?;
-    if !matches!(answer.trim(), "y" | "Y" | "yes") {
+    if !agrees_to("Connect?")? {
         bail!("not connected");
     }
     let Some(path) = record else { return Ok(()) };
@@ -59,6 +56,14 @@ fn agree() -> Result<()> {
         terminal::note(&format!("the answer cannot be kept in {}: {error}", path.display()));
     }
     Ok(())
+}
+
+/// Asks the person at the terminal a question; returns whether the answer is yes.
+fn agrees_to(question: &str) -> Result<bool> {
+    terminal::aside(&format!("{question} [y/N] "));
+    let mut answer = String::new();
+    io::stdin().lock().read_line(&mut answer).context("cannot read the answer")?;
+    Ok(matches!(answer.trim(), "y" | "Y" | "yes"))
 }
 
 /// The file with the project folders for which a person has agreed.
@@ -119,9 +124,8 @@ pub(crate) fn stop<T: Target>(session: &mut Session<T>, events: EventSink<'_>) {
     if session.target().lost().is_some() || !io::stdin().is_terminal() {
         return;
     }
-    terminal::aside("Disable all axes? [y/N] ");
-    let mut answer = String::new();
-    if io::stdin().lock().read_line(&mut answer).is_ok() && matches!(answer.trim(), "y" | "Y" | "yes") {
+    // Nobody is there when the answer cannot be read.
+    if agrees_to("Disable all axes?").unwrap_or(false) {
         for axis in kmotiondef::AxisId::all() {
             session.exchange(format!("DisableAxis{axis}").as_bytes(), events);
         }
