@@ -69,13 +69,6 @@ class Snapshot:
         return f"<cc67.Snapshot at {self.time:.6f} s>"
 
 
-class _Closed:
-    """The place of a board that was closed."""
-
-    def __getattr__(self, name: str) -> Any:
-        raise Error("the board is closed")
-
-
 class Board:
     """A simulated KFLOP board with its programs and the machine around it.
 
@@ -158,7 +151,7 @@ class Board:
             "uart_input": bytes(uart_input),
             "boot": self._boot,
         }
-        self._native: Any = _native.Board(request, engine)
+        self._open: _native.Board | None = _native.Board(request, engine)
         self._programs = {thread: program for thread, program, _ in assigned}
         if on_fault == "keep":
             self._native.stop_at_faults(False)
@@ -463,9 +456,15 @@ class Board:
         """Give up the board; it then belongs to the Python thread that uses it next."""
         self._native.release()
 
+    @property
+    def _native(self) -> _native.Board:
+        if self._open is None:
+            raise Error("the board is closed")
+        return self._open
+
     def close(self) -> None:
         """Free the memory of the board now; using the board afterwards raises `Error`. `with` does this at its end."""
-        self._native = _Closed()
+        self._open = None
 
     def __enter__(self) -> Board:
         return self
@@ -474,7 +473,7 @@ class Board:
         self.close()
 
     def __repr__(self) -> str:
-        if isinstance(self._native, _Closed):
+        if self._open is None:
             return "<cc67.Board, closed>"
         programs = ", ".join(f"{thread}: {program.path.name}" for thread, program in self._programs.items())
         return f"<cc67.Board {self._native.number}: {programs or 'no program'}>"
