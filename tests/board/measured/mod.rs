@@ -1,0 +1,209 @@
+//! Scenarios that were found by chance and reduced, against what the released firmware did: `data/vectors/fidelity-2.jsonl`.
+//!
+//! The same rows are asked of the model, in every run, and of the firmware itself where `CC67_FIRMWARE` names its file.
+//! There are four kinds of rows:
+//!
+//! | row | holds |
+//! |---|---|
+//! | `session` | lines from the PC, each with the bytes that come back; `(run S)`: S seconds pass |
+//! | `printf` | the arguments of a call, and the text it makes |
+//! | `console` | a program, and all that it prints |
+//! | `rows`, `at_end`, `gather_words_hex` | a program that stores what it sees in the gather buffer; the [`record`] says where |
+//!
+//! A row that the model does not reproduce yet is in [`NOT_YET`]; one that holds must leave it.
+
+mod record;
+
+use std::fs;
+
+use cc67_host::target::{BootedFirmware, Target};
+use cc67_host::{Session, Setup, UserProgram};
+use harness::Scratch;
+use kmotiondef::timing::Timing;
+use kmotiondef::{ThreadId, Ticks};
+use runtime::{Event, EventKind};
+use serde_json::Value as Json;
+
+use record::Record;
+
+/// Rows of the file.
+const ROWS: usize = 112;
+/// Ticks that the longest program takes at most; one that has stopped the board never ends.
+const LONGEST: u64 = 12_000;
+/// Ticks in which texts that a program has printed reach the PC.
+const TO_THE_END: u64 = 300;
+
+/// Rows that a board does not reproduce, and the reason.
+struct Exception {
+    reason: &'static str,
+    rows: &'static [usize],
+}
+
+const fn rows_of(reason: &'static str, rows: &'static [usize]) -> Exception {
+    Exception { reason, rows }
+}
+
+/// Rows that the model does not reproduce yet, by the rules of the board that it lacks.
+const NOT_YET: &[Exception] = &[
+    rows_of("Zero and the commutation offset", &[0, 1, 2, 3, 4, 66, 67, 68]),
+    rows_of("modes of backlash", &[5, 6, 7, 62, 69]),
+    rows_of("directions and backlash of an axis that is switched on or off", &[8, 110]),
+    rows_of("angles without DestOffset", &[9]),
+    rows_of("limits of phases", &[10, 11, 42]),
+    rows_of("current mode of channels 0 to 7", &[12, 41]),
+    rows_of("directions of bits", &[13, 40]),
+    rows_of("coordinate systems and invalid channels", &[14, 15, 16, 34, 35, 36, 43]),
+    rows_of("mathematics", &[17, 18, 44, 45, 107, 108, 109]),
+    rows_of("feedhold of axes", &[19, 20]),
+    rows_of("a state whose time has come", &[21, 22, 23, 57, 58, 59, 60, 61]),
+    rows_of("lists of states and of recordings", &[24, 25]),
+    rows_of("time base of paths", &[26, 27, 28, 29, 30, 31, 32, 33, 37, 38]),
+    rows_of("threads out of range", &[39]),
+    rows_of("paths at random", &[46, 47, 48, 49, 50, 51, 52, 53, 54, 55, 56]),
+    rows_of("compensation at random", &[63, 64, 65]),
+    rows_of("pointers in texts", &[70, 71, 72, 73, 74, 75, 76, 77, 78, 79, 80, 81, 82, 83, 84, 85, 86, 87]),
+    rows_of("arguments of commands", &[88, 89, 90, 91, 93]),
+    rows_of("what commands of paths remember", &[95, 96, 97, 100, 101]),
+    rows_of("the heap", &[103, 104, 105, 106]),
+    rows_of("the tick of Zero", &[111]),
+];
+
+/// Rows that the firmware itself does not reproduce here.
+const DIFFERENT: &[Exception] = &[
+    rows_of("cc67's compiler divides by 0 as IEEE 754 does", &[17, 45]),
+    rows_of("the primary thread has looked at the axes in time", &[20]),
+    rows_of("the program prints a tick later", &[29]),
+    rows_of("the memory after the axes is overwritten", &[34, 36]),
+    rows_of("arguments come from divisions by cc67's compiler", &[44]),
+    rows_of("the firmware reads outside of the memory for the axis of an unused letter", &[54, 100, 101]),
+];
+
+/// A board on which rows are tried.
+#[derive(Clone, Copy)]
+enum Subject<'f> {
+    Model,
+    Firmware(&'f BootedFirmware),
+}
+
+impl Subject<'_> {
+    /// Where a row differs on this board.
+    fn differences(self, index: usize, row: &Json) -> Vec<String> {
+        let scratch = Scratch::new(&format!("measured-{index}"));
+        let mut setup = Setup::default();
+        setup.options.timing = Timing::VENDOR;
+        if let Self::Firmware(firmware) = self {
+            setup.options = firmware.options(setup.options);
+        }
+        if let Some(source) = source(row) {
+            scratch.write("program.c", format!("#include \"KMotionDef.h\"\n{source}"));
+            let thread = ThreadId::new(1).expect("there is a first thread");
+            let program = UserProgram::compile(&scratch.path().join("program.c"), thread, &setup.options);
+            setup.programs.push(program.unwrap_or_else(|error| panic!("row {index}: {error}")).started());
+        }
+        match self {
+            Self::Model => differences(&mut setup.session().expect("it fits"), row),
+            Self::Firmware(firmware) => {
+                differences(&mut setup.session_on_firmware(firmware).expect("it fits"), row)
+            }
+        }
+    }
+
+    /// Tries all rows; fails where the set of those that differ is not the known one.
+    fn try_all(self, known: &[Exception]) {
+        let rows = rows();
+        let mut report = String::new();
+        let mut held = 0;
+        for (index, row) in rows.iter().enumerate() {
+            let found = self.differences(index, row);
+            held += usize::from(found.is_empty());
+            let exception = known.iter().find(|exception| exception.rows.contains(&index));
+            let reason = exception.map(|exception| exception.reason);
+            if found.is_empty() == reason.is_some() {
+                let shown: Vec<_> = found.iter().take(4).map(|text| format!("    {text}\n")).collect();
+                let count = found.len();
+                report +=
+                    &format!("{index} {}: {count} differences, {reason:?}\n{}", name(row), shown.concat());
+            }
+        }
+        println!("{held} of {} rows hold", rows.len());
+        assert!(report.is_empty(), "{held} of {} rows hold:\n{report}", rows.len());
+    }
+}
+
+fn rows() -> Vec<Json> {
+    let path = harness::root().join("tests/data/vectors/fidelity-2.jsonl");
+    let lines = fs::read_to_string(path).expect("the measurements are there");
+    let rows: Vec<_> =
+        lines.lines().map(|line| serde_json::from_str(line).expect("each line is JSON")).collect();
+    assert_eq!(rows.len(), ROWS);
+    rows
+}
+
+fn name(row: &Json) -> &str {
+    ["name", "session", "printf"].iter().find_map(|key| row[*key].as_str()).expect("it has a name")
+}
+
+/// The program of a row that has one.
+fn source(row: &Json) -> Option<String> {
+    let of_call = || row["printf"].as_str().map(|call| format!("main() {{ printf({call}); }}"));
+    row["program"].as_str().map(str::to_owned).or_else(of_call)
+}
+
+fn differences<T: Target>(session: &mut Session<T>, row: &Json) -> Vec<String> {
+    if let Some(exchange) = row["exchange"].as_array() {
+        return exchange.iter().filter_map(|exchange| unlike(session, exchange)).collect();
+    }
+    let console = run(session);
+    let mut found = Vec::new();
+    for expect in [&row["console"], &row["out"]].into_iter().filter_map(Json::as_str) {
+        if console != expect {
+            found.push(format!("console {console:?}, recorded {expect:?}"));
+        }
+    }
+    Record::new(session).compare(row, &mut found);
+    found
+}
+
+/// Sends a line, or lets time pass; what came back, if it is not what was recorded.
+fn unlike<T: Target>(session: &mut Session<T>, exchange: &Json) -> Option<String> {
+    let [line, expect] = [0, 1].map(|part| exchange[part].as_str().expect("text"));
+    session.tap_wire();
+    session.take_wire();
+    if let Some(seconds) = line.strip_prefix("(run ").and_then(|rest| rest.strip_suffix(')')) {
+        let limit = session.tick_after(seconds.parse().expect("seconds"));
+        session.advance(limit, &mut |_| {});
+    } else {
+        session.exchange(line.as_bytes(), &mut |_| {});
+    }
+    let found = String::from_utf8_lossy(&session.take_wire()).into_owned();
+    (found != expect).then(|| format!("{line}: {found:?}, recorded {expect:?}"))
+}
+
+/// Runs a program to its end; its console.
+fn run<T: Target>(session: &mut Session<T>) -> String {
+    let mut console = String::new();
+    let mut hear = |event: Event| {
+        if let EventKind::ConsoleLine(line) = event.kind {
+            console.push_str(&String::from_utf8_lossy(&line));
+            console.push('\n');
+        }
+    };
+    let _ = session.run(Ticks::new(LONGEST), &mut hear);
+    session.advance(Ticks::new(session.tick().get() + TO_THE_END), &mut hear);
+    console
+}
+
+#[test]
+fn the_model_does_what_was_measured() {
+    Subject::Model.try_all(NOT_YET);
+}
+
+#[test]
+fn the_firmware_does_what_was_measured() {
+    let Some(path) = std::env::var_os("CC67_FIRMWARE") else {
+        println!("not run: CC67_FIRMWARE names no firmware file");
+        return;
+    };
+    let firmware = BootedFirmware::open(path.as_ref()).unwrap_or_else(|error| panic!("{error}"));
+    Subject::Firmware(&firmware).try_all(DIFFERENT);
+}

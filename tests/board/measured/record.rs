@@ -1,0 +1,161 @@
+//! The record that a program leaves in the gather buffer: what it saw slice by slice, and everything at its end.
+
+use cc67_host::Session;
+use cc67_host::target::Target;
+use kmotiondef::structs::Chan;
+use kmotiondef::variables::variable_named;
+use kmotiondef::{CType, GuestAddr};
+use serde_json::Value as Json;
+use vm::memory::Scalar;
+
+/// Words of the record: the axes as they are in memory, the variables of the path, states of the axes, and the rows.
+const PATH: u32 = 2784;
+const STATES: u32 = 2900;
+const SAMPLES: u32 = 2944;
+
+/// How far a double may be off, relative to the larger of it and 1: divisions differ in the last bit.
+const PRECISION: f64 = 1e-9;
+
+/// Columns that are single precision in memory.
+const SINGLES: [&str; 4] = ["ch0->Output", "ch0->integrator", "ch0->Backlash", "ch0->x1last"];
+
+/// Variables of the path, doubles from [`PATH`] on.
+const PATH_VARIABLES: [&str; 32] = [
+    "CS0_t",
+    "TimeExecuted",
+    "TimeBase",
+    "TimeBaseDesired",
+    "TimeBaseDelta",
+    "TimeDownloaded",
+    "TimeLost",
+    "LastFRO",
+    "LastRapidFRO",
+    "DecelTime",
+    "NomDecel2TB2",
+    "StoppingState",
+    "Flushed",
+    "DoingRapid",
+    "CoordSystem0",
+    "LastCoordSystem0",
+    "ParametricIndex",
+    "ParametricIndexWrapped",
+    "KLP",
+    "TauKLP",
+    "VirtualBits",
+    "CheckDoneBuf",
+    "CheckDoneXYZABC",
+    "CheckDone0",
+    "CheckDone1",
+    "CheckDone2",
+    "CheckDone3",
+    "CheckDone4",
+    "CheckDone5",
+    "CheckDone6",
+    "CheckDone7",
+    "VirtualBitsEx",
+];
+
+/// A value, and whether it has single precision.
+struct Value {
+    value: f64,
+    is_single: bool,
+}
+
+impl Value {
+    /// Whether it is the recorded one, to the last bit where it is a whole number or has single precision.
+    fn is(&self, recorded: &Json) -> bool {
+        let Some(recorded) = recorded.as_f64() else { return self.value.is_nan() };
+        if self.is_single {
+            return self.value as f32 == recorded as f32;
+        }
+        (self.value - recorded).abs() <= PRECISION * recorded.abs().max(1.0)
+    }
+}
+
+/// What a program has left in the gather buffer.
+pub(super) struct Record<'s, T> {
+    session: &'s Session<T>,
+    begin: GuestAddr,
+}
+
+impl<'s, T: Target> Record<'s, T> {
+    /// The record of a program that has ended.
+    pub(super) fn new(session: &'s Session<T>) -> Self {
+        let pointer = variable_named("gather_buffer").expect("the board has one").address;
+        let begin = GuestAddr::new(session.peek_object(pointer));
+        Self { session, begin }
+    }
+
+    fn word<S: Scalar>(&self, index: u32) -> S {
+        self.session.peek_object(self.begin.offset(4 * index))
+    }
+
+    /// A value at the end, as the file names it.
+    fn at_end(&self, name: &str) -> Value {
+        if let Some(index) = (0..).zip(PATH_VARIABLES).find(|(_, known)| *known == name) {
+            return Value { value: self.word(PATH + 2 * index.0), is_single: false };
+        }
+        let (axis, field) = name.strip_prefix("chan[").and_then(|rest| rest.split_once("].")).expect(name);
+        let axis: u32 = axis.parse().expect(name);
+        if field == "pcoeff-c" {
+            return Value { value: f64::from(self.word::<i32>(STATES + axis)), is_single: false };
+        }
+        let (offset, ty) = place(field);
+        let word = (axis * Chan::STRUCTURE.size + offset) / 4;
+        let is_single = ty == CType::Float;
+        let value = match ty {
+            CType::Float => f64::from(self.word::<f32>(word)),
+            CType::Double => self.word(word),
+            _ => f64::from(self.word::<i32>(word)),
+        };
+        Value { value, is_single }
+    }
+
+    /// Adds where it differs from a row.
+    pub(super) fn compare(&self, row: &Json, found: &mut Vec<String>) {
+        let columns: Vec<_> =
+            row["columns"].as_array().into_iter().flatten().filter_map(Json::as_str).skip(1).collect();
+        for sample in row["rows"].as_array().into_iter().flatten() {
+            let slice = sample[0].as_u64().expect("a number");
+            // Not every sample that a program stores was written down.
+            let first = SAMPLES + 2 * (slice / samples_every(row)) as u32 * columns.len() as u32;
+            let recorded = sample.as_array().into_iter().flatten().skip(1);
+            for ((column, recorded), at) in columns.iter().zip(recorded).zip((first..).step_by(2)) {
+                let value = Value { value: self.word(at), is_single: SINGLES.contains(column) };
+                if !value.is(recorded) {
+                    found.push(format!("slice {slice} {column}: {:?}, recorded {recorded}", value.value));
+                }
+            }
+        }
+        for (name, recorded) in row["at_end"].as_object().into_iter().flatten() {
+            let value = self.at_end(name);
+            if !value.is(recorded) {
+                found.push(format!("at the end {name}: {:?}, recorded {recorded}", value.value));
+            }
+        }
+        let words = row["gather_words_hex"].as_array().into_iter().flatten().filter_map(Json::as_str);
+        for (index, recorded) in (0..).zip(words) {
+            let word = format!("{:08X}", self.word::<u32>(index));
+            if word != recorded {
+                found.push(format!("word {index}: {word}, recorded {recorded}"));
+            }
+        }
+    }
+}
+
+/// Slices between two samples of a program: it stores one where `n%COUNT==0`.
+fn samples_every(row: &Json) -> u64 {
+    let (_, rest) = row["program"].as_str().and_then(|text| text.rsplit_once("n%")).expect("it samples");
+    rest.split("==").next().and_then(|count| count.parse().ok()).expect("a count")
+}
+
+/// The place of a field of an axis in its structure, and its type; `iir[1][5]` is a word of a filter.
+fn place(name: &str) -> (u32, CType) {
+    if let Some(filter) = name.strip_prefix("iir[") {
+        let (filter, word) = filter.trim_end_matches(']').split_once("][").expect(name);
+        let filter = Chan::IIR.element(filter.parse().expect(name)).offset();
+        return (filter + 4 * word.parse::<u32>().expect(name), CType::Float);
+    }
+    let field = Chan::STRUCTURE.fields.iter().find(|field| field.name == name).expect(name);
+    (field.offset, field.ty)
+}
