@@ -154,10 +154,15 @@ impl Kernel {
     /// Tells what only the end of a run makes certain.
     pub(crate) fn sum_up(&mut self, context: &TickContext<'_>) {
         self.settle_notices(context.now);
-        let Parts { out, machine, io, calls, races, .. } = &mut self.parts;
+        let Parts { out, machine, io, calls, races, pc, .. } = &mut self.parts;
         let held = String::from_utf8_lossy(out.console.held()).into_owned();
         if !held.is_empty() {
             out.remark(context.now, Message::UnfinishedLine { text: held });
+        }
+        if ThreadId::all().all(|thread| !context.threads.state(thread).is_active())
+            && let Some(name) = pc.disk.written()
+        {
+            out.remark(context.now, Message::FileLeftOpen { name: name.to_owned() });
         }
         if let Some(races) = races {
             races.finish(context.threads, context.now, out);

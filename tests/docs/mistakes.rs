@@ -15,7 +15,9 @@ No program in `c-programs/` gets any of these messages, and neither do correct p
 
 /// Those that come to light in the servo interrupt or on the PC, where nobody knows a line, or in another program.
 const WITHOUT_LINE: &[&str] = &[
+    "analog_output_of_an_axis_written",
     "axis_that_runs_away",
+    "file_never_closed",
     "file_written_without_being_open",
     "integrator_that_overshoots",
     "jog_that_nobody_stops",

@@ -5,7 +5,7 @@
 
 use kmotiondef::firmware::Function;
 use kmotiondef::modes::{BacklashMode, InputMode, OutputMode};
-use kmotiondef::structs::Chan;
+use kmotiondef::structs::{Chan, Iir};
 use kmotiondef::variables::KSTEP_PRESENT;
 use kmotiondef::{AxisId, Field};
 use vm::firmware::Caller;
@@ -15,13 +15,17 @@ use super::calls::EndedWait;
 use super::parts::Parts;
 use crate::io::kanalog;
 use crate::machine::Channel;
-use crate::machine::wiring::channel_of;
+use crate::machine::wiring::{DACS, PWMS, channel_of};
 use crate::out::{Message, Speaker};
 use crate::servo::independent::has_motion;
-use crate::views::Typed;
+use crate::views::{Typed, chan};
 
 /// PWM channels that belong to no option board.
 const WITHOUT_AMPLIFIER: std::ops::Range<usize> = 0..8;
+/// Encoder inputs of a board and its SnapAmps.
+const ENCODERS: usize = 16;
+/// Numbers of step generators in `OutputChan0`: the low three bits are the generator, the others the kind of its pins.
+const STEP_CHANNELS: usize = 64;
 /// Step generators of a KStep.
 const ON_KSTEP: std::ops::Range<usize> = 0..4;
 
@@ -29,6 +33,8 @@ const ON_KSTEP: std::ops::Range<usize> = 0..4;
 pub(crate) fn enabled(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId, dest: f64) {
     let memory = &*caller.memory;
     let messages = [
+        no_such_output(memory, function, axis),
+        no_such_input(memory, function, axis),
         shared_channel(memory, function, axis),
         shared_input(memory, function, axis),
         wrong_input(parts, memory, function, axis),
@@ -85,6 +91,20 @@ pub(crate) fn planned(parts: &mut Parts, caller: &Caller<'_>, function: Function
     if seconds > LONG && seconds > 3.0 * cruise {
         let value = if field == "Accel" { accel } else { jerk };
         parts.out.diagnose(caller, Message::SlowRamp { function, axis, seconds, field, value });
+    }
+}
+
+/// A call that ends the motion of an axis: whether it still moves.
+pub(crate) fn ends_motion(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId) {
+    let memory = &*caller.memory;
+    if caller.thread.is_none() || memory.axis(axis, Chan::ENABLE) == 0 || !has_motion(memory, axis) {
+        return;
+    }
+    // An approach to a place never ends, but nobody sees its last part.
+    const SLOW: f64 = 1.0;
+    let speed = f64::from(memory.axis(axis, Chan::LAST_VEL)).abs();
+    if speed > SLOW {
+        parts.out.diagnose(caller, Message::MotionEnded { function, axis, speed });
     }
 }
 
@@ -157,28 +177,86 @@ fn swapped_limits(memory: &GuestMemory, function: Function, axis: AxisId) -> Opt
     (neg > pos).then_some(Message::SoftLimitsSwapped { function, axis, neg, pos })
 }
 
-/// Settings that keep the output of an axis at 0.
+/// A setting of 0, and its effect.
+type Zero = (&'static str, &'static str);
+
+/// The usual effect: nothing drives the motor.
+const STAYS: &str = "its output stays 0 and its motor does not move";
+
+/// Settings that keep an axis from moving.
 fn no_gain(memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
-    let is_zero = |field: Field<f32>| memory.axis(axis, field) == 0.0;
-    let mode = OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE))?;
-    let field = if mode == OutputMode::None {
-        return None;
-    } else if (OutputMode::has_generator(Some(mode)) || mode == OutputMode::DacServo)
-        && is_zero(Chan::OUTPUT_GAIN)
-    {
-        "OutputGain"
-    } else if OutputMode::is_open_loop(Some(mode)) {
-        return None;
-    } else if [Chan::P, Chan::I, Chan::D, Chan::FF_VEL, Chan::FF_ACCEL].into_iter().all(is_zero) {
-        "P, I, D, FFVel and FFAccel"
-    } else if is_zero(Chan::MAX_OUTPUT) {
-        "MaxOutput"
-    } else if is_zero(Chan::MAX_ERR) && is_zero(Chan::FF_VEL) && is_zero(Chan::FF_ACCEL) {
-        "MaxErr"
+    let mode =
+        OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE)).filter(|mode| *mode != OutputMode::None)?;
+    let (field, effect) = zero_of_output(memory, axis, mode)
+        .or_else(|| if OutputMode::is_open_loop(Some(mode)) { None } else { zero_of_loop(memory, axis) })?;
+    Some(Message::NoGain { function, axis, field, effect })
+}
+
+/// A setting of 0 of the output stage.
+fn zero_of_output(memory: &GuestMemory, axis: AxisId, mode: OutputMode) -> Option<Zero> {
+    let has_gain = OutputMode::has_generator(Some(mode)) || mode == OutputMode::DacServo;
+    let is_microstep = matches!(mode, OutputMode::Microstep | OutputMode::ClosedLoopMicrostep);
+    let is_commutated = is_microstep || matches!(mode, OutputMode::Brushless3Ph | OutputMode::Brushless4Ph);
+    if has_gain && memory.axis(axis, Chan::OUTPUT_GAIN) == 0.0 {
+        Some(("OutputGain", STAYS))
+    } else if is_commutated && memory.axis(axis, Chan::INV_DIST_PER_CYCLE) == 0.0 {
+        Some(("invDistPerCycle", "its motor is not commutated and does not turn"))
+    } else if is_microstep && memory.axis(axis, Chan::STEPPER_AMPLITUDE) == 0.0 {
+        Some(("StepperAmplitude", "the coils of its motor have no current"))
     } else {
-        return None;
+        None
+    }
+}
+
+/// A setting of 0 of a closed loop.
+fn zero_of_loop(memory: &GuestMemory, axis: AxisId) -> Option<Zero> {
+    let is_zero = |field: Field<f32>| memory.axis(axis, field) == 0.0;
+    let blocks = |filter: usize| {
+        let filter = chan(axis).field(Chan::IIR.element(filter));
+        [Iir::B0, Iir::B1, Iir::B2].into_iter().all(|field| memory.get(filter.field(field)) == 0.0)
     };
-    Some(Message::NoGain { function, axis, field })
+    let has_no_forward = is_zero(Chan::FF_VEL) && is_zero(Chan::FF_ACCEL);
+    let is_encoder = memory.axis(axis, Chan::INPUT_MODE) == InputMode::Encoder.get();
+    if [Chan::P, Chan::I, Chan::D].into_iter().all(is_zero) && has_no_forward {
+        Some(("P, I, D, FFVel and FFAccel", STAYS))
+    } else if is_zero(Chan::MAX_OUTPUT) {
+        Some(("MaxOutput", STAYS))
+    } else if is_zero(Chan::MAX_ERR) && has_no_forward {
+        Some(("MaxErr", STAYS))
+    } else if blocks(2) {
+        Some(("iir[2].B0, B1 and B2", STAYS))
+    } else if has_no_forward && (blocks(0) || blocks(1)) {
+        Some(("iir[0] or iir[1].B0, B1 and B2", STAYS))
+    } else if is_encoder && is_zero(Chan::INPUT_GAIN0) {
+        Some(("InputGain0", "its Position never changes"))
+    } else if memory.axis(axis, Chan::MAX_FOLLOWING_ERROR) == 0.0 {
+        Some(("MaxFollowingError", "the least error while it moves disables it"))
+    } else {
+        None
+    }
+}
+
+/// An output number that no board has.
+fn no_such_output(memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
+    let channel = memory.axis(axis, Chan::OUTPUT_CHAN0);
+    let mode =
+        OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE)).filter(|mode| *mode != OutputMode::None)?;
+    let (kind, count) = if OutputMode::has_generator(Some(mode)) {
+        ("step generators", STEP_CHANNELS)
+    } else if mode == OutputMode::DacServo {
+        ("analog outputs", DACS)
+    } else {
+        ("PWM channels", PWMS)
+    };
+    let is_there = usize::try_from(channel).is_ok_and(|number| number < count);
+    (!is_there).then_some(Message::NoSuchOutput { function, axis, channel, kind, most: count - 1 })
+}
+
+/// An encoder input that no board has.
+fn no_such_input(memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
+    let input = loop_input(memory, axis)?;
+    let is_there = usize::try_from(input).is_ok_and(|number| number < ENCODERS);
+    (!is_there).then_some(Message::NoSuchInput { function, axis, input })
 }
 
 fn no_backlash_rate(memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {

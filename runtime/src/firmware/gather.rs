@@ -1,6 +1,7 @@
 //! The data recorder's functions. Source: gather-persist-console.md section 1.
 
 use kmotiondef::firmware::Function;
+use kmotiondef::limits::MAX_GATHER_DATA;
 use kmotiondef::modes::GatherType;
 use kmotiondef::structs::{Chan, Gather, GatherValueDef};
 use kmotiondef::variables::{GATHER, GATHER_BUFFER};
@@ -15,6 +16,8 @@ use crate::views::{Typed, chan};
 const IDLE: GuestAddr = GuestAddr::new(0xFFFF_FFF8);
 /// Bytes of a sample of six doubles.
 const SAMPLE: u32 = 48;
+/// Samples of six doubles in the buffer.
+const MOST: usize = MAX_GATHER_DATA / 6;
 
 /// Records destination, position, output and three amplifier readings of an axis.
 pub(crate) fn setup_gather_all_on_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, samples: i32) {
@@ -38,6 +41,9 @@ pub(crate) fn setup_gather_all_on_axis(parts: &mut Parts, caller: &mut Caller<'_
         caller.memory.set(item.field(GatherValueDef::TYPE), kind.get());
         caller.memory.set(item.field(GatherValueDef::ADDR), address);
     }
+    if usize::try_from(samples).is_ok_and(|count| count > MOST) {
+        parts.out.diagnose(caller, Message::RecordingTooLong { samples, most: MOST });
+    }
     let length = SAMPLE.wrapping_mul(samples.max(0) as u32);
     let end = caller.memory.get(GATHER_BUFFER).offset(length);
     caller.memory.set(GATHER.field(Gather::BUFPTR), IDLE);
@@ -52,8 +58,11 @@ pub(crate) fn trigger_gather(_: &mut Parts, caller: &mut Caller<'_>) {
 }
 
 /// 1 when recording has reached its end.
-pub(crate) fn check_done_gather(_: &mut Parts, caller: &mut Caller<'_>) -> i32 {
+pub(crate) fn check_done_gather(parts: &mut Parts, caller: &mut Caller<'_>) -> i32 {
     let memory = &*caller.memory;
+    if memory.get(GATHER.field(Gather::BUFPTR)) == IDLE {
+        parts.out.diagnose(caller, Message::NotRecording {});
+    }
     i32::from(memory.get(GATHER.field(Gather::BUFPTR)) >= memory.get(GATHER.field(Gather::ENDPTR)))
 }
 

@@ -12,7 +12,9 @@ use super::parts::Parts;
 use crate::io::amplifiers::{antiphase, current, recirculate, store_pwm};
 use crate::io::remark_on;
 use crate::io::{bits, kanalog};
+use crate::machine::Channel;
 use crate::out::Message;
+use crate::servo::wired::driver;
 use crate::views::Typed;
 use crate::world::stimulus::Asker;
 use chips::fpga::kanalog_pin;
@@ -159,6 +161,10 @@ fn check_pwm(
         parts.out.diagnose(caller, Message::NoSuchPwm { function, channel });
     } else if !(-most..=most).contains(&value) {
         parts.out.diagnose(caller, Message::PwmRange { function, channel, value, most });
+    }
+    if let Some(axis) = usize::try_from(channel).ok().and_then(|pwm| driver(caller.memory, Channel::Pwm(pwm)))
+    {
+        parts.out.diagnose(caller, Message::PwmOverwritten { function, channel, axis });
     }
 }
 

@@ -80,6 +80,7 @@ pub(crate) fn enable_axis_dest(parts: &mut Parts, caller: &mut Caller<'_>, axis:
 
 /// Puts an axis at a destination and turns it on.
 fn enable(parts: &mut Parts, caller: &mut Caller<'_>, function: Function, axis: AxisId, dest: f64) {
+    axis_check::ends_motion(parts, caller, function, axis);
     axis_check::enabled(parts, caller, function, axis, dest);
     switching::enable(&mut parts.servo, &mut parts.machine, caller.memory, axis, dest);
     take_pins(parts, caller, axis);
@@ -94,6 +95,7 @@ pub(crate) fn disable_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32
 pub(crate) fn zero(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) {
     axis_check::goes_on(parts, caller);
     let Some(axis) = AxisId::new(axis) else { return invalid(parts, Function::Zero.name()) };
+    axis_check::ends_motion(parts, caller, Function::Zero, axis);
     switching::zero(&mut parts.servo, &mut parts.machine, caller.memory, axis);
     hold::abort_if_member(caller.memory, axis);
 }

@@ -44,6 +44,9 @@ pub(crate) fn start_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i
         Some(id) if caller.thread != Some(id) && !start(parts, caller.memory, caller.threads, id) => {
             parts.out.diagnose(caller, Message::ThreadEmpty { thread: id });
         }
+        Some(id) if caller.thread == Some(id) => {
+            parts.out.diagnose(caller, Message::StartsItself { thread: id });
+        }
         Some(_) => {}
         None => invalid(parts, caller, Function::StartThread, thread),
     }

@@ -15,8 +15,8 @@ use crate::views::Typed;
 use chips::stepgen::generator_of;
 
 /// Analog outputs, and PWM channels.
-const DACS: usize = 8;
-const PWMS: usize = 16;
+pub(crate) const DACS: usize = 8;
+pub(crate) const PWMS: usize = 16;
 
 /// Where encoders and motors are connected.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -401,9 +401,36 @@ messages! {
     /// An axis is beyond a soft limit and should move further.
     BeyondSoftLimit { function: Function, axis: AxisId, dest: f64, name: &'static str, limit: f32 } = "beyond-soft-limit", Warning, [per axis],
         "{function}: axis {axis} is at {dest:.0}, beyond {name} = {limit}, so it does not move further";
-    /// A setting keeps the output of an axis at 0.
-    NoGain { function: Function, axis: AxisId, field: &'static str } = "no-gain", Warning, [per axis],
-        "{function}: axis {axis} has {field} = 0, so its output stays 0 and its motor does not move";
+    /// A setting of 0 keeps an axis from moving.
+    NoGain { function: Function, axis: AxisId, field: &'static str, effect: &'static str } = "no-gain", Warning, [per axis],
+        "{function}: axis {axis} has {field} = 0, so {effect}";
+    /// An axis is to drive an output that no board has.
+    NoSuchOutput { function: Function, axis: AxisId, channel: i32, kind: &'static str, most: usize } = "no-such-output", Warning, [per axis],
+        "{function}: axis {axis} has OutputChan0 = {channel}: {kind} have the numbers 0 to {most}";
+    /// An axis is to read an encoder input that no board has.
+    NoSuchInput { function: Function, axis: AxisId, input: i32 } = "no-such-input", Warning, [per axis],
+        "{function}: axis {axis} has InputChan0 = {input}: encoder inputs have the numbers 0 to 7, and 8 to 15 on SnapAmps";
+    /// A call ends the motion of an axis that it does not wait for.
+    MotionEnded { function: Function, axis: AxisId, speed: f64 } = "motion-ended", Warning, [per axis],
+        "{function}: axis {axis} still moves at {speed:.0} units/s, and its motion ends here at once: wait with `while (!CheckDone({axis}));` first";
+    /// A program writes an analog output that an enabled axis drives.
+    DacOverwritten { axis: AxisId, dac: usize } = "dac-overwritten", Warning, [per axis],
+        "a program writes DAC {dac}, which axis {axis} drives too: the axis overwrites it in each tick. Use another output, or disable the axis";
+    /// A program writes a PWM output that an enabled axis drives.
+    PwmOverwritten { function: Function, channel: i32, axis: AxisId } = "pwm-overwritten", Warning, [per axis],
+        "{function}({channel}, …): axis {axis} drives this channel and overwrites it in each tick: disable the axis first";
+    /// A thread asks for the end of a recording that was never started.
+    NotRecording { } = "not-recording", Warning, [once],
+        "CheckDoneGather is 1, because no recording was started after SetupGatherAllOnAxis: call TriggerGather()";
+    /// A recording needs more than the gather buffer holds.
+    RecordingTooLong { samples: i32, most: usize } = "recording-too-long", Warning, [once],
+        "SetupGatherAllOnAxis: {samples} samples of 6 values do not fit in the gather buffer: it has room for {most}";
+    /// A thread starts itself.
+    StartsItself { thread: ThreadId } = "starts-itself", Warning, [per thread],
+        "StartThread({thread}): the thread is running, so the call has no effect: use a loop to repeat a program";
+    /// A file is open for writing when all programs have ended.
+    FileLeftOpen { name: String } = "file-left-open", Hint, [once],
+        "{name} is still open for writing: call fclose, else the PC keeps the file open";
     /// The backlash of an axis is never taken up.
     NoBacklashRate { function: Function, axis: AxisId } = "no-backlash-rate", Warning, [per axis],
         "{function}: axis {axis} has BACKLASH_LINEAR with BacklashRate = 0, so its backlash is never taken up";

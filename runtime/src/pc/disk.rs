@@ -186,6 +186,11 @@ impl Disk {
         }
     }
 
+    /// The file that is open for writing.
+    pub(crate) fn written(&self) -> Option<&str> {
+        self.writing.as_deref()
+    }
+
     fn write(&mut self, text: &str) -> Option<Message> {
         let Some(name) = &self.writing else { return Some(Message::NoOpenFile {}) };
         let written = self.files.append(name, format!("{text}\n").as_bytes());

@@ -12,7 +12,8 @@ use vm::memory::GuestMemory;
 use super::sine::{QUARTER, sine};
 use super::state::Tick;
 use crate::io::amplifiers::{antiphase, current, store_pwm};
-use crate::machine::{Applied, Drive};
+use crate::machine::wiring::{DACS, channel_of};
+use crate::machine::{Applied, Channel, Drive};
 use crate::out::Message;
 use crate::views::{AxisView, Typed};
 
@@ -65,7 +66,8 @@ fn drive_otherwise(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, 
         }
         Some(OutputMode::DacServo) => {
             let applied = Applied::Dac(f64::from(analog(&chan, output)));
-            write_dac(memory, axis, output);
+            note_overwritten(tick, memory, axis);
+            tick.servo.axes[axis.index()].analog = write_dac(memory, axis, output);
             Drive::Loop(command, applied)
         }
         Some(mode @ (OutputMode::Brushless3Ph | OutputMode::Brushless4Ph)) => {
@@ -155,12 +157,27 @@ fn analog(chan: &AxisView<'_>, output: f32) -> i32 {
     (value.wrapping_add(2048) & 0xfff) - 2048
 }
 
-/// Writes it.
-pub(super) fn write_dac(memory: &mut GuestMemory, axis: AxisId, output: f32) {
+/// Writes it, and returns which output has got which word.
+pub(super) fn write_dac(memory: &mut GuestMemory, axis: AxisId, output: f32) -> Option<(usize, i16)> {
     let chan = AxisView::of(memory, axis);
     let (value, channel) = (analog(&chan, output), chan.get(Chan::OUTPUT_CHAN0));
-    if let Some(channel) = usize::try_from(channel).ok().filter(|&channel| channel < 8) {
-        memory.set(DAC_BUFFER.element(channel), (value.wrapping_sub(2048) & 0xfff) as i16);
+    let channel = usize::try_from(channel).ok().filter(|&channel| channel < DACS)?;
+    let word = (value.wrapping_sub(2048) & 0xfff) as i16;
+    memory.set(DAC_BUFFER.element(channel), word);
+    Some((channel, word))
+}
+
+/// Tells of an analog output that was written since the axis wrote it, unless another axis has done so.
+fn note_overwritten(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId) {
+    let Some((dac, word)) = tick.servo.axes[axis.index()].analog else { return };
+    if memory.get(DAC_BUFFER.element(dac)) == word {
+        return;
+    }
+    let drives = |other: AxisId| {
+        memory.axis(other, Chan::ENABLE) != 0 && channel_of(memory, other) == Some(Channel::Dac(dac))
+    };
+    if AxisId::all().filter(|other| drives(*other)).eq([axis]) {
+        tick.out.remark(tick.now, Message::DacOverwritten { axis, dac });
     }
 }
 

@@ -28,6 +28,8 @@ pub(crate) struct AxisMemory {
     pub(super) has_run: bool,
     /// The velocity in the tick before.
     pub(super) last_velocity: f64,
+    /// The analog output that the axis wrote in the last tick, and the word.
+    pub(super) analog: Option<(usize, i16)>,
     /// What kind of motion of the axis a feedhold interrupted.
     pub(crate) held: Option<LastMotion>,
 }

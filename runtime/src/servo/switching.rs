@@ -89,6 +89,8 @@ pub(crate) fn switch_off(servo: &mut Servo, machine: &mut Machine, memory: &mut 
         AtRest::First => stop(&channels[..1]),
         AtRest::Both => stop(&channels),
         AtRest::FirstAndNext => stop(&[channels[0], channels[0].wrapping_add(1)]),
-        AtRest::Analog => write_dac(memory, axis, 0.0),
+        AtRest::Analog => {
+            write_dac(memory, axis, 0.0);
+        }
     }
 }

@@ -1,0 +1,16 @@
+//@ says: thread 1 at analog_output_number_9.c:13:5 in `main`: EnableAxis: axis 0 has OutputChan0 = 9: analog outputs have the numbers 0 to 7
+#include "KMotionDef.h"
+
+main()
+{
+    ch0->InputMode = ENCODER_MODE;
+    ch0->OutputMode = DAC_SERVO_MODE;
+    ch0->P = 1;
+    ch0->Vel = 10000;
+    ch0->Accel = 100000;
+    ch0->Jerk = 1e6;
+    ch0->OutputChan0 = 9;
+    EnableAxis(0);
+    Move(0, 1000);
+    while (!CheckDone(0)) WaitNextTimeSlice();
+}

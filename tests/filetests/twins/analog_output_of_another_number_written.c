@@ -1,0 +1,18 @@
+#include "KMotionDef.h"
+
+main()
+{
+    ch0->InputMode = ENCODER_MODE;
+    ch0->OutputMode = DAC_SERVO_MODE;
+    ch0->P = 1;
+    ch0->Vel = 10000;
+    ch0->Accel = 100000;
+    ch0->Jerk = 1e6;
+    EnableAxis(0);
+    Delay_sec(0.1);
+    DAC(1, 500);
+    Delay_sec(0.1);
+    DisableAxis(0);
+    DAC(0, 500);
+    Delay_sec(0.1);
+}

@@ -1,0 +1,16 @@
+#include "KMotionDef.h"
+
+main()
+{
+    ch0->InputMode = NO_INPUT_MODE;
+    ch0->OutputMode = STEP_DIR_MODE;
+    ch0->Vel = 10000;
+    ch0->Accel = 100000;
+    ch0->Jerk = 1e6;
+    EnableAxisDest(0, 0);
+    Jog(0, -1000);
+    Delay_sec(0.5);
+    Jog(0, 0);
+    while (!CheckDone(0)) WaitNextTimeSlice();
+    Zero(0);
+}
