@@ -24,7 +24,6 @@ mod state;
 mod tests;
 mod translate;
 
-use std::rc::Rc;
 use std::sync::Arc;
 
 use kmotiondef::{CodeAddr, GuestAddr};
@@ -62,7 +61,7 @@ pub struct NativeEngine {
     /// True if accesses to shared memory are reported; the interpreter does so.
     observed: bool,
     /// Identifies this engine: a suspended fiber can continue only in its own engine.
-    identity: Rc<()>,
+    identity: Arc<()>,
 }
 
 /// The contexts of a native engine as they were at an instant.
@@ -70,7 +69,7 @@ pub struct NativeEngine {
 pub struct NativeSnapshot {
     contexts: [Option<Saved>; ContextId::COUNT],
     bytecode: BytecodeSnapshot,
-    identity: Rc<()>,
+    identity: Arc<()>,
 }
 
 impl NativeEngine {
@@ -147,12 +146,12 @@ impl Executor for NativeEngine {
         NativeSnapshot {
             contexts: std::array::from_fn(|index| self.contexts[index].as_ref().map(Context::save)),
             bytecode: self.bytecode.snapshot(),
-            identity: Rc::clone(&self.identity),
+            identity: Arc::clone(&self.identity),
         }
     }
 
     fn restore(&mut self, snapshot: &NativeSnapshot) -> Result<(), ForeignSnapshot> {
-        if !Rc::ptr_eq(&snapshot.identity, &self.identity) {
+        if !Arc::ptr_eq(&snapshot.identity, &self.identity) {
             return Err(ForeignSnapshot);
         }
         self.bytecode.restore(&snapshot.bytecode)?;

@@ -8,7 +8,6 @@
 
 use std::cell::Cell;
 use std::mem::{ManuallyDrop, MaybeUninit};
-use std::rc::Rc;
 use std::sync::Arc;
 use std::{fmt, ptr};
 
@@ -46,9 +45,10 @@ struct Home {
 
 impl Home {
     /// A place with a stack of this many bytes.
-    fn new(size: usize, guest: Stack) -> Rc<Self> {
+    #[expect(clippy::arc_with_non_send_sync, reason = "fibers and their copies are `Send`, which count it")]
+    fn new(size: usize, guest: Stack) -> Arc<Self> {
         let stack = DefaultStack::new(size).expect("the host has address space for a stack");
-        Rc::new(Self {
+        Arc::new(Self {
             #[cfg(windows)]
             fields: Cell::new(corosensei::stack::Stack::teb_fields(&stack)),
             stack,
@@ -107,9 +107,16 @@ type Running = ManuallyDrop<Coroutine<u64, Request, (), View>>;
 /// A native stack with one call of a program's function on it.
 pub(super) struct Fiber {
     coroutine: Running,
-    place: Rc<Home>,
+    place: Arc<Home>,
     rest: Rest,
 }
+
+// SAFETY: a fiber may be continued by another thread than the one that began it. Nothing on its stack belongs to a
+// thread: the frames are those of compiled code, which knows guest memory and the state by addresses, and of the body,
+// `enter` and `leave`, none of which has a thread-local. It is used through `&mut` alone, by one thread at a time. Its
+// home it shares with its own copies, which reach into the home only in `SavedFiber::fiber`, for the engine that the
+// fiber is in; the count of them is atomic.
+unsafe impl Send for Fiber {}
 
 /// The parts of a fiber besides its coroutine.
 #[derive(Clone)]
@@ -133,7 +140,7 @@ impl Fiber {
     /// `old` is discarded, and its place used again if it is large enough.
     pub(super) fn new(code: Arc<MachineCode>, function: usize, stack: Stack, old: Option<Self>) -> Self {
         let size = code.stack_size(stack.size());
-        let kept = old.map(|old| Rc::clone(&old.place)).filter(|place| place.size >= size);
+        let kept = old.map(|old| Arc::clone(&old.place)).filter(|place| place.size >= size);
         let place = kept.unwrap_or_else(|| Home::new(size, stack));
         place.take();
         let state = &place.state;
@@ -150,7 +157,7 @@ impl Fiber {
             // `resume` sets the state's pointers each time before this runs.
             unsafe { entry::enter(begin, thunk, shared) };
         };
-        let coroutine = ManuallyDrop::new(Coroutine::with_stack(View(Rc::as_ptr(&place)), body));
+        let coroutine = ManuallyDrop::new(Coroutine::with_stack(View(Arc::as_ptr(&place)), body));
         Self { coroutine, place, rest: Rest { code, ram: None, resolving: false } }
     }
 
@@ -171,7 +178,7 @@ impl Fiber {
         unsafe { ptr::copy_nonoverlapping(top, bytes.as_mut_ptr(), bytes.len()) };
         // SAFETY: the copy is never dropped; it is used after a fiber has been made of it, when this one is gone.
         let coroutine = unsafe { ptr::read(&raw const self.coroutine) };
-        let (place, rest) = (Rc::clone(&self.place), self.rest.clone());
+        let (place, rest) = (Arc::clone(&self.place), self.rest.clone());
         SavedFiber { coroutine, bytes, state: Box::new(self.state().clone()), place, rest }
     }
 
@@ -245,9 +252,13 @@ pub(super) struct SavedFiber {
     coroutine: Running,
     bytes: Box<[MaybeUninit<u8>]>,
     state: Box<State>,
-    place: Rc<Home>,
+    place: Arc<Home>,
     rest: Rest,
 }
+
+// SAFETY: as for `Fiber`. A copy is bytes and a state of its own; the home it only keeps, until its engine, which is then
+// used by the same thread, has it put back there.
+unsafe impl Send for SavedFiber {}
 
 impl SavedFiber {
     /// The fiber. The one that is in its place must be gone.
@@ -260,7 +271,7 @@ impl SavedFiber {
         self.place.state.put_back(&self.state);
         // SAFETY: what the coroutine refers to is its stack, which is as it was when the copy was made.
         let coroutine = unsafe { ptr::read(&raw const self.coroutine) };
-        Fiber { coroutine, place: Rc::clone(&self.place), rest: self.rest.clone() }
+        Fiber { coroutine, place: Arc::clone(&self.place), rest: self.rest.clone() }
     }
 }
 

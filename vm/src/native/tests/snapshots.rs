@@ -1,5 +1,6 @@
 //! A machine continues from each of its snapshots as it continued when the snapshot was taken, on every engine.
 
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use kmotiondef::map::SDRAM;
@@ -182,4 +183,34 @@ fn a_snapshot_takes_little_time_and_memory() {
     // Many times what it takes, for a computer that has other things to do.
     assert!(taken < Duration::from_millis(200), "{taken:?}");
     assert!(second.memory().bytes_beyond(first.memory()) < 0x10_0000);
+}
+
+#[test]
+fn a_machine_and_its_snapshots_continue_in_other_threads() {
+    let elsewhere = |work: Box<dyn FnOnce() + Send>| std::thread::spawn(work).join().expect("nothing panics");
+    for seed in 0..8 {
+        let mut straight = machine_of::<NativeEngine>(seed);
+        straight.run_until(Ticks::new(160));
+        let mut rig = Arc::new(Mutex::new((machine_of::<NativeEngine>(seed), None)));
+        for tick in (10..=160).step_by(10) {
+            let moved = Arc::clone(&rig);
+            elsewhere(Box::new(move || {
+                let (machine, kept) = &mut *moved.lock().expect("nothing panics");
+                machine.run_until(Ticks::new(tick));
+                if tick == 80 {
+                    *kept = Some(keep(machine));
+                }
+            }));
+        }
+        assert_same(&rig.lock().expect("nothing panics").0, &straight);
+        let moved = Arc::clone(&rig);
+        elsewhere(Box::new(move || {
+            let (machine, kept) = &mut *moved.lock().expect("nothing panics");
+            go_back(machine, kept.as_ref().expect("it was kept"));
+            machine.run_until(Ticks::new(160));
+        }));
+        let (machine, _) =
+            &*Arc::get_mut(&mut rig).expect("the threads are gone").get_mut().expect("nothing panics");
+        assert_same(machine, &straight);
+    }
 }
