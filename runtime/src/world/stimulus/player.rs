@@ -141,11 +141,25 @@ impl Player {
                 Due::Check => {}
             }
         }
+        if acted {
+            self.forget_done();
+        }
         self.is_idle &= !acted;
         self.watch(stage, context);
         let turns = self.plans.is_turning();
         self.plans.run(stage, context);
         acted || turns
+    }
+
+    /// Forgets the last statements as far as they were due once and have acted: those that a person executes one after
+    /// another would otherwise cost more with each.
+    fn forget_done(&mut self) {
+        while let (Some(Rule { trigger: Trigger::At(_), .. }), Some(Progress { happened: true, .. })) =
+            (self.rules.last(), self.progress.last())
+        {
+            self.rules.pop();
+            self.progress.pop();
+        }
     }
 
     fn watch_bits(&mut self, changes: &[BitChange]) {
