@@ -305,6 +305,36 @@ impl Expression {
         Some((address, word.to_le_bytes().into_iter().take(size).collect()))
     }
 
+    /// Reports whether a value can be stored in it, as far as its form says.
+    #[must_use]
+    pub fn is_place(&self) -> bool {
+        match self.stored_place().map(|place| &self.function.places[place].kind) {
+            Some(PlaceKind::Symbol(symbol, _)) => {
+                matches!(self.meanings.get(symbol), Some(Meaning::Variable(_)))
+            }
+            Some(PlaceKind::Pointer(..) | PlaceKind::Local(..) | PlaceKind::Bits(..)) => true,
+            None => false,
+        }
+    }
+
+    /// The least and the greatest value of the integer that is stored in it; `None` of anything else.
+    #[must_use]
+    pub fn limits(&self) -> Option<(f64, f64)> {
+        let place = &self.function.places[self.stored_place()?];
+        if place.ty == Types::BOOL || place.ty.is_floating() {
+            return None;
+        }
+        let width = match place.kind {
+            PlaceKind::Bits(_, range) => u32::from(range.width),
+            PlaceKind::Symbol(..) | PlaceKind::Local(..) | PlaceKind::Pointer(..) => {
+                8 * size_of(place.ty) as u32
+            }
+        };
+        let is_signed = place.ty != Types::UNSIGNED_LONG_LONG && constants::wrap(-1, place.ty) < 0;
+        let span = libm::ldexp(1.0, width.cast_signed());
+        Some(if is_signed { (-span / 2.0, span / 2.0 - 1.0) } else { (0.0, span - 1.0) })
+    }
+
     /// The place that the expression is, below the conversion of what is read from it.
     fn stored_place(&self) -> Option<PlaceId> {
         let kind = |id: ExprId| &self.function.exprs[id].kind;
@@ -510,6 +540,24 @@ main() { int local; }
             let compiled = compile(scope(&symbols, &Options::default()), expression, &["bit46"]);
             let stored = compiled.expect(expression).store(value, &Pattern);
             assert_eq!(stored.map(|(at, bytes)| (at.get(), bytes)), expect, "{expression}");
+        }
+    }
+
+    #[test]
+    fn a_place_knows_the_limits_of_its_type() {
+        for (expression, expect) in [
+            ("count", Some(Some((-2_147_483_648.0, 2_147_483_647.0)))),
+            ("table[1]", Some(None)),
+            ("fields.low", Some(Some((0.0, 7.0)))),
+            ("fields.high", Some(Some((-8.0, 7.0)))),
+            ("*(unsigned short *)0x80050000", Some(Some((0.0, 65_535.0)))),
+            ("count + 1", None),
+            ("bit46", None),
+        ] {
+            let symbols = symbols();
+            let compiled = compile(scope(&symbols, &Options::default()), expression, &["bit46"]);
+            let compiled = compiled.expect(expression);
+            assert_eq!(compiled.is_place().then(|| compiled.limits()), expect, "{expression}");
         }
     }
 

@@ -28,6 +28,8 @@ pub struct Recording {
     text: String,
     is_incomplete: bool,
     is_off: bool,
+    /// Most bytes of the text; `None` without a limit.
+    limit: Option<usize>,
 }
 
 impl Recording {
@@ -55,6 +57,16 @@ impl Recording {
         } else {
             // Writing to a string cannot fail.
             let _ = writeln!(self.text, "{}", statement(tick, action));
+            self.end_at_limit(tick);
+        }
+    }
+
+    /// Ends the recording when its text is as long as it may be.
+    fn end_at_limit(&mut self, tick: Ticks) {
+        if let Some(limit) = self.limit.filter(|limit| self.text.len() >= *limit) {
+            (self.is_off, self.is_incomplete) = (true, true);
+            let end = statement(tick, "the recording ends");
+            let _ = writeln!(self.text, "# {end}: it has {limit} bytes, and what was done later is missing");
         }
     }
 
@@ -68,6 +80,7 @@ impl Recording {
         self.is_incomplete = true;
         if !self.is_off {
             let _ = writeln!(self.text, "# {}: no statement does this", statement(tick, what));
+            self.end_at_limit(tick);
         }
     }
 }
@@ -118,6 +131,11 @@ impl<T: Target> Session<T> {
     /// Keeps no account of what is done by hand from now on, for a session without end.
     pub const fn stop_recording(&mut self) {
         self.recording.is_off = true;
+    }
+
+    /// Ends the account of what is done by hand when its text has `bytes` bytes; the text then says so.
+    pub const fn limit_recording(&mut self, bytes: usize) {
+        self.recording.limit = Some(bytes);
     }
 
     /// Does what a statement of a stimulus says, such as `bit 136 = 1`, `adc 3 = 1500`, `pulse bit 137 for 50ms` or
@@ -248,6 +266,19 @@ mod tests {
         let stimulus = Stimulus::parse(&format!("uart {}", quoted(&all)), SOURCE).expect("it is right");
         let action = stimulus.rules.into_iter().next().expect("a statement").action;
         assert_eq!(action, runtime::stimulus::Action::Uart(all));
+    }
+
+    #[test]
+    fn a_recording_ends_at_its_limit_and_says_so() {
+        let mut session = crate::Setup::default().session().expect("an empty board");
+        session.limit_recording(100);
+        for number in 0..50 {
+            session.act(&format!("persist 7 = {number}")).expect("it is a statement");
+        }
+        let text = session.recording().text();
+        assert!(text.lines().count() < 10 && text.len() < 300, "{text}");
+        assert!(text.ends_with("it has 100 bytes, and what was done later is missing\n"), "{text}");
+        assert!(!session.recording().is_complete() && Stimulus::parse(text, SOURCE).is_ok());
     }
 
     #[test]

@@ -73,6 +73,15 @@ enum Watched {
 }
 
 impl Watch {
+    /// The least and the greatest value of the integer that is stored here; `None` of anything else.
+    #[must_use]
+    pub fn limits(&self) -> Option<(f64, f64)> {
+        match &self.0 {
+            Watched::Item(_) => None,
+            Watched::Compiled(_, compiled) => compiled.expression.limits(),
+        }
+    }
+
     /// The present value on a board.
     pub(super) fn value<T: Target>(&self, target: &T) -> f64 {
         match &self.0 {
@@ -139,10 +148,30 @@ impl<T: Target> Session<T> {
     /// # Errors
     /// What is wrong with the expression, or that it is no place.
     pub fn write(&mut self, text: &str, value: f64) -> Result<(), WatchError> {
-        let no_place = || WatchError::NoPlace(text.to_owned());
-        let Watch(Watched::Compiled(_, compiled)) = self.watch(&with_user_data(text))? else {
-            return Err(no_place());
-        };
+        let place = self.place(text)?;
+        self.write_to(&place, value)
+    }
+
+    /// Prepares a variable, a field, an element or what a pointer points at to be [written](Self::write_to), once or
+    /// again and again.
+    ///
+    /// # Errors
+    /// What is wrong with the expression, or that it is no place.
+    pub fn place(&self, text: &str) -> Result<Watch, WatchError> {
+        let watch = self.watch(&with_user_data(text))?;
+        match &watch.0 {
+            Watched::Compiled(_, compiled) if compiled.expression.is_place() => Ok(watch),
+            Watched::Compiled(..) | Watched::Item(_) => Err(WatchError::NoPlace(text.to_owned())),
+        }
+    }
+
+    /// Stores a value in a [place](Self::place), as an assignment in C would.
+    ///
+    /// # Errors
+    /// There is no memory where a pointer points.
+    pub fn write_to(&mut self, place: &Watch, value: f64) -> Result<(), WatchError> {
+        let no_place = || WatchError::NoPlace(place.to_string());
+        let Watch(Watched::Compiled(text, compiled)) = place else { return Err(no_place()) };
         let reader = OnTarget { target: &self.target, items: &compiled.items, has_failed: Cell::new(false) };
         let (address, bytes) = compiled.expression.store(value, &reader).ok_or_else(no_place)?;
         self.target.write(address, &bytes).map_err(|_| no_place())?;
