@@ -5,7 +5,7 @@ use std::sync::{LazyLock, Mutex, PoisonError, TryLockError};
 use std::thread::{self, ThreadId};
 use std::time::{Duration, Instant};
 
-use cc67_host::Until;
+use cc67_host::{Session, Target, Until};
 use kmotiondef::Bit;
 use kmotiondef::limits::TIMEBASE;
 use numpy::PyArray1;
@@ -13,10 +13,9 @@ use pyo3::prelude::*;
 use vm::interp::BytecodeEngine;
 use vm::native::{NativeEngine, SharedCode};
 
-use crate::control::{Control, Fault, Portion, Rig, Said, field_names};
-use crate::errors::{Error, ExpectationError, ThreadError, TrapError, input};
+use crate::control::{Control, Fault, Field, Portion, Rig, Said, Unwritten, fields};
+use crate::errors::{Error, ExpectationError, RangeError, ThreadError, TrapError, input};
 use crate::program::{LinkableProgram, thread};
-use crate::residence::Residence;
 use crate::setup::{BoardArguments, refused};
 use crate::trace::MOST_VALUES;
 
@@ -34,7 +33,8 @@ type Column<'py> = Bound<'py, PyArray1<f64>>;
 
 /// A board, and the thread that uses it.
 struct Used {
-    residence: Residence,
+    /// The board; `None` after it is closed.
+    control: Option<Box<dyn Control + Send>>,
     owner: Option<ThreadId>,
 }
 
@@ -83,15 +83,13 @@ impl Board {
                 "the board belongs to the thread that used it first; that thread can give it up with `release()`",
             ));
         }
-        let residence = &mut used.residence;
-        let result = py.detach(move || residence.call(work));
-        result.ok_or_else(|| Error::new_err("the thread of the board has ended, which is a bug in cc67"))
+        let control = used.control.as_mut().ok_or_else(|| Error::new_err("the board is closed"))?;
+        Ok(py.detach(move || work(control.as_mut())))
     }
 
     /// A run in portions, with a look at signals every [`LOOK`]; whether what it waited for came true.
     ///
-    /// The board's thread goes from one portion to the next by itself: changing threads after each would cost more than
-    /// many a portion does. Where it looks changes nothing that a program can see.
+    /// Where it looks changes nothing that a program can see.
     fn run_in_portions(
         &self,
         py: Python<'_>,
@@ -127,6 +125,23 @@ fn exception(fault: Fault) -> PyErr {
     }
 }
 
+/// A session as a board has it.
+fn boxed<T: Target + Send + 'static>(session: Session<T>) -> Box<dyn Control + Send>
+where
+    T::Snapshot: Send,
+{
+    Box::new(Rig::new(session))
+}
+
+/// Converts the reason why a value is not stored into an exception.
+fn unwritten(reason: Unwritten) -> PyErr {
+    match reason {
+        Unwritten::Wrong(error) => input(error),
+        Unwritten::TooLarge(text) => RangeError::new_err(text),
+        Unwritten::Refused(text) => Error::new_err(text),
+    }
+}
+
 fn lines(lines: &[Said]) -> Vec<(f64, String)> {
     lines.iter().map(|line| (line.time, line.text.clone())).collect()
 }
@@ -143,24 +158,15 @@ impl Board {
     fn new(py: Python<'_>, request: BoardArguments<'_>, engine: &str) -> PyResult<Self> {
         let arranged = request.arrange()?;
         let setup = arranged.setup;
-        let residence = match (engine, arranged.firmware) {
-            (_, Some(firmware)) => py
-                .detach(|| setup.session_on_firmware(&firmware))
-                .map(|session| Residence::Here(Box::new(Rig::new(session)))),
-            ("bytecode", None) => py
-                .detach(|| setup.session_on(BytecodeEngine::default()))
-                .map(|session| Residence::Here(Box::new(Rig::new(session)))),
+        let control = match (engine, arranged.firmware) {
+            (_, Some(firmware)) => py.detach(|| setup.session_on_firmware(&firmware).map(boxed)),
+            ("bytecode", None) => py.detach(|| setup.session_on(BytecodeEngine::default()).map(boxed)),
             ("native", None) => {
-                let make = move || {
-                    let engine = NativeEngine::with_shared(COMPILED.clone());
-                    setup.session_on(engine).map(Rig::new)
-                };
-                let residence = py.detach(|| Residence::elsewhere(make));
-                residence.ok_or_else(|| Error::new_err("the system cannot start a thread for the board"))?
+                py.detach(|| setup.session_on(NativeEngine::with_shared(COMPILED.clone())).map(boxed))
             }
             _ => return Err(input(format!("engine must be \"native\" or \"bytecode\", not {engine:?}"))),
         };
-        let used = Mutex::new(Used { residence: residence.map_err(refused)?, owner: None });
+        let used = Mutex::new(Used { control: Some(control.map_err(refused)?), owner: None });
         Ok(Self { used, axes: arranged.axes, number: NUMBERS.fetch_add(1, Ordering::Relaxed) })
     }
 
@@ -169,6 +175,24 @@ impl Board {
         self.call(py, |_| ())?;
         self.used.lock().unwrap_or_else(PoisonError::into_inner).owner = None;
         Ok(())
+    }
+
+    /// Free the memory of the board; whatever uses it afterwards raises `Error`.
+    fn close(&self, py: Python<'_>) -> PyResult<()> {
+        let Ok(mut used) = self.used.try_lock() else {
+            return Err(ThreadError::new_err(
+                "the board is running in another thread, which has to end first",
+            ));
+        };
+        let control = used.control.take();
+        py.detach(|| drop(control));
+        Ok(())
+    }
+
+    #[getter]
+    fn is_closed(&self) -> bool {
+        // What runs is not closed.
+        self.used.try_lock().is_ok_and(|used| used.control.is_none())
     }
 
     fn tick(&self, py: Python<'_>) -> PyResult<u64> {
@@ -307,17 +331,21 @@ impl Board {
     }
 
     fn write(&self, py: Python<'_>, expression: String, value: f64) -> PyResult<()> {
-        self.call(py, move |control| control.write(&expression, value))?.map_err(input)
+        self.call(py, move |control| control.write(&expression, value))?.map_err(unwritten)
     }
 
     fn field(&self, py: Python<'_>, axis: usize, name: String) -> PyResult<Option<f64>> {
         self.call(py, move |control| control.field(axis, &name))
     }
 
-    /// Return the names of the numeric fields of an axis, with the meaning of each.
+    fn set_field(&self, py: Python<'_>, axis: usize, name: String, value: f64) -> PyResult<bool> {
+        self.call(py, move |control| control.set_field(axis, &name, value))?.map_err(unwritten)
+    }
+
+    /// Return the name of each numeric field of an axis, its meaning, and whether it is an integer.
     #[staticmethod]
-    fn field_names() -> Vec<(&'static str, &'static str)> {
-        field_names()
+    fn field_names() -> Vec<(&'static str, &'static str, bool)> {
+        fields().map(|Field { name, doc, is_integer }| (name, doc, is_integer)).collect()
     }
 
     fn user_data(&self, py: Python<'_>, index: usize) -> PyResult<Option<i32>> {
@@ -342,8 +370,10 @@ impl Board {
     /// Forget a saved state, from any thread; a board that is running at that moment keeps it.
     fn forget(&self, number: u64) {
         if let Ok(mut used) = self.used.try_lock() {
-            // A board whose thread is gone has nothing to forget.
-            let _ = used.residence.call(move |control| control.forget(number));
+            // A board that is closed has nothing to forget.
+            if let Some(control) = &mut used.control {
+                control.forget(number);
+            }
         }
     }
 

@@ -10,6 +10,7 @@ use pyo3::exceptions::PyOSError;
 pyo3::import_exception!(cc67._errors, Error);
 pyo3::import_exception!(cc67._errors, InputError);
 pyo3::import_exception!(cc67._errors, LoadError);
+pyo3::import_exception!(cc67._errors, RangeError);
 pyo3::import_exception!(cc67._errors, ThreadError);
 pyo3::import_exception!(cc67._errors, TrapError);
 pyo3::import_exception!(cc67._errors, ExpectationError);

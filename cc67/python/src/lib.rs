@@ -1,11 +1,10 @@
 //! The native half of the Python package `cc67`: boards and programs, without a Pythonic interface.
 //!
 //! The public interface is written in Python, in `python/cc67`: classes, properties, exceptions, help texts. It calls
-//! this crate: a [session](cc67_host::Session) on either engine and in the right thread, and the compiler's driver.
+//! this crate: a [session](cc67_host::Session) on either engine, and the compiler's driver.
 //!
 //! ```text
 //! board      a board for Python: its owning thread, signals while it runs, exceptions
-//! residence  where a session lives: in the calling thread, or in its own
 //! control    a session on any engine behind one set of calls; its messages so far
 //! trace      values over time, in columns
 //! setup      the initial state of a board
@@ -27,7 +26,6 @@ mod control;
 mod errors;
 mod image;
 mod program;
-mod residence;
 mod setup;
 mod trace;
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 from typing import Any
 
 import cc67
@@ -60,3 +62,18 @@ VARIATIONS: dict[str, list[Any]] = {
     "axis.0.ku": [20, 35, 50, 65, 80],
     "axis.0.inertia": [1, 1.5],
 }
+
+
+def kills_at_three(board: cc67.Board) -> float:
+    """Return the start value; the process of the run is killed if it is 3."""
+    if board.persist[5] == 3:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return float(board.persist[5])
+
+
+def waits_for_ever(board: cc67.Board, inputs: dict[str, Any]) -> float:
+    """Write the number of the process to a file, then never end."""
+    with open(inputs["file"], "a") as file:
+        file.write(f"{os.getpid()}\n")
+    while True:
+        board.run_for(1.0)

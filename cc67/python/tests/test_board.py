@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import time
 import weakref
 from pathlib import Path
 from typing import Any
@@ -147,9 +148,9 @@ def test_bits_are_levels_and_inputs_are_driven() -> None:
         with pytest.raises(IndexError, match="0 to 2047"):
             board.bits[wrong]
     with pytest.raises(TypeError):
-        board.bits["x"]  # type: ignore[index]
+        board.bits["x"]  # type: ignore[call-overload]
     with pytest.raises(TypeError):
-        board.bits[136] = "on"  # type: ignore[assignment]
+        board.bits[136] = "on"  # type: ignore[call-overload]
 
 
 def test_analog_inputs_are_counts() -> None:
@@ -167,9 +168,9 @@ def test_persist_has_integers_floats_and_doubles() -> None:
     board = cc67.Board(set={"persist.5": 3, "persist.float.6": 1.5, "persist.double.10": -0.1})
     assert (board.persist[5], board.persist.float[6], board.persist.double[10]) == (3, 1.5, -0.1)
     board.persist[7] = -1
-    assert board.persist[7] == -1
-    board.persist[7] = 0xFFFFFFFF
-    assert board.persist[7] == -1
+    assert board.persist[7] == -1 and board.persist[5:8] == [3, 0x3FC00000, -1]
+    board.persist[20:23] = [1, 2, 3]
+    assert board.persist[19:24] == [0, 1, 2, 3, 0] and list(board.persist)[20:23] == [1, 2, 3]
     board.persist.float[8] = 1.23
     assert board.persist[8] == 0x3F9D70A4
     assert board.command("GetPersistHex 8").lower().endswith("3f9d70a4")
@@ -180,11 +181,84 @@ def test_persist_has_integers_floats_and_doubles() -> None:
     with pytest.raises(IndexError):
         board.persist.double[199] = 1.0
     with pytest.raises(TypeError, match=r"persist.float\[5\]"):
-        board.persist[5] = 1.5  # type: ignore[assignment]
-    with pytest.raises(cc67.InputError, match="32 bits"):
-        board.persist[5] = 1 << 40
-    with pytest.raises(cc67.InputError):
+        board.persist[5] = 1.5  # type: ignore[call-overload]
+    with pytest.raises(cc67.InputError, match="2 values for 3 element"):
+        board.persist[0:3] = [1, 2]
+    with pytest.raises(IndexError, match="0 to 200"):
+        board.persist[190:201]
+
+
+def test_a_number_that_does_not_fit_is_an_overflow(write: Write) -> None:
+    board = cc67.Board(programs=[write('#include "KMotionDef.h"\nchar c; int count; unsigned u; main() { c = count = u = 0; }')])
+    for number in (2**31, 1 << 40, -(2**31) - 1):
+        with pytest.raises(OverflowError, match="does not fit"):
+            board.persist[5] = number
+        with pytest.raises(cc67.RangeError, match="-2147483648 to 2147483647"):
+            board.write("count", number)
+    for expression, value in (("c", 200), ("u", -1), ("chan[0].OutputMode", 1e10), ("count", float("nan"))):
+        with pytest.raises(OverflowError, match="does not fit"):
+            board.write(expression, value)
+    with pytest.raises(OverflowError):
+        board.axes[0].OutputMode = 2**31
+    with pytest.raises(OverflowError):
         board.persist.float[5] = 1e300
+    with pytest.raises(OverflowError):
+        board.adc[0] = 2048
+    board.write("c", -128)
+    board.write("u", 2**32 - 1)
+    assert board.read("c") == -128 and board.read("u") == 2**32 - 1 and board.read("count") == 0
+
+
+def test_what_is_written_is_in_the_words_of_the_program_that_is_there(write: Write) -> None:
+    board = cc67.Board(load=[write("int first, count; main() { first = count; }", "one.c")])
+    board.write("count", 5)
+    board.load(write("int count, other; main() { other = count; }", "two.c"), thread=1)
+    board.write("count", 7)
+    assert board.read("count") == 7 and board.read("other") == 0
+    board.load(write("int other; main() { other = 1; }", "three.c"), thread=1)
+    with pytest.raises(cc67.InputError, match="`count` is not declared"):
+        board.write("count", 7)
+
+
+def test_unknown_attributes_are_refused() -> None:
+    board = cc67.Board()
+    with pytest.raises(AttributeError, match="did you mean 'time'"):
+        board.tme = 5  # type: ignore[attr-defined]
+    with pytest.raises(AttributeError, match="`time` of a Board can only be read"):
+        board.time = 5  # type: ignore[misc]
+    for part in (board.bits, board.adc, board.dac, board.axes, board.persist, board.persist.float, board.snapshot()):
+        with pytest.raises(AttributeError, match="no such attribute"):
+            part.colour = 5  # type: ignore[union-attr]
+
+
+def test_what_is_done_by_hand_costs_the_same_each_time_and_its_recording_ends() -> None:
+    board = cc67.Board(machine={"board.kanalog": True})
+
+    def took(calls: int) -> float:
+        begin = time.perf_counter()
+        for number in range(calls):
+            board.adc[3] = number % 1000
+            board.axes[0].Dest = number
+            board.step()
+        return time.perf_counter() - begin
+
+    first = min(took(500) for _ in range(3))
+    took(30_000)
+    assert min(took(500) for _ in range(3)) < 3 * first
+    text = board.recording
+    assert 2**20 <= len(text) < 2**20 + 300
+    assert text.endswith("what was done later is missing\n")
+
+
+def test_memory_of_a_closed_board_is_free_even_if_parts_of_it_are_kept() -> None:
+    resource = pytest.importorskip("resource")
+    kept: list[object] = []
+    for number in range(300):
+        with cc67.Board() as board:
+            kept += [board.bits, board.axes, board.snapshot(), board]
+        if number == 50:
+            before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 100_000
 
 
 def test_axes_have_numbers_and_names(write: Write) -> None:
@@ -201,14 +275,23 @@ def test_axes_have_numbers_and_names(write: Write) -> None:
     assert len(board.axes) == 8 and [each.index for each in board.axes] == list(range(8))
 
 
+def test_an_axis_has_its_fields_whatever_the_program_includes(write: Write) -> None:
+    board = cc67.Board(programs=[write("main() {}")])
+    board.axes[3].Vel = 12.5
+    board.axes[3].OutputMode = 2
+    board.axes[3].dest = -3
+    assert (board.axes[3].Vel, board.axes[3].OutputMode, board.axes[3].dest) == (12.5, 2, -3)
+    assert board.command("Vel3") == "12.500000" and isinstance(board.axes[3].OutputMode, int)
+
+
 def test_an_unknown_axis_or_field_names_what_was_meant() -> None:
     board = cc67.Board(machine=MACHINE)
     with pytest.raises(KeyError, match="did you mean 'Slide'"):
         board.axes["slid"]
     with pytest.raises(AttributeError, match="did you mean 'position'"):
-        board.axes[0].postion
+        board.axes[0].postion  # type: ignore[attr-defined]
     with pytest.raises(AttributeError, match="did you mean 'dest'"):
-        board.axes[0].dset = 5
+        board.axes[0].dset = 5  # type: ignore[attr-defined]
     with pytest.raises(IndexError):
         board.axes[8]
     with pytest.raises(KeyError, match="names none"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import builtins
 import pydoc
 import subprocess
 import sys
@@ -46,7 +47,14 @@ def test_help_reads_well() -> None:
 
 
 def test_every_public_name_is_documented() -> None:
-    assert [name for name in cc67.__all__ if name != "Condition" and not getattr(cc67, name).__doc__] == []
+    assert [name for name in (*cc67.__all__, "compile") if name != "Condition" and not getattr(cc67, name).__doc__] == []
+
+
+def test_importing_all_names_hides_none_of_python() -> None:
+    names: dict[str, object] = {}
+    exec("from cc67 import *", names)
+    hidden = [name for name in names if hasattr(builtins, name) and not name.startswith("__")]
+    assert hidden == [] and names["Board"] is cc67.Board
 
 
 def test_an_image_is_looked_at(write: Write, tmp_path: Path) -> None:

@@ -66,3 +66,23 @@ def test_a_trace_of_a_million_samples(write: Write, engine: str) -> None:
     values = sum(len(column) for column in trace.values())
     print(f"a trace of {values} values, {engine}: {1000 * took:.1f} ms")
     assert values == 1_000_000 and np.isfinite(trace["dest0"]).all()
+
+
+@pytest.mark.parametrize("engine", ["native", "bytecode"])
+def test_steps_of_an_environment(write: Write, engine: str) -> None:
+    board = cc67.Board(programs=[write(WAIT)], engine=engine)
+    axis = board.axes[0]
+
+    def writes() -> None:
+        for number in range(10_000):
+            axis.dest = number
+
+    def steps() -> None:
+        for number in range(10_000):
+            axis.dest = number
+            board.step(11)
+            (axis.dest, axis.position, axis.velocity, axis.output)
+
+    write_time, step_time = best(writes) / 10_000, best(steps) / 10_000
+    print(f"{engine}: a write {write_time * 1e6:.2f} us, {1 / step_time:.0f} steps of an environment a second")
+    assert write_time <= 5e-6

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import WAIT, Write
-from sweep_measures import DELAY, MOVE, SPIN, VARIATIONS, double, fails_at_three, following
+from sweep_measures import DELAY, MOVE, SPIN, VARIATIONS, double, fails_at_three, following, kills_at_three
 
 import cc67
 
@@ -125,6 +125,70 @@ def test_a_sweep_that_was_killed_goes_on(write: Write, tmp_path: Path, executor:
     subprocess.run([sys.executable, str(script)], check=True)
     assert len(log.read_text().splitlines()) == 101
     assert out.read_text() == cc67.sweep(program, VARIATIONS, following).csv()
+
+
+posix = pytest.mark.skipif(sys.platform == "win32", reason="processes are killed by signals")
+
+
+@posix
+def test_a_run_that_kills_its_process_is_a_failed_row(write: Write, tmp_path: Path) -> None:
+    program, grid, log = cc67.compile(write(WAIT)), {"persist.5": range(40)}, tmp_path / "sweep.log"
+    table = cc67.sweep(program, grid, kills_at_three, executor="processes", workers=2, log=log)
+    (failure,) = table.failures
+    assert failure["persist.5"] == 3 and failure["error"] == "ProcessError: the process of this run was killed 3 times"
+    assert table.good["value"] == [number for number in range(40) if number != 3]
+    again = cc67.sweep(program, grid, kills_at_three, executor="processes", workers=2, log=log)
+    assert again == table
+
+
+WAITING = """
+import sys
+sys.path.insert(0, {tests!r})
+import cc67, sweep_measures
+if __name__ == "__main__":
+    cc67.sweep({program!r}, {{"file": [{file!r}] * 8}}, sweep_measures.waits_for_ever, executor="processes", workers=2)
+"""
+
+
+@posix
+def test_the_processes_of_a_sweep_end_with_the_one_that_started_them(write: Write, tmp_path: Path) -> None:
+    script, file = tmp_path / "script.py", tmp_path / "numbers"
+    file.touch()
+    names = {"tests": str(Path(__file__).parent), "program": str(write(WAIT)), "file": str(file)}
+    script.write_text(WAITING.format(**names))
+    process = subprocess.Popen([sys.executable, str(script)])
+    while process.poll() is None and file.read_text().count("\n") < 2:
+        time.sleep(0.01)
+    process.kill()
+    process.wait()
+    children = [int(line) for line in file.read_text().split()]
+    assert len(children) >= 2
+    deadline = time.monotonic() + 20
+    while any(is_running(child) for child in children):
+        assert time.monotonic() < deadline, "a process has outlived the one that started it"
+        time.sleep(0.02)
+
+
+def is_running(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    status = Path(f"/proc/{process}/stat")
+    # Where nobody waits for orphans, a process that has ended keeps its number.
+    return not (status.exists() and status.read_text().rpartition(")")[2].split()[0] == "Z")
+
+
+def test_columns_of_parquet_have_one_type_in_all_shards(write: Write, tmp_path: Path) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet")
+    path, grid = write(SPIN), {"persist.5": range(6), "scale": [1, 2.5]}
+    types = set()
+    for shard in ("1/4", "2/4", "3/4", "4/4"):
+        table = cc67.sweep(path, grid, fails_at_three, shard=shard)
+        table.save(tmp_path / "shard.parquet")
+        schema = parquet.read_schema(tmp_path / "shard.parquet")
+        types.add(tuple((name, str(schema.field(name).type)) for name in schema.names))
+    assert types == {(("persist.5", "int64"), ("scale", "double"), ("value", "double"), ("error", "string"))}
 
 
 def test_the_log_of_another_sweep_is_refused(write: Write, tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import sys
 from pathlib import Path
 
@@ -61,6 +62,23 @@ def test_a_wrong_trace_is_refused(write: Write) -> None:
         board.trace(["count"], 1.0, every=0)
     with pytest.raises(cc67.UnknownNameError, match="did you mean 'count'"):
         board.trace("count", 0.1)["cuont"]
+
+
+def test_a_trace_is_a_table_for_numpy_and_pandas(write: Write) -> None:
+    trace = cc67.Board(programs=[write(MOVE)]).trace("dest0,bit46", 0.5, every=100)
+    array = np.asarray(trace)
+    assert array.dtype == np.float64 and array.shape == (len(trace.time), 2)
+    assert np.array_equal(array[:, 0], trace["dest0"]) and trace["dest0"][-1] > 0
+    copy = pickle.loads(pickle.dumps(trace))
+    assert np.array_equal(copy.time, trace.time) and np.array_equal(copy["dest0"], trace["dest0"])
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.DataFrame(trace)
+    assert list(frame.columns) == ["dest0", "bit46"] and np.array_equal(frame.to_numpy(), array)
+    frame = trace.pandas()
+    assert frame.index.name == "time" and np.array_equal(frame["dest0"].to_numpy(), trace["dest0"])
+    table = cc67.Table([{"a": 1, "b": 2.5, "error": None}, {"a": 2, "error": "ValueError: x"}], ["a"])
+    assert list(pandas.DataFrame(table).columns) == ["a", "b", "error"] and len(pandas.DataFrame(table)) == 2
+    assert np.array_equal(np.asarray(table), [[1, 2.5], [2, np.nan]], equal_nan=True)
 
 
 def test_pictures_and_tables(write: Write, tmp_path: Path) -> None:

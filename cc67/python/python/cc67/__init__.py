@@ -23,13 +23,17 @@ from ._errors import (
     InputError,
     LoadError,
     NotBuiltError,
+    RangeError,
     ThreadError,
     TrapError,
     UnknownNameError,
 )
 from ._image import Image, cycles, inspect
 from ._parts import Adc, Axes, Axis, Bits, Console, Dac, Persist
-from ._program import Program, compile, load
+from ._program import Program, load
+
+# Not in `__all__`: `from cc67 import *` leaves the function `compile` of Python as it is.
+from ._program import compile as compile
 from ._sweep import merge, sweep
 from ._table import Table
 from ._trace import Trace
@@ -58,6 +62,7 @@ __all__ = [
     "NotBuiltError",
     "Persist",
     "Program",
+    "RangeError",
     "Snapshot",
     "Span",
     "Table",
@@ -65,7 +70,6 @@ __all__ = [
     "Trace",
     "TrapError",
     "UnknownNameError",
-    "compile",
     "cycles",
     "ended",
     "inspect",

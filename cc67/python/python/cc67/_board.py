@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Callable, Iterable, Mapping, Sequence, Union
 
 from . import _native
-from ._errors import Error, InputError
+from ._errors import Error, Fixed, InputError
 from ._parts import Adc, Axes, Bits, Console, Dac, Persist
 from ._program import PathLike, Program, _check_thread, compile, load
 from ._trace import Trace
@@ -48,12 +48,14 @@ def started(thread: int) -> _Event:
     return _Event("active", thread)
 
 
-class Snapshot:
+class Snapshot(Fixed):
     """The state of a board at one time, made by `Board.snapshot` and valid for that board only.
 
     Attributes:
         time: the board time of the snapshot, in seconds since power-up.
     """
+
+    __slots__ = ("_native", "_number", "time")
 
     def __init__(self, native: _native.Board) -> None:
         self._native = native
@@ -69,7 +71,7 @@ class Snapshot:
         return f"<cc67.Snapshot at {self.time:.6f} s>"
 
 
-class Board:
+class Board(Fixed):
     """A simulated KFLOP board with its programs and the machine around it.
 
     Board time passes only in `run`, `run_for`, `run_until`, `step`, `step_thread`, `trace` and `command`, and in what
@@ -114,6 +116,10 @@ class Board:
         100.02
     """
 
+    # Everything that the parts refer to is the native board, so that there is no cycle: the memory of the board is free
+    # when the last reference to it goes.
+    __slots__ = ("_native", "_boot", "_programs", "_bits", "_adc", "_dac", "_axes", "_persist", "__weakref__")
+
     def __init__(
         self,
         programs: Source | Iterable[Source] | Mapping[int, Source] = (),
@@ -151,8 +157,10 @@ class Board:
             "uart_input": bytes(uart_input),
             "boot": self._boot,
         }
-        self._open: _native.Board | None = _native.Board(request, engine)
+        native = self._native = _native.Board(request, engine)
         self._programs = {thread: program for thread, program, _ in assigned}
+        self._bits, self._adc, self._dac = Bits(native), Adc(native), Dac(native)
+        self._axes, self._persist = Axes(native), Persist(native)
         if on_fault == "keep":
             self._native.stop_at_faults(False)
             self._native.release()
@@ -325,7 +333,8 @@ class Board:
     def recording(self) -> str:
         """Everything that was done to the board by hand, as a stimulus that repeats it on another board.
 
-        What a stimulus cannot repeat, such as most calls of `write`, is a comment in it.
+        What a stimulus cannot repeat, such as most calls of `write`, is a comment in it. The text ends after 1 MiB, with
+        a comment that says so.
         """
         return self._native.recording()[0]
 
@@ -345,33 +354,32 @@ class Board:
             raise InputError("a command must be one line, without line ends")
         return "\n".join(self._native.command(line.encode("latin-1", "replace")))
 
-    # Inputs, outputs, axes and variables. They refer to the board, so the board does not keep them: its memory is free
-    # when the last reference to it goes.
+    # Inputs, outputs, axes and variables.
 
     @property
     def bits(self) -> Bits:
         """The input and output bits: `board.bits[136] = True` closes a switch."""
-        return Bits(self)
+        return self._bits
 
     @property
     def adc(self) -> Adc:
         """The analog inputs, in counts from -2048 to 2047."""
-        return Adc(self)
+        return self._adc
 
     @property
     def dac(self) -> Dac:
         """The analog outputs, in counts from -2048 to 2047."""
-        return Dac(self)
+        return self._dac
 
     @property
     def axes(self) -> Axes:
         """The eight axes, by number or by the name in the machine file."""
-        return Axes(self)
+        return self._axes
 
     @property
     def persist(self) -> Persist:
         """The elements of `persist.UserData` as integers; also as `persist.float` and `persist.double`."""
-        return Persist(self)
+        return self._persist
 
     def act(self, statement: str) -> None:
         """Execute a statement of a stimulus, `"pulse bit 137 for 50ms"`, at the beginning of the next servo tick.
@@ -401,10 +409,12 @@ class Board:
     def write(self, expression: str, value: float) -> None:
         """Store a value in a variable, a field or an element, as an assignment in C would: `write("count", 2)`.
 
-        Writing takes no board time.
+        Writing takes no board time. An expression is compiled when it is used first, and then again when a program is
+        loaded.
 
         Raises:
             InputError: the expression is invalid, or is not a variable, a field or an element.
+            RangeError: it is an integer, and the value does not fit in its type; `RangeError` is an `OverflowError`.
         """
         if not isinstance(expression, str):
             raise TypeError(f"an expression is a text, not {expression!r}")
@@ -456,15 +466,9 @@ class Board:
         """Give up the board; it then belongs to the Python thread that uses it next."""
         self._native.release()
 
-    @property
-    def _native(self) -> _native.Board:
-        if self._open is None:
-            raise Error("the board is closed")
-        return self._open
-
     def close(self) -> None:
         """Free the memory of the board now; using the board afterwards raises `Error`. `with` does this at its end."""
-        self._open = None
+        self._native.close()
 
     def __enter__(self) -> Board:
         return self
@@ -473,7 +477,7 @@ class Board:
         self.close()
 
     def __repr__(self) -> str:
-        if self._open is None:
+        if self._native.is_closed:
             return "<cc67.Board, closed>"
         programs = ", ".join(f"{thread}: {program.path.name}" for thread, program in self._programs.items())
         return f"<cc67.Board {self._native.number}: {programs or 'no program'}>"

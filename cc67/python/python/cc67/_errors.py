@@ -15,6 +15,7 @@ __all__ = [
     "InputError",
     "LoadError",
     "NotBuiltError",
+    "RangeError",
     "ThreadError",
     "TrapError",
     "UnknownNameError",
@@ -27,6 +28,10 @@ class Error(Exception):
 
 class InputError(Error, ValueError):
     """A file, an option, an expression or a number is invalid; the message says where."""
+
+
+class RangeError(InputError, OverflowError):
+    """A number does not fit where it should be stored; the message names the least and the greatest that do."""
 
 
 class UnknownNameError(InputError, KeyError):
@@ -96,6 +101,25 @@ class ExpectationError(Error, AssertionError):
 
 class NotBuiltError(Error, NotImplementedError):
     """An optional package is not installed, such as pyarrow or SciPy; the message says which, and how to install it."""
+
+
+class Fixed:
+    """A class whose objects have no attributes but those of the class: assigning another one is an error."""
+
+    __slots__ = ()
+
+    # Type checkers know the attributes; with this they would accept any.
+    if not TYPE_CHECKING:
+
+        def __setattr__(self, name: str, value: object) -> None:
+            try:
+                object.__setattr__(self, name, value)
+            except AttributeError:
+                kind = type(self).__name__
+                if hasattr(type(self), name):
+                    raise AttributeError(f"`{name}` of a {kind} can only be read") from None
+                known = [each for each in dir(type(self)) if not each.startswith("_")]
+                raise AttributeError(str(unknown(f"attribute of a {kind}", name, known))) from None
 
 
 def unknown(what: str, name: object, known: Iterable[str]) -> UnknownNameError:

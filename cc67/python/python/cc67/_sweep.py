@@ -8,8 +8,10 @@ import json
 import os
 import pickle
 import sys
+from collections import deque
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
-from dataclasses import is_dataclass
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import is_dataclass, replace
 from numbers import Real
 from pathlib import Path
 from typing import Any, Iterable, Iterator, Mapping, Sequence, TextIO, Union
@@ -18,7 +20,7 @@ from . import _program
 from ._board import Board, Condition, _assign, _Event, _machine, _stimuli
 from ._errors import InputError, unknown
 from ._program import PathLike, Program, _macro_value
-from ._sweep_run import Batch, Inputs, Measure, is_timeout, run_batch
+from ._sweep_run import Batch, Inputs, Measure, Result, end_with_parent, is_timeout, run_batch
 from ._table import Table
 
 __all__ = ["Grid", "merge", "sweep"]
@@ -28,6 +30,9 @@ Source = Union[Program, PathLike]
 
 # Most runs in a batch: enough to make the cost of sending a batch small.
 _BATCH = 16
+
+# Times that a run may kill its process before it has failed.
+_KILLS = 3
 
 
 def sweep(
@@ -56,9 +61,9 @@ def sweep(
         measure: a function `measure(board)` or `measure(board, inputs)` that lets board time pass and returns a number
             (column `value`), several (`value0`, `value1`, …), or a mapping of names to values; or a mapping of names to
             expressions, which are evaluated at the end of the run.
-        executor: "threads" (the default), "processes", or any `concurrent.futures.Executor`: Dask's
-            `client.get_executor()`, Ray's, `mpi4py.futures.MPIPoolExecutor`. Except with threads, `measure` must be a
-            function of a module.
+        executor: "threads" (the default), "processes", or any `concurrent.futures.Executor`, such as Dask's
+            `client.get_executor()`. Except with threads, `measure` must be a function of a module. With "processes", a
+            run that kills its process three times has failed, and the sweep continues; the processes end with this one.
         workers: the number of threads or processes; by default one for each processor.
         log: a file that receives each result as soon as it is known. If it exists, the sweep continues where it was
             interrupted. It belongs to a sweep with the same programs, inputs, arguments of the board, measure and
@@ -170,7 +175,14 @@ def _inputs(grid: Grid) -> list[Inputs]:
             if not isinstance(each, Mapping):
                 raise TypeError(f"the inputs of a run must be a mapping of names to values, not {each!r}")
             rows.append({str(name): value for name, value in each.items()})
-    return [{name: _plain(name, value) for name, value in row.items()} for row in rows]
+    plain = [{name: _plain(name, value) for name, value in row.items()} for row in rows]
+    # An input has one type in all shards, whichever of its values a shard has.
+    floats = {name for row in plain for name, value in row.items() if isinstance(value, float)}
+    return [{name: _alike(name in floats, value) for name, value in row.items()} for row in plain]
+
+
+def _alike(is_float: bool, value: Any) -> Any:
+    return float(value) if is_float and type(value) is int else value
 
 
 def _plain(name: str, value: Any) -> Any:
@@ -276,15 +288,14 @@ def _without_macros(program: Program, macros: Mapping[str, Any]) -> Program:
 
 def _execute(
     batches: Sequence[Batch], executor: Executor | str | None, workers: int | None
-) -> Iterator[tuple[int, dict[str, Any]]]:
+) -> Iterator[Result]:
     """Yield the results as they become known."""
     if executor is None or executor == "threads":
         with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
             yield from _on(pool, batches)
     elif executor == "processes":
         _check_pickle(batches)
-        with ProcessPoolExecutor(workers or os.cpu_count(), mp_context=_context()) as pool:
-            yield from _on(pool, batches)
+        yield from _on_processes(batches, workers or os.cpu_count() or 1)
     elif hasattr(executor, "submit"):
         if not isinstance(executor, ThreadPoolExecutor):
             _check_pickle(batches)
@@ -310,8 +321,8 @@ def _check_pickle(batches: Sequence[Batch]) -> None:
         ) from error
 
 
-def _on(executor: Executor, batches: Sequence[Batch]) -> Iterator[tuple[int, dict[str, Any]]]:
-    left: set[Future[list[tuple[int, dict[str, Any]]]]] = {executor.submit(run_batch, batch) for batch in batches}
+def _on(executor: Executor, batches: Iterable[Batch]) -> Iterator[Result]:
+    left = {executor.submit(run_batch, batch) for batch in batches}
     try:
         while left:
             done, left = wait(left, return_when=FIRST_COMPLETED)
@@ -320,6 +331,62 @@ def _on(executor: Executor, batches: Sequence[Batch]) -> Iterator[tuple[int, dic
     finally:
         for future in left:
             future.cancel()
+
+
+def _on_processes(batches: Sequence[Batch], workers: int) -> Iterator[Result]:
+    """Yield the results of runs in processes; a run that kills its process again and again is a failed one."""
+    left = deque(batches)
+    while left:
+        suspects: list[Batch] = []
+        with _pool(workers) as pool:
+            yield from _until_broken(pool, workers, left, suspects)
+        # It is unknown which of them it was; alone in its process, a run can be blamed.
+        for batch in suspects:
+            for number, inputs, programs in batch.runs:
+                yield from _alone(replace(batch, runs=[(number, inputs, programs)]))
+
+
+def _until_broken(
+    pool: ProcessPoolExecutor, workers: int, left: deque[Batch], suspects: list[Batch]
+) -> Iterator[Result]:
+    """Yield the results of the batches in `left`; if a process dies, keep those that it may have had in `suspects`."""
+    running: dict[Future[list[Result]], Batch] = {}
+    try:
+        while left or running:
+            while left and len(running) < 2 * workers and not suspects:
+                try:
+                    running[pool.submit(run_batch, left[0])] = left[0]
+                except BrokenProcessPool:
+                    break
+                left.popleft()
+            if not running:
+                return
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                batch = running.pop(future)
+                try:
+                    yield from future.result()
+                except BrokenProcessPool:
+                    suspects.append(batch)
+    finally:
+        for future in running:
+            future.cancel()
+
+
+def _alone(batch: Batch) -> Iterator[Result]:
+    """Yield the result of a run in a process of its own: after some that died, a failure."""
+    for _ in range(_KILLS):
+        try:
+            with _pool(1) as pool:
+                yield from pool.submit(run_batch, batch).result()
+            return
+        except BrokenProcessPool:
+            continue
+    (number, _, _), *_ = batch.runs
+    yield number, {"error": f"ProcessError: the process of this run was killed {_KILLS} times"}
+
+
+def _pool(workers: int) -> ProcessPoolExecutor:
+    return ProcessPoolExecutor(workers, mp_context=_context(), initializer=end_with_parent)
 
 
 def _fingerprint(

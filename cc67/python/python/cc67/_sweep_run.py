@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import os
 from dataclasses import dataclass
+from multiprocessing import connection
+from threading import Thread
 from typing import Any, Callable, Mapping, Sequence, Union
 
 from ._board import Board, Condition
 from ._errors import InputError
 from ._program import Program
 
-__all__ = ["Batch", "Measure", "is_timeout", "run_batch"]
+__all__ = ["Batch", "Measure", "Result", "end_with_parent", "is_timeout", "run_batch"]
 
 Inputs = dict[str, Any]
+# The number of a run, and its outputs.
+Result = tuple[int, dict[str, Any]]
 Measure = Union[Callable[..., Any], Mapping[str, str]]
 
 
@@ -35,7 +41,19 @@ class Batch:
     timeout: float = 60.0
 
 
-def run_batch(batch: Batch) -> list[tuple[int, dict[str, Any]]]:
+def end_with_parent() -> None:
+    """End this process when the one that started it has ended, however it ends."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        Thread(target=_end_after, args=(parent.sentinel,), daemon=True).start()
+
+
+def _end_after(sentinel: int) -> None:
+    connection.wait([sentinel])
+    os._exit(1)
+
+
+def run_batch(batch: Batch) -> list[Result]:
     """Execute the runs of a batch; return the number of each, and its outputs or `error`."""
     return [(number, _run(batch, inputs, programs)) for number, inputs, programs in batch.runs]
 
@@ -47,11 +65,11 @@ def is_timeout(outputs: Mapping[str, Any]) -> bool:
 
 def _run(batch: Batch, inputs: Inputs, programs: Sequence[Program]) -> dict[str, Any]:
     try:
-        board = Board(programs=programs, **_options(batch.options, inputs))
-        if callable(batch.measure):
-            result = _call(batch.measure, board, inputs)
-        else:
-            result = _expressions(batch, board, batch.measure)
+        with Board(programs=programs, **_options(batch.options, inputs)) as board:
+            if callable(batch.measure):
+                result = _call(batch.measure, board, inputs)
+            else:
+                result = _expressions(batch, board, batch.measure)
     except Exception as error:  # Whatever makes a run fail is its result.
         return {"error": f"{type(error).__name__}: {error}"}
     return {**result, "error": None}

@@ -24,7 +24,7 @@ class Table(Sequence[Row]):
     """The results of many runs: a row for each run, in the order of the inputs.
 
     A row has the inputs, the outputs, and `error`: None, or the reason why the run failed. `table["overshoot"]` is a
-    column, `table[3]` a row.
+    column, `table[3]` a row. `numpy.asarray(table)` is `table.array()`.
     """
 
     def __init__(self, rows: Iterable[Mapping[str, Any]], inputs: Iterable[str] = ()) -> None:
@@ -83,6 +83,12 @@ class Table(Sequence[Row]):
         columns = [self[name] for name in names or [name for name in self.columns if name != "error"]]
         return np.array([[_float(value) for value in column] for column in columns], dtype=np.float64).T
 
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+        if copy is False:
+            raise ValueError("a table has no array of its own, so an array of it is a copy")
+        array = self.array()
+        return array if dtype is None else array.astype(dtype)
+
     def csv(self) -> str:
         """Return the table as comma-separated values."""
         import io
@@ -118,7 +124,24 @@ class Table(Sequence[Row]):
         arrow, parquet = (
             optional(module, "a .parquet table", "pyarrow", "cc67[parquet]") for module in ("pyarrow", "pyarrow.parquet")
         )
-        parquet.write_table(arrow.table({name: self[name] for name in self.columns}), path)
+        columns = {name: self._arrow(arrow, name) for name in self.columns}
+        parquet.write_table(arrow.table(columns), path)
+
+    def _arrow(self, arrow: Any, name: str) -> Any:
+        """Return a column with a type that does not depend on which rows a shard has.
+
+        Texts are strings, as `error` always is. Outputs are doubles unless all are booleans, and so are inputs unless
+        all are integers; a column without a value is one of doubles.
+        """
+        values = self[name]
+        kinds = {type(value) for value in values if value is not None}
+        if name == "error" or str in kinds:
+            return arrow.array([None if value is None else str(value) for value in values], arrow.string())
+        if kinds == {bool}:
+            return arrow.array(values, arrow.bool_())
+        if kinds == {int} and name in self.inputs and all(abs(value or 0) < 2**63 for value in values):
+            return arrow.array(values, arrow.int64())
+        return arrow.array([None if value is None else float(value) for value in values], arrow.float64())
 
     def pandas(self) -> Any:
         """Return the table as a pandas.DataFrame.

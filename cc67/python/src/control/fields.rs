@@ -1,6 +1,7 @@
 //! The fields of an axis by their names in C.
 
 use cc67_host::{Session, Target};
+use kmotiondef::GuestAddr;
 use kmotiondef::ctype::CType;
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::structs::{Chan, StructureField};
@@ -14,15 +15,45 @@ pub(crate) fn field<T: Target>(session: &Session<T>, axis: usize, name: &str) ->
     let field = number(name)?;
     let address = CHAN.element(axis).address().offset(field.offset);
     Some(match field.ty {
-        CType::Double => session.peek::<f64>(address),
-        CType::Float => session.peek::<f32>(address).into(),
-        CType::Short => session.peek::<i16>(address).into(),
-        CType::UnsignedShort => session.peek::<u16>(address).into(),
-        CType::Char | CType::SignedChar => session.peek::<i8>(address).into(),
-        CType::UnsignedChar => session.peek::<u8>(address).into(),
-        CType::UnsignedInt | CType::UnsignedLong => session.peek::<u32>(address).into(),
-        CType::Void | CType::Int | CType::Long | CType::Named(_) => session.peek::<i32>(address).into(),
+        CType::Double => session.peek_object::<f64>(address),
+        CType::Float => session.peek_object::<f32>(address).into(),
+        CType::Short => session.peek_object::<i16>(address).into(),
+        CType::UnsignedShort => session.peek_object::<u16>(address).into(),
+        CType::Char | CType::SignedChar => session.peek_object::<i8>(address).into(),
+        CType::UnsignedChar => session.peek_object::<u8>(address).into(),
+        CType::UnsignedInt | CType::UnsignedLong => session.peek_object::<u32>(address).into(),
+        CType::Void | CType::Int | CType::Long | CType::Named(_) => {
+            session.peek_object::<i32>(address).into()
+        }
         _ => return None,
+    })
+}
+
+/// The address of a field of an axis, and the bytes of a value in it; `None` for another name.
+///
+/// # Errors
+/// The value does not fit in its type.
+pub(crate) fn stored(axis: usize, name: &str, value: f64) -> Option<Result<(GuestAddr, Vec<u8>), String>> {
+    let field = number(name).filter(|_| axis < N_CHANNELS)?;
+    let address = CHAN.element(axis).address().offset(field.offset);
+    let whole = value.trunc();
+    let (limits, bytes) = match field.ty {
+        CType::Double => return Some(Ok((address, value.to_le_bytes().into()))),
+        CType::Float => return Some(Ok((address, (value as f32).to_le_bytes().into()))),
+        CType::Short => (i16::MIN.into()..=i16::MAX.into(), (whole as i16).to_le_bytes().to_vec()),
+        CType::UnsignedShort => (0.0..=u16::MAX.into(), (whole as u16).to_le_bytes().to_vec()),
+        CType::Char | CType::SignedChar => {
+            (i8::MIN.into()..=i8::MAX.into(), (whole as i8).to_le_bytes().to_vec())
+        }
+        CType::UnsignedChar => (0.0..=u8::MAX.into(), (whole as u8).to_le_bytes().to_vec()),
+        CType::UnsignedInt | CType::UnsignedLong => {
+            (0.0..=u32::MAX.into(), (whole as u32).to_le_bytes().to_vec())
+        }
+        _ => (i32::MIN.into()..=i32::MAX.into(), (whole as i32).to_le_bytes().to_vec()),
+    };
+    Some(match limits.contains(&whole) {
+        true => Ok((address, bytes)),
+        false => Err(format!("{value} does not fit in `{name}`: {} to {}", limits.start(), limits.end())),
     })
 }
 
@@ -42,8 +73,22 @@ const fn size(ty: CType) -> Option<u32> {
     }
 }
 
-/// The names of all fields that are numbers, with what each means.
-pub(crate) fn field_names() -> Vec<(&'static str, &'static str)> {
+/// A field of an axis that is a number.
+pub(crate) struct Field {
+    /// The name in C.
+    pub(crate) name: &'static str,
+    /// The meaning.
+    pub(crate) doc: &'static str,
+    /// True if it is an integer.
+    pub(crate) is_integer: bool,
+}
+
+/// All fields of an axis that are numbers.
+pub(crate) fn fields() -> impl Iterator<Item = Field> {
     let fields = Chan::STRUCTURE.fields.iter().filter(|field| number(field.name).is_some());
-    fields.map(|field| (field.name, field.doc)).collect()
+    fields.map(|field| Field {
+        name: field.name,
+        doc: field.doc,
+        is_integer: !matches!(field.ty, CType::Double | CType::Float),
+    })
 }

@@ -9,7 +9,7 @@ use cc67_host::{HostError, Session, Snapshot, SnapshotError, Target, Until, User
 use kmotiondef::{Bit, ThreadId, Ticks};
 use runtime::{Event, EventKind};
 
-pub(crate) use fields::{field, field_names};
+pub(crate) use fields::{Field, field, fields, stored};
 pub(crate) use log::{Fault, Log, Said};
 
 use crate::trace::{Columns, Recorder};
@@ -28,6 +28,22 @@ pub(crate) struct Portion {
     pub(crate) is_met: bool,
     /// The fault that stopped it.
     pub(crate) fault: Option<Fault>,
+}
+
+/// Why a value is not stored.
+pub(crate) enum Unwritten {
+    /// The expression is wrong.
+    Wrong(WatchError),
+    /// The value does not fit in its type.
+    TooLarge(String),
+    /// The board does not store it.
+    Refused(String),
+}
+
+impl From<WatchError> for Unwritten {
+    fn from(error: WatchError) -> Self {
+        Self::Wrong(error)
+    }
 }
 
 /// A board under control, whichever engine it has.
@@ -59,9 +75,11 @@ pub(crate) trait Control: 'static {
     /// The value of an item or an expression.
     fn read(&mut self, text: &str) -> Result<f64, WatchError>;
     /// Stores a value.
-    fn write(&mut self, text: &str, value: f64) -> Result<(), WatchError>;
+    fn write(&mut self, text: &str, value: f64) -> Result<(), Unwritten>;
     /// A field of an axis, by its name in C.
     fn field(&self, axis: usize, name: &str) -> Option<f64>;
+    /// Stores a value in a field of an axis; `false` for another name.
+    fn set_field(&mut self, axis: usize, name: &str, value: f64) -> Result<bool, Unwritten>;
     /// An element of `persist.UserData`.
     fn user_data(&self, index: usize) -> Option<i32>;
     /// Stores an element of `persist.UserData`.
@@ -104,23 +122,59 @@ pub(crate) struct Rig<T: Target> {
     recorder: Option<Recorder>,
     snapshots: BTreeMap<u64, (Snapshot<T>, Log)>,
     /// Expressions that were read before, with the programs that are loaded now.
-    watches: BTreeMap<String, Watch>,
+    watches: Kept,
+    /// Places that were written before, with these programs.
+    places: Kept,
 }
 
-/// Expressions that are kept.
-const MOST_WATCHES: usize = 1000;
+/// Expressions that were compiled before, by their text.
+#[derive(Default)]
+struct Kept(BTreeMap<String, Watch>);
+
+impl Kept {
+    /// Most expressions that are kept.
+    const MOST: usize = 1000;
+
+    /// The expression with a text, compiled now if it is new.
+    fn find(
+        &mut self,
+        text: &str,
+        compile: impl FnOnce() -> Result<Watch, WatchError>,
+    ) -> Result<Watch, WatchError> {
+        if let Some(watch) = self.0.get(text) {
+            return Ok(watch.clone());
+        }
+        let watch = compile()?;
+        if self.0.len() == Self::MOST {
+            self.0.clear();
+        }
+        self.0.insert(text.to_owned(), watch.clone());
+        Ok(watch)
+    }
+}
+
+/// Most bytes of the recording of what is done by hand.
+const RECORDING: usize = 1 << 20;
 
 impl<T: Target> Rig<T> {
     /// A session whose board has said nothing yet.
-    pub(crate) fn new(session: Session<T>) -> Self {
+    pub(crate) fn new(mut session: Session<T>) -> Self {
+        session.limit_recording(RECORDING);
         Self {
             session,
             log: Log::default(),
             stops_at_faults: true,
             recorder: None,
             snapshots: BTreeMap::new(),
-            watches: BTreeMap::new(),
+            watches: Kept::default(),
+            places: Kept::default(),
         }
+    }
+
+    /// Forgets what was compiled in the words of other programs.
+    fn forget_expressions(&mut self) {
+        self.watches = Kept::default();
+        self.places = Kept::default();
     }
 
     /// Lets time pass, and takes up what the board says.
@@ -136,7 +190,7 @@ impl<T: Target> Rig<T> {
     fn hear(&mut self, events: Vec<Event>) {
         let is_load = |event: &Event| matches!(event.kind, EventKind::Loaded(..));
         if events.iter().any(is_load) {
-            self.watches.clear();
+            self.forget_expressions();
         }
         let session = &self.session;
         self.log.take(events, || session.debug().into_iter().map(|(_, debug)| debug).collect());
@@ -234,15 +288,7 @@ impl<T: Target + 'static> Control for Rig<T> {
     }
 
     fn watch(&mut self, text: &str) -> Result<Watch, WatchError> {
-        if let Some(watch) = self.watches.get(text) {
-            return Ok(watch.clone());
-        }
-        let watch = self.session.watch(text)?;
-        if self.watches.len() == MOST_WATCHES {
-            self.watches.clear();
-        }
-        self.watches.insert(text.to_owned(), watch.clone());
-        Ok(watch)
+        self.watches.find(text, || self.session.watch(text))
     }
 
     fn read(&mut self, text: &str) -> Result<f64, WatchError> {
@@ -250,12 +296,28 @@ impl<T: Target + 'static> Control for Rig<T> {
         Ok(self.session.value(&watch))
     }
 
-    fn write(&mut self, text: &str, value: f64) -> Result<(), WatchError> {
-        self.session.write(text, value)
+    fn write(&mut self, text: &str, value: f64) -> Result<(), Unwritten> {
+        let place = self.places.find(text, || self.session.place(text))?;
+        if let Some((least, greatest)) = place.limits()
+            && !(least..=greatest).contains(&value.trunc())
+        {
+            return Err(Unwritten::TooLarge(format!(
+                "{value} does not fit in `{text}`: {least} to {greatest}"
+            )));
+        }
+        Ok(self.session.write_to(&place, value)?)
     }
 
     fn field(&self, axis: usize, name: &str) -> Option<f64> {
         field(&self.session, axis, name)
+    }
+
+    fn set_field(&mut self, axis: usize, name: &str, value: f64) -> Result<bool, Unwritten> {
+        let Some(stored) = stored(axis, name, value) else { return Ok(false) };
+        let (address, bytes) = stored.map_err(Unwritten::TooLarge)?;
+        let address = self.session.target().place_of(address);
+        let is_stored = self.session.store(address, &bytes);
+        is_stored.map(|()| true).map_err(|error| Unwritten::Refused(error.to_string()))
     }
 
     fn user_data(&self, index: usize) -> Option<i32> {
@@ -271,7 +333,7 @@ impl<T: Target + 'static> Control for Rig<T> {
     }
 
     fn load(&mut self, program: UserProgram) -> Result<(), HostError> {
-        self.watches.clear();
+        self.forget_expressions();
         self.session.load(program)
     }
 
@@ -298,7 +360,7 @@ impl<T: Target + 'static> Control for Rig<T> {
         let is_done = self.session.restore(snapshot).is_ok();
         if is_done {
             self.log.clone_from(log);
-            self.watches.clear();
+            self.forget_expressions();
         }
         is_done
     }
