@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use vm::interp::BytecodeEngine;
 use vm::native::{NativeEngine, SharedCode};
 
-use crate::control::{Control, Fault, Field, Portion, Rig, Said, Unwritten, fields};
+use crate::control::{AxisField, Control, Fault, Portion, Rig, Said, Unwritten, fields};
 use crate::errors::{Error, ExpectationError, RangeError, ThreadError, TrapError, input};
 use crate::program::{LinkableProgram, thread};
 use crate::setup::{BoardArguments, refused};
@@ -345,7 +345,7 @@ impl Board {
     /// Return the name of each numeric field of an axis, its meaning, and whether it is an integer.
     #[staticmethod]
     fn field_names() -> Vec<(&'static str, &'static str, bool)> {
-        fields().map(|Field { name, doc, is_integer }| (name, doc, is_integer)).collect()
+        fields().map(|AxisField { name, doc, is_integer }| (name, doc, is_integer)).collect()
     }
 
     fn user_data(&self, py: Python<'_>, index: usize) -> PyResult<Option<i32>> {

@@ -74,7 +74,7 @@ const fn size(ty: CType) -> Option<u32> {
 }
 
 /// A field of an axis that is a number.
-pub(crate) struct Field {
+pub(crate) struct AxisField {
     /// The name in C.
     pub(crate) name: &'static str,
     /// The meaning.
@@ -84,9 +84,9 @@ pub(crate) struct Field {
 }
 
 /// All fields of an axis that are numbers.
-pub(crate) fn fields() -> impl Iterator<Item = Field> {
+pub(crate) fn fields() -> impl Iterator<Item = AxisField> {
     let fields = Chan::STRUCTURE.fields.iter().filter(|field| number(field.name).is_some());
-    fields.map(|field| Field {
+    fields.map(|field| AxisField {
         name: field.name,
         doc: field.doc,
         is_integer: !matches!(field.ty, CType::Double | CType::Float),

@@ -9,7 +9,7 @@ use cc67_host::{HostError, Session, Snapshot, SnapshotError, Target, Until, User
 use kmotiondef::{Bit, ThreadId, Ticks};
 use runtime::{Event, EventKind};
 
-pub(crate) use fields::{Field, field, fields, stored};
+pub(crate) use fields::{AxisField, field, fields, stored};
 pub(crate) use log::{Fault, Log, Said};
 
 use crate::trace::{Columns, Recorder};
