@@ -131,6 +131,6 @@ fn a_c_program_drives_a_board() {
     let arguments = ["good.c", "bad.c"].map(|name| scratch.path().join(name));
     let output = run_in(program.to_str().expect("a name"), scratch.path(), arguments);
     let expect = "console: counting\nbad.c:3: expected `;` after `retrun` (or is an operator missing, such as `*`?)\nKFLOP 4.34 Build 16:07:06 Aug 14 2018\n\
-                  remark: command: Move: axis 0 is disabled, so nothing moves\ndone\n---- exit 0\n";
+                  remark: command: Move: axis 0 is disabled, so nothing moves\nagain: ONE\nagain: TWO\ndone\n---- exit 0\n";
     assert_eq!(output.render(), expect);
 }

@@ -57,8 +57,8 @@ enum cc67_result {
 struct cc67_client;
 
 /*
- Receives a console line and what was registered with it. It must not use any client of the board, nor leave by
- `longjmp` or an exception.
+ Receives a console line and what was registered with it. The board is in use meanwhile: calls of its clients return
+ `CC67_RESULT_IN_USE`, or as a failure. It must not leave by `longjmp` or an exception.
  */
 typedef void (*cc67_line_callback)(const char *line, void *user);
 
@@ -99,7 +99,8 @@ struct cc67_client *cc67_open_firmware(const char *firmware,
                                        uintptr_t size);
 
 /*
- Makes one more client of the same board, for another thread or another part of the program. Null on failure.
+ Makes one more client of the same board, for another thread or another part of the program. Null on failure, and in
+ a call-back of the board.
 
  Requires:
  `client` is open, and no other call uses it meanwhile.
@@ -108,7 +109,7 @@ struct cc67_client *cc67_another_client(struct cc67_client *client);
 
 /*
  Closes a client. It loses the token if it holds it, and its call-back is taken out; the last client of a board
- takes the board with it. Null is ignored.
+ takes the board with it. Null is ignored, and so is any client of a board in its call-back.
 
  Requires:
  `client` is open, and is not used any more.
@@ -117,7 +118,7 @@ void cc67_close(struct cc67_client *client);
 
 /*
  Writes the identifiers of the boards that are connected to `list`, as many as fit, and returns how many there are;
- -1 if an argument is wrong. `list` may be null if `capacity` is 0.
+ -1 if an argument is wrong, or in a call-back. `list` may be null if `capacity` is 0.
 
  Requires:
  `client` is open, and no other call uses it meanwhile; `list` has room for `capacity` numbers.
@@ -148,7 +149,7 @@ enum cc67_result cc67_set_console_callback(struct cc67_client *client,
 
 /*
  Takes at most one console line into `line`, without line end: 1 there was one, 0 there was none, or it went to the
- call-back, or another client has the token; -1 if an argument is wrong.
+ call-back, or another client has the token; -1 if an argument is wrong, or in a call-back.
 
  Requires:
  `client` is open, and no other call uses it meanwhile; `line` has room for `size` bytes.
@@ -159,7 +160,7 @@ int cc67_service_console(struct cc67_client *client,
 
 /*
  Takes the oldest remark of the simulation into `text`, such as a trap with its source line: 1 there was one, 0 there
- was none; -1 if an argument is wrong.
+ was none; -1 if an argument is wrong, or in a call-back.
 
  Requires:
  `client` is open, and no other call uses it meanwhile; `text` has room for `size` bytes.
@@ -274,7 +275,7 @@ enum cc67_result cc67_run_for(struct cc67_client *client, double seconds);
 
 /*
  Lets board time pass until `is_over` says so after a tick, at most this many seconds: 1 it said so, 0 the time has passed, -1
- an argument is wrong.
+ an argument is wrong, or in a call-back for console lines.
 
  Requires:
  `client` is open, and no other thread uses it meanwhile; `is_over` does not close it.
@@ -310,7 +311,7 @@ enum cc67_result cc67_drive_input(struct cc67_client *client, int bit, int level
 
 /*
  Asks for the token once; connects first if necessary: 0 this client has the board to itself, 1 another client has
- it, 2 there is no connection.
+ it, or a call-back of the board is in progress in this thread; 2 there is no connection.
 
  Requires:
  `client` is open, and no other call uses it meanwhile.

@@ -8,7 +8,7 @@ use cc67_host::runtime::{Config, Directory, MachineFile};
 use cc67_host::{Board, BootedFirmware, Options, fill};
 
 use crate::border::{buffer, guarded_or, optional_text};
-use crate::handle::{Client, board};
+use crate::handle::{BoardNumber, Client, board, check};
 
 /// Makes a board at power-up, and its first client. `files` is the folder of the files that programs open on the PC, or
 /// null for none; `machine` is a machine file, what is connected to the board, or null for nothing. Null on failure,
@@ -88,14 +88,15 @@ fn opened(client: Result<Client, String>, message: &mut [u8]) -> *mut Client {
 }
 
 fn open(files: Option<PathBuf>, machine: Option<&Path>) -> Result<Client, String> {
-    Ok(Client { board: Board::with(config(files, machine)?), options: Options::default() })
+    let board = Board::with(config(files, machine)?);
+    Ok(Client { board, options: Options::default(), number: BoardNumber::new() })
 }
 
 fn boot(firmware: &Path, files: Option<PathBuf>, machine: Option<&Path>) -> Result<Client, String> {
     let firmware = BootedFirmware::open(firmware).map_err(|error| error.to_string())?;
     let board = Board::booted(&firmware, config(files, machine)?).map_err(|error| error.to_string())?;
     let options = board.options();
-    Ok(Client { board, options })
+    Ok(Client { board, options, number: BoardNumber::new() })
 }
 
 /// The configuration of a board: the folder for its files and its machine file.
@@ -113,7 +114,8 @@ fn config(files: Option<PathBuf>, machine: Option<&Path>) -> Result<Config, Stri
     Ok(config)
 }
 
-/// Makes one more client of the same board, for another thread or another part of the program. Null on failure.
+/// Makes one more client of the same board, for another thread or another part of the program. Null on failure, and in
+/// a call-back of the board.
 ///
 /// # Safety
 /// `client` is open, and no other call uses it meanwhile.
@@ -121,23 +123,25 @@ fn config(files: Option<PathBuf>, machine: Option<&Path>) -> Result<Config, Stri
 pub unsafe extern "C" fn cc67_another_client(client: *mut Client) -> *mut Client {
     guarded_or(ptr::null_mut(), || {
         // SAFETY: the caller vouches for the client.
-        let board = unsafe { board(client) };
-        board.map_or(ptr::null_mut(), |board| {
-            let options = board.options();
-            Client { board: board.another_client(), options }.into_pointer()
-        })
+        if unsafe { check(client) }.is_err() {
+            return ptr::null_mut();
+        }
+        // SAFETY: the caller vouches for the client, which is not null.
+        let Client { board, number, .. } = unsafe { &mut *client };
+        Client { board: board.another_client(), options: board.options(), number: *number }.into_pointer()
     })
 }
 
 /// Closes a client. It loses the token if it holds it, and its call-back is taken out; the last client of a board
-/// takes the board with it. Null is ignored.
+/// takes the board with it. Null is ignored, and so is any client of a board in its call-back.
 ///
 /// # Safety
 /// `client` is open, and is not used any more.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cc67_close(client: *mut Client) {
     guarded_or((), || {
-        if !client.is_null() {
+        // SAFETY: the caller vouches for the client.
+        if unsafe { check(client) }.is_ok() {
             // SAFETY: it came from a box, as the caller vouches, and nobody uses it any more.
             drop(unsafe { Box::from_raw(client) });
         }
@@ -145,7 +149,7 @@ pub unsafe extern "C" fn cc67_close(client: *mut Client) {
 }
 
 /// Writes the identifiers of the boards that are connected to `list`, as many as fit, and returns how many there are;
-/// -1 if an argument is wrong. `list` may be null if `capacity` is 0.
+/// -1 if an argument is wrong, or in a call-back. `list` may be null if `capacity` is 0.
 ///
 /// # Safety
 /// `client` is open, and no other call uses it meanwhile; `list` has room for `capacity` numbers.

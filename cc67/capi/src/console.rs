@@ -8,8 +8,8 @@ use crate::border::{buffer, guarded, guarded_or};
 use crate::handle::board;
 use crate::{Client, Outcome};
 
-/// Receives a console line and what was registered with it. It must not use any client of the board, nor leave by
-/// `longjmp` or an exception.
+/// Receives a console line and what was registered with it. The board is in use meanwhile: calls of its clients return
+/// `CC67_RESULT_IN_USE`, or as a failure. It must not leave by `longjmp` or an exception.
 pub type LineCallback = Option<unsafe extern "C" fn(line: *const c_char, user: *mut c_void)>;
 
 /// The pointer that a caller registered with its callback, handed back unchanged.
@@ -33,6 +33,8 @@ pub unsafe extern "C" fn cc67_set_console_callback(
     guarded(|| {
         // SAFETY: the caller vouches for the client.
         let board = unsafe { board(client) }?;
+        // SAFETY: the caller vouches for the client, which is not null.
+        let number = unsafe { (*client).number };
         let Some(callback) = callback else {
             board.drop_console_callback();
             return Ok(());
@@ -44,14 +46,14 @@ pub unsafe extern "C" fn cc67_set_console_callback(
             let line = line.split('\0').next().unwrap_or_default();
             let line = CString::new(line).unwrap_or_default();
             // SAFETY: the caller vouches for the function, and the line ends with a 0.
-            unsafe { callback(line.as_ptr(), user.0) }
+            number.call_back(|| unsafe { callback(line.as_ptr(), user.0) });
         });
         Ok(())
     })
 }
 
 /// Takes at most one console line into `line`, without line end: 1 there was one, 0 there was none, or it went to the
-/// call-back, or another client has the token; -1 if an argument is wrong.
+/// call-back, or another client has the token; -1 if an argument is wrong, or in a call-back.
 ///
 /// # Safety
 /// `client` is open, and no other call uses it meanwhile; `line` has room for `size` bytes.
@@ -71,7 +73,7 @@ pub unsafe extern "C" fn cc67_service_console(client: *mut Client, line: *mut c_
 }
 
 /// Takes the oldest remark of the simulation into `text`, such as a trap with its source line: 1 there was one, 0 there
-/// was none; -1 if an argument is wrong.
+/// was none; -1 if an argument is wrong, or in a call-back.
 ///
 /// # Safety
 /// `client` is open, and no other call uses it meanwhile; `text` has room for `size` bytes.

@@ -6,7 +6,7 @@ use std::path::Path;
 use cc67_host::fill;
 
 use crate::border::{buffer, guarded, text};
-use crate::handle::board;
+use crate::handle::{board, check};
 use crate::{Client, Outcome};
 
 /// Adds a folder in which included files are searched, for what this client compiles from now on.
@@ -19,7 +19,9 @@ pub unsafe extern "C" fn cc67_include_dir(client: *mut Client, folder: *const c_
         // SAFETY: the caller vouches for the text.
         let folder = unsafe { text(folder) }?;
         // SAFETY: the caller vouches for a client that is alive and that only this call uses.
-        let client = unsafe { client.as_mut() }.ok_or(Outcome::Argument)?;
+        unsafe { check(client) }?;
+        // SAFETY: the caller vouches for the client, which is not null.
+        let client = unsafe { &mut *client };
         client.options.preprocessor.include_dirs.push(folder.into());
         client.board.set_options(client.options.clone());
         Ok(())

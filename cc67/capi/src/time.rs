@@ -6,7 +6,7 @@ use cc67_host::kmotiondef::Bit;
 use cc67_host::kmotiondef::limits::TIMEBASE;
 
 use crate::border::{guarded, guarded_or, store};
-use crate::handle::board;
+use crate::handle::{board, check};
 use crate::{Client, Outcome};
 
 /// Says whether a run is over, by a number other than 0. It may use the client.
@@ -29,7 +29,7 @@ pub unsafe extern "C" fn cc67_run_for(client: *mut Client, seconds: f64) -> Outc
 }
 
 /// Lets board time pass until `is_over` says so after a tick, at most this many seconds: 1 it said so, 0 the time has passed, -1
-/// an argument is wrong.
+/// an argument is wrong, or in a call-back for console lines.
 ///
 /// # Safety
 /// `client` is open, and no other thread uses it meanwhile; `is_over` does not close it.
@@ -43,6 +43,10 @@ pub unsafe extern "C" fn cc67_run_until(
     guarded_or(-1, || {
         let Some(is_over) = is_over.filter(|_| seconds >= 0.0 && seconds.is_finite()) else { return -1 };
         let mut ticks = (seconds / TIMEBASE).round() as u64;
+        // SAFETY: the caller vouches for the client.
+        if unsafe { check(client) }.is_err() {
+            return -1;
+        }
         loop {
             // SAFETY: the caller vouches for the function; no reference to the client is held here.
             if unsafe { is_over(client, user) } != 0 {

@@ -5,12 +5,17 @@ use std::time::Duration;
 
 use cc67_host::Lock;
 
-use crate::Client;
 use crate::border::guarded_or;
 use crate::handle::board;
+use crate::{Client, Outcome};
+
+/// The answer without a board.
+fn refused(outcome: Outcome) -> Lock {
+    if outcome == Outcome::InUse { Lock::InUse } else { Lock::NotConnected }
+}
 
 /// Asks for the token once; connects first if necessary: 0 this client has the board to itself, 1 another client has
-/// it, 2 there is no connection.
+/// it, or a call-back of the board is in progress in this thread; 2 there is no connection.
 ///
 /// # Safety
 /// `client` is open, and no other call uses it meanwhile.
@@ -19,7 +24,7 @@ pub unsafe extern "C" fn cc67_kmotion_lock(client: *mut Client) -> c_int {
     guarded_or(Lock::NotConnected as c_int, || {
         // SAFETY: the caller vouches for the client.
         let board = unsafe { board(client) };
-        board.map_or(Lock::NotConnected, |board| board.kmotion_lock()) as c_int
+        board.map_or_else(refused, |board| board.kmotion_lock()) as c_int
     })
 }
 
@@ -34,7 +39,7 @@ pub unsafe extern "C" fn cc67_wait_token(client: *mut Client, milliseconds: c_in
         // SAFETY: the caller vouches for the client.
         let board = unsafe { board(client) };
         let limit = u64::try_from(milliseconds).ok().map(Duration::from_millis);
-        board.map_or(Lock::NotConnected, |board| board.wait_token(limit)) as c_int
+        board.map_or_else(refused, |board| board.wait_token(limit)) as c_int
     })
 }
 

@@ -14,6 +14,44 @@ static void on_line(const char *line, void *user)
     ++*(int *)user;
 }
 
+/* A call-back that calls clients of its board: the board is in use, and says so. */
+static void on_line_again(const char *line, void *user)
+{
+    struct cc67_client *board = user, *other;
+    char reply[80];
+    int32_t value = 0;
+
+    printf("again: %s\n", line);
+    assert(cc67_write_line(board, "Version") == CC67_RESULT_IN_USE);
+    assert(cc67_write_line_read_line(board, "Version", reply, sizeof reply) == CC67_RESULT_IN_USE);
+    assert(cc67_run_for(board, 0.1) == CC67_RESULT_IN_USE);
+    assert(cc67_user_data(board, 9, &value) == CC67_RESULT_IN_USE);
+    assert(cc67_service_console(board, reply, sizeof reply) == -1);
+    assert(cc67_set_console_callback(board, NULL, NULL) == CC67_RESULT_IN_USE);
+    assert(cc67_another_client(board) == NULL);
+    assert(cc67_kmotion_lock(board) == 1 && cc67_wait_token(board, -1) == 1);
+    cc67_close(board);
+    /* Another board is free. */
+    other = cc67_open(NULL, NULL, reply, sizeof reply);
+    assert(other && cc67_write_line_read_line(other, "Version", reply, sizeof reply) == CC67_RESULT_OK);
+    cc67_close(other);
+}
+
+static void call_backs(struct cc67_client *board)
+{
+    struct cc67_client *other = cc67_another_client(board);
+    char line[100];
+
+    assert(cc67_set_console_callback(board, on_line_again, board) == CC67_RESULT_OK);
+    assert(cc67_write_line(board, "Echo one") == CC67_RESULT_OK);
+    assert(cc67_set_console_callback(board, on_line_again, other) == CC67_RESULT_OK);
+    assert(cc67_write_line(board, "Echo two") == CC67_RESULT_OK);
+    assert(cc67_run_for(board, 0.1) == CC67_RESULT_OK);
+    assert(cc67_set_console_callback(board, NULL, NULL) == CC67_RESULT_OK);
+    assert(cc67_write_line_read_line(other, "Version", line, sizeof line) == CC67_RESULT_OK);
+    cc67_close(other);
+}
+
 static int is_counted(struct cc67_client *client, void *user)
 {
     int32_t count = 0;
@@ -143,6 +181,7 @@ int main(int argc, char **argv)
     assert(cc67_run_for(board, 0.1) == CC67_RESULT_OK);
     programs(board, argv[1], argv[2]);
     lines(board);
+    call_backs(board);
     tokens(board);
     wrong_arguments(board);
     cc67_close(board);
