@@ -62,6 +62,16 @@ fn a_program_is_loaded_and_runs() {
     assert_eq!((output.code, output.stdout.lines().count()), (0, 3), "{output:?}");
 }
 
+#[test]
+fn a_controller_with_firmware_5_gets_programs_for_it_and_its_status_record_is_read() {
+    let scratch = Scratch::new("controller-5");
+    scratch.write("a.c", "#include \"KMotionDef.h\"\nmain() { Delay_sec(0.2); persist.UserData[5]++; printf(\"%d\\n\", persist.UserData[5]); }\n");
+    let (_server, place) = served("controller-5-board", &["--board", "kflop-5.3.2"]);
+    let output = on(&scratch, &["run"], &place, &["--set", "persist.5=41", "a.c"]);
+    assert_eq!((output.code, output.stdout.as_str()), (0, "42\n"), "{output:?}");
+    assert!(output.stderr.contains("KFLOP 5.3.2"), "{output:?}");
+}
+
 /// A program of c-programs, and the words with which it runs.
 struct Example {
     path: PathBuf,
@@ -118,7 +128,9 @@ fn run_all(name: &str, options: &[&str], left_out: &[&str]) -> usize {
                 while let Some(Example { path, words }) = all.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let (_server, place) = served(&format!("{name}-board{worker}"), options);
                     let files = format!("files{worker}");
-                    let more = ["--for=20", "--files", &files];
+                    // Boxes stay open on a controller until they are answered.
+                    let answers = ["--answer=msgbox=yes", "--answer=msgbox=ok"];
+                    let more = [&["--for=20", "--files", &files], &answers[..]].concat();
                     let words: Vec<_> = more.into_iter().chain(words.iter().map(|word| &**word)).collect();
                     let output = on(scratch, &["run"], &place, &words);
                     if output.code != 0 || output.stdout != expected(path) {
@@ -218,10 +230,27 @@ fn options_of_a_simulated_board_and_missing_consent_are_refused_by_name() {
     assert!(output.code == 2 && output.stderr.contains("Switch the drives off"), "{output:?}");
     let output = cc67(&scratch, ["run", "--on", "lpt1", "a.c"]);
     assert!(output.code == 2 && output.stderr.contains("serial:PATH"), "{output:?}");
-    for command in [&["debug"][..], &["live"], &["serve"], &["console", "--serve=tcp:0"]] {
+    for command in [&["debug"][..], &["serve"], &["console", "--serve=tcp:0"]] {
         let output = on(&scratch, command, "tcp:localhost:1", &["a.c"]);
         assert!(output.code == 2 && output.stderr.contains("does not work with `--on` yet"), "{output:?}");
     }
+}
+
+#[test]
+fn a_box_stays_open_until_it_is_answered() {
+    let scratch = Scratch::new("controller-box");
+    let message =
+        files(&root().join("c-programs/host"), "c").into_iter().find(|path| path.ends_with("message.c"));
+    let message = message.expect("it is there").display().to_string();
+    let (_server, place) = served("controller-box-board", &[]);
+    let output = on(&scratch, &["run"], &place, &["--for", "1", &message]);
+    for text in ["Is the tool length sensor in place?: waiting for an answer", "nobody is here to answer"] {
+        assert!(output.stderr.contains(text), "{output:?}");
+    }
+    assert_eq!(output.stdout, "", "{output:?}");
+    let answers = ["--answer", "msgbox=no", "--answer", "msgbox=ok", &message];
+    let output = on(&scratch, &["run"], &place, &answers);
+    assert!(output.code == 0 && output.stdout.contains("measuring is skipped"), "{output:?}");
 }
 
 #[test]

@@ -144,7 +144,11 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
     ),
     (
         "cc67/controller",
-        &[("target", &["controller"]), ("files and images", &["files", "image"]), ("words", &["clock"])],
+        &[
+            ("target", &["controller"]),
+            ("files, images, memory", &["files", "image", "seen"]),
+            ("words", &["clock"]),
+        ],
     ),
     (
         "cc67/host",

@@ -13,19 +13,20 @@ use cc67_host::{
 use cc67_wire::{Address, Client, Progress, Status, WireError};
 use compiler::firmware::{Firmware, FirmwareNames};
 use kmotiondef::boards::TargetBoard;
-use kmotiondef::limits::N_USER_DATA_VARS;
-use kmotiondef::structs::Persist;
-use kmotiondef::variables::PERSIST;
+use kmotiondef::limits::{N_CHANNELS, N_USER_DATA_VARS};
+use kmotiondef::structs::{Chan, Persist};
+use kmotiondef::variables::{CHAN, PERSIST};
 use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
 use runtime::trace::Item;
-use runtime::{Event, EventKind, RemoteBoard, RequestServer};
+use runtime::{Event, EventKind, OpenBox, RemoteBoard, RequestServer};
 use vm::scheduler::Turn;
 use vm::thread::{Progress as ThreadProgress, ThreadState};
 
 use crate::clock::now;
 use crate::files::{FileRemarks, Files};
 use crate::image;
+use crate::seen::SeenMemory;
 
 /// Nanoseconds of a tick: 90 µs.
 const TICK_NANOSECONDS: u128 = 90_000;
@@ -87,6 +88,7 @@ impl ControllerLink {
         let files = Files::new(config.files, target.remarks.clone());
         target.client.get_mut().serve_files(Box::new(files));
         target.requests = RequestServer::new(config.answers);
+        target.requests.leave_boxes_open();
         target.begin(&programs, &values)?;
         Ok(Session::on_target(target, options, programs, offered))
     }
@@ -142,6 +144,8 @@ pub struct Controller {
     time: PassingTime,
     /// The last status record.
     status: Option<Status>,
+    /// Memory as far as it is known.
+    seen: SeenMemory,
     threads: [ThreadState; ThreadId::MAX as usize],
     programs: [Option<Arc<DebugInfo>>; ThreadId::MAX as usize],
     /// Threads that were active before the connection.
@@ -168,8 +172,10 @@ impl fmt::Debug for Controller {
 impl Controller {
     fn new(client: Client, firmware: &Firmware, is_forced: bool, progress: ProgressSink) -> Self {
         let linked_for = firmware.version().unwrap_or(FirmwareNames::board(firmware).version).to_owned();
+        let board = TargetBoard::of_version(client.version().trim_end());
         Self {
             client: RefCell::new(client),
+            seen: SeenMemory::new(board),
             loading: Loading { linked_for, is_forced, progress },
             time: PassingTime::new(),
             status: None,
@@ -201,7 +207,7 @@ impl Controller {
         self.before = ThreadId::all().filter(|thread| status.is_active(*thread)).collect();
         self.note_status(status);
         for (address, bytes) in values {
-            self.write(*address, bytes)?;
+            self.write(self.seen.place_of(*address), bytes)?;
         }
         for program in programs {
             self.load(program)?;
@@ -218,6 +224,7 @@ impl Controller {
         for thread in ThreadId::all() {
             self.note_thread(thread, status.is_active(thread));
         }
+        self.seen.note_status(&status);
         self.status = Some(status);
     }
 
@@ -240,6 +247,7 @@ impl Controller {
         if error.is_disconnected() || matches!(error, WireError::Silent { .. }) {
             self.lost.get_or_insert(text);
             self.status = None;
+            self.seen.clear();
         } else {
             self.pending.push(EventKind::Host(text));
         }
@@ -255,10 +263,58 @@ impl Controller {
                 let words = std::array::from_fn(|index| status.request(index));
                 self.note_status(status);
                 self.answer(words);
+                if self.seen.take_look() {
+                    self.read_elements();
+                }
             }
             Err(error) => self.note_error(&error),
         }
         self.time.next_status = now() + STATUS_EVERY;
+    }
+
+    /// Reads the velocities of the axes, for jog buttons.
+    fn read_velocities(&mut self) {
+        let command = AxisId::all().map(|axis| format!("Vel{axis}")).collect::<Vec<_>>().join(";");
+        match self.client.get_mut().ask_lines(&command, N_CHANNELS) {
+            Ok(answers) => {
+                for (axis, answer) in AxisId::all().zip(answers) {
+                    if let Ok(velocity) = answer.trim().parse::<f32>() {
+                        let place = CHAN.element(axis.index()).field(Chan::VEL).address();
+                        self.seen.note(self.seen.place_of(place), &velocity.to_le_bytes());
+                    }
+                }
+            }
+            Err(error) => self.note_error(&error),
+        }
+    }
+
+    /// Reads the next elements of `persist.UserData`, for whoever looks at known memory.
+    fn read_elements(&mut self) {
+        let elements = self.seen.next_elements();
+        if elements.start == 0 {
+            self.read_velocities();
+        }
+        match Commands(self.client.get_mut()).user_data(elements.start, elements.len()) {
+            Ok(words) => {
+                for (index, word) in elements.zip(words) {
+                    self.seen.note(self.element_address(index), &word.to_le_bytes());
+                }
+            }
+            Err(error) => self.note_error(&error),
+        }
+    }
+
+    /// The address of an element of `persist.UserData` in the controller's firmware.
+    fn element_address(&self, index: usize) -> GuestAddr {
+        self.seen.place_of(PERSIST.field(Persist::USER_DATA).element(index).address())
+    }
+
+    /// The elements of `persist.UserData` in the bytes from an address on; `None` where there are others.
+    fn elements(&self, address: GuestAddr, length: usize) -> Option<Range<usize>> {
+        let offset = address.get().checked_sub(self.element_address(0).get())? as usize;
+        let (first, end) = (offset / 4, offset / 4 + length / 4);
+        let is_whole = offset.is_multiple_of(4) && length.is_multiple_of(4);
+        (is_whole && end <= N_USER_DATA_VARS).then_some(first..end)
     }
 
     /// Answers the request to the PC in these elements of `persist.UserData`, if there is one.
@@ -314,20 +370,6 @@ fn link(error: WireError) -> HostError {
     HostError::Link(error.to_string())
 }
 
-/// The elements of `persist.UserData` in the bytes from an address on; `None` where there are others.
-fn elements(address: GuestAddr, length: usize) -> Option<Range<usize>> {
-    let first = element(address)?;
-    let end = first + length / 4;
-    (length.is_multiple_of(4) && end <= N_USER_DATA_VARS).then_some(first..end)
-}
-
-/// The element of `persist.UserData` at an address.
-fn element(address: GuestAddr) -> Option<usize> {
-    let start = PERSIST.field(Persist::USER_DATA).element(0).address();
-    let offset = address.get().checked_sub(start.get())? as usize;
-    (offset.is_multiple_of(4) && offset / 4 < N_USER_DATA_VARS).then_some(offset / 4)
-}
-
 /// A controller for the PC that answers its requests.
 struct Commands<'a>(&'a mut Client);
 
@@ -335,14 +377,12 @@ impl RemoteBoard for Commands<'_> {
     type Error = WireError;
 
     fn user_data(&mut self, first: usize, count: usize) -> Result<Vec<u32>, WireError> {
-        let mut words = Vec::with_capacity(count);
-        for index in first..first + count {
-            let command = format!("GetPersistHex {index}");
-            let answer = self.0.ask(&command)?;
-            let word = u32::from_str_radix(answer.trim(), 16);
-            words.push(word.map_err(|_| self.0.unexpected(&command, &answer))?);
-        }
-        Ok(words)
+        let commands = (first..first + count).map(|index| format!("GetPersistHex {index}"));
+        let command = commands.collect::<Vec<_>>().join(";");
+        let answers = self.0.ask_lines(&command, count)?;
+        let words = answers.iter().map(|answer| u32::from_str_radix(answer.trim(), 16).ok());
+        let words: Option<Vec<u32>> = words.collect();
+        words.ok_or_else(|| self.0.unexpected(&command, &answers.join(" / ")))
     }
 
     fn set_user_data(&mut self, index: usize, word: u32) -> Result<(), WireError> {
@@ -387,8 +427,18 @@ impl Target for Controller {
         "a connected controller"
     }
 
-    fn can(&self, _: Capability) -> bool {
-        false
+    fn can(&self, capability: Capability) -> bool {
+        capability == Capability::Answers
+    }
+
+    fn open_box(&self) -> Option<OpenBox> {
+        self.requests.open_box()
+    }
+
+    fn answer(&mut self, setting: &str) -> Result<(), HostError> {
+        self.requests.answer(setting).map_err(|error| HostError::Link(error.to_string()))?;
+        self.time.next_status = now();
+        Ok(())
     }
 
     fn lost(&self) -> Option<&str> {
@@ -475,20 +525,38 @@ impl Target for Controller {
         self.programs[thread.index()].as_ref().map(|_| true)
     }
 
+    fn place_of(&self, address: GuestAddr) -> GuestAddr {
+        self.seen.place_of(address)
+    }
+
     fn read(&self, address: GuestAddr, bytes: &mut [u8]) -> Result<(), HostError> {
-        let Some(elements) = elements(address, bytes.len()) else {
-            return Err(HostError::Link(
-                "no command of the controller reads memory besides persist.UserData".to_owned(),
-            ));
-        };
-        let mut client = self.client.borrow_mut();
-        let words = Commands(&mut client).user_data(elements.start, elements.len()).map_err(link)?;
-        bytes.chunks_mut(4).zip(words).for_each(|(place, word)| place.copy_from_slice(&word.to_le_bytes()));
-        Ok(())
+        if let Some(reason) = &self.lost {
+            return Err(HostError::Link(reason.clone()));
+        }
+        if let Some(elements) = self.elements(address, bytes.len()) {
+            let mut client = self.client.borrow_mut();
+            let words = Commands(&mut client).user_data(elements.start, elements.len()).map_err(link)?;
+            bytes
+                .chunks_mut(4)
+                .zip(words)
+                .for_each(|(place, word)| place.copy_from_slice(&word.to_le_bytes()));
+            return Ok(());
+        }
+        self.seen.read(address, bytes).ok_or_else(|| {
+            HostError::Link(
+                "no command of the controller reads this: only persist.UserData, and what its status record has of \
+                 axes, bits and analog channels"
+                    .to_owned(),
+            )
+        })
+    }
+
+    fn glance(&self, address: GuestAddr, bytes: &mut [u8]) -> Option<()> {
+        self.seen.look(address, bytes)
     }
 
     fn write(&mut self, address: GuestAddr, bytes: &[u8]) -> Result<(), HostError> {
-        let Some(elements) = elements(address, bytes.len()) else {
+        let Some(elements) = self.elements(address, bytes.len()) else {
             return Err(HostError::Link(
                 "no command of the controller writes memory besides persist.UserData and programs".to_owned(),
             ));
@@ -497,13 +565,16 @@ impl Target for Controller {
         for (index, word) in elements.zip(bytes.as_chunks().0) {
             board.set_user_data(index, u32::from_le_bytes(*word)).map_err(link)?;
         }
+        self.seen.note(address, bytes);
         Ok(())
     }
 
     fn knows(&self, item: Item) -> bool {
         match item.kind() {
             "dest" | "pos" | "adc" => true,
-            "bit" => item.index() < 64,
+            "bit" => item
+                .bit()
+                .is_some_and(|bit| self.status.as_ref().is_none_or(|status| status.bit(bit).is_some())),
             _ => false,
         }
     }
@@ -516,9 +587,7 @@ impl Target for Controller {
             ("pos", Some(axis)) => status.position(axis),
             ("adc", _) => f64::from(status.adc(item.index())),
             ("bit", _) => match item.bit() {
-                Some(bit) => {
-                    status.bit(bit.index() as u16).map_or(f64::NAN, |level| f64::from(u8::from(level)))
-                }
+                Some(bit) => status.bit(bit).map_or(f64::NAN, |level| f64::from(u8::from(level))),
                 None => f64::NAN,
             },
             _ => f64::NAN,

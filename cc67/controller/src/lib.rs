@@ -8,6 +8,7 @@
 //! controller  the target: load, start, stop, status
 //! files       files of the PC, for programs on the controller
 //! image       from a program to what is downloaded
+//! seen        memory as the status record shows it
 //! clock       the present moment
 //! ```
 //!
@@ -26,6 +27,7 @@ mod clock;
 mod controller;
 mod files;
 mod image;
+mod seen;
 
 pub use cc67_wire::{Address, AddressError, Client, FoundBoard, Progress, WireError, boards};
 pub use controller::{Controller, ControllerLink};

@@ -182,6 +182,13 @@ pub trait Target {
     /// A connected target does not answer.
     fn read(&self, address: GuestAddr, bytes: &mut [u8]) -> Result<(), HostError>;
 
+    /// Reads memory from an address on as far as it is known without an exchange: of a connected target what its last
+    /// status record has, and elements of `persist.UserData` that are at most about a second old. `None` where a byte is
+    /// unknown.
+    fn glance(&self, address: GuestAddr, bytes: &mut [u8]) -> Option<()> {
+        self.read(address, bytes).ok()
+    }
+
     /// Writes memory from an address on.
     ///
     /// # Errors
@@ -261,6 +268,16 @@ pub trait Target {
     /// The box that a program has opened on the PC and that waits for an answer.
     fn open_box(&self) -> Option<OpenBox> {
         None
+    }
+
+    /// Gives the PC of a connected target its next answer, such as `msgbox=ok`; that of a simulated one gets it by a
+    /// statement of a stimulus.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    fn answer(&mut self, setting: &str) -> Result<(), HostError> {
+        let _ = setting;
+        Err(Unsupported { target: self.name(), capability: Capability::Answers }.into())
     }
 
     /// The target as it is ([`Capability::Snapshots`]).

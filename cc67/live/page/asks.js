@@ -3,7 +3,7 @@
 import { el } from "./dom.js";
 
 export function mountAsks(parent, link) {
-  const answer = (setting) => link.ask("act", { text: `answer "${setting}"` });
+  const answer = (setting) => link.ask("answer", { setting });
 
   function message({ text, buttons }) {
     return [el("p", { role: "alert" }, text), el("div", { className: "row" }, ...buttons.map((button, index) =>

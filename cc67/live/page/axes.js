@@ -3,6 +3,8 @@
 import { attribute, el, head, mark, say, short } from "./dom.js";
 
 const TICK = 90e-6;
+/** Milliseconds between two words that a jog button is held; the board stops an axis of which it hears nothing for 400. */
+const HELD = 100;
 
 export function mountAxes(section, link) {
   const speed = el("input", { type: "range", min: "1", max: "100", value: "25", "aria-label": "Jog speed" });
@@ -69,18 +71,22 @@ class Row {
   /** A button that moves the axis for as long as it is held. */
   #jog(text, name, sign) {
     const { axis } = this;
-    let held = false;
+    let held = 0;
+    const move = (velocity) => this.link.ask("jog", { axis: axis.axis, velocity });
     const begin = (event) => {
-      if (held || (event.type === "keydown" && event.code !== "Space" && event.code !== "Enter")) return;
+      if (held || !Number.isFinite(this.#vel) || (event.type === "keydown" && event.code !== "Space" && event.code !== "Enter")) return;
       if (event.type === "pointerdown") event.target.setPointerCapture?.(event.pointerId);
-      held = true;
-      this.#command("Jog", `=${Number((sign * this.#vel * this.speed.value / 100).toPrecision(6))}`);
+      const velocity = Number((sign * this.#vel * this.speed.value / 100).toPrecision(6));
+      move(velocity);
+      held = setInterval(() => move(velocity), HELD);
       event.preventDefault();
       event.target.focus();
     };
     const end = () => {
-      if (held) this.#command("Jog", "=0");
-      held = false;
+      if (!held) return;
+      clearInterval(held);
+      held = 0;
+      move(0);
     };
     return el("button", {
       type: "button", "aria-label": `${name} ${axis.name}`, title: `${name} ${axis.name}, as long as it is held`,
@@ -104,7 +110,7 @@ class Row {
     say(error, hasFeedback ? short(dest - position) : "–");
     say(velocity, short(this.#velocity));
     const reached = atNegative ? "− reached" : atPositive ? "+ reached" : "";
-    const range = negative > -1e29 || positive < 1e29 ? `${bound(negative)} … ${bound(positive)}` : "none";
+    const range = Number.isNaN(negative) ? "–" : negative > -1e29 || positive < 1e29 ? `${bound(negative)} … ${bound(positive)}` : "none";
     say(limits, reached || range);
     mark(limits, "reached", reached !== "");
     mark(this.element, "off", !enabled);

@@ -7,6 +7,7 @@ import { mountWheels } from "./wheels.js";
 
 /** A press that is longer than this is a hold: the input goes back when it ends. */
 const HOLD = 400;
+const INPUTS = "Inputs: click switches, hold presses";
 
 export function mountIo(section, link) {
   const add = el("input", { type: "number", min: "0", max: "2047", "aria-label": "Show bit", placeholder: "show bit", style: "width:7em" });
@@ -14,8 +15,9 @@ export function mountIo(section, link) {
   const inputs = el("div", { className: "bits" }), outputs = el("div", { className: "bits" });
   const sliders = el("div", { className: "sliders" });
   const analog = el("details", {}, el("summary", {}, "Analog"), sliders);
+  const inputsHead = el("h3", {}, INPUTS);
   const body = el("div", { className: "body" },
-    el("h3", {}, "Inputs: click switches, hold presses"), inputs, el("h3", {}, "Outputs"), outputs, analog);
+    inputsHead, inputs, el("h3", {}, "Outputs"), outputs, analog);
   section.append(body);
   mountWheels(body, link);
   mountPersist(body, link);
@@ -33,6 +35,10 @@ export function mountIo(section, link) {
 
   let described = [];
   link.on("hello", (hello) => {
+    // The machine drives the inputs of a controller.
+    const isReal = hello.time === "real";
+    inputs.inert = sliders.inert = isReal;
+    say(inputsHead, isReal ? "Inputs" : INPUTS);
     if (JSON.stringify(hello.bits) === known) return;
     known = JSON.stringify(hello.bits);
     described = hello.bits;

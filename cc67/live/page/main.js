@@ -30,14 +30,33 @@ mountConsole(at("console"), link, open);
 mountTimeline(at("timeline"), link);
 
 const notice = at("notice");
-let hides = 0;
+let hides = 0, access = null;
 function tell(text, seconds) {
+  if (access?.lost && seconds) return;
   clearTimeout(hides);
   notice.textContent = text;
   notice.hidden = !text;
   if (seconds) hides = setTimeout(() => tell(""), seconds * 1000);
 }
-link.on("state", (isThere) => tell(isThere ? "" : "Disconnected from the board. Reconnecting …"));
+link.on("state", (isThere) => {
+  tell(isThere ? "" : "Disconnected from the board. Reconnecting …");
+  for (const part of [at("bar"), at("panels"), at("asks")]) part.inert = !isThere;
+});
+
+// A page that only looks at a controller, or has lost it, acts on nothing.
+const ACTS = ".keys, .acts, .prompt, .persist, #asks";
+function lock() {
+  if (!access) return;
+  const isLocked = !access.control || Boolean(access.lost);
+  for (const part of document.querySelectorAll(ACTS)) part.inert = isLocked;
+}
+link.on("access", (message) => {
+  access = message;
+  lock();
+  document.body.classList.toggle("lost", Boolean(access.lost));
+  if (access.lost) tell(`The controller cannot be reached, and what this page shows is old: ${access.lost}`);
+});
+link.on("threads", lock);
 link.on("saved", ({ text }) => tell(text, 12));
 link.on("problem", ({ text }) => tell(text, 8));
 

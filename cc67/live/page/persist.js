@@ -5,6 +5,12 @@ import { el, say, short } from "./dom.js";
 const WORDS = 200;
 
 export function mountPersist(parent, link) {
+  let isReal = false;
+  link.on("hello", ({ time }) => { isReal = time === "real"; });
+  // What is done to a simulated board is a statement, so that a test can do it again.
+  const store = (index, value) => isReal
+    ? link.ask("write", { expression: `persist.UserData[${index}]`, value })
+    : link.ask("act", { text: `persist ${index} = ${value}` });
   const all = el("input", { type: "checkbox" });
   const body = el("tbody");
   const names = ["persist", "int", "float", "double", "hex"];
@@ -13,7 +19,7 @@ export function mountPersist(parent, link) {
   const none = el("p", { className: "quiet" }, "All are 0.");
   const details = el("details", {}, el("summary", {}, "Persist"), el("label", {}, all, " also those that are 0"), none, table);
   parent.append(details);
-  const rows = Array.from({ length: WORDS }, (_, index) => new Word(index, link));
+  const rows = Array.from({ length: WORDS }, (_, index) => new Word(index, store));
   body.append(...rows.map((row) => row.element));
 
   link.on("frame", ({ persist }) => {
@@ -26,12 +32,12 @@ export function mountPersist(parent, link) {
 }
 
 class Word {
-  constructor(index, link) {
+  constructor(index, store) {
     this.index = index;
     this.input = el("input", { type: "number", step: "1", min: "-2147483648", max: "2147483647", "aria-label": `persist ${index}` });
     this.input.addEventListener("change", () => {
       const value = this.input.valueAsNumber;
-      if (Number.isInteger(value)) link.ask("act", { text: `persist ${index} = ${value}` });
+      if (Number.isInteger(value)) store(index, value);
     });
     this.cells = Array.from({ length: 3 }, () => el("td", { className: "mono" }));
     this.element = el("tr", {}, el("th", { scope: "row" }, String(index)), el("td", {}, this.input), ...this.cells);

@@ -40,6 +40,12 @@ export function mountSource(section, link, sources) {
   const body = el("div", { className: "body", tabIndex: 0, "aria-label": "Text of the file" }, code);
   body.style.padding = "0";
   section.append(body);
+  let isReal = false;
+  const quiet = () => (isReal ? "a controller does not tell which line it executes" : "");
+  link.on("hello", ({ time }) => {
+    isReal = time === "real";
+    if (!state.textContent) state.textContent = quiet();
+  });
   let file = "", rows = [], threads = [], errors = [], known = "", remarks = new Map();
 
   function show(name) {
@@ -127,7 +133,7 @@ export function mountSource(section, link, sources) {
   link.on("programs", (message) => {
     errors = message.errors;
     const [error] = errors;
-    state.textContent = error ? `${error.file ?? ""}:${error.line ?? ""}: ${error.text}` : message.waiting.length ? "saved and compiled; Reload loads it" : "";
+    state.textContent = error ? `${error.file ?? ""}:${error.line ?? ""}: ${error.text}` : message.waiting.length ? `compiled; ${isReal ? "Load" : "Reload"} loads it` : quiet();
     annotate();
     if (error?.file && error.line) open(error.file, error.line);
   });

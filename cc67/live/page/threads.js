@@ -36,7 +36,7 @@ export function mountThreads(section, link, sources, openSource) {
     const row = el("div", { className: "thread" },
       el("strong", { style: `color: ${color(thread - 1)}` }, String(thread)),
       el("span", {}, el("span", { className: "mono" }, programs.get(thread) ?? ""), " ", el("span", { className: `badge ${state}` }, label(state, waits))),
-      el("span", {}, act("Start"), " ", isActive ? act("Stop") : ""));
+      el("span", { className: "acts" }, act("Start"), " ", isActive ? act("Stop") : ""));
     if (used) {
       row.append(el("span", { className: "where quiet", title: "Peak use of the stack so far, and the stack of a real board" },
         el("span", { className: used > size ? "bad" : "" }, `worst stack ${used} of ${size} bytes`)));

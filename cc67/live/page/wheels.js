@@ -11,8 +11,11 @@ const TIME = "20ms";
 
 export function mountWheels(parent, link) {
   const box = el("div", { className: "wheels" });
-  parent.append(el("details", {}, el("summary", {}, "Encoders"),
-    el("p", { className: "quiet" }, "Turn with the mouse's wheel, a drag, or the arrow keys; faster with Shift."), box));
+  // The machine turns the encoders of a controller.
+  link.on("hello", ({ time }) => { details.hidden = time === "real"; });
+  const details = el("details", {}, el("summary", {}, "Encoders"),
+    el("p", { className: "quiet" }, "Turn with the mouse's wheel, a drag, or the arrow keys; faster with Shift."), box);
+  parent.append(details);
   for (let index = 0; index < 8; index += 1) box.append(wheel(index, link));
 }
 

@@ -1,4 +1,4 @@
-//! What pages may do to the time of the board.
+//! What pages may do to the board and to its time.
 
 use crate::request::PageRequest;
 
@@ -11,6 +11,8 @@ pub enum TimeControl {
     Forward,
     /// Nothing: it passes as others use the board.
     Foreign,
+    /// Nothing: the board is a controller, whose time passes by itself.
+    Real,
 }
 
 impl TimeControl {
@@ -20,6 +22,7 @@ impl TimeControl {
             Self::Full => "full",
             Self::Forward => "forward",
             Self::Foreign => "foreign",
+            Self::Real => "real",
         }
     }
 
@@ -29,17 +32,32 @@ impl TimeControl {
             PageRequest::Run { .. }
             | PageRequest::Pause {}
             | PageRequest::Tick {}
-            | PageRequest::Slice {} => {
-                (self == Self::Foreign).then_some("the time of this board passes as its clients need it")
-            }
-            PageRequest::Goto { .. } | PageRequest::Restart {} => {
-                (self != Self::Full).then_some("this board is used by clients, and does not go back in time")
-            }
-            PageRequest::Save { .. } => (self != Self::Full)
-                .then_some("this board is used by clients: what they do is not part of a test"),
+            | PageRequest::Slice {} => match self {
+                Self::Full | Self::Forward => None,
+                Self::Foreign => Some("the time of this board passes as its clients need it"),
+                Self::Real => Some("the time of a connected controller cannot be stopped"),
+            },
+            PageRequest::Goto { .. } | PageRequest::Restart {} => match self {
+                Self::Full => None,
+                Self::Forward | Self::Foreign => {
+                    Some("this board is used by clients, and does not go back in time")
+                }
+                Self::Real => Some("a connected controller does not go back in time"),
+            },
+            PageRequest::Save { .. } => match self {
+                Self::Full => None,
+                Self::Forward | Self::Foreign => {
+                    Some("this board is used by clients: what they do is not part of a test")
+                }
+                Self::Real => Some("what is done to a connected controller is not part of a test"),
+            },
             PageRequest::Rate { .. }
             | PageRequest::Act { .. }
             | PageRequest::Command { .. }
+            | PageRequest::Answer { .. }
+            | PageRequest::Jog { .. }
+            | PageRequest::Halt {}
+            | PageRequest::Control { .. }
             | PageRequest::Start { .. }
             | PageRequest::Stop { .. }
             | PageRequest::Reload {}
@@ -48,6 +66,32 @@ impl TimeControl {
             | PageRequest::Write { .. } => None,
         };
         refused.map_or(Ok(()), |why| Err(why.to_owned()))
+    }
+}
+
+/// Returns whether a request only looks at the board, or stops it: what pages may do that are read-only.
+pub(crate) const fn is_harmless(request: &PageRequest) -> bool {
+    match request {
+        PageRequest::Rate { .. }
+        | PageRequest::Watch { .. }
+        | PageRequest::Gather { .. }
+        | PageRequest::Halt {}
+        | PageRequest::Control { .. } => true,
+        PageRequest::Run { .. }
+        | PageRequest::Pause {}
+        | PageRequest::Tick {}
+        | PageRequest::Slice {}
+        | PageRequest::Goto { .. }
+        | PageRequest::Restart {}
+        | PageRequest::Save { .. }
+        | PageRequest::Act { .. }
+        | PageRequest::Command { .. }
+        | PageRequest::Answer { .. }
+        | PageRequest::Jog { .. }
+        | PageRequest::Start { .. }
+        | PageRequest::Stop { .. }
+        | PageRequest::Reload {}
+        | PageRequest::Write { .. } => false,
     }
 }
 
@@ -64,6 +108,7 @@ mod tests {
             (TimeControl::Full, [true, true, true]),
             (TimeControl::Forward, [false, true, true]),
             (TimeControl::Foreign, [false, false, true]),
+            (TimeControl::Real, [false, false, true]),
         ] {
             assert_eq!([&back, &pause, &click].map(|request| control.allows(request).is_ok()), allowed);
         }

@@ -7,7 +7,7 @@
 //! ```text
 //! server/    connections: the files of the page, access checks, sockets
 //! board/     the session under the clock: frames, signals, threads, messages
-//! control    how pages control board time
+//! control    what pages may do to the board and its time
 //! desk       shared by connections and the board: requests in, messages and frames out
 //! request    the requests of a page
 //! names      the programs' names of bits
@@ -35,7 +35,7 @@ pub use server::{ListenError, Server};
 
 use std::path::PathBuf;
 
-use cc67_host::{Session, Target};
+use cc67_host::{Session, Target, UserProgram};
 use kmotiondef::ThreadId;
 use runtime::{Event, MachineFile};
 
@@ -48,6 +48,8 @@ pub struct Program {
     pub path: PathBuf,
     /// Whether it is an image.
     pub is_image: bool,
+    /// The program compiled, where it is loaded only when a page asks for it.
+    pub waiting: Option<Box<UserProgram>>,
 }
 
 /// An option of `cc67 run`.

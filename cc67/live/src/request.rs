@@ -32,6 +32,20 @@ pub(crate) enum PageRequest {
         /// The line.
         line: String,
     },
+    /// Jog an axis, as long as this comes again within 0.4 s; a velocity of 0 ends it.
+    Jog {
+        /// 0 to 7.
+        axis: i32,
+        /// Counts or steps a second.
+        velocity: f64,
+    },
+    /// Stop all threads and disable all axes.
+    Halt {},
+    /// Let pages act on a connected controller, or only look.
+    Control {
+        /// Whether they may act.
+        on: bool,
+    },
     /// Start a thread.
     Start {
         /// 1 to 7.
@@ -41,6 +55,11 @@ pub(crate) enum PageRequest {
     Stop {
         /// 1 to 7.
         thread: i32,
+    },
+    /// Answer the box that a program has opened.
+    Answer {
+        /// A button or a number: `msgbox=ok`, `input=2.5`, `input=cancel`.
+        setting: String,
     },
     /// Compile what has changed, load and start it.
     Reload {},
@@ -101,7 +120,15 @@ mod tests {
             PageRequest::parse(r#"{"do":"run"}"#).expect("speed may be absent"),
             PageRequest::Run { speed: None }
         );
-        for wrong in ["", "{}", "[]", r#"{"do":"fly"}"#, r#"{"do":"tick","more":1}"#, r#"{"do":"start"}"#] {
+        for wrong in [
+            "",
+            "{}",
+            "[]",
+            r#"{"do":"fly"}"#,
+            r#"{"do":"tick","more":1}"#,
+            r#"{"do":"start"}"#,
+            r#"{"do":"control"}"#,
+        ] {
             assert!(PageRequest::parse(wrong).is_err(), "{wrong}");
         }
     }

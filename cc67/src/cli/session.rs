@@ -3,6 +3,7 @@
 //!
 //! Every command that has a board takes this way, so an option of a board reaches all of them.
 
+mod boxes;
 pub(crate) mod controller;
 mod flash;
 mod line;
@@ -40,6 +41,7 @@ use super::compile::images;
 use super::io::exit::Exit;
 use super::io::input::read;
 use super::io::pace::Pace;
+pub(crate) use boxes::run_with_boxes;
 use flash::{Flash, Unacknowledged};
 use line::SerialLine;
 
@@ -157,6 +159,16 @@ impl Setup {
         }
     }
 
+    /// Whether the board is a connected controller.
+    pub(crate) const fn is_of_controller(&self) -> bool {
+        self.controller.is_some()
+    }
+
+    /// Takes the programs out: they are not loaded.
+    pub(crate) fn take_programs(&mut self) -> Vec<UserProgram> {
+        std::mem::take(&mut self.session.programs)
+    }
+
     /// The same board with its PC at the other end of its link.
     pub(crate) fn with_pc_elsewhere(mut self) -> Self {
         let config = &mut self.session.config;
@@ -220,7 +232,7 @@ impl Setup {
     pub(crate) fn rig_of_any(self) -> Result<Rig<AnyTarget>> {
         ensure!(
             self.controller.is_none(),
-            "this does not work with `--on` yet: `cc67 run` and `cc67 console` do"
+            "this does not work with `--on` yet: `cc67 run`, `cc67 console` and `cc67 live` do"
         );
         self.rig_with(|session, code| match code {
             CodeFor::Engine(_) | CodeFor::Controller(_) => session.session_on_any(None),

@@ -122,12 +122,28 @@ impl Host {
     }
 
     /// Whether a request opens a box, the answer to which a person still has to give.
-    fn is_for_person(&self, code: i32) -> bool {
+    pub(super) fn is_for_person(&self, code: i32) -> bool {
         let Boxes { waits, buttons, inputs } = &self.answers.boxes;
         let is_open = requests::deed(code).is_some_and(|deed| {
             (deed == Deed::MessageBox && buttons.is_empty()) || (deed == Deed::InputBox && inputs.is_empty())
         });
         *waits && is_open && !self.answers.results.contains_key(&code)
+    }
+
+    /// Shows the box of a request that waits for a person; returns what it says the first time.
+    pub(super) fn show_box(&mut self, memory: &GuestMemory, code: i32) -> Option<String> {
+        let is_new = std::mem::replace(&mut self.unanswered, code) != code;
+        is_new.then(|| opened(memory, code).shown())
+    }
+
+    /// No request waits any more.
+    pub(super) const fn forget_request(&mut self) {
+        self.unanswered = 0;
+    }
+
+    /// Leaves boxes open until a person answers them.
+    pub(super) const fn leave_boxes_open(&mut self) {
+        self.answers.boxes.waits = true;
     }
 
     /// How many ticks it leaves the board alone.
@@ -198,9 +214,7 @@ pub(crate) fn slice(host: &mut Host, out: &mut Out, context: &mut TickContext<'_
             say(out, context, format!("request {code} gets no answer"));
         }
     } else if host.is_for_person(code) {
-        if host.unanswered != code {
-            host.unanswered = code;
-            let text = opened(context.memory, code).shown();
+        if let Some(text) = host.show_box(context.memory, code) {
             say(out, context, text);
         }
     } else {

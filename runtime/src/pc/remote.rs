@@ -13,7 +13,8 @@ use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 use vm::thread::Threads;
 
-use super::answers::Answers;
+use super::OpenBox;
+use super::answers::{AnswerError, Answers};
 use super::host::{self, Host, STRING_WORDS};
 use super::requests::{self, Deed, Way};
 use crate::out::{EventKind, Out};
@@ -93,6 +94,25 @@ impl RequestServer {
         Self { host, memory, threads: Threads::new(), silent: 0 }
     }
 
+    /// Leaves message and input boxes open until they are [answered](Self::answer), where no answer was set in advance.
+    pub fn leave_boxes_open(&mut self) {
+        self.host.leave_boxes_open();
+    }
+
+    /// Returns the box that waits for a person.
+    #[must_use]
+    pub fn open_box(&self) -> Option<OpenBox> {
+        self.host.open_box(&self.memory)
+    }
+
+    /// Gives the next answer, such as `msgbox=ok`.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn answer(&mut self, setting: &str) -> Result<(), AnswerError> {
+        self.host.answer_next(setting)
+    }
+
     /// Answers the request in these elements of `persist.UserData`, 100 and the seven after it; returns what the PC did,
     /// in sentences.
     ///
@@ -102,6 +122,8 @@ impl RequestServer {
         let [code, parameters @ ..] = words.map(u32::cast_signed);
         if code <= 0 {
             self.silent = 0;
+            self.host.forget_request();
+            self.memory.poke(element(PC_COMM_PERSIST), 0_u32);
             return Ok(Vec::new());
         }
         if self.host.is_silent(code) {
@@ -111,6 +133,9 @@ impl RequestServer {
         self.fetch(board, code, &parameters)?;
         for (index, word) in (PC_COMM_PERSIST..).zip(words) {
             self.memory.poke(element(index), word);
+        }
+        if self.host.is_for_person(code) {
+            return Ok(self.host.show_box(&self.memory, code).into_iter().collect());
         }
         let before = Before {
             user_data: self.user_data(),
@@ -127,6 +152,8 @@ impl RequestServer {
         let result = host::answer(&mut self.host, &mut out, &mut context, code);
         self.store(board, code, &before)?;
         board.set_user_data(PC_COMM_PERSIST, result.cast_unsigned())?;
+        self.memory.poke(element(PC_COMM_PERSIST), result);
+        self.host.forget_request();
         let said = out.take_events().into_iter().filter_map(|event| match event.kind {
             EventKind::Host(text) => Some(text),
             _ => None,
@@ -301,6 +328,24 @@ mod tests {
     fn board() -> (RequestServer, Words) {
         let data = [0; N_USER_DATA_VARS];
         (RequestServer::new(None), Words { data, gather: vec![0; 2000], commands: Vec::new() })
+    }
+
+    #[test]
+    fn a_box_stays_open_until_somebody_answers_it() {
+        let (mut server, mut board) = board();
+        server.leave_boxes_open();
+        board.gather[1000] = u32::from_le_bytes(*b"tool");
+        board.gather[1001] = u32::from_le_bytes(*b" 3?\0");
+        let asked = ask(&mut server, &mut board, &[15, 1000, 4]);
+        assert_eq!(asked, (15, vec!["message box: tool 3?: waiting for an answer".to_owned()]));
+        // It is shown once.
+        assert_eq!(ask(&mut server, &mut board, &[15, 1000, 4]), (15, vec![]));
+        let open = OpenBox::Message { text: "tool 3?".to_owned(), buttons: &["yes", "no"] };
+        assert_eq!(server.open_box(), Some(open));
+        server.answer("msgbox=no").expect("an answer");
+        assert_eq!(server.open_box(), None);
+        let (result, _) = ask(&mut server, &mut board, &[15, 1000, 4]);
+        assert_eq!((result, board.data[PC_COMM_PERSIST + 3], server.open_box()), (0, 7, None));
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 mod asks;
 mod browser;
+mod connected;
 mod firefox;
 mod hostile;
 #[cfg(target_os = "linux")]

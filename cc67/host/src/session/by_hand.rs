@@ -165,6 +165,18 @@ impl<T: Target> Session<T> {
         Ok(())
     }
 
+    /// Gives the PC its next answer, such as `msgbox=ok`: of a simulated board by a [statement](Self::act), of a connected
+    /// one at once.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn answer(&mut self, setting: &str) -> Result<(), HostError> {
+        match self.can(Capability::Answers) {
+            true => self.target.answer(setting),
+            false => self.act(&format!("answer {}", quoted(setting.as_bytes()))),
+        }
+    }
+
     /// Drives an input from outside at once.
     ///
     /// # Errors

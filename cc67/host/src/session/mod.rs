@@ -206,6 +206,15 @@ impl<T: Target> Session<T> {
         self.peek(self.target.place_of(address))
     }
 
+    /// A value in an object of the board's tables, as far as it is known [without an exchange](Target::glance).
+    #[must_use]
+    pub fn glance_at_object<S: Scalar>(&self, address: GuestAddr) -> Option<S> {
+        let mut bytes = [0; 8];
+        let wanted = bytes.get_mut(..S::SIZE as usize)?;
+        self.target.glance(self.target.place_of(address), wanted)?;
+        S::get(&bytes, 0)
+    }
+
     /// Number of the last tick that is over.
     #[must_use]
     pub fn tick(&self) -> Ticks {

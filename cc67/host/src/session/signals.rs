@@ -99,9 +99,10 @@ impl<T: Target> Session<T> {
         if self.signals.subscriptions.is_empty() || self.signals.last == tick {
             return;
         }
-        self.signals.last = tick;
+        let last = std::mem::replace(&mut self.signals.last, tick);
         for subscription in &mut self.signals.subscriptions {
-            if tick.get().is_multiple_of(subscription.every) {
+            // A simulated board stops at each multiple; the time of a connected one may be past it.
+            if last.get() / subscription.every < tick.get() / subscription.every {
                 let values: Vec<f64> =
                     subscription.watched.iter().map(|watch| watch.value(&self.target)).collect();
                 (subscription.receiver)(tick, &values);

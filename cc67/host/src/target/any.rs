@@ -98,6 +98,7 @@ impl Target for AnyTarget {
         fn moving(&self) -> Vec<AxisId>;
         fn place_of(&self, address: GuestAddr) -> GuestAddr;
         fn read(&self, address: GuestAddr, bytes: &mut [u8]) -> Result<(), HostError>;
+        fn glance(&self, address: GuestAddr, bytes: &mut [u8]) -> Option<()>;
         fn knows(&self, item: Item) -> bool;
         fn value(&self, item: Item) -> f64;
         fn bit(&self, bit: Bit) -> bool;
@@ -123,6 +124,7 @@ impl Target for AnyTarget {
         fn stop(&mut self, thread: ThreadId);
         fn write(&mut self, address: GuestAddr, bytes: &[u8]) -> Result<(), HostError>;
         fn receive(&mut self, bytes: &[u8]);
+        fn answer(&mut self, setting: &str) -> Result<(), HostError>;
         fn listen(&mut self, listens: bool);
         fn tap_wire(&mut self);
         fn take_wire(&mut self) -> Vec<u8>;

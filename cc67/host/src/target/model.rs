@@ -54,7 +54,7 @@ impl<E: Engine> Target for Board<E> {
         match capability {
             Capability::StopTime | Capability::Snapshots | Capability::Surroundings => true,
             Capability::Breakpoints | Capability::Watchpoints => E::HOLDS,
-            Capability::ProcessorCode => false,
+            Capability::ProcessorCode | Capability::Answers => false,
         }
     }
 

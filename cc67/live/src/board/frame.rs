@@ -61,7 +61,7 @@ pub(super) fn frame<T: Target>(
     write_analog(session, &mut out);
     let data = PERSIST.field(Persist::USER_DATA);
     let words = (0..kmotiondef::limits::N_USER_DATA_VARS).map(|index| data.element(index).address());
-    out.extend(words.flat_map(|address| session.peek_object::<u32>(address).to_le_bytes()));
+    out.extend(words.flat_map(|address| word(session, address).to_le_bytes()));
     debug_assert_eq!(out.len(), SAMPLES, "the table above");
     let (rows, next) = samples.write(next_row, &mut out);
     let counts = [samples.generation, samples.names().len() as u32 + 1, rows, 0];
@@ -75,17 +75,24 @@ fn place<T>(axis: AxisId, field: Field<T>) -> GuestAddr {
     CHAN.element(axis.index()).field(field).address()
 }
 
+/// A double, not a number where it is unknown.
 fn double<T: Target>(session: &Session<T>, address: GuestAddr) -> f64 {
-    f64::from_bits(session.peek_object(address))
+    session.glance_at_object(address).map_or(f64::NAN, f64::from_bits)
 }
 
+/// A float, not a number where it is unknown.
 fn float<T: Target>(session: &Session<T>, address: GuestAddr) -> f64 {
-    f64::from(f32::from_bits(session.peek_object(address)))
+    session.glance_at_object(address).map_or(f64::NAN, |bits| f64::from(f32::from_bits(bits)))
+}
+
+/// A word, 0 where it is unknown.
+fn word<T: Target>(session: &Session<T>, address: GuestAddr) -> u32 {
+    session.glance_at_object(address).unwrap_or_default()
 }
 
 fn write_axis<T: Target>(session: &Session<T>, axis: AxisId, out: &mut Vec<u8>) {
     let load = Item::new(&format!("load{axis}")).map_or(0.0, |item| session.target().value(item));
-    let int = |field: Field<i32>| session.peek_object::<u32>(place(axis, field)).cast_signed();
+    let int = |field: Field<i32>| word(session, place(axis, field)).cast_signed();
     let numbers = [
         double(session, place(axis, Chan::DEST)),
         double(session, place(axis, Chan::POSITION)),
@@ -112,13 +119,14 @@ fn write_bits<T: Target>(session: &Session<T>, out: &mut Vec<u8>) {
         }
     }
     let directions = (0..usize::from(PINS / 32)).map(|word| BIT_DIR_SHADOW.element(word).address());
-    out.extend(directions.flat_map(|word| session.peek_object::<u32>(word).to_le_bytes()));
+    out.extend(directions.flat_map(|word| self::word(session, word).to_le_bytes()));
 }
 
 fn write_analog<T: Target>(session: &Session<T>, out: &mut Vec<u8>) {
     let inputs =
-        (0..8).map(|index| session.peek_object::<u32>(ADC_BUFFER_IN.element(index).address()) as i32 - 2048);
-    let outputs = (0..8).map(|index| session.peek_object::<u16>(DAC_BUFFER.element(index).address()) & 0xfff);
+        (0..8).map(|index| word(session, ADC_BUFFER_IN.element(index).address()).cast_signed() - 2048);
+    let output = |index| session.glance_at_object::<u16>(DAC_BUFFER.element(index).address());
+    let outputs = (0..8).map(|index| output(index).unwrap_or(2048) & 0xfff);
     let outputs = outputs.map(|word| i32::from(word) - 2048);
     out.extend(inputs.chain(outputs).flat_map(|number| (number as i16).to_le_bytes()));
 }

@@ -5,10 +5,12 @@
 //! else runs has the same beat without the second step: a [`LiveView`].
 
 mod clock;
+mod connected;
 mod frame;
 mod gather;
 mod hello;
 mod history;
+mod jogs;
 mod keep;
 mod log;
 mod programs;
@@ -36,6 +38,7 @@ use crate::desk::{Desk, Incoming, Mailbox, PageId};
 use crate::request::PageRequest;
 use crate::{Keeper, Show, TimeControl};
 use clock::{Clock, now};
+use connected::PageAccess;
 use frame::Moment;
 use log::{Log, Voice};
 use programs::Programs;
@@ -72,6 +75,7 @@ pub(crate) fn run<T: Target>(
     stage.company = company;
     while limit.is_none_or(|limit| session.tick() < limit) {
         stage.take(session, requests, BEAT);
+        stage.stop_silent_jogs(session);
         stage.advance(session, limit);
         stage.tell(session);
     }
@@ -101,6 +105,16 @@ struct Page {
     generation: u32,
 }
 
+/// What pages know.
+#[derive(Debug)]
+struct Told {
+    /// The threads, and the moment of the message.
+    threads: Vec<ThreadRow>,
+    at: Instant,
+    /// The box that waits for an answer.
+    open_box: Option<OpenBox>,
+}
+
 /// What belongs to showing a session.
 #[derive(Debug)]
 struct Stage<T: Target> {
@@ -112,16 +126,16 @@ struct Stage<T: Target> {
     samples: Samples,
     log: Log,
     pages: BTreeMap<PageId, Page>,
-    /// What pages know of threads, and when.
-    told: (Vec<ThreadRow>, Instant),
+    /// What pages know.
+    told: Told,
     /// Which thread had each of the last ticks.
     turns: Turns,
-    /// The box that pages know of.
-    open_box: Option<OpenBox>,
     /// For whoever else runs the session.
     wishes: Wishes,
     /// Who else is with the board.
     company: Company<T>,
+    /// What pages do to axes and may do to a connected controller.
+    access: PageAccess,
 }
 
 /// Who is with a board besides its pages.
@@ -137,7 +151,7 @@ impl<T: Target> Stage<T> {
     fn new(session: &mut Session<T>, show: Show, desk: &Arc<Desk>) -> Self {
         let programs = Programs::watched(&show, session.options(), desk);
         let clock = Clock::new(session.tick(), show.speed, !show.is_paused);
-        let mut samples = Samples::default();
+        let mut samples = Samples::new(show.time == TimeControl::Real);
         let list = if show.watch.is_empty() { SIGNALS } else { &show.watch };
         let mut log = Log::default();
         if let Err(error) = samples.follow(session, list, clock.speed()) {
@@ -158,11 +172,11 @@ impl<T: Target> Stage<T> {
             samples,
             log,
             pages: BTreeMap::new(),
-            told: (Vec::new(), now()),
+            told: Told { threads: Vec::new(), at: now(), open_box: None },
             turns: Turns::default(),
-            open_box: None,
             wishes: Wishes::default(),
             company: Company { attendant: None, keeper: None },
+            access: PageAccess::default(),
         }
     }
 
@@ -186,6 +200,7 @@ impl<T: Target> Stage<T> {
             Incoming::Join(id, mailbox) => self.join(session, id, mailbox),
             Incoming::Leave(id) => {
                 self.pages.remove(&id);
+                self.stop_jogs_of(session, id);
             }
             Incoming::Ask(id, request) => {
                 if let Err(problem) = self.obey(session, id, request) {
@@ -193,7 +208,7 @@ impl<T: Target> Stage<T> {
                 }
             }
             Incoming::Saved(compiled) => {
-                let programs = self.programs.saved(*compiled);
+                let programs = self.programs.saved(*compiled, self.may_load());
                 self.load(session, programs);
                 self.broadcast(&hello::hello(&self.show));
                 self.broadcast(&hello::sources(&self.show));
@@ -208,11 +223,14 @@ impl<T: Target> Stage<T> {
         self.pages.insert(id, page);
         self.answer(id, &hello::hello(&self.show));
         self.answer(id, &hello::sources(&self.show));
+        if self.is_real() {
+            self.answer(id, &self.access.message());
+        }
         self.answer(id, &self.programs.message());
         self.answer(id, &self.signals());
         self.answer(id, &json!({ "kind": "log", "entries": self.log.all() }));
         self.answer(id, &json!({ "kind": "threads", "threads": threads::rows(session), "turns": [] }));
-        self.answer(id, &asks(self.open_box.as_ref()));
+        self.answer(id, &asks(self.told.open_box.as_ref()));
     }
 
     fn signals(&self) -> Value {
@@ -222,7 +240,7 @@ impl<T: Target> Stage<T> {
 
     /// Does what a page asks for.
     fn obey(&mut self, session: &mut Session<T>, id: PageId, request: PageRequest) -> Result<(), String> {
-        self.show.time.allows(&request)?;
+        self.allows(&request)?;
         match request {
             PageRequest::Rate { frames } => {
                 if let Some(page) = self.pages.get_mut(&id) {
@@ -252,13 +270,13 @@ impl<T: Target> Stage<T> {
                 self.slice(session);
             }
             PageRequest::Act { text } => self.act(session, &text)?,
+            PageRequest::Answer { setting } => self.answer_box(session, &setting)?,
             PageRequest::Command { line } => self.command(session, &line)?,
-            PageRequest::Start { thread } => {
-                self.act(session, &format!("start thread {}", checked(thread)?))?;
-            }
-            PageRequest::Stop { thread } => {
-                self.act(session, &format!("stop thread {}", checked(thread)?))?;
-            }
+            PageRequest::Jog { axis, velocity } => self.jog(session, id, axis, velocity)?,
+            PageRequest::Halt {} => self.halt(session)?,
+            PageRequest::Control { on } => self.control(session, on),
+            PageRequest::Start { thread } => self.start(session, checked(thread)?)?,
+            PageRequest::Stop { thread } => self.stop(session, checked(thread)?)?,
             PageRequest::Reload {} => {
                 let programs = self.programs.reload();
                 self.load(session, programs);
@@ -302,12 +320,45 @@ impl<T: Target> Stage<T> {
     /// Sends script commands, as the PC does.
     fn command(&mut self, session: &mut Session<T>, line: &str) -> Result<(), String> {
         self.log.say(session.tick(), Voice::Command, line.to_owned());
+        if self.is_real() {
+            let mut events = Vec::new();
+            session.exchange(line.as_bytes(), &mut |event| events.push(event));
+            self.note(session, events);
+            return Ok(());
+        }
         if self.is_guest() {
             self.wishes.commands.push(line.to_owned());
             return Ok(());
         }
         let quoted = line.replace('\\', "\\\\").replace('"', "\\\"");
         self.act(session, &format!("command \"{quoted}\""))
+    }
+
+    /// Answers the box that a program has opened.
+    fn answer_box(&mut self, session: &mut Session<T>, setting: &str) -> Result<(), String> {
+        match self.is_real() {
+            true => session.answer(setting).map_err(|error| error.to_string()),
+            false => self.act(session, &format!("answer \"{setting}\"")),
+        }
+    }
+
+    /// Starts a thread.
+    fn start(&mut self, session: &mut Session<T>, thread: ThreadId) -> Result<(), String> {
+        match self.is_real() {
+            true => session.start(thread).map_err(|error| error.to_string()),
+            false => self.act(session, &format!("start thread {thread}")),
+        }
+    }
+
+    /// Stops a thread.
+    fn stop(&mut self, session: &mut Session<T>, thread: ThreadId) -> Result<(), String> {
+        match self.is_real() {
+            true => {
+                session.stop(thread);
+                Ok(())
+            }
+            false => self.act(session, &format!("stop thread {thread}")),
+        }
     }
 
     /// Loads and starts programs, and says so.
@@ -328,6 +379,10 @@ impl<T: Target> Stage<T> {
         if self.company.attendant.is_some() {
             self.run_to(session, session.tick());
         }
+        if self.is_real() {
+            // Its time has passed meanwhile.
+            return self.run_to(session, session.tick().next());
+        }
         let begin = now();
         let due = self.clock.due(session.tick());
         let due = limit.map_or(due, |limit| due.min(limit));
@@ -339,7 +394,7 @@ impl<T: Target> Stage<T> {
     /// Runs to a tick and takes note of what happens.
     fn run_to(&mut self, session: &mut Session<T>, tick: Ticks) {
         let mut events = Vec::new();
-        let looks = !self.pages.is_empty() && self.told.1.elapsed() >= THREADS;
+        let looks = !self.pages.is_empty() && self.told.at.elapsed() >= THREADS;
         if let Some(mut attendant) = self.company.attendant.take() {
             attendant.advance(session, tick, &mut |event| events.push(event), &mut |session| {
                 self.tell(session);
@@ -378,29 +433,33 @@ impl<T: Target> Stage<T> {
 
     /// Whether somebody else runs the session.
     fn is_guest(&self) -> bool {
-        self.show.time != TimeControl::Full
+        match self.show.time {
+            TimeControl::Full | TimeControl::Real => false,
+            TimeControl::Forward | TimeControl::Foreign => true,
+        }
     }
 
     /// Tells pages what is new.
     fn tell(&mut self, session: &Session<T>) {
+        self.tell_link(session);
         let fresh = self.log.take_fresh();
         let entries = (!fresh.is_empty()).then(|| json!({ "kind": "log", "entries": fresh }));
         if let Some(entries) = entries {
             self.broadcast(&entries);
         }
-        if !self.pages.is_empty() && self.told.1.elapsed() >= THREADS {
+        if !self.pages.is_empty() && self.told.at.elapsed() >= THREADS {
             let rows = threads::rows(session);
-            if rows != self.told.0 || self.clock.is_running() {
+            if rows != self.told.threads || self.clock.is_running() {
                 // Those of a moment ago do while the board runs.
                 let turns = self.turns.until(session.tick());
                 let turns = if self.clock.is_running() { turns } else { Some(turns.unwrap_or_default()) };
                 self.broadcast(&json!({ "kind": "threads", "threads": rows, "turns": turns }));
             }
-            self.told = (rows, now());
+            (self.told.threads, self.told.at) = (rows, now());
             let open_box = session.target().open_box();
-            if open_box != self.open_box {
+            if open_box != self.told.open_box {
                 self.broadcast(&asks(open_box.as_ref()));
-                self.open_box = open_box;
+                self.told.open_box = open_box;
             }
         }
         self.send_frames(session);

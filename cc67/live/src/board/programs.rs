@@ -34,16 +34,16 @@ impl Programs {
             programs: show.programs.clone(),
             options: options.clone(),
             reloads: show.reloads,
-            waiting: BTreeMap::new(),
+            waiting: show.programs.iter().filter_map(waiting).collect(),
             loaded: BTreeMap::new(),
             wrong: BTreeMap::new(),
         }
     }
 
-    /// A program was saved; what should be loaded now.
-    pub(super) fn saved(&mut self, compiled: Compiled) -> Vec<UserProgram> {
+    /// A program was saved; what should be loaded now, if it may be.
+    pub(super) fn saved(&mut self, compiled: Compiled, may_load: bool) -> Vec<UserProgram> {
         self.note(compiled);
-        if self.reloads { self.take() } else { Vec::new() }
+        if self.reloads && may_load { self.take() } else { Vec::new() }
     }
 
     /// What should be loaded: what waits; where nothing does, every program again.
@@ -87,6 +87,11 @@ impl Programs {
         });
         json!({ "kind": "programs", "waiting": waiting, "errors": errors.collect::<Vec<_>>() })
     }
+}
+
+/// A program that is loaded when a page asks for it, with its thread.
+fn waiting(program: &Program) -> Option<(ThreadId, UserProgram)> {
+    program.waiting.as_deref().map(|compiled| (program.thread, compiled.clone()))
 }
 
 /// The parts of `file:line: message`; a drive letter is not a file.

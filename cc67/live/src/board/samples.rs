@@ -15,7 +15,9 @@ const SIGNALS: usize = 128;
 /// Rows that go into one frame.
 const ROWS_AT_ONCE: usize = 4096;
 /// Ticks from one sample to the next at the pace of the real board: 0.9 ms.
-const EVERY: f64 = 10.0;
+const EVERY: u64 = 10;
+/// The same of a connected controller: 50 ms, in which its status record is read.
+const EVERY_STATUS: u64 = 555;
 
 /// Rows of samples, and how they are called.
 #[derive(Debug, Default)]
@@ -65,6 +67,8 @@ impl Rows {
 pub(super) struct Samples {
     names: Vec<String>,
     list: String,
+    /// Ticks from one sample to the next at the pace of the real board.
+    interval: u64,
     every: u64,
     subscription: Option<SubscriptionId>,
     rows: Arc<Mutex<Rows>>,
@@ -73,6 +77,11 @@ pub(super) struct Samples {
 }
 
 impl Samples {
+    /// Follows nothing yet.
+    pub(super) fn new(is_real: bool) -> Self {
+        Self { interval: if is_real { EVERY_STATUS } else { EVERY }, ..Self::default() }
+    }
+
     /// Follows the signals of a list.
     pub(super) fn follow<T: Target>(
         &mut self,
@@ -93,7 +102,7 @@ impl Samples {
 
     /// Samples less often when time goes faster, so that as many come in a second.
     pub(super) fn at_speed<T: Target>(&mut self, session: &mut Session<T>, speed: f64) {
-        if every(speed) != self.every {
+        if self.every_at(speed) != self.every {
             let watched = self.names.iter().filter_map(|name| session.watch(name).ok()).collect::<Vec<_>>();
             if watched.len() == self.names.len() {
                 self.subscribe(session, watched, speed);
@@ -105,13 +114,18 @@ impl Samples {
         if let Some(subscription) = self.subscription.take() {
             session.unsubscribe(subscription);
         }
-        self.every = every(speed);
+        self.every = self.every_at(speed);
         if watched.is_empty() {
             return;
         }
         let rows = Arc::clone(&self.rows);
         let receive = move |tick: Ticks, values: &[f64]| locked(&rows).add(tick, values);
         self.subscription = Some(session.subscribe(watched, self.every, receive));
+    }
+
+    /// Ticks from one sample to the next at a speed.
+    fn every_at(&self, speed: f64) -> u64 {
+        (self.interval as f64 * speed.max(1.0)).round() as u64
     }
 
     /// Drops what is later than a tick; the number of rows there have been then.
@@ -149,9 +163,4 @@ fn parts(name: &str) -> Vec<String> {
         Some(number) => ["dest", "pos", "out"].map(|kind| format!("{kind}{number}")).to_vec(),
         None => vec![name.to_owned()],
     }
-}
-
-/// Ticks from one sample to the next.
-fn every(speed: f64) -> u64 {
-    (EVERY * speed.max(1.0)).round() as u64
 }

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use cc67_host::{Session, Target};
+use cc67_host::{Capability, Session, Target};
 use kmotiondef::Ticks;
 use runtime::Event;
 
@@ -27,7 +27,8 @@ impl Turns {
         events: &mut dyn FnMut(Event),
     ) {
         let is_near = session.tick().get() + 1 >= tick.get();
-        if !looks && !is_near {
+        // Which thread has had a tick is not known of a target whose time passes by itself.
+        if !session.can(Capability::StopTime) || !looks && !is_near {
             return session.advance(tick, events);
         }
         let first = Ticks::new(tick.get().saturating_sub(SHOWN));

@@ -43,6 +43,7 @@ impl<T: Target> LiveView<T> {
     /// about a hundred times in a second.
     pub fn beat(&mut self, session: &mut Session<T>) -> Wishes {
         self.stage.take(session, &self.requests, Duration::ZERO);
+        self.stage.stop_silent_jogs(session);
         self.stage.tell(session);
         let clock = &self.stage.clock;
         let speed = clock.is_running().then(|| clock.speed());

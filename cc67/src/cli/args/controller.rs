@@ -10,7 +10,7 @@ use super::heading;
 #[derive(Debug, Args)]
 #[command(next_help_heading = heading::CONTROLLER)]
 pub(crate) struct ControllerArguments {
-    /// Use a connected controller in place of a simulated board (run, console): usb[:LOCATION], serial:PATH, server[:PATH|:HOST:PORT],
+    /// Use a connected controller in place of a simulated board (run, console, live): usb[:LOCATION], serial:PATH, server[:PATH|:HOST:PORT],
     /// tcp:HOST:PORT; `cc67 boards` lists what is connected
     #[arg(long, value_name = "BOARD")]
     pub(crate) on: Option<Address>,
@@ -28,7 +28,7 @@ impl ControllerArguments {
     pub(crate) fn refuse_in(&self, command: &str) -> Result<()> {
         ensure!(
             self.on.is_none(),
-            "`cc67 {command}` does not work with `--on` yet: `cc67 run` and `cc67 console` do"
+            "`cc67 {command}` does not work with `--on` yet: `cc67 run`, `cc67 console` and `cc67 live` do"
         );
         Ok(())
     }

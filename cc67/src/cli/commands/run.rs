@@ -25,7 +25,7 @@ use crate::cli::report::screen::{Audience, Screen, Style, no_run};
 use crate::cli::report::seen::Seen;
 use crate::cli::report::state::FinalState;
 use crate::cli::report::trace::{self, Trace};
-use crate::cli::session::{Rig, Setup, Started, Work, controller};
+use crate::cli::session::{Rig, Setup, Started, Work, controller, run_with_boxes};
 use schedules::ExploreArguments;
 
 /// Arguments of `cc67 run`.
@@ -165,7 +165,10 @@ impl RunArguments {
             screen.show(&event);
         };
         interrupt::ends(rig.session.interrupter())?;
-        let end = rig.run(limit, pace.as_ref(), &mut sink);
+        let end = match is_connected {
+            true => run_with_boxes(rig, limit, &mut sink)?,
+            false => rig.run(limit, pace.as_ref(), &mut sink),
+        };
         if is_connected && end == End::Interrupted {
             controller::stop(&mut rig.session, &mut sink);
         }

@@ -215,8 +215,12 @@ impl Client {
     /// # Errors
     /// The board does not answer, or with something else.
     pub fn status(&mut self) -> Result<Status, WireError> {
-        let lines = self.ask_lines("GetStatus", status::LINES)?;
-        Status::read(&lines).ok_or_else(|| self.unexpected("GetStatus", &lines.join(" / ")))
+        let lines = self.send_line("GetStatus")?;
+        let Some((status, foreign)) = Status::read(&lines) else {
+            return Err(self.unexpected("GetStatus", &lines.join(" / ")));
+        };
+        self.foreign_lines += foreign as u64;
+        Ok(status)
     }
 
     /// The error of an answer that makes no sense.

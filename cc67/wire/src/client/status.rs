@@ -1,109 +1,234 @@
-//! The status record. Source: host-protocol.md section 5.
+//! The status record, `MAIN_STATUS`, in the layout of the board's firmware. Source: host-protocol.md section 5; the
+//! structure of each board's header.
 
-use kmotiondef::{AxisId, ThreadId};
+use std::sync::LazyLock;
 
-/// Words of the record.
-const WORDS: usize = 116;
-/// Lines of the reply.
-pub(super) const LINES: usize = 8;
-/// Version 308 and the number of words.
-const HEAD: u32 = 0x0134_0074;
+use kmotiondef::boards::{BOARDS, StructureLayout};
+use kmotiondef::structs::MainStatus;
+use kmotiondef::{AxisId, Bit, ThreadId};
+
+/// Words of a line.
+const WORDS_PER_LINE: usize = 16;
+/// Bits of `BitsState`.
+const PINS: usize = 64;
+/// The first input and the first output of a Kanalog, and the bits of each.
+const KANALOG: [(u16, u16, Word); 2] = [(128, 16, Word::KanalogInputs), (144, 24, Word::KanalogOutputs)];
+/// The first of the extended virtual bits in the record.
+const VIRTUAL_EX: u16 = 1024;
+
+macro_rules! fields {
+    ($($variant:ident = $name:literal),* $(,)?) => {
+        /// The fields that are read.
+        #[derive(Clone, Copy, Debug)]
+        enum Word {
+            $($variant),*
+        }
+
+        /// The names of the fields in the structure, in the order of [`Word`].
+        const FIELDS: &[&str] = &[$($name),*];
+    };
+}
+
+fields! {
+    Adc = "ADC",
+    Dac = "DAC",
+    Position = "Position",
+    Dest = "Dest",
+    InputModes = "InputModes",
+    OutputModes = "OutputModes",
+    Enables = "Enables",
+    AxisDone = "AxisDone",
+    BitsDirection = "BitsDirection",
+    BitsState = "BitsState",
+    KanalogInputs = "KanalogBitsStateInputs",
+    KanalogOutputs = "KanalogBitsStateOutputs",
+    RunOnStartUp = "RunOnStartUp",
+    ThreadActive = "ThreadActive",
+    StopImmediateState = "StopImmediateState",
+    TimeStamp = "TimeStamp",
+    PcComm = "PC_comm",
+    VirtualBits = "VirtualBits",
+    VirtualBitsEx0 = "VirtualBitsEx0",
+}
+
+/// The places of the fields in the record of one firmware, in words.
+#[derive(Debug, PartialEq, Eq)]
+struct RecordLayout {
+    words: usize,
+    places: Vec<usize>,
+}
+
+impl RecordLayout {
+    fn of_structure(structure: &StructureLayout) -> Self {
+        let place = |name: &str| {
+            let field = structure.fields.iter().find(|field| field.name == name);
+            field.map_or(usize::MAX, |field| field.offset as usize / 4)
+        };
+        Self { words: structure.size as usize / 4, places: FIELDS.iter().map(|name| place(name)).collect() }
+    }
+
+    const fn lines(&self) -> usize {
+        self.words.div_ceil(WORDS_PER_LINE)
+    }
+}
+
+/// The records of all boards, each once.
+static LAYOUTS: LazyLock<Vec<RecordLayout>> = LazyLock::new(|| {
+    let mut layouts: Vec<RecordLayout> = Vec::new();
+    for board in BOARDS.iter() {
+        let structures = board.structures();
+        let record = structures.iter().find(|structure| structure.name == MainStatus::STRUCTURE.name);
+        if let Some(layout) = record.map(RecordLayout::of_structure)
+            && !layouts.contains(&layout)
+        {
+            layouts.push(layout);
+        }
+    }
+    layouts
+});
 
 /// The state of the board at an instant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Status {
     words: Vec<u32>,
+    layout: &'static RecordLayout,
 }
 
 impl Status {
-    /// Reads the lines of a reply.
-    pub(super) fn read(lines: &[String]) -> Option<Self> {
-        let words = lines.iter().flat_map(|line| line.split_ascii_whitespace());
-        let words: Vec<u32> = words.map(|word| u32::from_str_radix(word, 16).ok()).collect::<Option<_>>()?;
-        (words.len() == WORDS && words.first() == Some(&HEAD)).then_some(Self { words })
+    /// Reads the last lines of a reply, in the layout whose length the record states; returns the number of lines before
+    /// it as well.
+    pub(super) fn read(lines: &[String]) -> Option<(Self, usize)> {
+        LAYOUTS.iter().find_map(|layout| {
+            let before = lines.len().checked_sub(layout.lines())?;
+            let record = lines.get(before..)?;
+            let words = record.iter().flat_map(|line| line.split_ascii_whitespace());
+            let words: Vec<u32> =
+                words.map(|word| u32::from_str_radix(word, 16).ok()).collect::<Option<_>>()?;
+            let stated = words.first().map(|first| *first as usize & 0xFFFF);
+            let is_whole = words.len() == layout.words && stated == Some(layout.words);
+            is_whole.then_some((Self { words, layout }, before))
+        })
     }
 
-    /// A word of the record.
-    #[must_use]
-    pub fn word(&self, index: usize) -> u32 {
-        self.words.get(index).copied().unwrap_or(0)
+    /// A word of a field.
+    fn get(&self, field: Word, index: usize) -> u32 {
+        let place = self.layout.places.get(field as usize).copied().unwrap_or(usize::MAX);
+        self.words.get(place.saturating_add(index)).copied().unwrap_or(0)
     }
 
-    fn double(&self, index: usize) -> f64 {
-        f64::from_bits(u64::from(self.word(index)) | u64::from(self.word(index + 1)) << 32)
+    fn double(&self, field: Word, index: usize) -> f64 {
+        let word = |half| u64::from(self.get(field, 2 * index + half));
+        f64::from_bits(word(0) | word(1) << 32)
     }
 
     /// The measured position of an axis, in counts.
     #[must_use]
     pub fn position(&self, axis: AxisId) -> f64 {
-        self.double(50 + 2 * usize::from(axis.get()))
+        self.double(Word::Position, axis.index())
     }
 
     /// The commanded position of an axis, in counts.
     #[must_use]
     pub fn dest(&self, axis: AxisId) -> f64 {
-        self.double(66 + 2 * usize::from(axis.get()))
+        self.double(Word::Dest, axis.index())
     }
 
     /// Returns whether an axis is enabled.
     #[must_use]
     pub fn is_enabled(&self, axis: AxisId) -> bool {
-        self.word(88) >> axis.get() & 1 == 1
+        self.get(Word::Enables, 0) >> axis.get() & 1 == 1
     }
 
     /// Returns whether the motion of an axis is complete.
     #[must_use]
     pub fn is_done(&self, axis: AxisId) -> bool {
-        self.word(89) >> axis.get() & 1 == 1
+        self.get(Word::AxisDone, 0) >> axis.get() & 1 == 1
     }
 
     /// The input mode of an axis.
     #[must_use]
     pub fn input_mode(&self, axis: AxisId) -> u8 {
-        (self.word(84) >> (4 * u32::from(axis.get())) & 0xF) as u8
+        self.mode(Word::InputModes, axis)
     }
 
     /// The output mode of an axis.
     #[must_use]
     pub fn output_mode(&self, axis: AxisId) -> u8 {
-        (self.word(86) >> (4 * u32::from(axis.get())) & 0xF) as u8
+        self.mode(Word::OutputModes, axis)
     }
 
-    /// The level of a bit, if the record has it: bits 0 to 63.
+    fn mode(&self, field: Word, axis: AxisId) -> u8 {
+        let word = self.get(field, axis.index() / 8);
+        (word >> (4 * (axis.index() % 8)) & 0xF) as u8
+    }
+
+    /// The level of a bit, if the record has it: 0 to 63, those of a Kanalog, 1024 to 1055.
     #[must_use]
-    pub fn bit(&self, bit: u16) -> Option<bool> {
-        let word = self.word(92 + usize::from(bit / 32));
-        (bit < 64).then_some(word >> (bit % 32) & 1 == 1)
+    pub fn bit(&self, bit: Bit) -> Option<bool> {
+        let level = |word: u32, index: usize| word >> index & 1 == 1;
+        if bit.index() < PINS {
+            return Some(level(self.get(Word::BitsState, bit.index() / 32), bit.index() % 32));
+        }
+        let within = |first: u16, count: u16| (first..first + count).contains(&bit.get());
+        if within(VIRTUAL_EX, 32) {
+            return Some(level(self.get(Word::VirtualBitsEx0, 0), bit.index() % 32));
+        }
+        let (first, _, word) = KANALOG.into_iter().find(|(first, count, _)| within(*first, *count))?;
+        Some(level(self.get(word, 0), usize::from(bit.get() - first)))
     }
 
-    /// An analog input, from 0 to 23.
+    /// The directions of the bits 0 to 63, 32 in a word; 1 is an output.
+    #[must_use]
+    pub fn directions(&self) -> [u32; 2] {
+        [0, 1].map(|index| self.get(Word::BitsDirection, index))
+    }
+
+    /// `VirtualBits`: the bits 48 to 63 begin at its bit 0.
+    #[must_use]
+    pub fn virtual_bits(&self) -> u32 {
+        self.get(Word::VirtualBits, 0)
+    }
+
+    /// An analog input, from 0 to 23; those from 0 to 7 are 0 at 0 V.
     #[must_use]
     pub fn adc(&self, channel: usize) -> i32 {
-        if channel < 24 { self.word(1 + channel).cast_signed() } else { 0 }
+        if channel < 24 { self.get(Word::Adc, channel).cast_signed() } else { 0 }
+    }
+
+    /// An analog output, from 0 to 7, 0 at 0 V.
+    #[must_use]
+    pub fn dac(&self, channel: usize) -> i32 {
+        if channel < 8 { self.get(Word::Dac, channel).cast_signed() } else { 0 }
+    }
+
+    /// The threads that start when the board is switched on, one bit each.
+    #[must_use]
+    pub fn run_on_start_up(&self) -> u32 {
+        self.get(Word::RunOnStartUp, 0)
     }
 
     /// Returns whether a thread is active.
     #[must_use]
     pub fn is_active(&self, thread: ThreadId) -> bool {
-        self.word(101) >> thread.get() & 1 == 1
+        self.get(Word::ThreadActive, 0) >> thread.get() & 1 == 1
     }
 
     /// Seconds since the board was switched on.
     #[must_use]
     pub fn time(&self) -> f64 {
-        self.double(104)
+        self.double(Word::TimeStamp, 0)
     }
 
     /// The state of a feedhold: 0 when none.
     #[must_use]
     pub fn stop_state(&self) -> u32 {
-        self.word(102)
+        self.get(Word::StopImmediateState, 0)
     }
 
     /// `persist.UserData[100 + index]`, for an index from 0 to 7.
     #[must_use]
     pub fn request(&self, index: usize) -> u32 {
-        if index < 8 { self.word(106 + index) } else { 0 }
+        if index < 8 { self.get(Word::PcComm, index) } else { 0 }
     }
 }
 
@@ -111,23 +236,48 @@ impl Status {
 mod tests {
     use super::*;
 
-    #[test]
-    fn fields_are_where_the_record_has_them() {
-        let mut words = vec![0_u32; WORDS];
-        words[0] = HEAD;
-        let [low, high] = [1.5_f64.to_bits() as u32, (1.5_f64.to_bits() >> 32) as u32];
-        (words[52], words[53], words[104], words[105]) = (low, high, low, high);
-        (words[88], words[93], words[101]) = (0b10, 1 << 14, 0b101);
+    /// The lines of a record.
+    fn lines(words: &[u32]) -> Vec<String> {
         let text =
             |words: &[u32]| words.iter().map(|word| format!("{word:08X}")).collect::<Vec<_>>().join(" ");
-        let lines: Vec<_> = words.chunks(16).map(text).collect();
-        let status = Status::read(&lines).expect("the lines are good");
+        words.chunks(WORDS_PER_LINE).map(text).collect()
+    }
+
+    /// A record of a firmware: its first word, and the places of Position 1, Enables, BitsState, ThreadActive, TimeStamp,
+    /// PC_comm.
+    fn check(head: u32, words: usize, places: [usize; 6]) {
+        let mut record = vec![0_u32; words];
+        let [position, enables, bits, threads, time, pc] = places;
+        let [low, high] = [1.5_f64.to_bits() as u32, (1.5_f64.to_bits() >> 32) as u32];
+        record[0] = head;
+        record[position..position + 2].copy_from_slice(&[low, high]);
+        record[time..time + 2].copy_from_slice(&[low, high]);
+        (record[enables], record[bits + 1], record[threads], record[pc + 7]) = (0b10, 1 << 14, 0b101, 7);
+        let mut lines = lines(&record);
+        lines.insert(0, "a line of somebody else".to_owned());
+        let (status, before) = Status::read(&lines).expect("the lines are good");
         let axis = |number| AxisId::new(number).expect("there are 8");
         let thread = |number| ThreadId::new(number).expect("there are 7");
-        assert_eq!((status.position(axis(1)), status.time()), (1.5, 1.5));
+        let bit = |number| Bit::new(number).expect("there are 2048");
+        assert_eq!((status.position(axis(1)), status.time(), status.request(7), before), (1.5, 1.5, 7, 1));
         assert_eq!((status.is_enabled(axis(1)), status.is_enabled(axis(0))), (true, false));
-        assert_eq!((status.bit(46), status.bit(45), status.bit(64)), (Some(true), Some(false), None));
+        let levels = [46, 45, 64, 136, 1030].map(|number| status.bit(bit(number)));
+        assert_eq!(levels, [Some(true), Some(false), None, Some(false), Some(false)]);
         assert_eq!((status.is_active(thread(2)), status.is_active(thread(1))), (true, false));
-        assert_eq!(Status::read(&lines[..7]), None);
+        assert_eq!(Status::read(&lines[..lines.len() - 1]), None);
+    }
+
+    #[test]
+    fn fields_are_where_the_record_of_the_firmware_has_them() {
+        check(0x0134_0074, 116, [52, 88, 92, 101, 104, 106]);
+        check(0x0135_00AE, 174, [52, 126, 132, 159, 162, 164]);
+    }
+
+    #[test]
+    fn every_record_has_every_field() {
+        assert_eq!(LAYOUTS.iter().map(|layout| layout.words).collect::<Vec<_>>(), [116, 174]);
+        for layout in LAYOUTS.iter() {
+            assert!(layout.places.iter().all(|place| *place < layout.words), "{layout:?}");
+        }
     }
 }

@@ -10,8 +10,8 @@ use std::net::Ipv4Addr;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use anyhow::{Context, Result, bail};
-use cc67_host::Target;
+use anyhow::{Context, Result, bail, ensure};
+use cc67_host::{Target, UserProgram};
 use cc67_live::{ListenError, Program, Server, Show, TestOption, TimeControl};
 use clap::{Arg, Args, Parser};
 
@@ -91,7 +91,9 @@ fn speed(text: &str) -> Result<f64, String> {
 
 /// Shows a board until it is interrupted.
 pub(super) fn live(arguments: &LiveArguments) -> Result<Exit> {
-    arguments.board.controller.refuse_in("live")?;
+    if arguments.board.controller.on.is_some() {
+        arguments.refuse_with_controller()?;
+    }
     let UartArguments { uart_input, uart_output, uart } = &arguments.board.uart;
     if uart_input.is_some() || uart_output.is_some() || uart.is_some() {
         bail!("`cc67 live`: the serial port cannot be connected yet");
@@ -101,9 +103,17 @@ pub(super) fn live(arguments: &LiveArguments) -> Result<Exit> {
     }
     let started = Started { programs: &arguments.programs, first: &arguments.beside.first };
     let setup = Setup::new(started, &arguments.board, &arguments.compiler)?;
-    let Some(setup) = setup else { return Ok(Exit::Failure) };
+    let Some(mut setup) = setup else { return Ok(Exit::Failure) };
+    // Nothing is loaded into a controller before somebody has switched control on.
+    let waiting = if setup.is_of_controller() { setup.take_programs() } else { Vec::new() };
     let debugger = arguments.attach.open()?;
-    setup.debugged(debugger, arguments)
+    setup.debugged(debugger, LivePage { arguments, waiting })
+}
+
+/// The page of a board, and the programs that wait until a person loads them.
+struct LivePage<'a> {
+    arguments: &'a LiveArguments,
+    waiting: Vec<UserProgram>,
 }
 
 /// Shows the demonstration, with those of the arguments that are about the page.
@@ -128,11 +138,18 @@ struct Demonstration {
     arguments: LiveArguments,
 }
 
-impl Work for &LiveArguments {
+impl Work for LivePage<'_> {
     fn on<T: Target>(self, mut rig: Rig<T>) -> Result<Exit> {
-        let show = self.show()?;
-        let server = listen(self.port, &self.board)?;
-        announce(&server, &self.board, !self.no_open)?;
+        let Self { arguments, waiting } = self;
+        let mut show = arguments.show()?;
+        for compiled in waiting {
+            let shown = show.programs.iter_mut().find(|program| program.thread == compiled.thread);
+            if let Some(shown) = shown {
+                shown.waiting = Some(Box::new(compiled));
+            }
+        }
+        let server = listen(arguments.port, &arguments.board)?;
+        announce(&server, &arguments.board, !arguments.no_open)?;
         let attendant = rig.attendant.take();
         let keeper = Box::new(rig.flash_keeper());
         server.run(&mut rig.session, show, attendant, keeper);
@@ -152,6 +169,7 @@ pub(super) fn show(
         thread: file.thread,
         is_image: file.is_image(),
         path: file.path,
+        waiting: None,
     });
     Ok(Show {
         title: programs.join(OsStr::new(", ")).to_string_lossy().into_owned(),
@@ -162,7 +180,7 @@ pub(super) fn show(
         speed: 1.0,
         is_paused: false,
         reloads: false,
-        time: TimeControl::Full,
+        time: if board.controller.on.is_some() { TimeControl::Real } else { TimeControl::Full },
         limit: None,
         command: std::env::current_exe().context("cannot find the file of this command")?,
         test_options: Vec::new(),
@@ -197,6 +215,22 @@ pub(super) fn announce(server: &Server, board: &BoardArguments, opens: bool) -> 
 }
 
 impl LiveArguments {
+    /// Refuses what a controller cannot do.
+    fn refuse_with_controller(&self) -> Result<()> {
+        ensure!(!self.demo, "`--demo` is a simulated machine: it does not work with `--on`");
+        ensure!(!self.paused, "`--paused`: the time of a connected controller cannot be stopped");
+        ensure!(self.speed == 1.0, "`--speed`: the time of a connected controller passes by itself");
+        ensure!(
+            self.attach.debug.is_none(),
+            "`--debug`: programs on a connected controller cannot be stopped"
+        );
+        ensure!(
+            self.beside.first.is_empty(),
+            "`--first` is about a simulated board: it does not work with `--on`"
+        );
+        Ok(())
+    }
+
     /// What the page shows beside the board.
     fn show(&self) -> Result<Show> {
         Ok(Show {

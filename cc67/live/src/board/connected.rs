@@ -1,0 +1,86 @@
+//! A connected controller: pages look until somebody switches control on; a link that is lost is told.
+
+use cc67_host::{Session, Target};
+use kmotiondef::{AxisId, ThreadId};
+use serde_json::{Value, json};
+
+use super::jogs::Jogs;
+use super::{Stage, Voice};
+use crate::TimeControl;
+use crate::control::is_harmless;
+use crate::request::PageRequest;
+
+/// What pages do to axes, what they may do to a connected controller, and what they know of its link.
+#[derive(Debug, Default)]
+pub(super) struct PageAccess {
+    /// Whether pages may act.
+    is_controlled: bool,
+    /// The reason, once the link is lost.
+    lost: Option<String>,
+    /// Axes that pages jog.
+    pub(super) jogs: Jogs,
+}
+
+impl PageAccess {
+    /// As a message to pages.
+    pub(super) fn message(&self) -> Value {
+        json!({ "kind": "access", "control": self.is_controlled, "lost": self.lost })
+    }
+}
+
+impl<T: Target> Stage<T> {
+    /// Whether the board is a controller.
+    pub(super) fn is_real(&self) -> bool {
+        self.show.time == TimeControl::Real
+    }
+
+    /// Returns whether a page may do this now; else why not.
+    pub(super) fn allows(&self, request: &PageRequest) -> Result<(), String> {
+        self.show.time.allows(request)?;
+        if !self.is_real() {
+            return match request {
+                PageRequest::Control { .. } => Err("a simulated board is always under control".to_owned()),
+                _ => Ok(()),
+            };
+        }
+        if let (Some(reason), false) = (&self.access.lost, is_harmless(request)) {
+            return Err(format!("the controller cannot be reached: {reason}"));
+        }
+        if self.access.is_controlled || is_harmless(request) {
+            return Ok(());
+        }
+        Err("this page only looks at the controller: switch Control on".to_owned())
+    }
+
+    /// Returns whether a program that is saved may be loaded without a request.
+    pub(super) fn may_load(&self) -> bool {
+        !self.is_real() || self.access.is_controlled
+    }
+
+    /// Somebody switches control on or off.
+    pub(super) fn control(&mut self, session: &Session<T>, is_on: bool) {
+        self.access.is_controlled = is_on;
+        let said = if is_on { "control is on: pages can move the machine" } else { "control is off" };
+        self.log.say(session.tick(), Voice::Remark, said.to_owned());
+        self.broadcast(&self.access.message());
+    }
+
+    /// Stops all threads and disables all axes.
+    pub(super) fn halt(&mut self, session: &mut Session<T>) -> Result<(), String> {
+        self.access.jogs.clear();
+        let active = ThreadId::all().filter(|thread| session.thread(*thread).is_active());
+        let kills = active.map(|thread| format!("Kill{thread}"));
+        let disables = AxisId::all().map(|axis| format!("DisableAxis{axis}"));
+        let line = kills.chain(disables).collect::<Vec<_>>().join(";");
+        self.command(session, &line)
+    }
+
+    /// Tells pages once that the link is lost.
+    pub(super) fn tell_link(&mut self, session: &Session<T>) {
+        let lost = session.target().lost();
+        if lost.is_some() && self.access.lost.is_none() {
+            self.access = PageAccess { lost: lost.map(str::to_owned), ..PageAccess::default() };
+            self.broadcast(&self.access.message());
+        }
+    }
+}

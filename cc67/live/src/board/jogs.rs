@@ -1,0 +1,86 @@
+//! Axes that pages jog: each moves as long as somebody holds its button, and stops when the page is silent.
+
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+
+use cc67_host::{Session, Target};
+use kmotiondef::AxisId;
+
+use super::Stage;
+use super::clock::now;
+use crate::desk::PageId;
+
+/// The longest time between two words of a page that holds a button; it sends one every 0.1 s.
+const SILENCE: Duration = Duration::from_millis(400);
+
+/// A jog in progress.
+#[derive(Clone, Copy, Debug)]
+struct Jog {
+    page: PageId,
+    velocity: f64,
+    /// The moment of the last word of the page.
+    heard: Instant,
+}
+
+/// The jogs in progress.
+#[derive(Debug, Default)]
+pub(super) struct Jogs(BTreeMap<AxisId, Jog>);
+
+impl Jogs {
+    /// Forgets all: the axes were stopped by other means.
+    pub(super) fn clear(&mut self) {
+        self.0.clear();
+    }
+}
+
+impl<T: Target> Stage<T> {
+    /// A page holds a button, or has released it.
+    pub(super) fn jog(
+        &mut self,
+        session: &mut Session<T>,
+        page: PageId,
+        axis: i32,
+        velocity: f64,
+    ) -> Result<(), String> {
+        let axis = AxisId::new(axis).ok_or_else(|| format!("no such axis {axis} (0-7)"))?;
+        if !velocity.is_finite() {
+            return Err("the velocity is not a number".to_owned());
+        }
+        let before = self.access.jogs.0.get(&axis).copied();
+        if before.is_some_and(|jog| jog.page != page) {
+            return Err(format!("another page jogs axis {axis}"));
+        }
+        if velocity == 0.0 {
+            return match self.access.jogs.0.remove(&axis) {
+                Some(_) => self.command(session, &format!("Jog{axis}=0")),
+                None => Ok(()),
+            };
+        }
+        self.access.jogs.0.insert(axis, Jog { page, velocity, heard: now() });
+        match before {
+            Some(jog) if jog.velocity == velocity => Ok(()),
+            Some(_) | None => self.command(session, &format!("Jog{axis}={velocity}")),
+        }
+    }
+
+    /// Stops the axes whose pages are silent.
+    pub(super) fn stop_silent_jogs(&mut self, session: &mut Session<T>) {
+        self.stop_jogs(session, |jog| jog.heard.elapsed() > SILENCE);
+    }
+
+    /// Stops the axes of a page that is gone.
+    pub(super) fn stop_jogs_of(&mut self, session: &mut Session<T>, page: PageId) {
+        self.stop_jogs(session, |jog| jog.page == page);
+    }
+
+    fn stop_jogs(&mut self, session: &mut Session<T>, ends: impl Fn(&Jog) -> bool) {
+        let ending: Vec<AxisId> =
+            self.access.jogs.0.iter().filter(|(_, jog)| ends(jog)).map(|(axis, _)| *axis).collect();
+        for axis in ending {
+            self.access.jogs.0.remove(&axis);
+            if let Err(problem) = self.command(session, &format!("Jog{axis}=0")) {
+                self.log.say(session.tick(), super::Voice::Remark, problem);
+            }
+        }
+    }
+}
