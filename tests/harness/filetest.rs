@@ -11,6 +11,7 @@
 //! | `says: …` | stderr contains this |
 //! | `snapshot` | stderr as a whole is the snapshot of the file's name, beside the file |
 //! | `byte: c 0d 0a` | the character `c` in the text stands for these bytes (hexadecimal, none possible) |
+//! | `scratch` | it is executed in a folder of its own, as it writes files |
 //! | `no-final-newline` | the newline at the end of the file is cut off |
 //! | `processor: WHY` | as code for the real processor the program does something else, for this reason |
 //! | `uses: FILE` | the annotations of this included file count, too |
@@ -61,6 +62,7 @@ pub struct FileTest {
     is_snapshot: bool,
     bytes: Vec<(String, Vec<u8>)>,
     cuts_final_newline: bool,
+    is_apart: bool,
     differs_on_processor: bool,
     remarks: Vec<Remark>,
 }
@@ -90,6 +92,7 @@ impl FileTest {
             "snapshot" => self.is_snapshot = true,
             "byte" => self.bytes.push(stand_in(value)),
             "processor" => self.differs_on_processor = true,
+            "scratch" => self.is_apart = true,
             "no-final-newline" => self.cuts_final_newline = true,
             "uses" => {
                 let used = self.folder().join(value);
@@ -194,7 +197,7 @@ impl FileTest {
 
     /// The source with the bytes that its text only stands for; `None` if it is what it looks like.
     fn rewritten(&self) -> Option<Vec<u8>> {
-        if self.bytes.is_empty() && !self.cuts_final_newline {
+        if self.bytes.is_empty() && !self.cuts_final_newline && !self.is_apart {
             return None;
         }
         let text = text_of(&self.path);

@@ -38,7 +38,7 @@ void main(void)
     if (Ready() && Helper(1)) (*steps[0].action)();
     int axis = Ready() ? 1 : 2;
     DisableAxis(axis);
-    ReadBit(3);
+    (void)ReadBit(3);
     Nothing();
 }
 

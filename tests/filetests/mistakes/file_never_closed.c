@@ -1,3 +1,4 @@
+//@ scratch
 //@ says: log.txt is still open for writing: call fclose, else the PC keeps the file open
 #include "KMotionDef.h"
 

@@ -1,3 +1,4 @@
+//@ scratch
 #include "KMotionDef.h"
 
 main()

@@ -56,10 +56,14 @@ macro_rules! for_each_lint {
             ReversedOperator = "reversed-operator", On;
             /// The name of a function is used where its result is meant: the `()` is missing.
             MissingCall = "missing-call", On, pass missing_call;
-            /// A statement computes a value and discards it.
-            UnusedValue = "unused-value", On;
+            /// A statement computes a value, or asks the board for one, and discards it.
+            UnusedValue = "unused-value", On, pass unused_value;
             /// An `if` or a loop ends in a `;` that is probably not meant.
             EmptyBody = "empty-body", On;
+            /// An `else` belongs to another `if` than its indentation says.
+            DanglingElse = "dangling-else", On;
+            /// No `goto` names a label.
+            UnusedLabel = "unused-label", On;
             /// The value of a void function is used.
             VoidValue = "void-value", On;
             /// A function may end without a value that a caller uses.
@@ -68,6 +72,16 @@ macro_rules! for_each_lint {
             FallsOffEnd = "falls-off-end", All;
             /// An integer constant has the suffix `f`.
             IntegerFloatSuffix = "integer-float-suffix", On;
+            /// The result of a computation with integer constants does not fit in its type.
+            Overflow = "overflow", On;
+            /// A number begins with 0, which makes it octal.
+            Octal = "octal", On;
+            /// `^` between two numbers is exclusive or, not a power.
+            Power = "power", On;
+            /// A constant does not fit in the type that stores it.
+            ConstantConversion = "constant-conversion", On;
+            /// `sizeof` is applied to a pointer, where the size of an array is probably meant.
+            SizeofPointer = "sizeof-pointer", On;
             /// A constant shift count is negative or not less than the width of the value.
             ShiftCount = "shift-count", On;
             /// A format conversion does not match its argument.
@@ -140,7 +154,7 @@ macro_rules! for_each_lint {
             Degrees = "degrees", On, pass degrees;
             /// A time is given in milliseconds where seconds are needed.
             Milliseconds = "milliseconds", On, pass milliseconds;
-            /// A `float` holds the time since power-up.
+            /// A `float` or an `int` holds the time since power-up.
             FloatTime = "float-time", On, pass float_time;
             /// An element of `persist.UserData` is stored as one type and read as another.
             UserDataType = "user-data-type", On, pass user_data_type;

@@ -4,6 +4,7 @@
 //! index is followed through the simplest loops, where every iteration is known.
 
 use super::program::AnalysedProgram;
+use super::user_data_index;
 use super::walk::{Extent, Walk};
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::{BinaryOp, CompareOp};
@@ -159,6 +160,9 @@ impl Search<'_> {
         if counter.is_some() && from == to {
             return None;
         }
+        if let Some(finding) = self.user_data(object, place, from, to).filter(|_| counter.is_some()) {
+            return Some(finding);
+        }
         let (name, ty) = self.named(object)?;
         let types = &self.program.unit.types;
         let (element, length) = types.array(ty)?;
@@ -181,6 +185,16 @@ impl Search<'_> {
                 finding.note(format!("`{name}` is {value} in the {turn} iteration of the loop"))
             }
         })
+    }
+
+    /// The message for a loop that goes from an element of `persist.UserData` to one that it does not have.
+    fn user_data(&self, object: Object, place: PlaceId, from: i64, to: i64) -> Option<Diagnostic> {
+        let Object::Symbol(symbol) = object else { return None };
+        let (from, to) = (i32::try_from(from).ok()?, i32::try_from(to).ok()?);
+        let place = &self.function.places[place];
+        let size = self.program.unit.types.size_of(place.ty)?;
+        user_data_index::finding(from, to, size, place.span)
+            .filter(|_| self.program.name(symbol) == "persist")
     }
 
     /// The object that a place lies in or beside, and the byte of it, with a local as a number.

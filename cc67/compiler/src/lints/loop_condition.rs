@@ -1,4 +1,5 @@
-//! `for (i = 0; i == 7; i++)`, which never begins, and `for (i = 0; i < 7; i--)`, which counts away from its end.
+//! `for (i = 0; i == 7; i++)`, which never begins, `for (i = 0; i < 7; i--)`, which counts away from its end, and
+//! `for (x = 0; x != 1; x += 0.1)`, which steps over it.
 
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
@@ -30,7 +31,9 @@ fn loops(function: &Function, stmts: &[Stmt], sink: &mut Sink) {
             continue;
         };
         sink.report_if(
-            never_begins(function, before, condition).or_else(|| goes_away(function, condition, step)),
+            never_begins(function, before, condition)
+                .or_else(|| goes_away(function, condition, step))
+                .or_else(|| steps_over(function, condition, step)),
         );
     }
 }
@@ -125,4 +128,27 @@ fn goes_away(function: &Function, condition: ExprId, step: ExprId) -> Option<Dia
             "count up, or compare with `>`"
         })
     })
+}
+
+/// A loop that ends at one floating-point number, which its steps miss.
+fn steps_over(function: &Function, condition: ExprId, step: ExprId) -> Option<Diagnostic> {
+    /// Steps that are a multiple of this part of 1 have exact sums.
+    const EXACT: f64 = 1_048_576.0;
+    let ExprKind::Compare(CompareOp::NotEqual, tested, _) = function.exprs[condition].kind else {
+        return None;
+    };
+    let ExprKind::Update(update) = &function.exprs[step].kind else { return None };
+    let counter =
+        local(function, update.place).filter(|counter| loaded(function, tested) == Some(*counter))?;
+    let ExprKind::Float(amount) = function.exprs[update.operand].kind else { return None };
+    if (amount * EXACT).fract() == 0.0 {
+        return None;
+    }
+    let name = &function.locals[counter].name;
+    let span = function.exprs[condition].span;
+    Some(
+        Diagnostic::warning(Lint::LoopCondition, span, format!("`{name}` steps over the end of the loop"))
+            .label(function.exprs[step].span, format!("{amount} is rounded, and so are its sums"))
+            .help("compare with `<`, or count with an `int`"),
+    )
 }

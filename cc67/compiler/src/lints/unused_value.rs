@@ -1,8 +1,39 @@
 //! Statements that compute a value and drop it.
 
+use kmotiondef::firmware::row_named;
+use kmotiondef::function::Polled;
+
+use super::format::called_firmware;
+use super::program::AnalysedProgram;
 use crate::ast::{Expression, ExpressionKind, UnaryOperator};
-use crate::diag::{Diagnostic, Lint};
+use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::BinaryOperator;
+use crate::typed::{ExprKind, StmtKind};
+
+/// Reports calls of functions that only answer a question, as statements.
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
+    for function in program.functions() {
+        function.each_stmt(&mut |stmt| {
+            let StmtKind::Expr(expr) = stmt.kind else { return };
+            let ExprKind::Call(call) = &function.exprs[expr].kind else { return };
+            let Some(name) = called_firmware(program.unit, call) else { return };
+            if only_answers(name) {
+                let message = format!("the result of `{name}` is not used");
+                sink.report(
+                    Diagnostic::warning(Lint::UnusedValue, stmt.span, message)
+                        .at("the call has no other effect")
+                        .help(format!("a loop waits: `while (!{name}(…)) WaitNextTimeSlice();`")),
+                );
+            }
+        });
+    }
+}
+
+/// Reports whether a firmware function has no effect but its result.
+fn only_answers(name: &str) -> bool {
+    let polls = row_named(name).and_then(|row| row.attributes.polls);
+    matches!(polls, Some(Polled::Bit | Polled::Motion | Polled::Path | Polled::Recording))
+}
 
 /// The message for an expression statement whose value is not used; `is_function` if it only names one.
 pub(crate) fn finding(expression: &Expression, is_function: bool) -> Option<Diagnostic> {

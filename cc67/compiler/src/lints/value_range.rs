@@ -7,7 +7,7 @@ use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::BinaryOp;
 use crate::source::Span;
-use crate::typed::{Callee, ExprKind};
+use crate::typed::{Callee, ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind, SymbolId};
 
 /// The words of the analog outputs.
 pub(crate) const DAC_WORDS: &str = "DAC_Buffer";
@@ -53,6 +53,7 @@ impl DacWord {
 /// Reports calls with constants that are cut.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
+        dac_variables(program, function, sink);
         for (_, call) in function.calls() {
             let Callee::Symbol(callee) = call.callee else { continue };
             let name = program.name(callee);
@@ -72,4 +73,73 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
             }
         }
     }
+}
+
+/// Reports variables with a single value, a constant, that the macro `DAC` cuts.
+fn dac_variables(program: &AnalysedProgram<'_>, function: &Function, sink: &mut Sink) {
+    for expr in function.exprs.values() {
+        let ExprKind::Assign(place, value) = expr.kind else { continue };
+        let is_dac = pointed(function, place).is_some_and(|symbol| program.name(symbol) == DAC_WORDS);
+        if let Some((name, value)) = cut_variable(function, value).filter(|_| is_dac) {
+            let word = DacWord { value, is_cut: true };
+            sink.report_if(word.finding(expr.span).map(|found| found.note(format!("`{name}` is {value}"))));
+        }
+    }
+}
+
+/// The symbol that a place is an element of.
+fn pointed(function: &Function, place: PlaceId) -> Option<SymbolId> {
+    match function.places[place].kind {
+        PlaceKind::Symbol(symbol, _) => Some(symbol),
+        PlaceKind::Pointer(mut pointer, _) => loop {
+            match function.exprs[pointer].kind {
+                ExprKind::Convert(inner) | ExprKind::Binary(BinaryOp::Add, inner, _) => pointer = inner,
+                ExprKind::Address(place) => break pointed(function, place),
+                _ => break None,
+            }
+        },
+        PlaceKind::Local(..) | PlaceKind::Bits(..) => None,
+    }
+}
+
+/// Name and value of the variable in `(variable - 2048) & 0xfff`.
+fn cut_variable(function: &Function, value: ExprId) -> Option<(&str, i64)> {
+    let ExprKind::Binary(BinaryOp::And, word, mask) = plain(function, value) else { return None };
+    let ExprKind::Binary(BinaryOp::Subtract, variable, zero) = plain(function, *word) else { return None };
+    let is_macro = matches!(plain(function, *mask), ExprKind::Int(DAC_BITS))
+        && matches!(plain(function, *zero), ExprKind::Int(DAC_ZERO));
+    let ExprKind::Load(place) = plain(function, *variable) else { return None };
+    let PlaceKind::Local(local, 0) = function.places[*place].kind else { return None };
+    Some((function.locals[local].name.as_str(), single_value(function, local)?)).filter(|_| is_macro)
+}
+
+/// An expression without its conversions.
+fn plain(function: &Function, mut expr: ExprId) -> &ExprKind {
+    while let ExprKind::Convert(inner) = function.exprs[expr].kind {
+        expr = inner;
+    }
+    &function.exprs[expr].kind
+}
+
+/// The constant that is the only value ever stored in a variable.
+fn single_value(function: &Function, local: LocalId) -> Option<i64> {
+    if function.locals[local].in_memory || function.parameters.contains(&local) {
+        return None;
+    }
+    let is_it =
+        |place: PlaceId| matches!(function.places[place].kind, PlaceKind::Local(it, _) if it == local);
+    let mut only = None;
+    for expr in function.exprs.values() {
+        match &expr.kind {
+            ExprKind::Update(update) if is_it(update.place) => return None,
+            ExprKind::Assign(place, value) if is_it(*place) => {
+                let ExprKind::Int(number) = function.exprs[*value].kind else { return None };
+                if only.replace(number).is_some() {
+                    return None;
+                }
+            }
+            _ => {}
+        }
+    }
+    only
 }

@@ -5,7 +5,7 @@
 use super::Sema;
 use super::constants::Constant;
 use crate::diag::{Diagnostic, Lint};
-use crate::lints::{conversion, missing_address, user_data_alignment, user_data_index};
+use crate::lints::{constant_conversion, conversion, missing_address, user_data_alignment, user_data_index};
 use crate::source::Span;
 use crate::ty::{FunctionType, ParameterTypes, QualifiedType, TypeId, Types, convert};
 use crate::typed::{ExprId, ExprKind, PlaceKind, SymbolId};
@@ -135,6 +135,17 @@ impl Sema<'_> {
                 if to.is_integer() && number.fract() != 0.0 && self.is_written(value, number) =>
             {
                 self.report(conversion::lost_fraction(number, &self.spell(to), span));
+            }
+            Some(Constant::Int(number)) if to.is_integer() => {
+                let bytes = self.types.size_of(to).unwrap_or(u32::MAX);
+                let name = self.spell(to);
+                self.report_finding(constant_conversion::finding(
+                    number,
+                    &name,
+                    bytes,
+                    to.is_unsigned(),
+                    span,
+                ));
             }
             Some(_) => {}
         }

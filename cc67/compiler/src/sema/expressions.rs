@@ -9,6 +9,7 @@ use super::scope::Entity;
 use super::undeclared::is_sensible;
 use crate::ast::{Expression, ExpressionKind, TypeName, UnaryOperator};
 use crate::diag::{Diagnostic, Lint};
+use crate::lints::{octal, sizeof_pointer};
 use crate::names::Name;
 use crate::source::Span;
 use crate::ty::{QualifiedType, RecordId, TypeId, Types};
@@ -21,7 +22,10 @@ impl Sema<'_> {
         let span = expression.span;
         match &expression.kind {
             ExpressionKind::Identifier(name) => self.identifier(*name, span),
-            ExpressionKind::Integer(literal) => Some(self.integer_literal(*literal, span)),
+            ExpressionKind::Integer(literal) => {
+                self.report_finding(octal::finding(self.sources, *literal, span));
+                Some(self.integer_literal(*literal, span))
+            }
             ExpressionKind::Floating(literal) => Some(self.floating_literal(*literal, span)),
             ExpressionKind::Character(value, encoding) => {
                 let ty = character_type(*encoding);
@@ -395,7 +399,13 @@ impl Sema<'_> {
             self.report(Diagnostic::error(span, "a bit-field has no size in bytes"));
             return None;
         }
-        self.sizeof(self.operand_type(meaning).ty, span)
+        let ty = self.operand_type(meaning).ty;
+        if let ExpressionKind::Identifier(name) = operand.kind
+            && self.types.pointee(ty).is_some_and(|to| !self.types.is_function(to.ty))
+        {
+            self.report(sizeof_pointer::finding(&self.spelling(name), &self.spell(ty), span));
+        }
+        self.sizeof(ty, span)
     }
 
     /// The size of a type as `int`: signed, as the vendor's compiler has it (`dialect.md` 1.1).

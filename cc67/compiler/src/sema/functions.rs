@@ -12,6 +12,7 @@ use super::specifiers::ImplicitInt;
 use super::symbols::Definer;
 use crate::ast::{Derived, FunctionDefinition, Parameters, Statement, StatementKind, Storage};
 use crate::diag::{Diagnostic, Lint};
+use crate::lints::unused_label;
 use crate::names::{Name, word};
 use crate::source::Span;
 use crate::ty::{FunctionType, ParameterTypes, QualifiedType, Type, TypeId, Types, convert};
@@ -275,6 +276,20 @@ impl Sema<'_> {
         for (name, span) in missing {
             let message = format!("label `{}` is used but not defined", self.spelling(name));
             self.report(Diagnostic::error(span, message));
+        }
+        // What could not be read may have been the `goto`.
+        if self.sink.has_errors() {
+            return;
+        }
+        let unused: Vec<_> = self
+            .body
+            .jumps
+            .label_names
+            .iter()
+            .filter_map(|(name, state)| Some((*name, state.defined.filter(|_| state.used.is_none())?)))
+            .collect();
+        for (name, span) in unused {
+            self.report(unused_label::finding(&self.spelling(name), span));
         }
     }
 }

@@ -5,7 +5,7 @@ use super::constants::Constant;
 use super::operands::Operand;
 use crate::ast::{Expression, ExpressionKind};
 use crate::diag::{Diagnostic, Lint};
-use crate::lints::{assignment_condition, logical_constant, sign_compare};
+use crate::lints::{assignment_condition, logical_constant, overflow, power, sign_compare};
 use crate::operators::{BinaryOp, BinaryOperator, OperatorMeaning};
 use crate::source::Span;
 use crate::ty::{QualifiedType, TypeId, Types, convert};
@@ -17,6 +17,9 @@ impl Sema<'_> {
         let mut spine = Vec::new();
         let mut leftmost = expression;
         while let ExpressionKind::Binary(operator, left, right) = &leftmost.kind {
+            if matches!(operator.meaning(), OperatorMeaning::Bitwise(BinaryOp::Xor)) {
+                self.report_finding(power::finding(left, right, leftmost.span));
+            }
             spine.push((*operator, &**right, leftmost.span));
             leftmost = left;
         }
@@ -40,6 +43,7 @@ impl Sema<'_> {
         match operator.meaning() {
             OperatorMeaning::Arithmetic(op) if is_numbers => {
                 let (a, b) = self.usual(a, b, span);
+                self.lint_overflow(op, a, b, span);
                 Some(self.body.binary(op, a, b, span))
             }
             OperatorMeaning::Arithmetic(BinaryOp::Add) => self.pointer_add(a, b, span),
@@ -61,6 +65,16 @@ impl Sema<'_> {
                 Some(self.body.compare(op, a, b, span))
             }
             OperatorMeaning::Logical(decides) => Some(self.logical(decides, a, b, span)),
+        }
+    }
+
+    /// Warns about a result of signed constants that has more than 32 bits.
+    fn lint_overflow(&mut self, op: BinaryOp, a: ExprId, b: ExprId, span: Span) {
+        let ty = self.body.ty(a);
+        if ty == Types::INT
+            && let Some((a, b)) = self.body.as_int(a).zip(self.body.as_int(b))
+        {
+            self.report_finding(overflow::finding(op, a, b, span));
         }
     }
 

@@ -7,7 +7,9 @@ use super::conversions::AssignmentTarget;
 use super::operands::Operand;
 use crate::ast::{Expression, Statement, StatementKind};
 use crate::diag::Diagnostic;
-use crate::lints::{assignment_condition, empty_body, misleading_indentation, precedence, unused_value};
+use crate::lints::{
+    assignment_condition, dangling_else, empty_body, misleading_indentation, precedence, unused_value,
+};
 use crate::names::Name;
 use crate::source::Span;
 use crate::ty::Types;
@@ -159,6 +161,9 @@ impl Sema<'_> {
     ) {
         let value = self.condition(condition);
         self.report_finding(empty_body::finding(self.sources, condition, then, otherwise));
+        if otherwise.is_none() {
+            self.report_finding(dangling_else::finding(self.sources, span, then));
+        }
         let then = self.scoped(then);
         let otherwise = otherwise.map_or_else(Vec::new, |otherwise| self.scoped(otherwise));
         out.push(Stmt { kind: StmtKind::If { condition: value, then, otherwise }, span });

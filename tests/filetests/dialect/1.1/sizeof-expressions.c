@@ -4,7 +4,7 @@
 _Static_assert(sizeof "abc" == 4 && sizeof 'a' == 4 && sizeof(1 == 1) == 4, "ints");
 _Static_assert(sizeof 1.0f == 4 && sizeof 1.0 == 8, "constants");
 
-int parameter(double list[100]) { return sizeof list; }
+int parameter(double list[100]) { return sizeof list; } //~ sizeof-pointer
 
 main()
 {

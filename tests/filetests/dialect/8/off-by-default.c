@@ -8,7 +8,7 @@ helper(int a, int b) { a = b; }
 void main()
 {
     int n = 3.7, never; //~ lost-fraction
-    char c = 300;
+    char c = 300; //~ constant-conversion
     unsigned u = 1;
     helper(n, c);
     printf("%d %d %d\n", n, c, n > u);

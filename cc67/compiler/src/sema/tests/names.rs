@@ -4,7 +4,7 @@ use super::{accept, said};
 
 #[test]
 fn a_firmware_function_has_its_own_prototype() {
-    let source = "main() { if (ReadBit(3)) Delay_sec(1); ReadBit(4); }";
+    let source = "main() { if (ReadBit(3)) Delay_sec(1); if (ReadBit(4)) Delay_sec(1); }";
     said(
         source,
         &[
