@@ -20,7 +20,7 @@ pub(crate) fn install(parts: &mut Parts, machine: &MachineFile) {
         connected.loads[axis] = Plant::new(&machine.axes[axis.index()]);
     }
     connected.wiring = Wiring::new(&machine.axes);
-    if let Some(spindle) = machine.connected.spindle {
+    for spindle in &machine.connected.spindles {
         // The load of that axis counts as its encoder does.
         let connection = Connection { encoder: Encoder::Connected, ..Connection::default() };
         let load = Axis { model: Model::None, connection, ..Axis::default() };

@@ -189,7 +189,7 @@ impl<E: Engine> Board<E> {
     fn source_of(&self, bit: Bit) -> Source {
         let parts = &self.machine.firmware().parts;
         if let Some((axis, condition, active)) = parts.machine.mechanics.contact(bit) {
-            let load = parts.machine.loads[axis].load;
+            let load = parts.machine.table(axis);
             return Source::Contact(
                 axis,
                 condition.map_or("once a turn".to_owned(), |condition| condition.to_string()),

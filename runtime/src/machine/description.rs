@@ -106,12 +106,8 @@ pub struct Axis {
     pub connection: Connection,
     /// Time constant with which a load of the model `follow` follows, seconds.
     pub lag_s: f64,
-    /// Hard stops, machine coordinates.
-    pub min: f64,
-    /// The other one.
-    pub max: f64,
-    /// Machine coordinate at power-up.
-    pub start: f64,
+    /// The range of its load.
+    pub travel: Travel,
     /// Its motor.
     pub motor: Motor,
     /// How its rotor is built in.
@@ -137,13 +133,30 @@ impl Default for Axis {
             counts_per_unit: 1.0,
             connection: Connection::default(),
             lag_s: 0.000_5,
-            min: -1e9,
-            max: 1e9,
-            start: 0.0,
+            travel: Travel::default(),
             motor: Motor::default(),
             rotor: Rotor::default(),
             index: None,
         }
+    }
+}
+
+/// The range of a load, in machine coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Travel {
+    /// The lower hard stop.
+    pub min: f64,
+    /// The upper hard stop.
+    pub max: f64,
+    /// Machine coordinate at power-up.
+    pub start: f64,
+    /// Backlash between the load and the table that trips switches and probes, units.
+    pub backlash: f64,
+}
+
+impl Default for Travel {
+    fn default() -> Self {
+        Self { min: -1e9, max: 1e9, start: 0.0, backlash: 0.0 }
     }
 }
 

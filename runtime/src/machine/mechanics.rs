@@ -9,7 +9,7 @@ use kmotiondef::{AxisId, Bit, Cycles};
 use vm::memory::GuestMemory;
 
 use super::description::{
-    Analog, AnalogSource, Axis, Condition, Handwheel, Probe, Spindle, SpindleDrive, Switch,
+    Analog, AnalogSource, Axis, Condition, Handwheel, Probe, Spindle, SpindleDrive, Switch, Travel,
 };
 use super::wiring::dac_value;
 use super::{Loads, Machine};
@@ -38,15 +38,40 @@ enum Closes {
 }
 
 impl Contact {
-    fn is_closed(&self, loads: &Loads) -> bool {
+    fn is_closed(&self, loads: &Loads, plays: &[Play]) -> bool {
         let load = loads[self.axis].load;
         match self.closes {
-            Closes::Where(condition) => condition.holds(load),
+            Closes::Where(condition) => condition.holds(table(plays, self.axis).unwrap_or(load)),
             Closes::Every(every, width, offset) => {
                 let turns = (load - offset) / every;
                 (turns - libm::floor(turns)) * every < width
             }
         }
+    }
+}
+
+/// A spindle and its speed.
+#[derive(Clone, Copy, Debug)]
+struct TurningSpindle {
+    spindle: Spindle,
+    /// Revolutions per second.
+    speed: f64,
+}
+
+/// The table that a load moves through a screw with backlash.
+#[derive(Clone, Copy, Debug)]
+struct Play {
+    axis: AxisId,
+    /// Backlash in units of the axis.
+    width: f64,
+    /// Machine coordinate of the table.
+    table: f64,
+}
+
+impl Play {
+    /// The load pushes the table where the play ends.
+    fn follow(&mut self, load: f64) {
+        self.table = self.table.clamp(load - self.width / 2.0, load + self.width / 2.0);
     }
 }
 
@@ -61,8 +86,8 @@ pub struct Connected {
     pub encoders: Vec<Handwheel>,
     /// Analog inputs.
     pub analog: Vec<Analog>,
-    /// The spindle, if there is one.
-    pub spindle: Option<Spindle>,
+    /// The spindles.
+    pub spindles: Vec<Spindle>,
 }
 
 /// The same as the simulation moves it.
@@ -71,9 +96,9 @@ pub(crate) struct Mechanics {
     contacts: Vec<Contact>,
     analog: Vec<Analog>,
     handwheels: Vec<Handwheel>,
-    spindle: Option<Spindle>,
-    /// Revolutions a second.
-    spindle_speed: f64,
+    spindles: Vec<TurningSpindle>,
+    /// Tables that screws or gears with backlash move.
+    plays: Vec<Play>,
     /// Inputs that a stimulus has taken from their switches.
     held: Vec<Bit>,
     /// Whether there is anything of all that.
@@ -104,10 +129,19 @@ impl Mechanics {
         });
         let contacts: Vec<_> = switches.chain(probes).chain(indexes).collect();
         let (analog, handwheels) = (described.analog.clone(), described.encoders.clone());
-        let spindle = described.spindle;
-        let is_any =
-            !(contacts.is_empty() && analog.is_empty() && handwheels.is_empty() && spindle.is_none());
-        Self { contacts, analog, handwheels, spindle, spindle_speed: 0.0, held: Vec::new(), is_any }
+        let spindles: Vec<_> =
+            described.spindles.iter().map(|&spindle| TurningSpindle { spindle, speed: 0.0 }).collect();
+        let plays = AxisId::all().filter_map(|axis| {
+            let Travel { backlash, start, .. } = axes[axis.index()].travel;
+            (backlash > 0.0).then_some(Play { axis, width: backlash, table: start })
+        });
+        let plays: Vec<_> = plays.collect();
+        let is_any = !(contacts.is_empty()
+            && analog.is_empty()
+            && handwheels.is_empty()
+            && spindles.is_empty()
+            && plays.is_empty());
+        Self { contacts, analog, handwheels, spindles, plays, held: Vec::new(), is_any }
     }
 
     /// Whether an axis trips a switch or carries a probe.
@@ -143,7 +177,7 @@ impl Mechanics {
     fn goes_on(&self, time: f64) -> bool {
         let turns =
             |wheel: &Handwheel| wheel.moves.iter().any(|[start, _, duration]| time <= start + duration);
-        self.spindle_speed != 0.0
+        self.spindles.iter().any(|spindle| spindle.speed != 0.0)
             || self.handwheels.iter().any(turns)
             || self.analog.iter().any(|analog| matches!(analog.source, AnalogSource::Sine { .. }))
     }
@@ -180,7 +214,7 @@ impl Machine {
     fn turn(&mut self, io: &Io, memory: &GuestMemory, now: Cycles) -> bool {
         let time = now.get() as f64 / Cycles::PER_SECOND.get() as f64;
         self.turn_handwheels(memory, time);
-        self.turn_spindle(io, memory);
+        self.turn_spindles(io, memory);
         self.mechanics.goes_on(time)
     }
 
@@ -196,24 +230,32 @@ impl Machine {
         }
     }
 
-    fn turn_spindle(&mut self, io: &Io, memory: &GuestMemory) {
-        let Some(spindle) = self.mechanics.spindle else { return };
-        let target = spindle.full_scale_rps * fraction(io, memory, &spindle);
-        let speed = &mut self.mechanics.spindle_speed;
-        *speed = target + (*speed - target) * libm::exp(-TIMEBASE / spindle.tau_s);
-        if target == 0.0 && speed.abs() < 1e-6 {
-            *speed = 0.0;
+    fn turn_spindles(&mut self, io: &Io, memory: &GuestMemory) {
+        for TurningSpindle { spindle, speed } in &mut self.mechanics.spindles {
+            let target = spindle.full_scale_rps * fraction(io, memory, spindle);
+            *speed = target + (*speed - target) * libm::exp(-TIMEBASE / spindle.tau_s);
+            if target == 0.0 && speed.abs() < 1e-6 {
+                *speed = 0.0;
+            }
+            let counts = *speed * spindle.counts_per_rev * TIMEBASE;
+            if counts != 0.0 {
+                self.loads.push(spindle.axis, counts);
+            }
         }
-        let counts = *speed * spindle.counts_per_rev * TIMEBASE;
-        if counts != 0.0 {
-            self.loads.push(spindle.axis, counts);
-        }
+    }
+
+    /// Machine coordinate of what the load of an axis moves through a screw, which may have backlash.
+    pub(crate) fn table(&self, axis: AxisId) -> f64 {
+        table(&self.mechanics.plays, axis).unwrap_or(self.loads[axis].load)
     }
 
     /// Shows the board what switches, probes and sources say where the loads are now.
     #[inline]
-    pub(crate) fn signal(&self, io: &mut Io, now: Cycles) {
+    pub(crate) fn signal(&mut self, io: &mut Io, now: Cycles) {
         if self.mechanics.is_any {
+            for play in &mut self.mechanics.plays {
+                play.follow(self.loads[play.axis].load);
+            }
             self.show(io, now);
         }
     }
@@ -228,7 +270,7 @@ impl Machine {
             {
                 continue;
             }
-            let closed = others.find(|other| other.is_closed(&self.loads));
+            let closed = others.find(|other| other.is_closed(&self.loads, &mechanics.plays));
             let level = closed.map_or(!contact.active, |contact| contact.active);
             set(io, contact.bit, level, now);
         }
@@ -239,11 +281,16 @@ impl Machine {
                 AnalogSource::Sine { mean, amp, hz } => {
                     mean + amp * libm::sin(std::f64::consts::TAU * hz * time)
                 }
-                AnalogSource::Follows { axis, gain, offset } => self.loads[axis].load * gain + offset,
+                AnalogSource::Follows { axis, gain, offset } => self.table(axis) * gain + offset,
             };
             io.kanalog.drive(analog.channel, conversion(value));
         }
     }
+}
+
+/// The coordinate of the table of an axis with play.
+fn table(plays: &[Play], axis: AxisId) -> Option<f64> {
+    plays.iter().find(|play| play.axis == axis).map(|play| play.table)
 }
 
 /// The counts of a move that are done at a time.

@@ -60,6 +60,12 @@ impl Loads {
         self.is_pushed = true;
     }
 
+    /// Another constant load pulls at the motor of an axis.
+    pub(crate) fn pull(&mut self, axis: AxisId, speed: f64) {
+        self[axis].pull(speed);
+        self.is_pushed = true;
+    }
+
     /// Whether something outside has moved a load since the last time.
     #[inline]
     pub(crate) fn take_pushed(&mut self) -> bool {
@@ -81,6 +87,13 @@ impl IndexMut<AxisId> for Loads {
     fn index_mut(&mut self, axis: AxisId) -> &mut Plant {
         &mut self.plants[axis.index()]
     }
+}
+
+/// A character that the serial port has sent.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SentByte {
+    pub(crate) at: Cycles,
+    pub(crate) byte: u8,
 }
 
 /// What is connected to the board's outputs.
@@ -148,8 +161,16 @@ impl Machine {
         out.remark(now, Message::DevicesEndless {});
     }
 
-    /// What devices do at the beginning of a tick; `hears_uart` says whether what the UART sends is told.
-    pub(crate) fn run_devices(&mut self, io: &mut Io, out: &mut Out, hears_uart: bool, now: Cycles) {
+    /// What devices do at the beginning of a tick; `hears_uart` says whether what the UART sends is told. Returns what
+    /// it has sent since the last tick.
+    pub(crate) fn run_devices(
+        &mut self,
+        io: &mut Io,
+        out: &mut Out,
+        hears_uart: bool,
+        now: Cycles,
+    ) -> Vec<SentByte> {
+        let mut sent = Vec::new();
         while let Some((at, byte)) = io.uart.take_sent(now) {
             let (mut outside, devices) = self.outside(io);
             for device in devices {
@@ -158,12 +179,14 @@ impl Machine {
             if hears_uart {
                 out.tell(at, EventKind::UartSent(byte));
             }
+            sent.push(SentByte { at, byte });
         }
         let (mut outside, devices) = self.outside(io);
         for device in devices {
             device.tick(now, &mut outside);
         }
         self.settle(io, out, now);
+        sent
     }
 
     /// The outputs of a Konnect board have changed.

@@ -61,6 +61,11 @@ impl Motor {
         self.pull != 0.0
     }
 
+    /// Another constant load, in units per second.
+    pub(crate) fn load_with(&mut self, pull: f64) {
+        self.pull = pull;
+    }
+
     /// Electrical cycles of a unit, the axis' own if the machine file gives none.
     pub(crate) fn cycles(&self, own: f64) -> f64 {
         self.cycles_per_unit.unwrap_or(own.abs())

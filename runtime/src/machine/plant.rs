@@ -159,11 +159,11 @@ impl Plant {
             model: axis.model,
             followed: if axis.lag_s > 0.0 { 1.0 - libm::exp(-TIMEBASE / axis.lag_s) } else { 1.0 },
             encoder: Scale::of(axis),
-            min: axis.min,
-            max: axis.max,
+            min: axis.travel.min,
+            max: axis.travel.max,
             motor: Motor::new(axis),
         };
-        let start = axis.start;
+        let start = axis.travel.start;
         Self {
             build,
             load: start,
@@ -245,6 +245,11 @@ impl Plant {
     #[inline(always)]
     pub(crate) fn take_rewritten(&mut self) -> Option<(f64, f64)> {
         self.rewritten.take()
+    }
+
+    /// Another constant load pulls at the motor.
+    pub(super) fn pull(&mut self, speed: f64) {
+        self.build.motor.load_with(speed);
     }
 
     /// Whether it has a motor that is driven by what the board outputs.
@@ -401,6 +406,7 @@ impl Plant {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::machine::description::Travel;
 
     #[test]
     fn a_loop_settles_on_its_command() {
@@ -441,7 +447,8 @@ mod tests {
 
     #[test]
     fn a_stepper_loses_steps_at_its_stop() {
-        let mut plant = Plant::new(&Axis { max: 50.0, ..Axis::default() });
+        let mut plant =
+            Plant::new(&Axis { travel: Travel { max: 50.0, ..Travel::default() }, ..Axis::default() });
         plant.step(100.0, 1000.0);
         plant.stop_hard();
         plant.step(90.0, 1000.0);

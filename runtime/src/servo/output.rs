@@ -167,7 +167,7 @@ pub(super) fn write_dac(memory: &mut GuestMemory, axis: AxisId, output: f32) -> 
     Some((channel, word))
 }
 
-/// Tells of an analog output that was written since the axis wrote it, unless another axis has done so.
+/// Reports an analog output that was written since the axis wrote it, unless another axis has done so.
 fn note_overwritten(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId) {
     let Some((dac, word)) = tick.servo.axes[axis.index()].analog else { return };
     if memory.get(DAC_BUFFER.element(dac)) == word {

@@ -61,12 +61,12 @@ impl World {
         changes::sweep(&mut stage.io.pins.changes, context.memory, stage.now);
         stage.io.fpga.tell_pwm(&mut stage.io.pins, stage.now);
         stage.lines().settle();
-        stage.machine.run_devices(stage.io, stage.out, self.hears_uart, stage.now);
+        let sent = stage.machine.run_devices(stage.io, stage.out, self.hears_uart, stage.now);
         let changes = stage.io.pins.changes.take();
         if self.records_changes() {
             changes.iter().for_each(|change| tell_change(stage, moment, *change));
         }
-        self.stimulus.as_mut().is_some_and(|player| player.tick(stage, context, &changes))
+        self.stimulus.as_mut().is_some_and(|player| player.tick(stage, context, &changes, &sent))
     }
 
     /// Plays an operator from now on.

@@ -44,7 +44,7 @@ pub(super) fn hello(show: &Show) -> Value {
         let name = if described.name.is_empty() { format!("Axis {axis}") } else { described.name.clone() };
         json!({
             "axis": axis.get(), "name": name, "units": described.units, "exists": described.model != Model::None,
-            "min": described.min, "max": described.max,
+            "min": described.travel.min, "max": described.travel.max,
         })
     });
     let axes = axes.collect::<Vec<_>>();

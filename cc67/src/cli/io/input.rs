@@ -14,5 +14,8 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
 
 /// The message about a file that cannot be read.
 pub(crate) fn cannot_read(path: &Path, error: &io::Error) -> anyhow::Error {
+    if path.is_dir() {
+        return anyhow!("{0} is a folder: name the files in it, as in `{0}/*.c`", path.display());
+    }
     anyhow!("cannot read {}: {}", path.display(), reason(error))
 }

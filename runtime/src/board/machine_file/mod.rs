@@ -18,7 +18,7 @@ use kmotiondef::limits::N_CHANNELS;
 pub use crate::machine::Connected;
 pub use crate::machine::description::{
     Analog, AnalogSource, Axis, Channel, Condition, Connection, Encoder, Handwheel, Index, Model, Motor,
-    Probe, Spindle, SpindleDrive, Switch, Wire,
+    Probe, Spindle, SpindleDrive, Switch, Travel, Wire,
 };
 use crate::out::{REMARKS, RemarkRow};
 use crate::pc::Answers;

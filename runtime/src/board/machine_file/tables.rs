@@ -6,7 +6,7 @@ use toml::de::DeTable;
 use super::read::{Read, Table, Value, Wrong, keys};
 use super::{
     Analog, AnalogSource, Axis, Channel, Condition, Encoder, Handwheel, Index, MachineFile, MachineFileError,
-    Model, Probe, Spindle, SpindleDrive, Switch, Wire,
+    Model, Probe, Spindle, SpindleDrive, Switch, Travel, Wire,
 };
 use super::{boards, events, pc};
 use crate::out::REMARKS;
@@ -34,7 +34,7 @@ fn root(machine: &mut MachineFile, statements: &mut Vec<(usize, String)>, table:
         "wire" => machine.wires.extend(each(&value, wire)?);
         "event" => statements.extend(events::events(&value)?);
         "device" => statements.extend(events::devices(&value)?);
-        "spindle" => machine.connected.spindle = Some(spindle(machine.connected.spindle, &value.table()?)?);
+        "spindle" => spindles(&mut machine.connected.spindles, &value)?;
         "inputs" => inputs(machine, &value.table()?)?;
         "remarks" => remarks(machine, &value.table()?)?;
         "cpu" => cpu(machine, &value.table()?)?;
@@ -84,9 +84,10 @@ fn axis(axis: &mut Axis, table: &Table<'_>) -> Read<()> {
         };
         "drive" => axis.connection.drive = Some(channel(&value.table()?)?);
         "lag_s" => axis.lag_s = value.not_negative()?;
-        "min" => axis.min = value.number()?;
-        "max" => axis.max = value.number()?;
-        "start" => axis.start = value.number()?;
+        "min" => axis.travel.min = value.number()?;
+        "max" => axis.travel.max = value.number()?;
+        "start" => axis.travel.start = value.number()?;
+        "backlash" => axis.travel.backlash = value.not_negative()?;
         "ku" => axis.motor.ku = Some(value.number()?);
         "tau_s" => axis.motor.tau_s = value.positive()?;
         "friction" => axis.motor.friction = value.not_negative()?;
@@ -98,8 +99,9 @@ fn axis(axis: &mut Axis, table: &Table<'_>) -> Read<()> {
         "rotor_phase" => axis.rotor.phase = value.number()?;
         "index" => axis.index = Some(index(&value.table()?)?);
     });
-    if axis.min > axis.max {
-        let text = format!("`{}`: min {} exceeds max {}", table.name, axis.min, axis.max);
+    let Travel { min, max, .. } = axis.travel;
+    if min > max {
+        let text = format!("`{}`: min {min} exceeds max {max}", table.name);
         return Err(Wrong::new(table.offset, text));
     }
     Ok(())
@@ -274,6 +276,18 @@ fn wire(table: &Table<'_>) -> Read<Wire> {
         invert,
         delay_s,
     })
+}
+
+/// `[spindle]`, which changes the first one, or `[[spindle]]`.
+fn spindles(spindles: &mut Vec<Spindle>, value: &Value<'_>) -> Read<()> {
+    match value.table() {
+        Ok(table) => {
+            let changed = spindle(spindles.first().copied(), &table)?;
+            spindles.splice(..spindles.len().min(1), [changed]);
+        }
+        Err(_) => spindles.extend(each(value, |table| spindle(None, table))?),
+    }
+    Ok(())
 }
 
 fn spindle(before: Option<Spindle>, table: &Table<'_>) -> Read<Spindle> {

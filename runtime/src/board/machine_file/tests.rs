@@ -79,7 +79,7 @@ fn every_key_of_a_full_file_is_read() {
         (axis.model, axis.connection.encoder, axis.counts_per_unit),
         (Model::Motor, Encoder::Connected, 400.5)
     );
-    assert_eq!((axis.min, axis.max, axis.start), (-10.0, 1000.0, 5.5));
+    assert_eq!((axis.travel.min, axis.travel.max, axis.travel.start), (-10.0, 1000.0, 5.5));
     assert_eq!((axis.motor.ku, axis.motor.inertia), (Some(2.5), 2.0));
     assert_eq!(axis.index.map(|index| index.every), Some(4096.0));
     assert_eq!(machine.axes[7].model, Model::None);
@@ -91,7 +91,7 @@ fn every_key_of_a_full_file_is_read() {
     assert_eq!(machine.connected.probes[0].touches, Condition::AtMost(-5000.0));
     assert_eq!(machine.connected.encoders[0].moves[1], [3.0, -40.0, 0.2]);
     assert_eq!(
-        machine.connected.spindle.map(|spindle| spindle.drive),
+        machine.connected.spindles.first().map(|spindle| spindle.drive),
         Some(SpindleDrive::Axis(AxisId::new(7).expect("7")))
     );
     assert_eq!(machine.idle_high.len(), 4);

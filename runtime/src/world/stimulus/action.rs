@@ -171,6 +171,11 @@ actions! {
         written { "axis N push UNITS" => mechanics::read_push }
         keys { "disturb" => Form::Fields(&["axis {axis} push {units}"]) }
     }
+    /// Changes the constant load of the motor of an axis, in units per second.
+    Pull(axis: AxisId, speed: f64) {
+        does mechanics::pull;
+        written { "axis N pull = SPEED" => mechanics::read_pull }
+    }
     /// Turns the encoder of an axis by counts, over a time.
     Turn(axis: AxisId, counts: f64, over: Cycles) {
         does mechanics::turn;

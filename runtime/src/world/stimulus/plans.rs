@@ -153,7 +153,7 @@ impl Plans {
     fn run_waves(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>) {
         for channel in 0..ADC_CHANNELS {
             let Some((wave, begun)) = &self.waves[channel] else { continue };
-            let load = |axis: AxisId| stage.machine.loads[axis].load;
+            let load = |axis: AxisId| stage.machine.table(axis);
             let value = conversion(wave.value(context.now - *begun, load));
             if self.converted[channel] != value {
                 self.converted[channel] = value;

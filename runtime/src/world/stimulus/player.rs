@@ -13,6 +13,7 @@ use super::plans::{Due, MOST_PLANNED, Plans};
 use super::scene::Scene;
 use super::{Condition, Rule, Stimulus, Trigger};
 use crate::io::changes;
+use crate::machine::SentByte;
 use crate::out::{Message, Out};
 use crate::world::Stage;
 use chips::changes::BitChange;
@@ -26,6 +27,8 @@ pub(crate) struct Player {
     pub(super) plans: Plans,
     /// Console lines that no statement has been compared with yet, and how many statements there were when each came.
     lines: VecDeque<(Cycles, String, usize)>,
+    /// The last characters that the serial port has sent.
+    sent: VecDeque<u8>,
     active: ThreadSet,
     /// Whether nothing was seen at the last tick that a statement could wait for: no thread is active any more.
     is_idle: bool,
@@ -39,6 +42,7 @@ impl Player {
             progress: Vec::new(),
             plans: Plans::default(),
             lines: VecDeque::new(),
+            sent: VecDeque::new(),
             active: ThreadSet::EMPTY,
             is_idle: false,
         }
@@ -57,6 +61,9 @@ impl Player {
         self.hear(stage.out);
         for rule in stimulus.rules {
             rule.action.announce(stage, memory);
+            if let Some(Condition::UartSent(_)) = rule.trigger.condition() {
+                stage.io.uart.listen();
+            }
             let index = self.rules.len();
             match rule.trigger {
                 Trigger::At(time) | Trigger::Every { from: time, .. } => {
@@ -73,7 +80,11 @@ impl Player {
     pub(crate) fn watched(&self) -> impl Iterator<Item = Bit> {
         self.rules.iter().filter_map(|rule| match rule.trigger.condition()? {
             Condition::Bit(bit, _) => Some(*bit),
-            Condition::Printed(_) | Condition::Starts(_) | Condition::Ends(_) | Condition::Becomes(_) => None,
+            Condition::Printed(_)
+            | Condition::UartSent(_)
+            | Condition::Starts(_)
+            | Condition::Ends(_)
+            | Condition::Becomes(_) => None,
         })
     }
 
@@ -119,10 +130,15 @@ impl Player {
         stage: &mut Stage<'_>,
         context: &mut TickContext<'_>,
         changes: &[BitChange],
+        sent: &[SentByte],
     ) -> bool {
         self.hear(stage.out);
-        self.is_idle = changes.is_empty() && self.lines.is_empty() && context.threads.active().is_empty();
+        self.is_idle = changes.is_empty()
+            && sent.is_empty()
+            && self.lines.is_empty()
+            && context.threads.active().is_empty();
         self.watch_bits(changes);
+        self.watch_uart(sent);
         self.watch_lines();
         self.watch_threads(context);
         self.watch_values(stage, context);
@@ -170,6 +186,23 @@ impl Player {
         }
     }
 
+    /// Compares what the serial port has sent, after each character.
+    fn watch_uart(&mut self, sent: &[SentByte]) {
+        /// Characters that a statement can wait for.
+        const LONGEST: usize = 256;
+        for SentByte { at, byte } in sent {
+            self.sent.push_back(*byte);
+            if self.sent.len() > LONGEST {
+                self.sent.pop_front();
+            }
+            let bytes: Vec<u8> = self.sent.iter().copied().collect();
+            self.happened(
+                *at,
+                |condition| matches!(condition, Condition::UartSent(text) if bytes.ends_with(text)),
+            );
+        }
+    }
+
     fn watch_lines(&mut self) {
         while let Some((at, line, known)) = self.lines.pop_front() {
             self.note_text(&line, at, known);
@@ -191,7 +224,10 @@ impl Player {
             self.happened(context.now, |condition| match condition {
                 Condition::Starts(named) => is_active && *named == thread,
                 Condition::Ends(named) => !is_active && *named == thread,
-                Condition::Bit(..) | Condition::Printed(_) | Condition::Becomes(_) => false,
+                Condition::Bit(..)
+                | Condition::Printed(_)
+                | Condition::UartSent(_)
+                | Condition::Becomes(_) => false,
             });
         }
     }

@@ -154,6 +154,15 @@ impl StatementReader<'_> {
                 self.advance();
                 self.string().map(Condition::Printed)
             }
+            Some("uart") => {
+                self.advance();
+                self.expect("sends")?;
+                let column = self.column();
+                match self.text()? {
+                    empty if empty.is_empty() => Err((column, "expected at least one character".to_owned())),
+                    bytes => Ok(Condition::UartSent(bytes)),
+                }
+            }
             Some("thread") => {
                 let thread = self.thread()?;
                 self.take("`starts` or `ends`", |word| match word {
@@ -162,7 +171,7 @@ impl StatementReader<'_> {
                     _ => None,
                 })
             }
-            _ => self.expected("`bit N rises`, `printed \"…\"` or `thread N starts`"),
+            _ => self.expected("`bit N rises`, `printed \"…\"`, `uart sends \"…\"` or `thread N starts`"),
         }
     }
 }
@@ -326,7 +335,7 @@ mod tests {
             ),
             (
                 "within 1s of Parts expect Parts = 1",
-                "x.stim:1:14: expected `bit N rises`, `printed \"…\"` or `thread N starts`, found `Parts`",
+                "x.stim:1:14: expected `bit N rises`, `printed \"…\"`, `uart sends \"…\"` or `thread N starts`, found `Parts`",
             ),
             ("always while bit 5 = 1 set bit 1", "x.stim:1:24: expected `expect`, found `set`"),
             ("encoder 8 moves 5", "x.stim:1:9: only encoders 0 to 7 can be moved"),

@@ -35,6 +35,8 @@ pub enum Condition {
     Bit(Bit, Edge),
     /// A console line contains this text.
     Printed(String),
+    /// The serial port has sent these characters.
+    UartSent(Vec<u8>),
     /// A thread becomes active.
     Starts(ThreadId),
     /// A thread is no longer active.
@@ -89,6 +91,7 @@ impl fmt::Display for Condition {
             Self::Bit(bit, Edge::Falls) => write!(f, "bit {bit} falls"),
             Self::Bit(bit, Edge::Changes) => write!(f, "bit {bit} changes"),
             Self::Printed(text) => write!(f, "printed \"{text}\""),
+            Self::UartSent(bytes) => write!(f, "uart sends \"{}\"", bytes.escape_ascii()),
             Self::Starts(thread) => write!(f, "thread {thread} starts"),
             Self::Ends(thread) => write!(f, "thread {thread} ends"),
             Self::Becomes(expectation) => write!(f, "{expectation}"),

@@ -60,12 +60,7 @@ const KINDS: &[ItemKind] = &[
         ..OTHER
     },
     // Where its load is, in machine coordinates.
-    ItemKind {
-        name: "load",
-        unit: "units",
-        read: |view, index| view.machine.loads[axis(index)].load,
-        ..OTHER
-    },
+    ItemKind { name: "load", unit: "units", read: |view, index| view.machine.table(axis(index)), ..OTHER },
     // A bit.
     ItemKind { name: "bit", count: Bit::MAX as usize + 1, read: bit, ..OTHER },
     // An analog input, -2048 to 2047.

@@ -27,6 +27,18 @@ pub(crate) fn push(scene: &mut Scene<'_, '_, '_>, axis: AxisId, units: f64) {
     turn(scene, axis, units / gain, over);
 }
 
+pub(crate) fn read_pull(reader: &mut StatementReader<'_>) -> Result<(AxisId, f64), Mistake> {
+    let axis = reader.axis()?;
+    reader.expect("pull")?;
+    reader.equals()?;
+    Ok((axis, reader.number("a speed in units per second")?))
+}
+
+/// Changes what a constant load adds to the speed of a motor.
+pub(crate) fn pull(scene: &mut Scene<'_, '_, '_>, axis: AxisId, speed: f64) {
+    scene.stage.machine.loads.pull(axis, speed);
+}
+
 pub(crate) fn read_turn(reader: &mut StatementReader<'_>) -> Result<(AxisId, f64, Cycles), Mistake> {
     let column = reader.column();
     let channel = encoder(reader)?;
