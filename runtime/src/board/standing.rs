@@ -18,7 +18,8 @@ use super::Board;
 use crate::firmware::calls::Repeated;
 use crate::io::bits::bit_state;
 use crate::servo::coordinated::system;
-use crate::servo::independent::has_motion;
+use crate::servo::independent::{has_motion, state};
+use crate::servo::profile::Mode;
 use crate::views::Typed;
 
 /// A thread that has not ended.
@@ -123,6 +124,8 @@ pub enum Reason {
     OnPath,
     /// A limit switch that is watched is active.
     Limit(Bit),
+    /// It approaches a place, which has no end.
+    Approaches,
 }
 
 impl fmt::Display for Reason {
@@ -133,6 +136,7 @@ impl fmt::Display for Reason {
             Self::NoLimits(field) => write!(f, "its {field} is 0"),
             Self::FeedHold => f.write_str("feedhold"),
             Self::OnPath => f.write_str("it follows a path"),
+            Self::Approaches => f.write_str("MoveExp has no end, so CheckDone stays 0"),
             Self::Limit(bit) => write!(f, "its limit switch, bit {bit}, is active"),
         }
     }
@@ -246,7 +250,9 @@ impl<E: Engine> Board<E> {
         let lacking = [("Vel", Chan::VEL), ("Accel", Chan::ACCEL), ("Jerk", Chan::JERK)];
         let lacking = lacking.into_iter().find(|(_, field)| limit(*field));
         let drives_nothing = memory.axis(axis, Chan::OUTPUT_MODE) == OutputMode::None.get();
+        let approaches = has_motion(memory, axis) && state(memory, axis, 0).mode == Mode::Exponential;
         [
+            approaches.then_some(Reason::Approaches),
             drives_nothing.then_some(Reason::DrivesNothing),
             lacking.map(|(name, _)| Reason::NoLimits(name)),
             is_held.then_some(Reason::FeedHold),

@@ -1,5 +1,6 @@
 //! The UART and its two rings in guest memory. Source: devices.md section 1.
 
+use kmotiondef::firmware::Function;
 use kmotiondef::limits::RS232BUFSZ;
 use kmotiondef::variables::{
     DO_RS232_CMDS, P_RS232_REC_IN, P_RS232_REC_OUT, P_RS232_TX_IN, P_RS232_TX_OUT, RS232_REC_BUF,
@@ -84,7 +85,15 @@ fn fill(parts: &mut Parts, memory: &mut GuestMemory) {
     }
 }
 
-pub(crate) fn rs232_get_char(_: &mut Parts, caller: &mut Caller<'_>) -> Result<Outcome<i32>, TrapKind> {
+/// Whether the service that moves characters between the port and its rings was started.
+fn check_service(parts: &mut Parts, caller: &Caller<'_>, function: Function) {
+    if !parts.calls.serial.is_on {
+        parts.out.diagnose(caller, Message::UartNotServed { function });
+    }
+}
+
+pub(crate) fn rs232_get_char(parts: &mut Parts, caller: &mut Caller<'_>) -> Result<Outcome<i32>, TrapKind> {
+    check_service(parts, caller, Function::RS232_GetChar);
     let out = caller.memory.get(P_RS232_REC_OUT);
     if out == caller.memory.get(P_RS232_REC_IN) {
         return Ok(Outcome::Wait(Wake::Retry));
@@ -96,10 +105,11 @@ pub(crate) fn rs232_get_char(_: &mut Parts, caller: &mut Caller<'_>) -> Result<O
 }
 
 pub(crate) fn rs232_put_char(
-    _: &mut Parts,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     byte: u8,
 ) -> Result<Outcome<()>, TrapKind> {
+    check_service(parts, caller, Function::RS232_PutChar);
     let place = caller.memory.get(P_RS232_TX_IN);
     let after = next(place, caller.memory.locate(RS232_TX_BUF));
     if after == caller.memory.get(P_RS232_TX_OUT) {

@@ -587,6 +587,9 @@ messages! {
     /// The UART sends without being connected to its pins.
     UartUnconnected { } = "uart-unconnected", Warning, [once],
         "the UART is not connected to its pins: call InitRS232, or write 2 to KAN_TRIG_REG";
+    /// A program uses the serial port before its service is started.
+    UartNotServed { function: Function } = "uart-not-served", Warning, [once],
+        "{function}: nothing moves characters between the serial port and its buffers yet: call EnableRS232Cmds first";
     /// Characters received on the UART were not read in time.
     UartOverrun { size: usize } = "uart-overrun", Warning, [once],
         "{size} characters received on the UART were not read and are lost";

@@ -62,6 +62,10 @@ macro_rules! for_each_lint {
             EmptyBody = "empty-body", On;
             /// An `else` belongs to another `if` than its indentation says.
             DanglingElse = "dangling-else", On;
+            /// A condition repeats an earlier one of the same `else if` chain.
+            DuplicatedCondition = "duplicated-condition", On;
+            /// A local variable that is only assigned has the name of a global one.
+            Shadow = "shadow", On, pass shadow;
             /// No `goto` names a label.
             UnusedLabel = "unused-label", On;
             /// The value of a void function is used.

@@ -1,5 +1,9 @@
-//! Comparisons whose result the types decide: `unsigned >= 0`, `char == 200`.
+//! Comparisons whose result the types decide, `unsigned >= 0`, `char == 200`, or the function, `ReadBit(3) == 5`.
 
+use kmotiondef::firmware::row_named;
+use kmotiondef::function::Polled;
+
+use super::format::called_firmware;
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::CompareOp;
@@ -17,16 +21,17 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
                 _ => None,
             };
             let Some((op, value, number)) = sides else { continue };
-            let Some((ty, least, most)) = range(function, value) else { continue };
+            let Some(Range { of, least, most, help }) =
+                answer(program, function, value).or_else(|| range(program, function, value))
+            else {
+                continue;
+            };
             let Some(result) = decided(op, least, most, number) else { continue };
             let message = format!("this comparison is always {result}");
             sink.report(
                 Diagnostic::warning(Lint::ConstantComparison, expr.span, message)
-                    .label(
-                        function.exprs[value].span,
-                        format!("`{}`, which is {least} to {most}", program.spell(ty)),
-                    )
-                    .help("use an `int`"),
+                    .label(function.exprs[value].span, format!("`{of}`, which is {least} to {most}"))
+                    .help(help),
             );
         }
     }
@@ -50,8 +55,29 @@ const fn mirrored(op: CompareOp) -> CompareOp {
     }
 }
 
+/// The values that something can have.
+struct Range {
+    /// A type or a function.
+    of: String,
+    least: i64,
+    most: i64,
+    help: &'static str,
+}
+
+/// The results of a firmware function that answers a question.
+fn answer(program: &AnalysedProgram<'_>, function: &Function, value: ExprId) -> Option<Range> {
+    let ExprKind::Call(call) = &function.exprs[value].kind else { return None };
+    let name = called_firmware(program.unit, call)?;
+    let (least, most, help) = match row_named(name)?.attributes.polls? {
+        Polled::Bit => (0, 1, "a bit is 0 or 1"),
+        Polled::Motion => (-1, 1, "1 is done, 0 in motion, -1 disabled"),
+        Polled::Time | Polled::Path | Polled::Recording | Polled::Lock => return None,
+    };
+    Some(Range { of: name.to_owned(), least, most, help })
+}
+
 /// The type of a value before C widens it, and its range.
-fn range(function: &Function, mut value: ExprId) -> Option<(TypeId, i64, i64)> {
+fn range(program: &AnalysedProgram<'_>, function: &Function, mut value: ExprId) -> Option<Range> {
     let is_plain = |ty: TypeId| ty.is_integer() && !ty.is_long_long();
     while let ExprKind::Convert(inner) = function.exprs[value].kind
         && is_plain(function.exprs[inner].ty)
@@ -62,7 +88,7 @@ fn range(function: &Function, mut value: ExprId) -> Option<(TypeId, i64, i64)> {
     }
     let ty = function.exprs[value].ty;
     let (least, most) = range_of(ty)?;
-    Some((ty, least, most))
+    Some(Range { of: program.spell(ty), least, most, help: "use an `int`" })
 }
 
 /// The range of a type that is narrower than `int`, or unsigned.

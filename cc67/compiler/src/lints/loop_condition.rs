@@ -35,6 +35,11 @@ fn loops(function: &Function, stmts: &[Stmt], sink: &mut Sink) {
                 .or_else(|| goes_away(function, condition, step))
                 .or_else(|| steps_over(function, condition, step)),
         );
+        if let StmtKind::Loop { body, .. } = &stmt.kind
+            && let Some(counter) = counted(function, step)
+        {
+            reused(function, body, counter, sink);
+        }
     }
 }
 
@@ -151,4 +156,43 @@ fn steps_over(function: &Function, condition: ExprId, step: ExprId) -> Option<Di
             .label(function.exprs[step].span, format!("{amount} is rounded, and so are its sums"))
             .help("compare with `<`, or count with an `int`"),
     )
+}
+
+/// The local that a step counts.
+fn counted(function: &Function, step: ExprId) -> Option<LocalId> {
+    match &function.exprs[step].kind {
+        ExprKind::Update(update) => local(function, update.place),
+        _ => None,
+    }
+}
+
+/// Reports loops in the body of a loop that start and count its counter.
+fn reused(function: &Function, stmts: &[Stmt], counter: LocalId, sink: &mut Sink) {
+    for [before, stmt] in stmts.array_windows() {
+        let (StmtKind::Expr(start), StmtKind::Loop { step: Some(step), .. }) = (&before.kind, &stmt.kind)
+        else {
+            continue;
+        };
+        let ExprKind::Assign(place, _) = function.exprs[*start].kind else { continue };
+        if local(function, place) == Some(counter) && counted(function, *step) == Some(counter) {
+            let name = &function.locals[counter].name;
+            let message = format!("this loop changes `{name}`, which the loop around it counts with");
+            sink.report(
+                Diagnostic::warning(Lint::LoopCondition, function.exprs[*step].span, message)
+                    .help("use another variable here"),
+            );
+        }
+    }
+    for stmt in stmts {
+        match &stmt.kind {
+            StmtKind::Block(inner) | StmtKind::Loop { body: inner, .. } => {
+                reused(function, inner, counter, sink);
+            }
+            StmtKind::If { then, otherwise, .. } => {
+                reused(function, then, counter, sink);
+                reused(function, otherwise, counter, sink);
+            }
+            _ => {}
+        }
+    }
 }

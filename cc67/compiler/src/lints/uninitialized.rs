@@ -245,7 +245,7 @@ impl Search<'_> {
             ExprKind::Update(update) => {
                 self.read(update.place);
                 self.expr(update.operand);
-                self.store(update.place);
+                self.update(update.place);
             }
             ExprKind::Copy { to, from } => {
                 self.place(*to);
@@ -310,6 +310,13 @@ impl Search<'_> {
     fn store(&mut self, place: PlaceId) {
         if let PlaceKind::Local(local, _) = self.function.places[place].kind {
             self.stored_in(local);
+        }
+    }
+
+    /// What had no value before an update has none after it.
+    fn update(&mut self, place: PlaceId) {
+        if let PlaceKind::Local(local, _) = self.function.places[place].kind {
+            self.flow.insert(local);
         }
     }
 

@@ -8,7 +8,8 @@ use super::operands::Operand;
 use crate::ast::{Expression, Statement, StatementKind};
 use crate::diag::Diagnostic;
 use crate::lints::{
-    assignment_condition, dangling_else, empty_body, misleading_indentation, precedence, unused_value,
+    assignment_condition, dangling_else, duplicated_condition, empty_body, misleading_indentation,
+    precedence, unused_value,
 };
 use crate::names::Name;
 use crate::source::Span;
@@ -161,6 +162,7 @@ impl Sema<'_> {
     ) {
         let value = self.condition(condition);
         self.report_finding(empty_body::finding(self.sources, condition, then, otherwise));
+        self.report_finding(duplicated_condition::finding(condition, otherwise));
         if otherwise.is_none() {
             self.report_finding(dangling_else::finding(self.sources, span, then));
         }

@@ -84,7 +84,7 @@ impl Motions {
         let was_in_motion = own.in_motion & bit(axis) != 0;
         own.in_motion = if done == 0 { own.in_motion | bit(axis) } else { own.in_motion & !bit(axis) };
         let is_others = mover.is_some_and(|mover| mover != thread);
-        if done == 1 && own.moved & bit(axis) == 0 && !is_others && own.wrong_wait.is_none() {
+        if done != 0 && own.moved & bit(axis) == 0 && !is_others && own.wrong_wait.is_none() {
             let moving = AxisId::all().find(|other| own.moved & bit(*other) != 0 && is_moving(*other));
             own.wrong_wait = moving.map(|moving| WrongWait { thread, asked: axis, moving, at });
         }
