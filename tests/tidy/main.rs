@@ -193,7 +193,6 @@ fn embedding_a_board_builds_no_terminal_picture_web_or_cli_crate() {
         "plotters",
         "png",
         "ratatui",
-        "rustix",
         "rustyline",
         "similar",
         "termcolor",

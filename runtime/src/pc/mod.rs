@@ -2,6 +2,7 @@
 
 mod answers;
 mod boxes;
+pub(crate) mod directory;
 pub(crate) mod disk;
 mod downloads;
 pub(crate) mod files;
