@@ -3,6 +3,7 @@
 mod failures;
 mod hostile_sources;
 mod inputs;
+mod levels;
 mod limits;
 mod long;
 mod oracles;

@@ -15,7 +15,7 @@ use super::{sides, spill};
 use crate::passes::Level;
 
 /// The registers of a function.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Assignment {
     regs: SecondaryMap<VReg, u8>,
     /// The kept registers that the function uses.
@@ -69,6 +69,9 @@ struct Scan<'a> {
     holder: [Option<VReg>; Reg::COUNT],
     used: u64,
     moved: Vec<VReg>,
+    is_moved: SecondaryMap<VReg, bool>,
+    /// The registers that some call changes.
+    changed_anywhere: u64,
     /// True if loops use as many registers as there are, so that their iterations overlap.
     is_wide: bool,
 }
@@ -85,6 +88,8 @@ impl<'a> Scan<'a> {
             holder: [None; Reg::COUNT],
             used: 0,
             moved: Vec::new(),
+            is_moved: SecondaryMap::new(),
+            changed_anywhere: code.calls.iter().fold(0, |set, call| set | call.changes),
             is_wide: false,
         }
     }
@@ -105,8 +110,15 @@ impl<'a> Scan<'a> {
     fn changed(&self, interval: Interval) -> u64 {
         let calls = &self.liveness.calls;
         let first = calls.partition_point(|(at, _)| *at < interval.start);
-        let inside = calls[first..].iter().take_while(|(at, _)| *at < interval.end);
-        inside.fold(0, |set, (_, number)| set | self.code.calls[*number as usize].changes)
+        let mut changed = 0;
+        for (_, number) in calls[first..].iter().take_while(|(at, _)| *at < interval.end) {
+            changed |= self.code.calls[*number as usize].changes;
+            // Most calls change the same registers: after the first, the others add nothing.
+            if changed == self.changed_anywhere {
+                break;
+            }
+        }
+        changed
     }
 
     /// The registers that a virtual one takes if it is at `reg`.
@@ -159,7 +171,8 @@ impl<'a> Scan<'a> {
     /// Reports whether a register is live through a whole loop.
     fn lives_through_loop(&self, reg: VReg) -> bool {
         let interval = self.liveness.intervals[reg];
-        self.liveness.loops.iter().any(|(first, end)| interval.start <= *first && *end <= interval.end)
+        let next = self.liveness.loops.partition_point(|(first, _)| *first < interval.start);
+        self.liveness.loops.get(next).is_some_and(|(_, end)| *end <= interval.end)
     }
 
     /// Reports whether a word in `at` would take half of a free pair.
@@ -201,7 +214,7 @@ impl<'a> Scan<'a> {
                 for one in abi::registers(self.whole(reg, at)) {
                     if self.taken[one.index()] >= interval.start
                         && let Some(holder) = self.holder[one.index()]
-                        && !self.moved.contains(&holder)
+                        && !std::mem::replace(&mut self.is_moved[holder], true)
                     {
                         self.moved.push(holder);
                         // The other half of an evicted pair is free too.

@@ -18,7 +18,7 @@ use crate::ir::inst::SlotId;
 use crate::source::Span;
 
 /// A region: the unit of scheduling.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Region {
     /// Its label: a block's number, or one after them for where a call returns to.
     pub(super) label: u32,
@@ -42,7 +42,7 @@ impl Region {
 }
 
 /// The registers that code elsewhere reads and changes, a bit each, at the exits of the function.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Beyond {
     pub(super) reads: u64,
     pub(super) changes: u64,

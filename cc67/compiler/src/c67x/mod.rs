@@ -10,8 +10,9 @@
 //! 3. [`live`], [`allocate`], [`spill`]: registers of the processor, those that survive a thread switch.
 //! 4. [`frame`], [`moves`], [`expand`]: calls, the stack, the beginning and the ends; regions of [`step`]s.
 //! 5. [`graph`], [`resources`], [`schedule`]: packets, [`refine`] makes them smaller; [`pipeline`], [`modulo`]: those of
-//!    loops whose iterations overlap.
-//! 6. [`layout`]: words, on fetch packets, with what the linker completes ([`text`]).
+//!    loops whose iterations overlap; [`memo`]: what an earlier attempt at the function found.
+//! 6. [`attempts`]: stages 2 to 5 in several ways, of which the best stays.
+//! 7. [`layout`]: words, on fetch packets, with what the linker completes ([`text`]).
 //!
 //! Rules that all stages keep (`c67x.md`):
 //! - no register is read while a result for it is in flight, for an interrupt would make it land early; except between
@@ -22,6 +23,7 @@
 
 mod abi;
 mod allocate;
+mod attempts;
 mod code;
 mod copies;
 mod counters;
@@ -33,6 +35,7 @@ mod graph;
 mod late;
 mod layout;
 mod live;
+mod memo;
 mod modulo;
 mod moves;
 mod packets;
@@ -57,11 +60,8 @@ use crate::diag::Diagnostic;
 use crate::ir::function::{Function, Signatures};
 use crate::passes::Level;
 use crate::source::Span;
-use code::Code;
-use expand::{Back, TooLarge};
-use packets::Scheduled;
-use schedule::Order;
-use sides::Policy;
+use attempts::Attempt;
+use expand::TooLarge;
 use text::Words;
 
 /// Writes the functions of a unit, one after another.
@@ -70,35 +70,6 @@ pub(crate) struct Generator {
     words: Vec<u32>,
     externs: Externs,
     level: Level,
-}
-
-/// The most loops of a function that are tried in two ways.
-const MOST_TRIED: u32 = 6;
-
-/// A function in packets.
-struct Attempt {
-    regions: Vec<Scheduled>,
-    code: Code,
-    /// Bytes of its frame.
-    frame: u32,
-}
-
-impl Attempt {
-    /// Its words.
-    fn words(&self) -> u32 {
-        self.regions.iter().fold(0, |at, region| refine::end(region, at))
-    }
-
-    /// Its cycles, as far as one can guess how often each region happens.
-    fn cost(&self) -> f32 {
-        self.regions.iter().map(|region| region.weight * region.cycles as f32).sum()
-    }
-
-    /// The cost of the code in loops.
-    fn loop_cost(&self) -> f32 {
-        let inside = self.regions.iter().filter(|region| region.weight > 1.0);
-        inside.map(|region| region.weight * region.cycles as f32).sum()
-    }
 }
 
 /// Functions begin at multiples of this many words: a fetch packet.
@@ -126,7 +97,7 @@ impl Generator {
             predicate::run(&mut code);
             copies::run(&mut code);
         }
-        let attempt = self.best(ir, code).map_err(|why| match why {
+        let attempt = attempts::best(ir, code, self.level).map_err(|why| match why {
             TooLarge::Frame => frame_too_large(ir.span, name),
             TooLarge::Code => too_large(ir.span, name),
         })?;
@@ -142,74 +113,6 @@ impl Generator {
         let spans = laid.spans.into_iter().map(|(word, span)| (start + word, span)).collect();
         let exceeded = regions.iter().filter(|region| region.is_exceeded).map(|region| region.span).collect();
         Ok(Words { words: start..end, fixups: laid.fixups, spans, frame, exceeded })
-    }
-
-    /// The packets of a function. At the level that makes code larger, short loops are tried unrolled and not, and all
-    /// loops with other sides for their registers; the better ones stay.
-    fn best(&self, ir: &Function, code: Code) -> Result<Attempt, TooLarge> {
-        if self.level != Level::Fast {
-            let frame = self.attempt(ir, code.clone(), Back::Frame, Policy::USUAL);
-            if self.level == Level::None || code.calls.is_empty() {
-                return frame;
-            }
-            let register = self.attempt(ir, code, Back::Register, Policy::USUAL)?;
-            return frame.map(|frame| if register.words() <= frame.words() { register } else { frame });
-        }
-        let has_loop = (0..).zip(&code.blocks).any(|(own, block)| block.end.targets().any(|to| to == own));
-        let with_turns = |skipped: u32, policy: Policy| {
-            let mut code = code.clone();
-            let count = turns::run(&mut code, skipped);
-            (self.attempt(ir, code, Back::Register, policy), count)
-        };
-        let (mut best, count) = with_turns(0, Policy::USUAL);
-        let mut skipped = 0;
-        for index in 0..count.min(MOST_TRIED) {
-            let (other, _) = with_turns(skipped | 1 << index, Policy::USUAL);
-            if other.as_ref().is_ok_and(|other| best.as_ref().map_or(true, |best| other.cost() < best.cost()))
-            {
-                best = other;
-                skipped |= 1 << index;
-            }
-        }
-        for policy in Policy::OTHERS.into_iter().filter(|_| has_loop) {
-            let (other, _) = with_turns(skipped, policy);
-            let costs = |attempt: &Attempt| (attempt.loop_cost(), attempt.cost());
-            if other.as_ref().is_ok_and(|other| best.as_ref().map_or(true, |best| costs(other) < costs(best)))
-            {
-                best = other;
-            }
-        }
-        best
-    }
-
-    /// Takes instructions over virtual registers through the stages that follow.
-    fn attempt(
-        &self,
-        ir: &Function,
-        mut code: Code,
-        back: Back,
-        policy: Policy,
-    ) -> Result<Attempt, TooLarge> {
-        if self.level != Level::None {
-            counters::run(&mut code);
-        }
-        sides::assign(&mut code, policy);
-        let assignment = allocate::allocate(&mut code, self.level).ok_or(TooLarge::Code)?;
-        let order = if self.level == Level::None { Order::Source } else { Order::Early };
-        let expanded = expand::expand(ir, &code, &assignment, back)?;
-        let mut regions = if self.level == Level::Fast {
-            pipeline::schedule(expanded.regions, expanded.labels)
-        } else {
-            let mut at = 0;
-            let in_place = |region| {
-                let scheduled = schedule::schedule(region, order, at);
-                at = refine::end(&scheduled, at);
-                scheduled
-            };
-            expanded.regions.into_iter().map(in_place).collect()
-        };
-        late::run(&mut regions, &expanded.late);
-        Ok(Attempt { regions, code, frame: expanded.frame })
     }
 
     /// The words of all functions, and the names that they need besides those of the unit.

@@ -23,7 +23,7 @@ const TRIES: usize = 8;
 const WORK: u32 = 600_000;
 
 /// A modulo schedule: the cycles in which the steps of an iteration issue.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Overlap {
     /// Cycles from one iteration to the next.
     pub(super) period: u32,
@@ -62,25 +62,39 @@ struct Wait {
 /// wait until it is known that the iteration takes place.
 ///
 /// # Errors
-/// [`Exceeded`] if that takes more than [`WORK`].
+/// [`Exceeded`] if that takes more than [`WORK`], or than what is left of the function's work.
 pub(super) fn search(
     steps: &[Step],
     is_certain: impl Fn(usize) -> bool,
     limit: u32,
+    whole: &mut Work,
 ) -> Result<Option<Overlap>, Exceeded> {
     let waits = Waits::new(steps);
     let is_certain: Vec<bool> = (0..steps.len()).map(is_certain).collect();
     let least = (steps.len() as u32).div_ceil(8).max(BRANCH);
+    let given = WORK.min(whole.0);
+    let mut work = Work(given);
+    let found = shortest(steps, &is_certain, least..limit, &waits, &mut work);
+    whole.0 -= given - work.0;
+    found
+}
+
+/// The overlap with the shortest of some periods.
+fn shortest(
+    steps: &[Step],
+    is_certain: &[bool],
+    periods: Range<u32>,
+    waits: &Waits,
+    work: &mut Work,
+) -> Result<Option<Overlap>, Exceeded> {
     // Waits that count everywhere lead to a place with fewer tries.
     let exposed = waits.exposed();
-    let mut work = Work(WORK);
-    for period in least..limit {
-        for (waits, is_sheltered) in [(&exposed, false), (&waits, true)] {
-            let Some(heights) = waits.heights(steps, period, &mut work)? else { continue };
+    for period in periods {
+        for (waits, is_sheltered) in [(&exposed, false), (waits, true)] {
+            let Some(heights) = waits.heights(steps, period, work)? else { continue };
             for commit in 0..2 {
-                let search =
-                    Finder { steps, waits, is_certain: &is_certain, period, commit, heights: &heights };
-                if let Some(places) = search.run(&mut work)? {
+                let search = Finder { steps, waits, is_certain, period, commit, heights: &heights };
+                if let Some(places) = search.run(work)? {
                     return Ok(Some(Overlap { period, commit, places, is_sheltered }));
                 }
             }
@@ -93,11 +107,16 @@ pub(super) fn search(
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Exceeded;
 
-/// The work that is left.
-struct Work(u32);
+/// The work that is left, in forms and dependences that are tested.
+#[derive(Debug)]
+pub(super) struct Work(pub(super) u32);
 
 impl Work {
-    fn spend(&mut self, amount: usize) -> Result<(), Exceeded> {
+    /// Takes some of it.
+    ///
+    /// # Errors
+    /// [`Exceeded`] if less is left.
+    pub(super) fn spend(&mut self, amount: usize) -> Result<(), Exceeded> {
         let left = u32::try_from(amount).ok().and_then(|amount| self.0.checked_sub(amount));
         self.0 = left.ok_or(Exceeded)?;
         Ok(())

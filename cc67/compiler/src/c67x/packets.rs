@@ -21,7 +21,7 @@ pub(super) struct Issued {
 }
 
 /// A region whose instructions have their cycles.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Scheduled {
     pub(super) label: u32,
     /// Ascending by cycle.

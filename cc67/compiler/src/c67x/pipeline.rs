@@ -16,7 +16,8 @@ use super::abi;
 use super::code::Value;
 use super::expand::Region;
 use super::graph::BRANCH;
-use super::modulo::{self, Exceeded, Overlap};
+use super::memo::{KnownRegion, Memo, Question};
+use super::modulo::{self, Exceeded, Overlap, Work};
 use super::packets::{Issued, Scheduled};
 use super::refine;
 use super::schedule::{self, Order, Tail};
@@ -30,22 +31,29 @@ const TURNS: u32 = 5;
 const RARE: f32 = 0.1;
 
 /// Schedules all regions; loops overlap. `labels` is the first label that is free.
-pub(super) fn schedule(regions: Vec<Region>, labels: u32) -> Vec<Scheduled> {
+pub(super) fn schedule(
+    regions: Vec<Region>,
+    labels: u32,
+    memo: &mut Memo,
+    work: &mut Work,
+) -> Vec<Scheduled> {
     let entering =
         if regions.iter().any(|region| back(region).is_some()) { live(&regions) } else { Vec::new() };
     let mut done = Vec::with_capacity(regions.len());
     let mut ends = Vec::new();
     let (mut labels, mut at) = (labels, 0);
     for region in regions {
-        let mut plain = schedule::schedule(region.clone(), Order::Early, at);
-        let found = back(&region).and_then(|back| {
-            let found = Loop::new(&region, back, &entering, plain.cycles);
+        let known = memo.of(region);
+        let mut plain = known.plain(Order::Early, at);
+        let found = back(&known.region).is_some().then(|| {
+            let found = Loop::new(known, &entering, plain.cycles, work);
             plain.is_exceeded = found.is_err();
             let mut turns = found.ok().flatten()?;
             turns.label = labels;
             let (parts, after) = turns.parts()?;
             Some((parts, after, turns.label))
         });
+        let found = found.flatten();
         match found {
             Some((parts, after, next)) => {
                 at = parts.iter().fold(at, |at, part| refine::end(part, at));
@@ -136,11 +144,13 @@ struct Instance {
 
 impl<'a> Loop<'a> {
     fn new(
-        region: &'a Region,
-        back: &Step,
+        known: &'a mut KnownRegion,
         entering: &[(u32, u64)],
         cycles: u32,
+        work: &mut Work,
     ) -> Result<Option<Self>, Exceeded> {
+        let region = &known.region;
+        let Some(back) = back(region) else { return Ok(None) };
         let outside = match region.branches.iter().find(|step| step.value != back.value) {
             Some(step) => match step.value {
                 Some(Value::Block(label)) => label,
@@ -156,8 +166,17 @@ impl<'a> Loop<'a> {
             let writes = |inst: &Inst| inst.writes().any(|write| read_after & abi::bit(write.reg) != 0);
             step.access != Access::None || step.forms.first().is_none_or(writes)
         };
-        let Some(plan) = modulo::search(&steps, is_certain, cycles)? else { return Ok(None) };
-        Ok(Some(Self { region, steps, plan, outside, label: 0 }))
+        let question = Question { read_after, cycles };
+        let plan = match known.plan(question) {
+            Some(plan) => plan.clone(),
+            None => {
+                let plan = modulo::search(&steps, is_certain, cycles, work);
+                known.keep(question, plan.clone());
+                plan
+            }
+        };
+        let Some(plan) = plan? else { return Ok(None) };
+        Ok(Some(Self { region: &known.region, steps, plan, outside, label: 0 }))
     }
 
     /// The regions that replace the loop, and those that go to the end of the function.
@@ -197,7 +216,7 @@ impl<'a> Loop<'a> {
         parts.push(self.packets(label));
         parts.push(self.last()?);
         let cycles = |parts: &[Scheduled]| parts.iter().map(|part| part.cycles).sum::<u32>();
-        let plain = schedule::schedule(self.region.clone(), Order::Early, 0).cycles;
+        let plain = schedule::schedule(self.region, Order::Early, 0).cycles;
         let overlapped = cycles(&parts) + self.plan.period * (TURNS - 1).saturating_sub(depth as u32 - 1);
         (overlapped < plain * TURNS).then_some((parts, ends))
     }
@@ -268,7 +287,7 @@ impl<'a> Loop<'a> {
             branches,
             ..Region::new(label, self.region.weight / 8.0, self.region.span)
         };
-        schedule::schedule(region, Order::Early, 0)
+        schedule::schedule(&region, Order::Early, 0)
     }
 
     /// The branch out of the loop after the last iteration.

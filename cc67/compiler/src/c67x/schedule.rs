@@ -23,14 +23,14 @@ pub(super) enum Order {
 }
 
 /// Schedules a region that begins at the word `at`.
-pub(super) fn schedule(region: Region, order: Order, at: u32) -> Scheduled {
-    let Region { label, steps, branches, late, span, weight, .. } = region;
-    let graph = graph::build(&steps, &branches);
+pub(super) fn schedule(region: &Region, order: Order, at: u32) -> Scheduled {
+    let Region { steps, branches, late, .. } = region;
+    let graph = graph::build(steps, branches);
     let mut list = List::new(&graph, order);
-    let end = list.steps(&steps);
+    let end = list.steps(steps);
     let cycles = match branches.first() {
-        Some(branch) if !late.is_empty() => list.leave(steps.len(), branch, &late, end),
-        _ => list.branches(&steps, &branches, end),
+        Some(branch) if !late.is_empty() => list.leave(steps.len(), branch, late, end),
+        _ => list.branches(steps, branches, end),
     };
     let mut items = list.issued;
     if order == Order::Early {
@@ -38,6 +38,7 @@ pub(super) fn schedule(region: Region, order: Order, at: u32) -> Scheduled {
     }
     let mut insts: Vec<Issued> = items.into_iter().map(|item| item.issued).collect();
     insts.sort_by_key(|issued| issued.cycle);
+    let Region { label, span, weight, .. } = *region;
     Scheduled { label, insts, cycles, weight, span, is_exceeded: false }
 }
 

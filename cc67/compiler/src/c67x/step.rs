@@ -32,7 +32,7 @@ pub(super) enum Access {
 const UNKNOWN: i32 = 0x3F_FFE0;
 
 /// An instruction with its registers assigned.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Step {
     /// The forms; never empty.
     pub(super) forms: Vec<Inst>,

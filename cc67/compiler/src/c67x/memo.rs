@@ -1,0 +1,77 @@
+//! Schedules that earlier attempts at the same function found.
+//!
+//! Attempts differ in one loop or in the sides of some registers; most regions come out of the stages before as they
+//! did in the last attempt. A region that is equal to an earlier one gets the same packets without the work.
+
+use super::expand::Region;
+use super::modulo::{Exceeded, Overlap};
+use super::packets::{FETCH, Scheduled};
+use super::schedule::{self, Order};
+
+/// The regions of all attempts at a function.
+#[derive(Debug, Default)]
+pub(super) struct Memo {
+    /// The different regions with each label.
+    labels: Vec<Vec<KnownRegion>>,
+}
+
+/// A region, and what was found for it.
+#[derive(Debug)]
+pub(super) struct KnownRegion {
+    pub(super) region: Region,
+    /// Its packets, by the word of a fetch packet at which it begins.
+    plain: Vec<(u32, Scheduled)>,
+    /// The overlap of its iterations, if it is a loop.
+    plans: Vec<(Question, SearchedOverlap)>,
+}
+
+/// The result of a search for an overlap.
+pub(super) type SearchedOverlap = Result<Option<Overlap>, Exceeded>;
+
+/// The facts that decide about an overlap besides the region.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Question {
+    /// The registers that are read after the loop, a bit each.
+    pub(super) read_after: u64,
+    /// The cycles of an iteration that does not overlap.
+    pub(super) cycles: u32,
+}
+
+impl Memo {
+    /// Returns a region that is equal to this one.
+    pub(super) fn of(&mut self, region: Region) -> &mut KnownRegion {
+        let label = region.label as usize;
+        if self.labels.len() <= label {
+            self.labels.resize_with(label + 1, Vec::new);
+        }
+        let list = &mut self.labels[label];
+        let index = list.iter().position(|known| known.region == region).unwrap_or_else(|| {
+            list.push(KnownRegion { region, plain: Vec::new(), plans: Vec::new() });
+            list.len() - 1
+        });
+        &mut list[index]
+    }
+}
+
+impl KnownRegion {
+    /// The packets of the region if it begins at the word `at`.
+    pub(super) fn plain(&mut self, order: Order, at: u32) -> Scheduled {
+        let at = at % FETCH;
+        if let Some((_, plain)) = self.plain.iter().find(|(own, _)| *own == at) {
+            return plain.clone();
+        }
+        let plain = schedule::schedule(&self.region, order, at);
+        self.plain.push((at, plain.clone()));
+        plain
+    }
+
+    /// The overlap that an earlier attempt found.
+    pub(super) fn plan(&self, question: Question) -> Option<&SearchedOverlap> {
+        self.plans.iter().find(|(own, _)| *own == question).map(|(_, plan)| plan)
+    }
+
+    /// Keeps an overlap for later attempts.
+    pub(super) fn keep(&mut self, question: Question, plan: SearchedOverlap) {
+        self.plans.push((question, plan));
+    }
+}
