@@ -11,12 +11,14 @@ use super::forms::Kind;
 
 /// Rewrites all blocks.
 pub(super) fn run(code: &mut Code) {
-    for number in 0..code.blocks.len() {
-        let mut known = Copies { pairs: SecondaryMap::new(), list: Vec::new() };
-        for (reg, info) in &code.regs {
-            known.pairs[reg] = info.is_pair;
-        }
-        for inst in &mut code.blocks[number].insts {
+    let mut known = Copies { pairs: SecondaryMap::with_capacity(code.regs.len()), list: Vec::new() };
+    known.pairs.resize(code.regs.len());
+    for (reg, info) in &code.regs {
+        known.pairs[reg] = info.is_pair;
+    }
+    for block in &mut code.blocks {
+        known.list.clear();
+        for inst in &mut block.insts {
             known.inst(inst);
         }
     }

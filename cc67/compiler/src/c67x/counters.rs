@@ -8,14 +8,17 @@ use cranelift_entity::SecondaryMap;
 
 use super::code::{Arg, Code, End, VReg};
 use super::forms::Kind;
+use super::predicate::Mentioned;
 
 /// The most registers that are tested inside an iteration.
 const TESTED: usize = 2;
 
 /// Rewrites the loops of one block.
 pub(super) fn run(code: &mut Code) {
+    // A copy that goes leaves its block a reader of the count.
+    let readers = Readers::new(code);
     for number in 0..code.blocks.len() {
-        let Some((at, count)) = copied(code, number) else { continue };
+        let Some((at, count)) = copied(code, &readers, number) else { continue };
         code.regs[count].is_condition = true;
         let block = &mut code.blocks[number];
         block.insts.remove(at);
@@ -26,7 +29,7 @@ pub(super) fn run(code: &mut Code) {
 }
 
 /// The copy that the branch back to a block tests, and what it copies, if that can be tested instead.
-fn copied(code: &Code, number: usize) -> Option<(usize, VReg)> {
+fn copied(code: &Code, readers: &Readers, number: usize) -> Option<(usize, VReg)> {
     let block = &code.blocks[number];
     let End::Branch { condition, then, otherwise, .. } = block.end else { return None };
     if then != number as u32 && otherwise != number as u32 {
@@ -46,23 +49,45 @@ fn copied(code: &Code, number: usize) -> Option<(usize, VReg)> {
         }
     }
     let is_own = is_copy && is_last && tested.len() <= TESTED && !tested.contains(&condition);
-    (is_own && !is_read_elsewhere(code, number, at, [count, condition])).then_some((at, count))
+    (is_own && !readers.is_read_elsewhere(code, number, at, [count, condition])).then_some((at, count))
 }
 
-/// Reports whether the count is read outside of the block, or its copy anywhere but by the branch.
-fn is_read_elsewhere(code: &Code, number: usize, copy: usize, [count, condition]: [VReg; 2]) -> bool {
-    let mut found = SecondaryMap::with_default(false);
-    for (other, block) in code.blocks.iter().enumerate() {
-        let is_own = other == number;
-        for inst in
-            block.insts.iter().enumerate().filter(|(at, _)| !is_own || *at != copy).map(|(_, inst)| inst)
-        {
-            inst.visit_reads(|reg| found[reg] |= reg == condition || reg == count && !is_own);
+/// The blocks that read each register, and the registers that are arguments of calls.
+struct Readers {
+    blocks: SecondaryMap<VReg, Mentioned>,
+    is_argument: SecondaryMap<VReg, bool>,
+}
+
+impl Readers {
+    fn new(code: &Code) -> Self {
+        let mut blocks: SecondaryMap<VReg, Mentioned> = SecondaryMap::with_capacity(code.regs.len());
+        blocks.resize(code.regs.len());
+        let mut is_argument = SecondaryMap::with_capacity(code.regs.len());
+        is_argument.resize(code.regs.len());
+        for (number, block) in (0..).zip(&code.blocks) {
+            block.insts.iter().for_each(|inst| inst.visit_reads(|reg| blocks[reg].add(number)));
+            if let Some(reg) = block.end.read() {
+                blocks[reg].add(number);
+            }
         }
-        if let Some(reg) = block.end.read().filter(|_| !is_own) {
-            found[reg] = true;
+        for (reg, _) in code.calls.iter().flat_map(|call| &call.arguments) {
+            is_argument[*reg] = true;
         }
+        Self { blocks, is_argument }
     }
-    let mut arguments = code.calls.iter().flat_map(|call| &call.arguments);
-    found[count] || found[condition] || arguments.any(|(reg, _)| *reg == count || *reg == condition)
+
+    /// Reports whether the count is read outside of the block, or its copy anywhere but by the branch.
+    fn is_read_elsewhere(
+        &self,
+        code: &Code,
+        number: usize,
+        copy: usize,
+        [count, condition]: [VReg; 2],
+    ) -> bool {
+        let is_outside = |reg: VReg| self.is_argument[reg] || self.blocks[reg].is_outside(number as u32);
+        let mut is_read = is_outside(count) || is_outside(condition);
+        let own = code.blocks[number].insts.iter().enumerate().filter(|(at, _)| *at != copy);
+        own.for_each(|(_, inst)| inst.visit_reads(|reg| is_read |= reg == condition));
+        is_read
+    }
 }

@@ -27,11 +27,14 @@ pub(super) struct Laid {
 /// Lays out the regions in the order of the code; labels from `blocks` on are those of returns.
 pub(super) fn lay_out(regions: &[Scheduled], tables: &[Vec<u32>], blocks: u32, span: Span) -> Laid {
     let labels = regions.iter().map(|region| region.label).max().unwrap_or(0) + 1;
+    let mut targets = tables.concat();
+    targets.sort_unstable();
     let mut layout = Layout {
         laid: Laid { spans: vec![(0, span)], ..Laid::default() },
         labels: vec![0; labels as usize],
+        pending: Vec::new(),
         open: Vec::new(),
-        targets: tables.concat(),
+        targets,
         tables: Vec::new(),
     };
     for region in regions {
@@ -47,9 +50,11 @@ struct Layout {
     laid: Laid,
     /// The word of each label.
     labels: Vec<u32>,
+    /// The labels of empty regions: they are where the next packet begins.
+    pending: Vec<u32>,
     /// Words that need a label or a symbol.
     open: Vec<(u32, Value)>,
-    /// Blocks that tables name.
+    /// Blocks that tables name, ascending.
     targets: Vec<u32>,
     /// The word of each table.
     tables: Vec<u32>,
@@ -86,7 +91,8 @@ impl Layout {
         }
         if let Some(label) = label {
             // An empty region: its label is that of the next.
-            self.labels[label as usize] = self.at() | PENDING;
+            self.labels[label as usize] = self.at();
+            self.pending.push(label);
         }
     }
 
@@ -97,12 +103,12 @@ impl Layout {
             self.pad();
         }
         let at = self.at();
-        if let Some(label) = label.take() {
-            self.labels[label as usize] = at | PENDING;
-        }
-        for (number, own) in (0..).zip(&mut self.labels).filter(|(_, own)| **own & PENDING != 0) {
-            *own = at;
-            if number >= blocks || at == 0 || self.targets.contains(&number) {
+        let mut pending = std::mem::take(&mut self.pending);
+        pending.extend(label.take());
+        pending.sort_unstable();
+        for number in pending {
+            self.labels[number as usize] = at;
+            if number >= blocks || at == 0 || self.targets.binary_search(&number).is_ok() {
                 self.laid.entries.push(at);
             }
         }
@@ -199,6 +205,3 @@ impl Layout {
         }
     }
 }
-
-/// Marks a label whose region is empty: it is where the next packet begins.
-const PENDING: u32 = 1 << 31;

@@ -48,27 +48,42 @@ fn predecessors(code: &Code) -> Vec<u32> {
 
 /// The blocks that use a register.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Mentioned {
+pub(super) enum Mentioned {
     #[default]
     Nowhere,
     Block(u32),
     Several,
 }
 
-fn homes(code: &Code) -> SecondaryMap<VReg, Mentioned> {
+impl Mentioned {
+    /// Reports whether another block than this one uses it.
+    pub(super) fn is_outside(self, block: u32) -> bool {
+        match self {
+            Self::Nowhere => false,
+            Self::Block(own) => own != block,
+            Self::Several => true,
+        }
+    }
+
+    /// A block uses it.
+    pub(super) fn add(&mut self, block: u32) {
+        *self = match *self {
+            Self::Nowhere => Self::Block(block),
+            Self::Block(own) if own == block => *self,
+            Self::Block(_) | Self::Several => Self::Several,
+        };
+    }
+}
+
+/// The blocks that use each register; a parameter is used outside of all.
+pub(super) fn homes(code: &Code) -> SecondaryMap<VReg, Mentioned> {
     let mut homes = SecondaryMap::with_capacity(code.regs.len());
     homes.resize(code.regs.len());
     for (reg, _) in &code.params {
         homes[*reg] = Mentioned::Several;
     }
     for (number, block) in (0..).zip(&code.blocks) {
-        let mut mention = |reg: VReg| {
-            homes[reg] = match homes[reg] {
-                Mentioned::Nowhere => Mentioned::Block(number),
-                Mentioned::Block(own) if own == number => Mentioned::Block(own),
-                Mentioned::Block(_) | Mentioned::Several => Mentioned::Several,
-            };
-        };
+        let mut mention = |reg: VReg| homes[reg].add(number);
         for inst in &block.insts {
             inst.visit_reads(&mut mention);
             if let Some((reg, _)) = inst.written() {

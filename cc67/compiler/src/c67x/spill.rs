@@ -2,13 +2,16 @@
 //!
 //! A register whose only value is a constant is made again before every read instead.
 
+use cranelift_entity::SecondaryMap;
+
 use super::code::{Arg, Base, Code, Info, Inst, MemoryPlace, VReg, Value};
 use super::forms::Kind;
 use super::select::make;
 
 /// Rewrites the code for the registers that moved.
 pub(super) fn to_memory(code: &mut Code, moved: &[VReg]) {
-    for reg in moved {
+    let mut mentions = Mentions::new(code, moved);
+    for (index, reg) in moved.iter().enumerate() {
         let home = match code.regs[*reg].constant {
             Some(value) => Home::Constant(value),
             None => {
@@ -18,9 +21,95 @@ pub(super) fn to_memory(code: &mut Code, moved: &[VReg]) {
             }
         };
         let mut mover = Mover { code, reg: *reg, home };
-        mover.params();
-        for block in 0..mover.code.blocks.len() {
-            mover.block(block);
+        mentions.first.splice(0..0, mover.params());
+        for mention in std::mem::take(&mut mentions.of[index]) {
+            mover.mention(&mut mentions.all[mention as usize]);
+        }
+    }
+    mentions.write(code);
+}
+
+/// The instructions that use registers that move, taken out of the code; so each register looks only at its own.
+struct Mentions {
+    /// What the beginning of the function needs.
+    first: Vec<Inst>,
+    /// In the order of the code.
+    all: Vec<Mention>,
+    /// The numbers of the mentions that use each register that moves.
+    of: Vec<Vec<u32>>,
+}
+
+/// An instruction with what it needs before and after it, or the end of a block.
+struct Mention {
+    block: usize,
+    /// The position in the block; none for its end.
+    at: Option<usize>,
+    insts: Vec<Inst>,
+}
+
+impl Mentions {
+    fn new(code: &Code, moved: &[VReg]) -> Self {
+        let mut number: SecondaryMap<VReg, Option<u32>> = SecondaryMap::with_capacity(code.regs.len());
+        number.resize(code.regs.len());
+        for (index, reg) in (0..).zip(moved) {
+            number[*reg] = Some(index);
+        }
+        let mut mentions = Self { first: Vec::new(), all: Vec::new(), of: vec![Vec::new(); moved.len()] };
+        let mut found: Vec<u32> = Vec::new();
+        for (block, own) in code.blocks.iter().enumerate() {
+            for (at, inst) in own.insts.iter().enumerate() {
+                found.clear();
+                inst.visit_reads(|reg| found.extend(number[reg]));
+                found.extend(inst.written().and_then(|(reg, _)| number[reg]));
+                found.extend(inst.stepped().and_then(|reg| number[reg]));
+                if inst.kind == Kind::Call {
+                    let arguments = &code.calls[inst.number as usize].arguments;
+                    found.extend(arguments.iter().filter_map(|(reg, _)| number[*reg]));
+                }
+                mentions.add(&mut found, Mention { block, at: Some(at), insts: vec![inst.clone()] });
+            }
+            found.clear();
+            found.extend(own.end.read().and_then(|reg| number[reg]));
+            mentions.add(&mut found, Mention { block, at: None, insts: Vec::new() });
+        }
+        mentions
+    }
+
+    /// Adds a mention if it uses some of the registers.
+    fn add(&mut self, found: &mut Vec<u32>, mention: Mention) {
+        found.sort_unstable();
+        found.dedup();
+        for index in &*found {
+            self.of[*index as usize].push(self.all.len() as u32);
+        }
+        if !found.is_empty() {
+            self.all.push(mention);
+        }
+    }
+
+    /// Puts the instructions back into the code.
+    fn write(self, code: &mut Code) {
+        let mut mentions = self.all.into_iter().peekable();
+        for (block, own) in code.blocks.iter_mut().enumerate() {
+            let insts = std::mem::take(&mut own.insts);
+            let mut out = Vec::with_capacity(insts.len() + 4);
+            if block == 0 {
+                out.extend(self.first.iter().cloned());
+            }
+            let is_next = |mention: &Mention, at| mention.block == block && mention.at == at;
+            for (at, inst) in insts.into_iter().enumerate() {
+                match mentions.next_if(|mention| is_next(mention, Some(at))) {
+                    Some(mention) => out.extend(mention.insts),
+                    None => out.push(inst),
+                }
+            }
+            out.extend(
+                mentions
+                    .next_if(|mention| is_next(mention, None))
+                    .into_iter()
+                    .flat_map(|mention| mention.insts),
+            );
+            own.insts = out;
         }
     }
 }
@@ -60,36 +149,36 @@ impl Mover<'_> {
         self.code.regs[self.reg].is_pair
     }
 
-    /// A parameter is stored at once.
-    fn params(&mut self) {
-        let Some(index) = self.code.params.iter().position(|(reg, _)| *reg == self.reg) else { return };
+    /// A parameter is stored at once: the stores at the beginning of the function.
+    fn params(&mut self) -> Vec<Inst> {
+        let mut stores = Vec::new();
+        let Some(index) = self.code.params.iter().position(|(reg, _)| *reg == self.reg) else {
+            return stores;
+        };
         let short = self.short(self.is_pair());
         self.code.params[index].0 = short;
         self.code.regs[short].hint = Some(self.code.params[index].1);
         let span = self.code.blocks.first().map(|block| block.span);
         if let Some(span) = span {
-            let mut stores = Vec::new();
             self.store(short, span, &mut stores);
-            if let Some(first) = self.code.blocks.first_mut() {
-                first.insts.splice(0..0, stores);
-            }
         }
+        stores
     }
 
-    fn block(&mut self, number: usize) {
-        let insts = std::mem::take(&mut self.code.blocks[number].insts);
-        let mut out = Vec::with_capacity(insts.len() + 4);
-        for inst in insts {
+    /// Rewrites an instruction that uses the register, or the end of a block.
+    fn mention(&mut self, mention: &mut Mention) {
+        let mut out = Vec::with_capacity(mention.insts.len() + 2);
+        for inst in std::mem::take(&mut mention.insts) {
             self.inst(inst, &mut out);
         }
-        if self.code.blocks[number].end.read() == Some(self.reg) {
-            let span = self.code.blocks[number].span;
+        if mention.at.is_none() && self.code.blocks[mention.block].end.read() == Some(self.reg) {
+            let span = self.code.blocks[mention.block].span;
             let short = self.load(span, &mut out);
-            if let Some(read) = self.code.blocks[number].end.read_mut() {
+            if let Some(read) = self.code.blocks[mention.block].end.read_mut() {
                 *read = short;
             }
         }
-        self.code.blocks[number].insts = out;
+        mention.insts = out;
     }
 
     fn inst(&mut self, mut inst: Inst, out: &mut Vec<Inst>) {

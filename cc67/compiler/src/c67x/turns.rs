@@ -10,6 +10,7 @@ use cranelift_entity::SecondaryMap;
 
 use super::code::{Arg, Base, Block, Code, Condition, End, Info, Inst, VReg};
 use super::forms::Kind;
+use super::predicate::{self, Mentioned};
 
 /// The largest iteration that is unrolled, in instructions.
 const LARGEST: usize = 20;
@@ -23,9 +24,11 @@ const TESTED: usize = 2;
 /// Rewrites the short loops of one block, except those with a bit in `skipped`; how many there are.
 pub(super) fn run(code: &mut Code, skipped: u32) -> u32 {
     let mut count = 0;
+    // What is unrolled uses no other registers than before, but for new ones of its own.
+    let homes = predicate::homes(code);
     for number in 0..code.blocks.len() {
         let Some(back) = back(&code.blocks[number], number as u32) else { continue };
-        let Some(facts) = facts(code, number, back) else { continue };
+        let Some(facts) = facts(code, &homes, number, back) else { continue };
         let copies = MOST.min(ALL / code.blocks[number].insts.len().max(1)).min(MOST - facts.tested);
         if copies < 2 {
             continue;
@@ -77,7 +80,12 @@ struct Facts {
 }
 
 /// Returns the facts for rewriting a loop; `None` if it cannot be rewritten.
-fn facts(code: &Code, number: usize, back: (VReg, bool)) -> Option<Facts> {
+fn facts(
+    code: &Code,
+    homes: &SecondaryMap<VReg, Mentioned>,
+    number: usize,
+    back: (VReg, bool),
+) -> Option<Facts> {
     let block = &code.blocks[number];
     let is_simple = |inst: &Inst| {
         !matches!(inst.kind, Kind::Call | Kind::FrameAddress)
@@ -88,7 +96,7 @@ fn facts(code: &Code, number: usize, back: (VReg, bool)) -> Option<Facts> {
     if block.insts.is_empty() || block.insts.len() > LARGEST || !block.insts.iter().all(is_simple) {
         return None;
     }
-    let outside = outside(code, number);
+    let is_outside = |reg: VReg| homes[reg].is_outside(number as u32);
     let mut written: Vec<VReg> = Vec::new();
     let mut carried: Vec<VReg> = Vec::new();
     let mut tested: Vec<VReg> = Vec::new();
@@ -119,7 +127,7 @@ fn facts(code: &Code, number: usize, back: (VReg, bool)) -> Option<Facts> {
     }
     let (last, is_whole) = last?;
     // The condition is nobody else's.
-    if !is_whole || outside[back.0] || carried.contains(&back.0) || tested.contains(&back.0) {
+    if !is_whole || is_outside(back.0) || carried.contains(&back.0) || tested.contains(&back.0) {
         return None;
     }
     if tested.len() > TESTED {
@@ -127,35 +135,11 @@ fn facts(code: &Code, number: usize, back: (VReg, bool)) -> Option<Facts> {
     }
     carried.retain(|reg| written.contains(reg));
     for reg in written {
-        if outside[reg] && !carried.contains(&reg) {
+        if is_outside(reg) && !carried.contains(&reg) {
             carried.push(reg);
         }
     }
     Some(Facts { carried, condition: back.0, last, tested: tested.len() })
-}
-
-/// The registers that something outside of a block mentions.
-fn outside(code: &Code, number: usize) -> SecondaryMap<VReg, bool> {
-    let mut outside = SecondaryMap::with_default(false);
-    outside.resize(code.regs.len());
-    for (reg, _) in &code.params {
-        outside[*reg] = true;
-    }
-    for (_, block) in code.blocks.iter().enumerate().filter(|(other, _)| *other != number) {
-        for inst in &block.insts {
-            inst.visit_reads(|reg| outside[reg] = true);
-            if let Some((reg, _)) = inst.written() {
-                outside[reg] = true;
-            }
-            if inst.kind == Kind::Call {
-                code.calls[inst.number as usize].arguments.iter().for_each(|(reg, _)| outside[*reg] = true);
-            }
-        }
-        if let Some(reg) = block.end.read() {
-            outside[reg] = true;
-        }
-    }
-    outside
 }
 
 struct Turns<'a> {
