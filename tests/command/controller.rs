@@ -2,12 +2,14 @@
 
 use std::env;
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use harness::{Output, Scratch, cc67, cc67_with_input, files, root};
+use harness::{Output, Scratch, cc67, cc67_with_input, command, files, root};
 
 use crate::serve::Server;
 
@@ -251,6 +253,54 @@ fn a_box_stays_open_until_it_is_answered() {
     let answers = ["--answer", "msgbox=no", "--answer", "msgbox=ok", &message];
     let output = on(&scratch, &["run"], &place, &answers);
     assert!(output.code == 0 && output.stdout.contains("measuring is skipped"), "{output:?}");
+}
+
+#[test]
+fn lines_of_the_console_come_while_the_program_runs() {
+    let scratch = Scratch::new("controller-live");
+    scratch.write(
+        "a.c",
+        "#include \"KMotionDef.h\"\nmain() { printf(\"first\\n\"); for (;;) Delay_sec(0.1); }\n",
+    );
+    let (_server, place) = served("controller-live-board", &[]);
+    let mut child = Command::new(command())
+        .args(["run", "--yes", "--on", &place, "a.c"])
+        .current_dir(scratch.path())
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the command starts");
+    let mut line = String::new();
+    let out = child.stdout.take().expect("it is piped");
+    BufReader::new(out).read_line(&mut line).expect("a line comes");
+    assert_eq!(line, "first\n");
+    child.kill().expect("it runs");
+    child.wait().expect("it ends");
+}
+
+#[test]
+fn tests_run_on_a_controller_and_say_what_was_not_checked() {
+    let scratch = Scratch::new("controller-test");
+    scratch.write("a.c", PROGRAM);
+    scratch.write("a.expected", "count 0\ncount 1\ncount 2\n---- notes\ncc67: a remark of the model\n");
+    scratch.write("b.c", &format!("// cc67: run --time\n{PROGRAM}"));
+    scratch.write("b.expected", "0.001 count 0\n0.002 count 1\n0.003 count 2\n");
+    scratch.write("c.c", PROGRAM);
+    scratch.write("c.expected", "count 0\n");
+    scratch.write("c.stim", "at 0.5s bit 136 = 1\n");
+    let (_server, place) = served("controller-test-board", &[]);
+    let output = on(&scratch, &["test"], &place, &["."]);
+    let expect = "\
+not checked on the controller: board times of b
+not checked on the controller: remarks of a
+skipped  c: `--stim` is about a simulated board: it does not work with `--on`
+2 passed, 0 failed, 1 skipped
+";
+    assert_eq!((output.code, output.stdout.as_str()), (0, expect), "{output:?}");
+    scratch.write("a.expected", "count 7\n");
+    let output = on(&scratch, &["test"], &place, &["a.c"]);
+    assert!(output.code == 1 && output.stdout.contains("- count 7"), "{output:?}");
 }
 
 #[test]

@@ -269,7 +269,8 @@ impl Controller {
             }
             Err(error) => self.note_error(&error),
         }
-        self.time.next_status = now() + STATUS_EVERY;
+        // As many a second, whatever an exchange takes.
+        self.time.next_status = (self.time.next_status + STATUS_EVERY).max(now());
     }
 
     /// Reads the velocities of the axes, for jog buttons.

@@ -227,7 +227,9 @@ impl RunArguments {
 
     /// How the run is shown.
     fn style(&self) -> Style {
-        Style { time: self.time, is_verbose: self.verbose, is_live: self.realtime, json: self.json }
+        // The console of a controller is shown as it comes.
+        let is_live = self.realtime || self.board.controller.on.is_some();
+        Style { time: self.time, is_verbose: self.verbose, is_live, json: self.json }
     }
 }
 

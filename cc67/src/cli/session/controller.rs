@@ -25,12 +25,15 @@ This connects to a real controller, and programs on it move real machines.
 
 /// Connects to the controller at an address, after a person has agreed.
 pub(super) fn connect(address: &Address, arguments: &ControllerArguments) -> Result<ControllerLink> {
-    if !arguments.yes {
-        agree()?;
-    }
+    agree_unless(arguments.yes)?;
     let connection = ControllerLink::open(address)?;
     terminal::note(&format!("connected to {}: {}", connection.place(), connection.version().trim_end()));
     Ok(connection)
+}
+
+/// Asks for agreement, unless it was given in advance.
+pub(crate) fn agree_unless(is_given: bool) -> Result<()> {
+    if is_given { Ok(()) } else { agree() }
 }
 
 /// Asks for agreement once for each project folder.

@@ -1,7 +1,6 @@
 //! Runs the tests, several at a time.
 
-use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -12,86 +11,12 @@ use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::case::Case;
-use super::firmware;
+use super::executor::Executor;
 use super::golden::{self, Shown};
-use super::schedules::FailingSchedule;
 use super::this_command;
-use crate::cli::args::engine::EngineName;
+use super::verdict::Verdict;
+use super::{connected, firmware};
 use crate::cli::io::output;
-
-/// How a test ended.
-#[derive(Debug)]
-pub(super) enum Verdict {
-    /// Every engine showed what was expected.
-    Passed,
-    /// The expected text was rewritten.
-    Blessed,
-    /// The text would be written, but holds more than a console: the user is asked first.
-    Asked(Shown),
-    /// The text is not written: nothing was run, or not as it should.
-    Refused(Shown),
-    /// There is no expected text.
-    Unknown,
-    /// It needs what the firmware file does not have: what that is.
-    Skipped(String),
-    /// The engines agree on something else.
-    Differs(Shown),
-    /// It shows something else, or goes wrong, by a schedule.
-    FailsBySchedule(FailingSchedule),
-    /// An engine did not show what the first one did.
-    Disagrees(Shown, Executor, Shown),
-}
-
-impl Verdict {
-    /// Whether the test has failed.
-    pub(super) fn is_bad(&self) -> bool {
-        !self.is_good() && !matches!(self, Self::Skipped(_))
-    }
-
-    /// Whether the test was run and is as it should be.
-    pub(super) fn is_good(&self) -> bool {
-        matches!(self, Self::Passed | Self::Blessed)
-    }
-}
-
-/// What executes a test.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Executor {
-    /// An engine, with the modelled firmware.
-    Engine(EngineName),
-    /// The same, with threads switched inside statements.
-    AsBoard(EngineName),
-    /// The user's own firmware file.
-    Boot(PathBuf),
-}
-
-impl Executor {
-    /// A firmware file; tests run in folders of their own.
-    pub(super) fn firmware(path: &Path) -> Result<Self> {
-        let whole = path.canonicalize().with_context(|| format!("cannot read {}", path.display()))?;
-        Ok(Self::Boot(whole))
-    }
-
-    /// Options of `cc67 run` that ask for it.
-    fn options(&self) -> Vec<OsString> {
-        match self {
-            Self::Engine(engine) => vec!["--engine".into(), engine.name().into()],
-            Self::AsBoard(engine) => ["--as", "board", "--engine", engine.name()].map(OsString::from).into(),
-            Self::Boot(path) => vec!["--boot".into(), path.into()],
-        }
-    }
-
-    /// What reports call it.
-    pub(super) fn name(&self) -> &'static str {
-        match self {
-            Self::Engine(engine) => engine.name(),
-            Self::AsBoard(EngineName::Bytecode) => "bytecode as on the board",
-            Self::AsBoard(EngineName::Native) => "native as on the board",
-            Self::AsBoard(EngineName::Dsp) => "dsp as on the board",
-            Self::Boot(_) => "firmware",
-        }
-    }
-}
 
 /// Runs all cases on all engines, `jobs` runs at a time; the verdicts have the order of the cases.
 pub(super) fn all(
@@ -152,8 +77,10 @@ fn verdict<'a>(
     let mut first: Option<Shown> = None;
     let mut verdict = None;
     for (executor, shown) in runs {
-        if let Executor::Boot(_) = executor {
-            return Ok(firmware::verdict(case, shown));
+        match executor {
+            Executor::Boot(_) => return Ok(firmware::verdict(case, shown)),
+            Executor::Controller(_) => return Ok(connected::verdict(case, shown)),
+            Executor::Engine(_) | Executor::AsBoard(_) => {}
         }
         match &first {
             None => first = Some(shown),
@@ -233,6 +160,7 @@ fn now() -> Instant {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::args::engine::EngineName;
 
     fn check(expected: Option<&str>, shown: [&str; 2], expect: &str) {
         let case = Case {

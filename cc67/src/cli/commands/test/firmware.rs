@@ -4,13 +4,11 @@
 //! programs that measure time print other last digits. What needs something that only the model has is skipped.
 
 use super::case::Case;
-use super::execute::Verdict;
 use super::golden::{self, Shown};
+use super::near::is_near;
+use super::verdict::Verdict;
 use crate::cli::io::exit::Exit;
-use crate::cli::report::numbers::{Tolerance, deviation};
 
-/// By how much printed numbers may differ.
-const ALLOWED: Tolerance = Tolerance { seconds: 0.001, number: 0.001 };
 /// How `cc67 run` refuses an option.
 const REFUSED: &str = " does not work with `--boot`";
 
@@ -32,13 +30,6 @@ pub(super) fn verdict(case: &Case, shown: Shown) -> Verdict {
     }
     let shown = Shown { golden: golden::without_notes(&shown.golden), ..shown };
     if is_near(expected, &shown.golden) { Verdict::Passed } else { Verdict::Differs(shown) }
-}
-
-/// Whether texts are equal but for numbers that may differ.
-fn is_near(expected: &str, shown: &str) -> bool {
-    let mut lines = expected.lines().zip(shown.lines());
-    expected.lines().count() == shown.lines().count()
-        && lines.all(|(one, other)| one == other || deviation(one, other, ALLOWED).is_some())
 }
 
 #[cfg(test)]

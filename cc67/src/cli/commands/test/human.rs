@@ -3,9 +3,9 @@
 use similar::{ChangeTag, TextDiff};
 
 use super::case::Case;
-use super::execute::Verdict;
 use super::golden::Shown;
 use super::schedules::FailingSchedule;
+use super::verdict::Verdict;
 use compiler::render::human::Color;
 
 /// Lines around a difference.

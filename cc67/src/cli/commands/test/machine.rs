@@ -6,8 +6,8 @@ use compiler::render::human::Color;
 use serde::Serialize;
 
 use super::case::Case;
-use super::execute::Verdict;
 use super::human;
+use super::verdict::Verdict;
 
 /// The whole report.
 #[derive(Serialize)]

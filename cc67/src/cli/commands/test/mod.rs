@@ -6,18 +6,23 @@
 //! the order of the programs' names, whichever is ready first.
 
 mod case;
+mod connected;
 mod execute;
+mod executor;
 mod firmware;
 mod golden;
 mod human;
 mod machine;
+mod near;
 mod schedules;
+mod verdict;
 
 use std::ffi::OsString;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
+use cc67_controller::Address;
 use clap::Args;
 
 use crate::cli::args::beside::Project;
@@ -25,13 +30,16 @@ use crate::cli::args::board::RunForm;
 use crate::cli::args::engine::EngineName;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::{output, terminal};
-use execute::{Executor, Verdict};
+use crate::cli::session::controller;
+use connected::Unchecked;
+use executor::Executor;
 use golden::Shown;
 use schedules::ScheduleArguments;
+use verdict::Verdict;
 
 /// Options that are the command's own; all others in `[test]` of a project file are those of its programs.
 const OWN_OPTIONS: &[&str] =
-    &["bless", "force", "engine", "as", "boot", "schedules", "seed", "jobs", "json", "junit"];
+    &["bless", "force", "engine", "as", "boot", "schedules", "seed", "jobs", "json", "junit", "on", "yes"];
 
 /// Arguments of `cc67 test`.
 #[derive(Debug, Args)]
@@ -55,6 +63,12 @@ pub(super) struct TestArguments {
     /// Run on your own firmware file; skip tests that need the modelled firmware
     #[arg(long, value_name = "FILE", conflicts_with_all = ["engine", "bless", "form"])]
     boot: Option<PathBuf>,
+    /// Run on a connected controller, one test at a time; skip tests that need a simulated board
+    #[arg(long, value_name = "BOARD", conflicts_with_all = ["engine", "bless", "form", "boot", "schedules"])]
+    on: Option<Address>,
+    /// With --on, connect without the question of the first time; for scripts
+    #[arg(long, requires = "on")]
+    yes: bool,
     #[command(flatten)]
     schedules: ScheduleArguments,
     /// Number of simultaneous runs, where a program on two engines counts as two [default: the number of processors]
@@ -80,6 +94,7 @@ to run it; words may be quoted as in a shell:\n
 NAME.toml, if it exists, is its machine file, and NAME.stim its stimulus; cc67.toml in its folder or above sets defaults. \
 With --boot, console and exit code must be as expected, numbers within 0.001 and times within 1 ms; remarks are not \
 compared, because they come from the modelled firmware.\n
+With --on, console and exit code are compared, without board times; the report says what was not checked.\n
 Exit code: 0 all tests passed, 1 some failed, 2 wrong usage.";
 
 impl TestArguments {
@@ -114,14 +129,21 @@ pub(super) fn test(arguments: &TestArguments) -> Result<Exit> {
             "no tests there: a test is a program NAME.c with NAME.expected beside it, which `cc67 test --bless NAME.c` writes"
         );
     }
-    let executors = match &arguments.boot {
-        Some(file) => {
+    let mut unchecked = Unchecked::default();
+    let executors = match (&arguments.boot, &arguments.on) {
+        (Some(file), _) => {
             cases.iter_mut().for_each(firmware::reduce);
             vec![Executor::firmware(file)?]
         }
-        None => arguments.executors(),
+        (None, Some(address)) => {
+            controller::agree_unless(arguments.yes)?;
+            unchecked = Unchecked::reduce(&mut cases);
+            vec![Executor::Controller(address.to_string())]
+        }
+        (None, None) => arguments.executors(),
     };
-    let jobs = arguments.jobs.map_or_else(processors, usize::from);
+    // A controller runs one test at a time.
+    let jobs = if arguments.on.is_some() { 1 } else { arguments.jobs.map_or_else(processors, usize::from) };
     let (mut verdicts, took) = execute::all(&cases, &executors, &arguments.options, arguments.bless, jobs)?;
     for (case, verdict) in cases.iter().zip(&mut verdicts) {
         if let Verdict::Asked(shown) = verdict
@@ -138,7 +160,7 @@ pub(super) fn test(arguments: &TestArguments) -> Result<Exit> {
     let text = if arguments.json {
         machine::json(&cases, &verdicts)
     } else {
-        human::report(&cases, &verdicts, terminal::color(&std::io::stdout()))
+        unchecked.report() + &human::report(&cases, &verdicts, terminal::color(&std::io::stdout()))
     };
     output::print(&text)?;
     Ok(if verdicts.iter().any(Verdict::is_bad) { Exit::Failure } else { Exit::Success })

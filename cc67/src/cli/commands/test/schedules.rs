@@ -14,8 +14,8 @@ use cc67_host::Schedule;
 use clap::Args;
 
 use super::case::Case;
-use super::execute::Verdict;
 use super::this_command;
+use super::verdict::Verdict;
 use crate::cli::commands::run::schedules::Failing;
 
 /// Options for schedules.

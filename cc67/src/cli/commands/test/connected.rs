@@ -1,0 +1,119 @@
+//! Tests on a connected controller.
+//!
+//! It has no model of a machine, no stimulus, and a time of its own. So of what is expected only the console and the exit
+//! code are compared, without board times; tests that need the model are skipped, and the report says what was not checked.
+
+use super::case::Case;
+use super::golden::{self, Shown};
+use super::near;
+use super::verdict::Verdict;
+use crate::cli::io::exit::Exit;
+
+/// How `cc67 run` refuses an option.
+const REFUSED: [&str; 2] = ["is about a simulated board", "does not work with `--on`"];
+/// Seconds after which a program that does not end is stopped.
+const LIMIT: &str = "--for=60";
+
+/// Expectations that a controller does not check, by the names of their tests.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub(super) struct Unchecked {
+    times: Vec<String>,
+    remarks: Vec<String>,
+}
+
+impl Unchecked {
+    /// Keeps of what tests expect what a controller can show.
+    pub(super) fn reduce(cases: &mut [Case]) -> Self {
+        let mut unchecked = Self::default();
+        for case in cases {
+            let name = case.name();
+            let with_times = case.options.len();
+            case.options.retain(|option| option != "--time");
+            let has_times = case.options.len() < with_times;
+            if !case.options.iter().any(|option| option.starts_with("--for")) {
+                case.options.insert(0, LIMIT.to_owned());
+            }
+            let Some(expected) = &case.expected else { continue };
+            let mut console = golden::without_notes(expected);
+            if expected.contains("---- notes\n") {
+                unchecked.remarks.push(name.clone());
+            }
+            if has_times {
+                console = console.lines().map(|line| without_time(line).to_owned() + "\n").collect();
+                unchecked.times.push(name);
+            }
+            case.expected = Some(console);
+        }
+        unchecked
+    }
+
+    /// The lines for the report.
+    pub(super) fn report(&self) -> String {
+        let line = |what: &str, names: &[String]| match names {
+            [] => String::new(),
+            names => format!("not checked on the controller: {what} of {}\n", names.join(", ")),
+        };
+        line("board times", &self.times) + &line("remarks", &self.remarks)
+    }
+}
+
+/// A line of the console without its board time.
+fn without_time(line: &str) -> &str {
+    match line.split_once(' ') {
+        Some((time, rest)) if time.parse::<f64>().is_ok() => rest,
+        _ => line,
+    }
+}
+
+/// What a run on the controller says.
+pub(super) fn verdict(case: &Case, shown: Shown) -> Verdict {
+    let Some(expected) = &case.expected else { return Verdict::Unknown };
+    let is_refusal = |line: &&str| REFUSED.iter().any(|words| line.contains(words));
+    if let (Some(2), Some(line)) = (shown.code, shown.notes().lines().find(is_refusal)) {
+        return Verdict::Skipped(line.trim_start_matches("cc67: ").to_owned());
+    }
+    for (exit, reason) in [
+        (Exit::Trapped, "it expects a trap, which only the modelled firmware has"),
+        (Exit::StillRunning, "it expects a program without end; `--for SECONDS` in its first line ends it"),
+    ] {
+        if expected.ends_with(&format!("---- exit {}\n", exit as i32)) {
+            return Verdict::Skipped(reason.to_owned());
+        }
+    }
+    let shown = Shown { golden: golden::without_notes(&shown.golden), ..shown };
+    if near::is_near(expected, &shown.golden) { Verdict::Passed } else { Verdict::Differs(shown) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn case(expected: &str, options: &[&str]) -> Case {
+        let options = options.iter().map(|option| (*option).to_owned()).collect();
+        Case { source: "a.c".into(), expected: Some(expected.to_owned()), options, also: Vec::new() }
+    }
+
+    #[test]
+    fn times_and_remarks_are_not_compared_and_reported() {
+        let mut cases = [case("0.5000 a\n0.7000 b\n---- notes\ncc67: a remark\n", &["--time"])];
+        let unchecked = Unchecked::reduce(&mut cases);
+        assert_eq!(cases[0].expected.as_deref(), Some("a\nb\n"));
+        assert_eq!(cases[0].options, ["--for=60"]);
+        let report =
+            "not checked on the controller: board times of a\nnot checked on the controller: remarks of a\n";
+        assert_eq!(unchecked.report(), report);
+        let shown = golden::shown(b"a\nb\n", b"cc67: connected to usb: KFLOP 4.34\n", Some(0));
+        assert!(matches!(verdict(&cases[0], shown), Verdict::Passed));
+    }
+
+    #[test]
+    fn tests_that_need_a_model_are_skipped() {
+        let mut cases = [case("a\n", &["--stim", "a.stim"]), case("a\n---- exit 4\n", &[])];
+        Unchecked::reduce(&mut cases);
+        let refused = b"cc67: `--stim` is about a simulated board: it does not work with `--on`\n";
+        let stim = verdict(&cases[0], golden::shown(b"", refused, Some(2)));
+        assert!(matches!(stim, Verdict::Skipped(why) if why.starts_with("`--stim` is about")));
+        let endless = verdict(&cases[1], golden::shown(b"a\n", b"", Some(0)));
+        assert!(matches!(endless, Verdict::Skipped(why) if why.contains("without end")));
+    }
+}

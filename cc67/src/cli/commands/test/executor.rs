@@ -1,0 +1,51 @@
+//! What executes tests.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+
+use crate::cli::args::engine::EngineName;
+
+/// What executes a test.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Executor {
+    /// An engine, with the modelled firmware.
+    Engine(EngineName),
+    /// The same, with threads switched inside statements.
+    AsBoard(EngineName),
+    /// The user's own firmware file.
+    Boot(PathBuf),
+    /// The controller at an address.
+    Controller(String),
+}
+
+impl Executor {
+    /// A firmware file; tests run in folders of their own.
+    pub(super) fn firmware(path: &Path) -> Result<Self> {
+        let whole = path.canonicalize().with_context(|| format!("cannot read {}", path.display()))?;
+        Ok(Self::Boot(whole))
+    }
+
+    /// Options of `cc67 run` that ask for it.
+    pub(super) fn options(&self) -> Vec<OsString> {
+        match self {
+            Self::Engine(engine) => vec!["--engine".into(), engine.name().into()],
+            Self::AsBoard(engine) => ["--as", "board", "--engine", engine.name()].map(OsString::from).into(),
+            Self::Boot(path) => vec!["--boot".into(), path.into()],
+            Self::Controller(address) => vec!["--yes".into(), "--on".into(), address.into()],
+        }
+    }
+
+    /// What reports call it.
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            Self::Engine(engine) => engine.name(),
+            Self::AsBoard(EngineName::Bytecode) => "bytecode as on the board",
+            Self::AsBoard(EngineName::Native) => "native as on the board",
+            Self::AsBoard(EngineName::Dsp) => "dsp as on the board",
+            Self::Boot(_) => "firmware",
+            Self::Controller(_) => "controller",
+        }
+    }
+}
