@@ -157,7 +157,8 @@ impl Kernel {
         let Parts { out, machine, io, calls, races, pc, .. } = &mut self.parts;
         let held = String::from_utf8_lossy(out.console.held()).into_owned();
         if !held.is_empty() {
-            out.remark(context.now, Message::UnfinishedLine { text: held });
+            let (thread, at) = calls.notices.last_print;
+            out.remark_of(context.now, thread.into(), at, Message::UnfinishedLine { text: held });
         }
         if ThreadId::all().all(|thread| !context.threads.state(thread).is_active())
             && let Some(name) = pc.disk.written()

@@ -46,6 +46,40 @@ pub(crate) fn enabled(parts: &mut Parts, caller: &Caller<'_>, function: Function
     for message in messages.into_iter().flatten() {
         parts.out.diagnose(caller, message);
     }
+    parts.calls.motions.enabled(axis, connection(caller.memory, axis));
+}
+
+/// Mode and channels of an axis, by name: what should not change while it is enabled.
+const CONNECTION: [(&str, Field<i32>); 4] = [
+    ("OutputMode", Chan::OUTPUT_MODE),
+    ("OutputChan0", Chan::OUTPUT_CHAN0),
+    ("InputMode", Chan::INPUT_MODE),
+    ("InputChan0", Chan::INPUT_CHAN0),
+];
+
+fn connection(memory: &GuestMemory, axis: AxisId) -> [i32; CONNECTION.len()] {
+    CONNECTION.map(|(_, field)| memory.axis(axis, field))
+}
+
+/// A mode or channel that has changed since the axis was enabled.
+fn changed_connection(
+    parts: &Parts,
+    memory: &GuestMemory,
+    function: Function,
+    axis: AxisId,
+) -> Option<Message> {
+    let before = parts.calls.motions.connection(axis)?;
+    let changed = before.iter().zip(connection(memory, axis)).position(|(before, now)| *before != now)?;
+    Some(Message::SetWhileEnabled { function, axis, field: CONNECTION[changed].0 })
+}
+
+/// An analog output that the limit of the axis does not keep in its range.
+fn output_wraps(memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
+    const RANGE: f64 = 2048.0;
+    let get = |field: Field<f32>| f64::from(memory.axis(axis, field)).abs();
+    let is_dac = memory.axis(axis, Chan::OUTPUT_MODE) == OutputMode::DacServo.get();
+    let most = get(Chan::MAX_OUTPUT) * get(Chan::OUTPUT_GAIN) + get(Chan::OUTPUT_OFFSET);
+    (is_dac && most > RANGE).then_some(Message::OutputWraps { function, axis, most })
 }
 
 /// A program moves an enabled axis.
@@ -55,6 +89,8 @@ pub(crate) fn moved(parts: &mut Parts, caller: &Caller<'_>, function: Function, 
         swapped_limits(memory, function, axis),
         no_gain(memory, function, axis),
         no_backlash_rate(memory, function, axis),
+        changed_connection(parts, memory, function, axis),
+        output_wraps(memory, function, axis),
     ];
     for message in messages.into_iter().flatten() {
         parts.out.diagnose(caller, message);

@@ -139,6 +139,7 @@ pub(crate) fn cut(text: &[u8]) -> &[u8] {
 /// Puts text on the console; the call waits while the queue is full.
 pub(crate) fn put(parts: &mut Parts, caller: &Caller<'_>, text: &[u8], result: i32) -> Outcome<i32> {
     let rest = parts.out.console.put(text).to_vec();
+    parts.calls.notices.last_print = (caller.thread, caller.at);
     if rest.is_empty() {
         return Outcome::Done(result);
     }

@@ -532,6 +532,9 @@ pub(crate) fn move_exp(
     Outcome::Done(())
 }
 
+/// The letters of `MoveXYZABC`.
+const LETTERS: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
+
 #[expect(clippy::too_many_arguments, reason = "the C function has six coordinates")]
 pub(crate) fn move_xyzabc(
     parts: &mut Parts,
@@ -549,6 +552,13 @@ pub(crate) fn move_xyzabc(
     if caller.woken.is_none() && caller.thread.is_some() {
         let wake = moves.first().and_then(|&(axis, _)| planning_wait(parts, caller, axis));
         return Outcome::Wait(wake.unwrap_or(Wake::NextSlice));
+    }
+    let without = LETTERS.into_iter().zip(system::letters(caller.memory)).zip([x, y, z, a, b, c]);
+    for ((letter, axis), target) in without {
+        if axis.is_none() && target != 0.0 {
+            let function = Function::MoveXYZABC;
+            parts.out.diagnose(caller, Message::NoAxisForLetter { function, letter, target });
+        }
     }
     for (axis, target) in moves {
         if may_move(parts, caller, axis, Function::MoveXYZABC)

@@ -410,6 +410,15 @@ messages! {
     /// An axis is to read an encoder input that no board has.
     NoSuchInput { function: Function, axis: AxisId, input: i32 } = "no-such-input", Warning, [per axis],
         "{function}: axis {axis} has InputChan0 = {input}: encoder inputs have the numbers 0 to 7, and 8 to 15 on SnapAmps";
+    /// The mode or a channel of an axis was set after it was enabled.
+    SetWhileEnabled { function: Function, axis: AxisId, field: &'static str } = "set-while-enabled", Warning, [per axis],
+        "{function}: {field} of axis {axis} has changed since the axis was enabled: set it before EnableAxis, which prepares the output and takes over the position";
+    /// The analog output of an axis can leave its range, beyond which it wraps.
+    OutputWraps { function: Function, axis: AxisId, most: f64 } = "output-wraps", Warning, [per axis],
+        "{function}: axis {axis} can output up to {most:.0} (MaxOutput, OutputGain, OutputOffset), but an analog output ends at 2047 and wraps to the other side: lower MaxOutput";
+    /// A call moves a letter that has no axis.
+    NoAxisForLetter { function: Function, letter: char, target: f64 } = "no-axis-for-letter", Warning, [once],
+        "{function}: {letter} should go to {target}, but DefineCoordSystem has given it no axis";
     /// A call ends the motion of an axis that it does not wait for.
     MotionEnded { function: Function, axis: AxisId, speed: f64 } = "motion-ended", Warning, [per axis],
         "{function}: axis {axis} still moves at {speed:.0} units/s, and its motion ends here at once: wait with `while (!CheckDone({axis}));` first";
@@ -428,6 +437,9 @@ messages! {
     /// A thread starts itself.
     StartsItself { thread: ThreadId } = "starts-itself", Warning, [per thread],
         "StartThread({thread}): the thread is running, so the call has no effect: use a loop to repeat a program";
+    /// A file is opened for writing while another one is.
+    FileReplaced { name: String, before: String } = "file-replaced", Warning, [always],
+        "{name} is opened while {before} is open: the PC writes one file at a time, so all further lines go to {name}";
     /// A file is open for writing when all programs have ended.
     FileLeftOpen { name: String } = "file-left-open", Hint, [once],
         "{name} is still open for writing: call fclose, else the PC keeps the file open";

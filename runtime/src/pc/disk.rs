@@ -154,9 +154,14 @@ impl Disk {
         match request {
             DiskRequest::Create | DiskRequest::Append => {
                 let made = self.files.create(text, request == DiskRequest::Append);
-                self.writing = made.is_ok().then(|| text.to_owned());
-                made.err()
-                    .map(|error| Message::FileNotMade { name: text.to_owned(), error: error.to_string() })
+                let before = std::mem::replace(&mut self.writing, made.is_ok().then(|| text.to_owned()));
+                let name = text.to_owned();
+                match made {
+                    Err(error) => Some(Message::FileNotMade { name, error: error.to_string() }),
+                    Ok(_) => before
+                        .filter(|before| *before != name)
+                        .map(|before| Message::FileReplaced { name, before }),
+                }
             }
             DiskRequest::Write => self.write(text),
             DiskRequest::CloseWriting => {

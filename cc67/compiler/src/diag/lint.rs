@@ -66,6 +66,8 @@ macro_rules! for_each_lint {
             DuplicatedCondition = "duplicated-condition", On;
             /// A local variable that is only assigned has the name of a global one.
             Shadow = "shadow", On, pass shadow;
+            /// A lock is a local variable, so that each thread has its own.
+            LocalLock = "local-lock", On, pass local_lock;
             /// No `goto` names a label.
             UnusedLabel = "unused-label", On;
             /// The value of a void function is used.

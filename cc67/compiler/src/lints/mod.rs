@@ -23,6 +23,7 @@ mod float_time;
 mod format;
 mod header_mismatch;
 mod idle_loop;
+mod local_lock;
 mod loop_condition;
 mod lost_fraction;
 mod milliseconds;

@@ -5,6 +5,7 @@ use kmotiondef::firmware::Function;
 use super::format::{called_firmware, literal_argument};
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
+use crate::source::Span;
 use crate::typed::{self, Call, Definition, ExprId, ExprKind, PlaceKind};
 
 /// Reports calls whose shortest text, with its end, is longer than the array.
@@ -12,6 +13,9 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         for (expr, call) in function.calls() {
             let Some(name) = called_firmware(program.unit, call) else { continue };
+            if let Some(finding) = block(program, function, (name, call), expr.span) {
+                sink.report(finding);
+            }
             let Some(length) = shortest(program, function, call, name) else { continue };
             let Some((array, size)) = call.arguments.first().and_then(|to| room(program, function, *to))
             else {
@@ -30,6 +34,32 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
             }
         }
     }
+}
+
+/// Functions that store as many bytes as one of their arguments says, counted from 0.
+const BLOCKS: [(&str, usize); 4] = [
+    (Function::memset.name(), 2),
+    (Function::memcpy.name(), 2),
+    (Function::strncpy.name(), 2),
+    (Function::fgets.name(), 1),
+];
+
+/// The message for a call that is told to store more bytes than an array has.
+fn block(
+    program: &AnalysedProgram<'_>,
+    function: &typed::Function,
+    (name, call): (&str, &Call),
+    span: Span,
+) -> Option<Diagnostic> {
+    let (_, index) = BLOCKS.into_iter().find(|(known, _)| *known == name)?;
+    let bytes = constant(function, *call.arguments.get(index)?)?;
+    let (array, size) = room(program, function, *call.arguments.first()?)?;
+    (bytes > i64::from(size)).then(|| {
+        let message = format!("`{name}` may store {bytes} bytes in `{array}`, which has {size}");
+        Diagnostic::warning(Lint::TextOverflow, span, message)
+            .at("the memory after the array is overwritten")
+            .help(format!("pass `sizeof({array})`"))
+    })
 }
 
 /// Characters of the shortest text that a call can store.

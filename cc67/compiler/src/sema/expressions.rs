@@ -403,7 +403,7 @@ impl Sema<'_> {
         if let ExpressionKind::Identifier(name) = operand.kind
             && self.types.pointee(ty).is_some_and(|to| !self.types.is_function(to.ty))
         {
-            self.report(sizeof_pointer::finding(&self.spelling(name), &self.spell(ty), span));
+            self.report(sizeof_pointer::finding(self.spelling(name), &self.spell(ty), span));
         }
         self.sizeof(ty, span)
     }

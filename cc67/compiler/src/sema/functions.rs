@@ -289,7 +289,7 @@ impl Sema<'_> {
             .filter_map(|(name, state)| Some((*name, state.defined.filter(|_| state.used.is_none())?)))
             .collect();
         for (name, span) in unused {
-            self.report(unused_label::finding(&self.spelling(name), span));
+            self.report(unused_label::finding(self.spelling(name), span));
         }
     }
 }

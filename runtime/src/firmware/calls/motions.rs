@@ -46,6 +46,8 @@ struct Thread {
 pub(crate) struct Motions {
     /// The thread that last moved each axis.
     movers: [Option<ThreadId>; N_CHANNELS],
+    /// Mode and channels of each axis when a program enabled it.
+    connections: [Option<[i32; 4]>; N_CHANNELS],
     threads: [Thread; ThreadId::MAX as usize],
 }
 
@@ -60,6 +62,16 @@ impl Motions {
         for mover in &mut self.movers {
             mover.take_if(|mover| *mover == thread);
         }
+    }
+
+    /// A program enables an axis with this mode and these channels.
+    pub(crate) fn enabled(&mut self, axis: AxisId, connection: [i32; 4]) {
+        self.connections[axis.index()] = Some(connection);
+    }
+
+    /// Mode and channels of an axis when a program enabled it.
+    pub(crate) fn connection(&self, axis: AxisId) -> Option<[i32; 4]> {
+        self.connections[axis.index()]
     }
 
     /// A thread moves an axis; the thread that moved it before, if that was another one.

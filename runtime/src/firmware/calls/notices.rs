@@ -55,6 +55,8 @@ pub(crate) struct Notices {
     /// When the levels are looked at.
     pub(crate) due: Cycles,
     moves: [Option<Called>; N_CHANNELS],
+    /// The last call that printed.
+    pub(crate) last_print: (Option<ThreadId>, Option<CodeAddr>),
     /// The named objects of the programs that are loaded.
     objects: [Arc<[Named]>; ThreadId::MAX as usize],
 }
@@ -65,6 +67,7 @@ impl Default for Notices {
             latches: Vec::new(),
             due: NEVER,
             moves: Default::default(),
+            last_print: (None, None),
             objects: std::array::from_fn(|_| Arc::from([])),
         }
     }

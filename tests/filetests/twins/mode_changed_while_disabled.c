@@ -1,0 +1,16 @@
+#include "KMotionDef.h"
+
+main()
+{
+    ch0->InputMode = NO_INPUT_MODE;
+    ch0->OutputMode = STEP_DIR_MODE;
+    ch0->Vel = 10000;
+    ch0->Accel = 100000;
+    ch0->Jerk = 1e6;
+    EnableAxisDest(0, 0);
+    DisableAxis(0);
+    ch0->OutputChan0 = 1;
+    EnableAxisDest(0, 0);
+    Move(0, 100);
+    while (!CheckDone(0)) WaitNextTimeSlice();
+}
