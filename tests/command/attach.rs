@@ -220,3 +220,30 @@ fn an_editor_attaches_its_debugger_to_the_board_of_a_page() {
     drop(editor);
     assert!(child.wait().expect("it ends").success());
 }
+
+/// A thousand connections that say nothing keep no editor out: neither from a board that is served, nor from
+/// `debug --listen`.
+#[test]
+fn silent_connections_keep_no_editor_out() {
+    let board = Running::start("attach-idle", &["serve", "--listen", "tcp:0"]);
+    let idle: Vec<_> =
+        (0..1000).map(|_| TcpStream::connect(("127.0.0.1", board.port)).expect("it listens")).collect();
+    let mut editor = board.editor();
+    editor.ask("initialize", json!({}));
+    drop(idle);
+
+    let scratch = Scratch::new("debug-idle");
+    let mut command = Command::new(harness::command());
+    command.args(["debug", "--listen", "0"]).current_dir(scratch.path());
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("it starts");
+    let mut line = String::new();
+    let mut stderr = BufReader::new(child.stderr.take().expect("it is piped"));
+    stderr.read_line(&mut line).expect("it is text");
+    let port = line.trim_end().rsplit(':').next().and_then(|port| port.parse().ok()).expect(&line);
+    let board = Running { child, scratch, port };
+    let idle: Vec<_> =
+        (0..1000).map(|_| TcpStream::connect(("127.0.0.1", port)).expect("it listens")).collect();
+    let mut editor = board.editor();
+    editor.ask("initialize", json!({}));
+    drop(idle);
+}

@@ -14,6 +14,7 @@
 //! remark     events of the board in words
 //! message    texts in buffers of a caller
 //! error      why a call failed
+//! seats      connections of a server: a new one always gets a place
 //! ```
 //!
 //! No board time passes between calls. Each exchange takes the time that was measured on the board, and
@@ -45,6 +46,7 @@ mod error;
 mod message;
 pub mod remark;
 mod schedule;
+pub mod seats;
 pub mod session;
 mod setup;
 mod state;

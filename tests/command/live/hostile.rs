@@ -3,6 +3,7 @@
 use std::fs;
 use std::io::{Read, Write};
 use std::net::TcpStream;
+use std::time::{Duration, Instant};
 
 use harness::Scratch;
 use serde_json::Value;
@@ -145,4 +146,18 @@ fn flash_that_a_page_was_told_of_is_in_the_file_when_the_board_is_killed() {
     let arguments = ["console", "--flash", "board.flash"];
     let output = harness::cc67_with_input(&folder, arguments, "GetPersistDec 7\n");
     assert!(output.render().starts_with("77\n"), "{}", output.render());
+}
+
+#[test]
+#[expect(clippy::disallowed_methods, reason = "the limit is one of the host's time")]
+fn a_thousand_silent_clients_keep_no_page_out() {
+    let (_folder, live) = board("live-idle");
+    let idle: Vec<_> = (0..1000).map(|_| TcpStream::connect(live.host()).expect("it listens")).collect();
+    let token = live.url.split("token=").nth(1).expect("there is one").to_owned();
+    let started = Instant::now();
+    let request = format!("GET /?token={token} HTTP/1.1\r\nHost: HOST\r\n\r\n");
+    assert_eq!(status(&live, &request), "HTTP/1.1 200 OK");
+    assert!(started.elapsed() < Duration::from_secs(1), "a new client waited");
+    is_alive(&live);
+    drop(idle);
 }

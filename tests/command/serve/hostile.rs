@@ -1,6 +1,7 @@
 //! Clients that do not keep to the protocol: they harm themselves alone.
 
 use std::io::{Read, Write};
+use std::time::{Duration, Instant};
 
 use super::client::{Client, DISCONNECT, LOCK, SET_CONSOLE, Usual, WRITE_LINE_READ_LINE};
 use super::{HELLO, Server, VERSION};
@@ -112,4 +113,31 @@ fn any_bytes_in_a_line_go_to_the_board_as_they_are() {
     // What is beyond the longest line is a line of its own, which is echoed; it goes with the link.
     assert_eq!(client.call(DISCONNECT, b"").0, 0);
     assert_eq!(client.ask("Version"), VERSION);
+}
+
+/// A thousand clients that connect and say nothing.
+const IDLE: usize = 1000;
+
+#[test]
+#[expect(clippy::disallowed_methods, reason = "the limit is one of the host's time")]
+fn a_thousand_silent_clients_keep_no_new_one_out() {
+    if Usual::is_over_pipe() {
+        println!("not run: the system closes a pipe only for the thread that reads from it");
+        return;
+    }
+    for start in ["serve", "console"] {
+        let server = match start {
+            "serve" => Server::fast("serve-idle", HELLO),
+            _ => Server::start("console-idle", &["console", "--serve", "tcp:0", "a.c"], HELLO, 1),
+        };
+        let mut spoken = server.client();
+        assert_eq!(spoken.ask("Version"), VERSION);
+        let idle: Vec<_> = (0..IDLE).map(|_| server.client()).collect();
+        let started = Instant::now();
+        assert_eq!(server.client().ask("Version"), VERSION);
+        assert!(started.elapsed() < Duration::from_secs(1), "{start}: a new client waited");
+        // One that has spoken is not closed for those that have not.
+        assert_eq!(spoken.ask("Version"), VERSION);
+        drop(idle);
+    }
 }

@@ -7,8 +7,7 @@ use std::io::{self, BufReader};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
-use std::thread;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
 use std::time::Duration;
 
 use cc67_host::{AnyTarget, Attendant, Idle, Session};
@@ -16,6 +15,7 @@ use kmotiondef::Ticks;
 use runtime::Event;
 use serde_json::Value;
 
+use super::door::{Editor, editors};
 use super::{Herald, Server, read};
 use crate::debugger::{Debugger, Reason};
 
@@ -26,7 +26,7 @@ const PATIENCE: Duration = Duration::from_millis(10);
 #[derive(Debug)]
 pub struct AttachPoint {
     address: SocketAddr,
-    clients: Receiver<TcpStream>,
+    clients: Receiver<Editor>,
     visitor: Option<Visitor>,
 }
 
@@ -38,15 +38,7 @@ impl AttachPoint {
     pub fn listen(port: u16) -> io::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         let address = listener.local_addr()?;
-        let (sender, clients) = channel();
-        thread::spawn(move || {
-            for stream in listener.incoming().filter_map(Result::ok) {
-                if sender.send(stream).is_err() {
-                    return;
-                }
-            }
-        });
-        Ok(Self { address, clients, visitor: None })
+        Ok(Self { address, clients: editors(listener)?, visitor: None })
     }
 
     /// Where it listens.
@@ -66,7 +58,8 @@ impl Attendant<AnyTarget> for AttachPoint {
     ) {
         if self.visitor.is_none() {
             // One that is gone before it is taken was none.
-            self.visitor = self.clients.try_recv().ok().and_then(|stream| Visitor::new(stream).ok());
+            self.visitor =
+                self.clients.try_recv().ok().and_then(|editor| Visitor::new(editor.into_stream()).ok());
         }
         let Some(visitor) = &mut self.visitor else { return session.advance(limit, events) };
         visitor.swap(session);

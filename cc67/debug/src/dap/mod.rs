@@ -8,12 +8,14 @@
 
 mod attach;
 mod breakpoints;
+mod door;
 mod launch;
 mod look;
 mod relay;
 mod wire;
 
 pub use attach::AttachPoint;
+pub use door::{Editor, editors};
 pub use launch::Launch;
 
 use std::io::{self, BufRead, Write};

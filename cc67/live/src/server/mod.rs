@@ -6,13 +6,13 @@ mod http;
 mod socket;
 
 use std::io;
-use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
+use std::net::{IpAddr, Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::Receiver;
 use std::thread;
 use std::time::Duration;
 
+use cc67_host::seats::{Closer, Seat, Seats};
 use cc67_host::{Attendant, Session, Target};
 
 use crate::board::{self, Company, LiveView};
@@ -25,6 +25,8 @@ use http::{Head, HttpAnswer};
 const CONNECTIONS: usize = 64;
 /// How long a client may take to say what it wants, and to take what it gets.
 const PATIENCE: Duration = Duration::from_secs(5);
+/// The pause after a connection that could not be taken.
+const PAUSE: Duration = Duration::from_millis(100);
 
 /// Why there is no server.
 #[derive(Debug, thiserror::Error)]
@@ -94,26 +96,37 @@ impl Server {
 
 /// Takes connections forever, each on a thread of its own.
 fn accept(listener: &TcpListener, gate: &Arc<Gate>, desk: &Arc<Desk>) {
-    let count = Arc::new(AtomicUsize::new(0));
+    let seats = Seats::new(CONNECTIONS);
     for stream in listener.incoming() {
-        // A client that is gone before it is taken.
-        let Ok(stream) = stream else { continue };
-        if count.load(Ordering::Relaxed) >= CONNECTIONS {
+        let Ok(stream) = stream else {
+            // The client is gone, or the system has no descriptor for it.
+            thread::sleep(PAUSE);
+            continue;
+        };
+        let close = stream.try_clone().map(|stream| {
+            // One that is closed already needs no closing.
+            Box::new(move || drop(stream.shutdown(Shutdown::Both))) as Closer
+        });
+        let Some(admission) = seats.take(close.ok()) else {
             desk.log("there are too many connections", "");
             continue;
+        };
+        if admission.has_closed_another {
+            desk.log("there are too many connections; the one that was silent the longest is closed", "");
         }
-        count.fetch_add(1, Ordering::Relaxed);
-        let (gate, desk, count) = (Arc::clone(gate), Arc::clone(desk), Arc::clone(&count));
-        thread::spawn(move || {
+        let (gate, own) = (Arc::clone(gate), Arc::clone(desk));
+        let spawned = thread::Builder::new().spawn(move || {
             // What goes wrong is that client's loss.
-            let _ = serve(stream, &gate, &desk);
-            count.fetch_sub(1, Ordering::Relaxed);
+            let _ = serve(stream, &admission.seat, &gate, &own);
         });
+        if spawned.is_err() {
+            desk.log("there is no thread for a connection", "");
+        }
     }
 }
 
 /// Serves one connection: one request, or a socket.
-fn serve(mut stream: TcpStream, gate: &Gate, desk: &Arc<Desk>) -> io::Result<()> {
+fn serve(mut stream: TcpStream, seat: &Seat, gate: &Gate, desk: &Arc<Desk>) -> io::Result<()> {
     stream.set_read_timeout(Some(PATIENCE))?;
     stream.set_write_timeout(Some(PATIENCE))?;
     stream.set_nodelay(true)?;
@@ -127,7 +140,7 @@ fn serve(mut stream: TcpStream, gate: &Gate, desk: &Arc<Desk>) -> io::Result<()>
     }
     match head.path() {
         "/socket" => match head.websocket_key() {
-            Some(key) => socket::serve(stream, key, desk),
+            Some(key) => socket::serve(stream, key, seat, desk),
             None => HttpAnswer::problem(400, "this address is for WebSocket").send(&mut stream),
         },
         path => match files::find(path) {

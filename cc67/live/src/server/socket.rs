@@ -7,6 +7,7 @@ use std::net::TcpStream;
 use std::sync::Arc;
 use std::time::Duration;
 
+use cc67_host::seats::Seat;
 use tungstenite::error::Error;
 use tungstenite::handshake::derive_accept_key;
 use tungstenite::protocol::{Role, WebSocketConfig};
@@ -21,7 +22,7 @@ const TURN: Duration = Duration::from_millis(5);
 const MESSAGES_AT_ONCE: usize = 32;
 
 /// Serves a page until it is gone.
-pub(super) fn serve(mut stream: TcpStream, key: &str, desk: &Arc<Desk>) -> io::Result<()> {
+pub(super) fn serve(mut stream: TcpStream, key: &str, seat: &Seat, desk: &Arc<Desk>) -> io::Result<()> {
     let accept = derive_accept_key(key.as_bytes());
     let head = format!(
         "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Accept: {accept}\r\n\r\n"
@@ -30,9 +31,10 @@ pub(super) fn serve(mut stream: TcpStream, key: &str, desk: &Arc<Desk>) -> io::R
     stream.set_read_timeout(Some(TURN))?;
     let config = WebSocketConfig::default().max_message_size(Some(LONGEST)).max_frame_size(Some(LONGEST));
     let socket = WebSocket::from_raw_socket(stream, Role::Server, Some(config));
+    seat.hear();
     let (page, mailbox) = (desk.number(), Arc::new(Mailbox::default()));
     if desk.hand_in(Incoming::Join(page, Arc::clone(&mailbox))) {
-        let mut connection = Connection { socket, desk, page, mailbox: &mailbox };
+        let mut connection = Connection { socket, seat, desk, page, mailbox: &mailbox };
         if let Err(why) = connection.run() {
             connection.leave(&why);
         }
@@ -44,6 +46,7 @@ pub(super) fn serve(mut stream: TcpStream, key: &str, desk: &Arc<Desk>) -> io::R
 /// A page that is connected.
 struct Connection<'a> {
     socket: WebSocket<TcpStream>,
+    seat: &'a Seat,
     desk: &'a Desk,
     page: PageId,
     mailbox: &'a Mailbox,
@@ -92,6 +95,7 @@ impl Connection<'_> {
             };
             match message {
                 Message::Text(text) => {
+                    self.seat.hear();
                     let request =
                         PageRequest::parse(&text).map_err(|error| Gone::Broken(error.to_string()))?;
                     if !self.desk.hand_in(Incoming::Ask(self.page, request)) {

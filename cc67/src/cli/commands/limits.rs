@@ -89,7 +89,11 @@ pub const CLIENTS: &[Limit] = &[
         REPLY_BYTES as u64,
         "further replies are lost, with a remark",
     ),
-    limit("clients of `cc67 serve` at a time", MOST_CLIENTS as u64, "the connection is closed"),
+    limit(
+        "clients of `cc67 serve` at a time",
+        MOST_CLIENTS as u64,
+        "the client that was silent the longest is disconnected",
+    ),
     limit(
         "console lines of `cc67 serve` while no client is the console",
         UNHEARD_LINES as u64,

@@ -157,8 +157,9 @@ fn listen(arguments: &DebugArguments, port: u16, is_once: bool) -> Result<Exit> 
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))
         .with_context(|| format!("cannot listen on port {port}"))?;
     screen::note(&format!("debugger: waiting for an editor on {}", listener.local_addr()?));
+    let editors = dap::editors(listener).context("debugger")?;
     loop {
-        let (stream, _) = listener.accept().context("debugger")?;
+        let stream = editors.recv().context("debugger")?.into_stream();
         stream.set_nodelay(true)?;
         let mut launch = |request: &Launch| launch(arguments, request);
         let served = dap::serve(BufReader::new(stream.try_clone()?), stream, &mut launch);

@@ -6,6 +6,9 @@
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, TcpStream};
+use std::time::Duration;
+
+use cc67_host::seats::Closer;
 
 use super::message::REPLY;
 
@@ -33,6 +36,10 @@ pub(super) enum Received {
 
 /// A connection that carries messages in both directions.
 pub(super) trait ClientConnection: Send + 'static {
+    /// Returns the way to close it from another thread, if there is one.
+    fn closer(&self) -> Option<Closer>;
+    /// Limits the time that it waits for the client, where the system can.
+    fn limit_wait(&mut self, most: Option<Duration>);
     /// Receives the first message, which may be of another kind than ours.
     fn receive_first(&mut self) -> Received;
     /// Receives a message.
@@ -58,11 +65,26 @@ pub(super) fn answer(connection: &mut impl ClientConnection, messages: &[Vec<u8>
 
 /// A connection of bytes.
 pub(super) trait Stream: Read + Write + Send + 'static {
+    /// Returns the way to close it from another thread; none if the system has no descriptor for that.
+    fn closer(&self) -> Option<Closer>;
+    /// Limits the time that a read waits.
+    fn limit_wait(&self, most: Option<Duration>);
     /// Ends what is sent; what comes is still received.
     fn end(&self);
 }
 
 impl Stream for TcpStream {
+    fn closer(&self) -> Option<Closer> {
+        let stream = self.try_clone().ok()?;
+        // One that is closed already needs no closing.
+        Some(Box::new(move || drop(stream.shutdown(Shutdown::Both))))
+    }
+
+    fn limit_wait(&self, most: Option<Duration>) {
+        // Without the limit it waits longer.
+        let _ = self.set_read_timeout(most);
+    }
+
     fn end(&self) {
         // A client that is gone needs no end.
         let _ = self.shutdown(Shutdown::Write);
@@ -71,6 +93,17 @@ impl Stream for TcpStream {
 
 #[cfg(unix)]
 impl Stream for std::os::unix::net::UnixStream {
+    fn closer(&self) -> Option<Closer> {
+        let stream = self.try_clone().ok()?;
+        // One that is closed already needs no closing.
+        Some(Box::new(move || drop(stream.shutdown(Shutdown::Both))))
+    }
+
+    fn limit_wait(&self, most: Option<Duration>) {
+        // Without the limit it waits longer.
+        let _ = self.set_read_timeout(most);
+    }
+
     fn end(&self) {
         // A client that is gone needs no end.
         let _ = self.shutdown(Shutdown::Write);
@@ -78,6 +111,14 @@ impl Stream for std::os::unix::net::UnixStream {
 }
 
 impl<S: Stream> ClientConnection for S {
+    fn closer(&self) -> Option<Closer> {
+        Stream::closer(self)
+    }
+
+    fn limit_wait(&mut self, most: Option<Duration>) {
+        Stream::limit_wait(self, most);
+    }
+
     fn receive_first(&mut self) -> Received {
         read_first(self)
     }

@@ -4,14 +4,17 @@
 //! client: one that sends half a message, or reads no reply, keeps nobody else from the board. At a pseudo-terminal and
 //! a raw port the board's own bytes are [carried](super::carry).
 
+use std::io;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Sender, channel};
 use std::thread;
+use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
+use cc67_host::seats::{FIRST_WORDS, Seat, Seats};
 
 use super::carry::carry;
 use super::connection::{self, ClientConnection, Received};
@@ -23,6 +26,8 @@ use crate::cli::io::terminal;
 
 /// Connections at a time.
 pub(in crate::cli::commands) const MOST_CLIENTS: usize = 200;
+/// The pause after a connection that the system has no descriptor for.
+const PAUSE: Duration = Duration::from_millis(100);
 /// What somebody reads who sends text.
 const NO_TEXT: &[u8] =
     b"cc67: a board is served here to programs that use the KMotion client library (4.34), not as text; to type commands: cc67 console\r\n";
@@ -49,13 +54,13 @@ pub(super) struct Door {
     desk: Sender<Note>,
     /// Connections so far.
     numbers: Arc<AtomicU64>,
-    /// Connections now.
-    present: Arc<AtomicUsize>,
+    /// The places of those that are connected.
+    seats: Seats,
 }
 
 /// Takes connections at these addresses in the background; `option` is where they come from.
 pub(super) fn listen(addresses: &[String], option: &str, desk: &Sender<Note>) -> Result<Places> {
-    let door = Door { desk: desk.clone(), numbers: Arc::default(), present: Arc::default() };
+    let door = Door { desk: desk.clone(), numbers: Arc::default(), seats: Seats::new(MOST_CLIENTS) };
     let mut places = Places::default();
     for address in addresses {
         let complaint = || format!("`{option} {address}`");
@@ -90,11 +95,10 @@ fn carry_on_terminal(door: &Door) -> Result<()> {
     terminal::note(&format!("a board is served on serial:{}", terminal.name()));
     let writer = terminal.controller()?;
     let door = door.clone();
-    thread::spawn(move || {
+    in_background(move || {
         let number = door.numbers.fetch_add(1, Ordering::Relaxed) + 1;
         carry(number, &door.desk, terminal, writer);
-    });
-    Ok(())
+    })
 }
 
 /// Takes connections that carry the board's own bytes, one at a time.
@@ -109,21 +113,24 @@ fn carry_on_port(port: &str, door: &Door) -> Result<()> {
             terminal::note(&format!("client {number}: refused, another one has the link"));
             return;
         }
-        let (door, is_taken) = (door.clone(), Arc::clone(&is_taken));
-        thread::spawn(move || {
+        let (door, taken) = (door.clone(), Arc::clone(&is_taken));
+        let spawned = in_background(move || {
             // A connection that cannot be read and written at once ends here.
             if let Ok(writer) = stream.try_clone() {
                 carry(number, &door.desk, stream, writer);
             }
-            is_taken.store(false, Ordering::Relaxed);
+            taken.store(false, Ordering::Relaxed);
         });
+        if let Err(error) = spawned {
+            is_taken.store(false, Ordering::Relaxed);
+            terminal::note(&format!("client {number}: refused, {error}"));
+        }
     };
-    thread::spawn(move || {
+    in_background(move || {
         // Small messages go out at once; where that cannot be set, they are only later.
-        let streams = listener.incoming().flatten().inspect(|stream| drop(stream.set_nodelay(true)));
+        let streams = connections(listener.incoming()).inspect(|stream| drop(stream.set_nodelay(true)));
         streams.for_each(admit);
-    });
-    Ok(())
+    })
 }
 
 fn bind(port: &str) -> Result<TcpListener> {
@@ -135,11 +142,21 @@ fn listen_on_port(port: &str, door: &Door) -> Result<()> {
     let listener = bind(port)?;
     terminal::note(&format!("a board is served on tcp:{}", listener.local_addr()?.port()));
     let door = door.clone();
-    thread::spawn(move || {
+    in_background(move || {
         // Small messages go out at once; where that cannot be set, they are only later.
-        let streams = listener.incoming().flatten().inspect(|stream| drop(stream.set_nodelay(true)));
+        let streams = connections(listener.incoming()).inspect(|stream| drop(stream.set_nodelay(true)));
         streams.for_each(|stream| door.enter(stream));
-    });
+    })
+}
+
+/// Connections as they come; where the system has no descriptor for one, after a pause.
+fn connections<S>(incoming: impl Iterator<Item = io::Result<S>>) -> impl Iterator<Item = S> {
+    incoming.filter_map(|connection| connection.inspect_err(|_| thread::sleep(PAUSE)).ok())
+}
+
+/// Runs in a thread of its own.
+fn in_background(work: impl FnOnce() + Send + 'static) -> Result<()> {
+    thread::Builder::new().spawn(work).context("there is no thread for it")?;
     Ok(())
 }
 
@@ -159,7 +176,7 @@ fn listen_on_path(address: &str, door: &Door) -> Result<PathBuf> {
     let listener = UnixListener::bind(address).context("cannot listen there")?;
     terminal::note(&format!("a board is served on {address}"));
     let door = door.clone();
-    thread::spawn(move || listener.incoming().flatten().for_each(|stream| door.enter(stream)));
+    in_background(move || connections(listener.incoming()).for_each(|stream| door.enter(stream)))?;
     Ok(std::path::absolute(address).unwrap_or_else(|_| address.into()))
 }
 
@@ -169,29 +186,31 @@ fn listen_on_path(_: &str, _: &Door) -> Result<PathBuf> {
 }
 
 impl Door {
-    /// Serves a connection in a thread of its own; one too many is closed.
+    /// Serves a connection in a thread of its own; if there are too many, the one that is silent the longest is closed.
     pub(super) fn enter(&self, connection: impl ClientConnection) {
         let number = self.numbers.fetch_add(1, Ordering::Relaxed) + 1;
-        if self.present.fetch_add(1, Ordering::Relaxed) >= MOST_CLIENTS {
-            self.present.fetch_sub(1, Ordering::Relaxed);
+        let Some(admission) = self.seats.take(connection.closer()) else {
             terminal::note(&format!("client {number}: refused, {MOST_CLIENTS} are connected"));
             return;
+        };
+        if admission.has_closed_another {
+            terminal::note(&format!(
+                "client {number}: {MOST_CLIENTS} are connected; the one that was silent the longest is disconnected"
+            ));
         }
-        let door = self.clone();
-        let spawned = thread::Builder::new().spawn(move || {
-            serve(number, connection, &door.desk);
-            door.present.fetch_sub(1, Ordering::Relaxed);
-        });
+        let desk = self.desk.clone();
+        let spawned = thread::Builder::new().spawn(move || serve(number, connection, &admission.seat, &desk));
         if spawned.is_err() {
-            self.present.fetch_sub(1, Ordering::Relaxed);
             terminal::note(&format!("client {number}: refused, there is no thread for it"));
         }
     }
 }
 
 /// Answers requests until the client goes, or asks for what does not exist.
-fn serve(number: u64, mut connection: impl ClientConnection, desk: &Sender<Note>) {
+fn serve(number: u64, mut connection: impl ClientConnection, seat: &Seat, desk: &Sender<Note>) {
+    connection.limit_wait(Some(FIRST_WORDS));
     let mut received = connection.receive_first();
+    connection.limit_wait(None);
     match received {
         Received::Text => return connection.refuse(NO_TEXT),
         Received::OldLibrary => {
@@ -208,6 +227,7 @@ fn serve(number: u64, mut connection: impl ClientConnection, desk: &Sender<Note>
     // A desk that is closed answers nothing below.
     let _ = desk.send(Note::Came(number, answers));
     while let Received::Message(bytes) = &received {
+        seat.hear();
         let Some(request) = Request::read(bytes) else {
             // A desk that is closed needs no news.
             let _ = desk.send(Note::Unknown(number, bytes.clone()));

@@ -43,6 +43,7 @@ mod windows {
     use std::time::Duration;
 
     use anyhow::{Context, anyhow, ensure};
+    use cc67_host::seats::Closer;
     use interprocess::os::windows::named_pipe::pipe_mode::Messages;
     use interprocess::os::windows::named_pipe::{
         DuplexPipeStream, PipeListenerOptions, PipeMode, WaitTimeout,
@@ -125,6 +126,13 @@ mod windows {
     }
 
     impl ClientConnection for PipeConnection {
+        /// The system closes a pipe only for the thread that reads from it.
+        fn closer(&self) -> Option<Closer> {
+            None
+        }
+
+        fn limit_wait(&mut self, _: Option<Duration>) {}
+
         fn receive_first(&mut self) -> Received {
             let Some(first) = self.read() else { return Received::Nothing };
             match <[u8; 2]>::try_from(&first[..]) {
