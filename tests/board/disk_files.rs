@@ -192,3 +192,18 @@ fn the_command_does_not_follow_links() {
     assert!(output.stderr.contains("`link.txt` is a link, and links are not followed"), "{}", output.stderr);
     assert_eq!(fs::read_to_string(scratch.path().join("secret.txt")).expect("it is there"), "secret");
 }
+
+/// Each line that is read asks for the next. If the file is closed before the answer, the next `fopen` takes it for its
+/// own, as on the board.
+#[test]
+fn an_answer_about_the_file_before_is_remarked_when_the_next_is_opened() {
+    let scratch = Scratch::new("old-file-answer");
+    scratch.write("here.txt", "text\n").write(
+        "a.c",
+        "#include \"KMotionDef.h\"\nmain()\n{\n    char s[100];\n    FILE *f = fopen(\"here.txt\", \"rt\");\n    fgets(s, 90, f);\n    fclose(f);\n    f = fopen(\"here.txt\", \"rt\");\n    printf(\"%d\\n\", f != 0);\n}\n",
+    );
+    let output = cc67(&scratch, ["run", "-w", "--files", ".", "a.c"]);
+    assert_eq!(output.stdout, "0\n");
+    let remark = "fopen here.txt: an answer about the file before is still on its way";
+    assert!(output.stderr.contains(remark), "{}", output.stderr);
+}

@@ -620,6 +620,9 @@ messages! {
     /// The PC refuses to read a file.
     FileNotRead { name: String, error: String } = "file-not-read", Warning, [always],
         "the PC refuses to read {name}: {error}";
+    /// A file is opened while an answer about the last one is on its way.
+    OldFileAnswer { name: String } = "old-file-answer", Warning, [always],
+        "fopen {name}: an answer about the file before is still on its way, and the board takes it for the answer to this fopen: read that file to its end, or wait 0.1 s before the next fopen";
     /// The PC fails to write to an open file.
     FileNotWritten { name: String, error: String } = "file-not-written", Warning, [always],
         "the PC cannot write {name}: {error}";

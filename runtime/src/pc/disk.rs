@@ -169,16 +169,19 @@ impl Disk {
                 None
             }
             DiskRequest::Open => {
+                let is_late = !self.answers.is_empty();
                 let opened = self.files.read(text);
                 let error = opened.as_ref().err().cloned();
                 self.reading = opened.ok().map(TextLines::new);
                 self.answer(now);
-                error.map(|error| {
-                    let place = self.files.place_of(text).filter(|_| error == FileError::Missing);
-                    let error =
-                        place.map_or_else(|| error.to_string(), |place| format!("there is no file {place}"));
-                    Message::FileNotRead { name: text.to_owned(), error }
-                })
+                error
+                    .map(|error| {
+                        let place = self.files.place_of(text).filter(|_| error == FileError::Missing);
+                        let error = place
+                            .map_or_else(|| error.to_string(), |place| format!("there is no file {place}"));
+                        Message::FileNotRead { name: text.to_owned(), error }
+                    })
+                    .or_else(|| is_late.then(|| Message::OldFileAnswer { name: text.to_owned() }))
             }
             DiskRequest::NextLine => {
                 self.answer(now);
