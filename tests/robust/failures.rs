@@ -14,7 +14,7 @@ use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use harness::{Output, Scratch, cc67, run_in};
+use harness::{Output, Scratch, cc67, is_long, run_in};
 
 /// Prints a few thousand lines and moves an axis, so that there is something to lose.
 const PROGRAM: &str = r#"#include "KMotionDef.h"
@@ -174,6 +174,21 @@ fn file_names_that_are_not_utf_8_are_accepted() {
     assert_one_message(&output, 2, "cannot read nosuch\u{fffd}.c: ");
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn limits_of_the_system_are_messages() {
+    let scratch = with_program("host-limits");
+    scratch.write("b.c", "#include \"KMotionDef.h\"\nmain() { printf(\"here\\n\"); }\n");
+    // The stack of the process may be small: the command takes one of its own.
+    let output = run_shell(scratch.path(), "ulimit -s 128; exec \"$@\"", &["run", "b.c"]);
+    assert_eq!((output.code, output.stdout.as_str()), (0, "here\n"), "{output:?}");
+    // Memory for the stack of the compiler may not be there.
+    let output = run_shell(scratch.path(), "ulimit -v 500000; exec \"$@\"", &["run", "b.c"]);
+    assert_eq!(output.code, 1, "{output:?}");
+    assert!(output.stderr.contains("the system starts no thread with a stack of 512 MiB"), "{output:?}");
+    assert!(!output.stderr.contains("panicked"), "{output:?}");
+}
+
 /// Starts the command, kills it after `delay` and reaps it.
 fn kill_after(folder: &Path, arguments: &[&str], delay: Duration) {
     let mut child = Command::new(harness::command())
@@ -190,24 +205,57 @@ fn kill_after(folder: &Path, arguments: &[&str], delay: Duration) {
     child.wait().expect("it ends");
 }
 
-/// Kills the command that writes `file` at `times` moments spread over its run.
-///
-/// Whatever the moment, the file is what was there before or what the whole run writes.
+/// Number of kills of each command: a dozen, or a hundred in long runs.
+fn kills() -> u32 {
+    if is_long() { 100 } else { 12 }
+}
+
+/// Kills a command at moments spread over its run, in a random order and a little beyond its end, and looks after each.
 #[expect(clippy::disallowed_methods, reason = "the process is killed at moments of the host's time")]
-fn assert_whole(name: &str, arguments: &[&str], file: &str, before: &[u8], times: u32) {
-    let scratch = with_program(name);
-    let path = scratch.path().join(file);
+fn kill_at_moments(
+    scratch: &Scratch,
+    arguments: &[&str],
+    mut before: impl FnMut(),
+    mut after: impl FnMut(u32),
+) {
     let started = Instant::now();
-    let output = cc67(&scratch, arguments);
+    let output = cc67(scratch, arguments);
     let duration = started.elapsed();
     assert_eq!(output.code, 0, "{output:?}");
+    let mut random = 12_345_u32;
+    for round in 0..kills() {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        before();
+        // The first is killed at once.
+        let part = if round == 0 { 0 } else { random >> 16 };
+        kill_after(scratch.path(), arguments, duration * part / 52_000);
+        after(round);
+    }
+    // The next run of the same output removes what killed ones have left.
+    let output = cc67(scratch, arguments);
+    assert_eq!(output.code, 0, "{output:?}");
+    let names = fs::read_dir(scratch.path()).expect("it is there");
+    let left: Vec<_> = names
+        .map(|entry| entry.expect("an entry").file_name())
+        .filter(|name| name.to_string_lossy().ends_with(".tmp"))
+        .collect();
+    assert!(left.is_empty(), "left behind: {left:?}");
+}
+
+/// Kills the command that writes `file` at many moments.
+///
+/// Whatever the moment, the file is what was there before or what the whole run writes.
+fn assert_whole(name: &str, arguments: &[&str], file: &str, before: &[u8]) {
+    let scratch = with_program(name);
+    let path = scratch.path().join(file);
+    assert_eq!(cc67(&scratch, arguments).code, 0);
     let whole = fs::read(&path).expect("the run writes it");
     let (mut old, mut new) = (0, 0);
-    for round in 0..times {
+    let renew = || {
         fs::remove_file(&path).expect("it is there, whole or not yet replaced");
         fs::write(&path, before).expect("the folder is writable");
-        // From the first instruction to a little beyond the end.
-        kill_after(scratch.path(), arguments, duration * (round * 5) / (times * 4));
+    };
+    kill_at_moments(&scratch, arguments, renew, |round| {
         let found = fs::read(&path).expect("there is always a file");
         if found == whole {
             new += 1;
@@ -215,24 +263,59 @@ fn assert_whole(name: &str, arguments: &[&str], file: &str, before: &[u8], times
             assert!(found == before, "round {round}: {} bytes of {}", found.len(), whole.len());
             old += 1;
         }
-    }
-    println!("{name}: killed {times} times in {duration:?}: {old} old, {new} new");
+    });
+    println!("{name}: {old} old, {new} new");
     assert!(old > 0, "no kill came before the end");
 }
 
 #[test]
 fn a_build_that_is_killed_leaves_the_old_image_or_the_new() {
-    assert_whole("kill-build", &["build", "-o", "a.out", "a.c"], "a.out", b"old", 40);
+    assert_whole("kill-build", &["build", "-o", "a.out", "a.c"], "a.out", b"old");
 }
 
 #[test]
 fn a_run_killed_while_saving_flash_leaves_the_old_file_or_the_new_one() {
     let erased = vec![0xFF; 2 << 20];
-    assert_whole("kill-flash", &["run", "--flash", "board.flash", "flash.c"], "board.flash", &erased, 40);
+    assert_whole("kill-flash", &["run", "--flash", "board.flash", "flash.c"], "board.flash", &erased);
 }
 
 #[test]
 fn a_trace_that_is_killed_leaves_the_old_file_or_the_new() {
-    assert_whole("kill-vcd", &["run", "--trace", "a.vcd", "a.c"], "a.vcd", b"old", 20);
-    assert_whole("kill-json", &["run", "--trace", "a.json", "a.c"], "a.json", b"old", 20);
+    assert_whole("kill-vcd", &["run", "--trace", "a.vcd", "a.c"], "a.vcd", b"old");
+    assert_whole("kill-json", &["run", "--trace", "a.json", "a.c"], "a.json", b"old");
+}
+
+#[test]
+fn golden_output_that_is_killed_is_the_old_or_the_new() {
+    assert_whole("kill-golden", &["test", "--bless", "--force", "a.c"], "a.expected", b"old\n");
+}
+
+/// Writes lines to a file of the PC, and prints after each that it is written.
+const LINES: &str = r#"#include "KMotionDef.h"
+main()
+{
+    int i;
+    FILE *f = fopen("log.txt", "wt");
+
+    for (i = 0; i < 300; i++)
+        fprintf(f, "line %d\n", i);
+    fclose(f);
+}
+"#;
+
+#[test]
+fn files_of_programs_that_are_killed_hold_whole_lines_in_order() {
+    let scratch = Scratch::new("kill-files");
+    scratch.write("a.c", LINES);
+    let arguments = ["run", "--files", "disk", "a.c"];
+    let path = scratch.path().join("disk/log.txt");
+    assert_eq!(cc67(&scratch, arguments).code, 0);
+    let whole = fs::read_to_string(&path).expect("the run writes it");
+    assert_eq!(whole.lines().count(), 300);
+    let renew = || fs::write(&path, "").expect("the folder is writable");
+    kill_at_moments(&scratch, &arguments, renew, |round| {
+        let found = fs::read_to_string(&path).expect("there is always a file");
+        let is_whole_line = found.is_empty() || found.ends_with('\n');
+        assert!(whole.starts_with(&found) && is_whole_line, "round {round}: {} bytes", found.len());
+    });
 }

@@ -56,6 +56,7 @@ fn filters(seed: u32) -> String {
     text + "int main(void) { return 0; }\n"
 }
 
+#[expect(clippy::disallowed_methods, reason = "the time that compilation takes is measured")]
 fn time(source: &str, level: Level) -> Duration {
     let options = Options { level, target: Target::C67x, ..Options::default() };
     let start = Instant::now();

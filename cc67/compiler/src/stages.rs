@@ -35,6 +35,7 @@ pub fn lower(path: &Path, source: Vec<u8>, files: &(dyn pp::Files + Sync)) -> Re
             .collect();
         print(&functions, &signatures, &unit.symbols)
     })
+    .map_err(|error| error.message)?
 }
 
 /// Reads IR and prints it again.

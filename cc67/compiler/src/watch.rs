@@ -98,11 +98,8 @@ pub(crate) enum Meaning {
 ///
 /// # Errors
 /// What is wrong with it, in one line.
-///
-/// # Panics
-/// If the system cannot start a thread.
 pub fn compile(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Expression, String> {
-    on_large_stack(|| compile_here(scope, expression, items))
+    on_large_stack(|| compile_here(scope, expression, items)).map_err(|error| error.message)?
 }
 
 fn compile_here(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Expression, String> {

@@ -75,9 +75,6 @@ impl Model {
     ///
     /// # Errors
     /// What is wrong with it, in one line.
-    ///
-    /// # Panics
-    /// If the system cannot start a thread.
     pub fn probe(
         &self,
         place: Option<CodeScope<'_>>,
@@ -88,6 +85,7 @@ impl Model {
             let whole = self.probe_as(place, &format!("&(\n{expression}\n)"), items, true);
             whole.or_else(|_| self.probe_as(place, &format!("(\n{expression}\n)"), items, false))
         })
+        .map_err(|error| error.message)?
     }
 
     fn probe_as(

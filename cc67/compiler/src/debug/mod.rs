@@ -124,9 +124,6 @@ impl Model {
     ///
     /// # Errors
     /// If the source does not compile, or makes another image.
-    ///
-    /// # Panics
-    /// If the system cannot start a thread.
     pub fn of(
         path: &Path,
         text: Vec<u8>,
@@ -143,6 +140,7 @@ impl Model {
             model.functions = model.functions_of(&object, &sources);
             Ok(model)
         })
+        .map_err(|error| error.message)?
     }
 
     /// Collects the information about code for the controller's processor: functions and their lines as the image has
@@ -150,9 +148,6 @@ impl Model {
     ///
     /// # Errors
     /// As [`of`](Self::of).
-    ///
-    /// # Panics
-    /// If the system cannot start a thread.
     pub fn of_real_code(
         path: &Path,
         text: Vec<u8>,
@@ -166,6 +161,7 @@ impl Model {
             model.functions = model.functions_of_image(&object);
             Ok(model)
         })
+        .map_err(|error| error.message)?
     }
 
     fn here(

@@ -100,29 +100,43 @@ pub struct Compilation {
     included_by: Vec<String>,
 }
 
+impl Compilation {
+    /// A compilation that ends before the text is looked at.
+    fn refused(path: &Path, error: Diagnostic) -> Self {
+        let mut sink = Sink::new();
+        sink.report(error);
+        let name = path.to_string_lossy().into_owned();
+        Self { name, sources: SourceMap::new(), sink, object: None, included_by: Vec::new() }
+    }
+}
+
 /// Stack of the thread that compiles: a sum of 30,000 terms is a tree of that depth.
 const STACK: usize = 512 << 20;
 
 /// Compiles one source file; `path` names it in messages and is where its includes are looked for.
-///
-/// # Panics
-/// If the system cannot start a thread.
 #[must_use]
 pub fn compile(path: &Path, text: Vec<u8>, options: &Options, files: &(dyn pp::Files + Sync)) -> Compilation {
     on_large_stack(|| compile_here(path, text, options, files))
+        .unwrap_or_else(|error| Compilation::refused(path, *error))
 }
 
 /// Runs on a stack that is large enough for any source text.
-pub(crate) fn on_large_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+///
+/// # Errors
+/// The system starts no thread with such a stack.
+pub(crate) fn on_large_stack<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Box<Diagnostic>> {
     thread::scope(|scope| {
         let handle = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, || {
             keep_memory_ready();
             work()
         });
-        match handle.expect("the system can start a thread").join() {
-            Ok(result) => result,
-            Err(panic) => resume_unwind(panic),
-        }
+        let handle = handle.map_err(|error| {
+            let size = STACK >> 20;
+            Box::new(Diagnostic::global_error(format!(
+                "the system starts no thread with a stack of {size} MiB for the compiler: {error}"
+            )))
+        })?;
+        Ok(handle.join().unwrap_or_else(|panic| resume_unwind(panic)))
     })
 }
 
@@ -175,12 +189,7 @@ pub(crate) fn compile_here(
     options: &Options,
     files: &dyn pp::Files,
 ) -> Compilation {
-    let name = path.to_string_lossy().into_owned();
-    let refuse = |error: Diagnostic| {
-        let mut sink = Sink::new();
-        sink.report(error);
-        Compilation { name, sources: SourceMap::new(), sink, object: None, included_by: Vec::new() }
-    };
+    let refuse = |error| Compilation::refused(path, error);
     if let Some(what) = files::not_source(path, &text) {
         return refuse(Diagnostic::global_error(format!(
             "{} is not C source text but {what}",
@@ -259,7 +268,8 @@ pub fn advise(
     options: &Options,
     files: &(dyn pp::Files + Sync),
 ) -> Vec<Compilation> {
-    on_large_stack(|| {
+    let first = programs.first().map(|program| program.path.clone());
+    let advice = on_large_stack(|| {
         let read = |SharingProgram { thread, path, text }: SharingProgram| {
             let mut context = CompileContext::default();
             let request = CompileRequest { path: &path, options, files };
@@ -280,6 +290,9 @@ pub fn advise(
             Compilation { name, sources, sink, object: None, included_by: Vec::new() }
         });
         compilations.collect()
+    });
+    advice.unwrap_or_else(|error| {
+        first.iter().map(|path| Compilation::refused(path, (*error).clone())).collect()
     })
 }
 

@@ -43,7 +43,7 @@ use self::deferred::Deferred;
 use super::args::beside::Beside;
 use super::args::board::with_boot;
 use super::io::exit::Exit;
-use super::io::{output, terminal};
+use super::io::{output, stack, terminal};
 
 /// C compiler, linker and simulated KFLOP board.
 #[derive(Debug, Parser)]
@@ -191,6 +191,17 @@ fn as_long_option(argument: OsString) -> OsString {
 /// Runs the command with the arguments of a process, the program's name first.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
+    if !stack::is_small() {
+        return command(arguments);
+    }
+    stack::on_own(move || command(arguments)).unwrap_or_else(|error| {
+        terminal::note(&format!("the system starts no thread for the command: {error}"));
+        Exit::WrongInput.into()
+    })
+}
+
+/// Carries out the command.
+fn command(arguments: Vec<OsString>) -> ExitCode {
     if drop_in::is_meant(&arguments) {
         return drop_in::main(&arguments);
     }

@@ -3,7 +3,9 @@
 pub(crate) mod exit;
 pub(crate) mod input;
 pub(crate) mod interrupt;
+mod leftovers;
 pub(crate) mod output;
 pub(crate) mod pace;
 pub(crate) mod pty;
+pub(crate) mod stack;
 pub(crate) mod terminal;

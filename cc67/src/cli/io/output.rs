@@ -1,6 +1,7 @@
 //! Files that commands write: under a temporary name first, so that there is never half a file.
 //!
-//! A process that is killed leaves the old file or the new one. The disk is not waited for, as by
+//! A process that is killed leaves the old file or the new one, and perhaps a temporary one, which the next that writes
+//! the same file [removes](super::leftovers). The disk is not waited for, as by
 //! any compiler: it would take longer than the compilation. Only what a board says that it has kept is on the disk.
 
 use std::fs::{self, File};
@@ -10,6 +11,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, anyhow};
 
 use compiler::files::reason;
+
+use super::leftovers;
 
 /// Writes a file and replaces what was there.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
@@ -58,9 +61,12 @@ impl Draft {
     /// Begins a file.
     pub(crate) fn new(path: &Path) -> Result<Self> {
         let is_device = fs::metadata(path).is_ok_and(|known| !known.is_file() && !known.is_dir());
-        let temporary = (!is_device).then(|| Temporary(temporary(path, "tmp")));
+        let temporary = (!is_device).then(|| Temporary(leftovers::clean(path, "tmp")));
         let name = temporary.as_ref().map_or(path, |temporary| &temporary.0);
         let file = File::create(name).map_err(|error| cannot_write(path, &error))?;
+        if temporary.is_some() {
+            leftovers::mark(&file);
+        }
         Ok(Self { writer: BufWriter::new(file), path: path.to_owned(), temporary })
     }
 
@@ -100,9 +106,10 @@ pub(crate) struct Scratch {
 impl Scratch {
     /// Begins it, beside the file that it is for.
     pub(crate) fn beside(path: &Path) -> Result<Self> {
-        let name = Temporary(temporary(path, "body.tmp"));
+        let name = Temporary(leftovers::clean(path, "body.tmp"));
         let file = File::options().read(true).write(true).create(true).truncate(true).open(&name.0);
         let file = file.map_err(|error| cannot_write(path, &error))?;
+        leftovers::mark(&file);
         Ok(Self { writer: BufWriter::new(file), name })
     }
 
@@ -136,13 +143,6 @@ impl Drop for Temporary {
         // What is left of it helps nobody.
         let _ = fs::remove_file(&self.0);
     }
-}
-
-/// A name in the same folder, so that the file can be renamed.
-fn temporary(path: &Path, suffix: &str) -> PathBuf {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".{}.{suffix}", std::process::id()));
-    path.with_file_name(name)
 }
 
 /// Prints what a command answers.
