@@ -66,7 +66,7 @@ impl Mentions {
                     let arguments = &code.calls[inst.number as usize].arguments;
                     found.extend(arguments.iter().filter_map(|(reg, _)| number[*reg]));
                 }
-                mentions.add(&mut found, Mention { block, at: Some(at), insts: vec![inst.clone()] });
+                mentions.add(&mut found, Mention { block, at: Some(at), insts: vec![*inst] });
             }
             found.clear();
             found.extend(own.end.read().and_then(|reg| number[reg]));
@@ -94,7 +94,7 @@ impl Mentions {
             let insts = std::mem::take(&mut own.insts);
             let mut out = Vec::with_capacity(insts.len() + 4);
             if block == 0 {
-                out.extend(self.first.iter().cloned());
+                out.extend(self.first.iter().copied());
             }
             let is_next = |mention: &Mention, at| mention.block == block && mention.at == at;
             for (at, inst) in insts.into_iter().enumerate() {
