@@ -138,6 +138,7 @@ fn compile_here(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Ex
         meanings: BTreeMap::new(),
         count: 0,
         locals: false,
+        has_locals: false,
     };
     check.expr(value)?;
     let meanings = check.meanings;
@@ -163,6 +164,16 @@ struct Check<'a> {
     count: usize,
     /// True if it may name locals.
     locals: bool,
+    /// True if it names one.
+    has_locals: bool,
+}
+
+/// What an expression names.
+pub(crate) struct Named {
+    /// The meanings of its names outside of the function.
+    pub(crate) meanings: BTreeMap<SymbolId, Meaning>,
+    /// True if it names locals of the function.
+    pub(crate) has_locals: bool,
 }
 
 /// Resolves the names in an expression of a function; it may name the function's locals.
@@ -173,12 +184,14 @@ pub(crate) fn meanings(
     symbols: &BTreeMap<String, GuestAddr>,
     options: &Options,
     items: &[&str],
-) -> Result<BTreeMap<SymbolId, Meaning>, String> {
+) -> Result<Named, String> {
     let scope = Scope { path: Path::new(""), text: &[], symbols, options, files: &Disk };
     let function = unit.functions.get(function).ok_or("not an expression")?;
-    let mut check = Check { unit, scope, items, function, meanings: BTreeMap::new(), count: 0, locals: true };
+    let meanings = BTreeMap::new();
+    let mut check =
+        Check { unit, scope, items, function, meanings, count: 0, locals: true, has_locals: false };
     check.expr(value)?;
-    Ok(check.meanings)
+    Ok(Named { meanings: check.meanings, has_locals: check.has_locals })
 }
 
 impl Check<'_> {
@@ -212,7 +225,10 @@ impl Check<'_> {
 
     fn place(&mut self, id: PlaceId) -> Result<(), String> {
         match self.function.places[id].kind {
-            PlaceKind::Local(..) if self.locals => Ok(()),
+            PlaceKind::Local(..) if self.locals => {
+                self.has_locals = true;
+                Ok(())
+            }
             PlaceKind::Local(..) => Err("it declares variables".to_owned()),
             PlaceKind::Symbol(symbol, offset) => {
                 let entry = &self.unit.symbols[symbol];

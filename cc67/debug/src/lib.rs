@@ -29,8 +29,8 @@ mod shell;
 mod words;
 
 pub use debugger::{
-    Breakpoint, BreakpointKind, Catches, CodePlace, DebugError, Debugger, Reason, ShownVariable, StackFrame,
-    Stop,
+    Breakpoint, BreakpointKind, Catches, CodePlace, DebugError, Debugger, HitCondition, Reason,
+    ShownVariable, StackFrame, Stop,
 };
 pub use programs::Programs;
 pub use shell::{Output, Said, Shell};

@@ -137,6 +137,12 @@ impl Programs {
             let functions: Vec<_> = model.functions.iter().filter(|function| is_meant(function)).collect();
             for function in functions {
                 all.extend(self.statements(number, Some(&function.name)));
+                // An inlined call begins where its code does: the first statement of the line may be after it.
+                all.extend(function.inlined.iter().filter_map(|call| {
+                    let address = call.ranges.iter().map(|range| range.start).min()?;
+                    let (line, name) = (call.line, function.name.clone());
+                    Some(Statement { thread: number, address, line, function: name, call: call.inside })
+                }));
             }
         }
         let Some(taken) = all.iter().map(|one| one.line).filter(|known| *known >= line).min() else {

@@ -1,8 +1,12 @@
 //! The commands that people know from gdb, as text in and text out.
 
+mod assignment;
 mod show;
 
-pub(crate) use show::{seconds, state};
+pub(crate) use assignment::Assignment;
+pub(crate) use show::{number_as, seconds, state};
+
+use std::collections::{BTreeMap, VecDeque};
 
 use cc67_host::{Target, remark};
 use kmotiondef::limits::TIMEBASE;
@@ -11,7 +15,7 @@ use runtime::{Board, Event, EventKind};
 use vm::engine::ContextId;
 
 use crate::debugger::{BreakpointKind, DebugError, Debugger, Reason, Stop};
-use crate::words::{BreakWords, LineReader, split_if};
+use crate::words::{BreakWords, LineReader, is_move, split_if};
 
 /// What comes of a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,6 +34,15 @@ pub struct Shell<T: Target = Board> {
     /// The line that `list` continues with.
     listed: u32,
     values: u32,
+    /// Expressions that are shown at every stop: number, format, expression.
+    displays: Vec<(u32, String, String)>,
+    last_display: u32,
+    /// What is executed when a breakpoint stops, by its number.
+    commands: BTreeMap<u32, Vec<String>>,
+    /// The breakpoint whose commands are being read.
+    reading: Option<u32>,
+    /// Lines that were shown before the board has sent them.
+    early: VecDeque<Vec<u8>>,
 }
 
 /// What receives what the board says while it runs: console lines, and words about events.
@@ -39,13 +52,28 @@ impl<T: Target> Shell<T> {
     /// Commands for a debugger.
     #[must_use]
     pub fn new(debugger: Debugger<T>) -> Self {
-        Self { debugger, lines: LineReader::default(), listed: 0, values: 0 }
+        Self {
+            debugger,
+            lines: LineReader::default(),
+            listed: 0,
+            values: 0,
+            displays: Vec::new(),
+            last_display: 0,
+            commands: BTreeMap::new(),
+            reading: None,
+            early: VecDeque::new(),
+        }
     }
 
     /// The debugger.
     #[must_use]
     pub const fn debugger(&self) -> &Debugger<T> {
         &self.debugger
+    }
+
+    /// The debugger, to use it.
+    pub(crate) const fn debugger_mut(&mut self) -> &mut Debugger<T> {
+        &mut self.debugger
     }
 
     /// The names that the text at the end of a line may become: commands, then what programs name.
@@ -74,6 +102,48 @@ impl<T: Target> Shell<T> {
     /// # Errors
     /// What is wrong with it.
     pub fn command(&mut self, line: &str, output: Output<'_>) -> Result<Said, DebugError> {
+        if let Some(id) = self.reading {
+            match line.trim() {
+                "end" => self.reading = None,
+                command => self.commands.entry(id).or_default().push(command.to_owned()),
+            }
+            return Ok(Said::Text(String::new()));
+        }
+        let mut said = self.one(line, output)?;
+        // What belongs to the breakpoint that has stopped the board, which may let it go on to another one.
+        let mut next =
+            if matches!(said, Said::Text(_)) { self.commands_of_stop(line) } else { VecDeque::new() };
+        while let Some(command) = next.pop_front() {
+            if let Said::Text(text) = &said {
+                output(text);
+            }
+            said = self.one(&command, output)?;
+            if self.is_move(&command) {
+                next = self.commands_of_stop(&command);
+            }
+            if said == Said::Quit {
+                break;
+            }
+        }
+        Ok(said)
+    }
+
+    /// Whether a line lets time pass.
+    fn is_move(&self, line: &str) -> bool {
+        self.lines.clone().read(line).ok().flatten().is_some_and(|(name, _)| is_move(name))
+    }
+
+    /// The commands of the breakpoints that have stopped what a line let go.
+    fn commands_of_stop(&self, line: &str) -> VecDeque<String> {
+        if !self.is_move(line) {
+            return VecDeque::new();
+        }
+        let ids = ids_of(&self.debugger.stop().reason);
+        let commands = ids.iter().filter_map(|id| self.commands.get(id)).flatten();
+        commands.filter(|command| *command != "silent").cloned().collect()
+    }
+
+    fn one(&mut self, line: &str, output: Output<'_>) -> Result<Said, DebugError> {
         let Some((name, rest)) = self.lines.read(line)? else { return Ok(Said::Text(String::new())) };
         if name == "quit" {
             return Ok(Said::Quit);
@@ -89,6 +159,10 @@ impl<T: Target> Shell<T> {
 
     fn execute(&mut self, name: &str, rest: &str, output: Output<'_>) -> Result<String, DebugError> {
         match name {
+            _ if is_move(name) => self.move_on(name, rest, output),
+            "commands" => self.read_commands(rest),
+            "display" | "undisplay" => self.display(name, rest),
+            "thread" if rest.starts_with("apply ") => self.apply(rest, output),
             "break" | "tbreak" => self.set_break(rest, name == "tbreak"),
             "watch" => {
                 let (expression, condition) = split_if(rest);
@@ -102,8 +176,89 @@ impl<T: Target> Shell<T> {
             "info" | "backtrace" | "frame" | "up" | "down" | "thread" | "list" | "disassemble" | "help" => {
                 self.look(name, rest)
             }
-            _ => self.move_on(name, rest, output),
+            _ => Err(format!("Undefined command: \"{name}\".  Try \"help\".").into()),
         }
+    }
+
+    /// `commands [N]`: the next lines belong to a breakpoint, without a number to the last one.
+    fn read_commands(&mut self, rest: &str) -> Result<String, DebugError> {
+        let last = self.debugger.breakpoints().last().map(|breakpoint| breakpoint.id);
+        let id = match rest {
+            "" => last.ok_or("No breakpoints specified.")?,
+            number => number.parse().map_err(|_| format!("`{number}` is not the number of a breakpoint"))?,
+        };
+        if !self.debugger.breakpoints().iter().any(|breakpoint| breakpoint.id == id) {
+            return Err(format!("No breakpoint number {id}.").into());
+        }
+        self.commands.insert(id, Vec::new());
+        self.reading = Some(id);
+        Ok(String::new())
+    }
+
+    fn display(&mut self, name: &str, rest: &str) -> Result<String, DebugError> {
+        if name == "undisplay" {
+            let number: Option<u32> = rest.parse().ok();
+            self.displays.retain(|(one, ..)| !rest.is_empty() && number != Some(*one));
+            return Ok(String::new());
+        }
+        if !rest.is_empty() {
+            let (format, expression) = show::format_of(rest);
+            let number = self.last_display + 1;
+            let shown = self.shown((number, format, expression))?;
+            self.last_display = number;
+            self.displays.push((number, format.to_owned(), expression.to_owned()));
+            return Ok(shown);
+        }
+        Ok(self.shown_all())
+    }
+
+    fn shown(&self, (number, format, expression): (u32, &str, &str)) -> Result<String, DebugError> {
+        let (slash, text) = match format {
+            "" => (String::new(), self.debugger.evaluate(expression)?.text),
+            _ => (format!("/{format} "), number_as(self.debugger.number(expression)?, format)?),
+        };
+        Ok(format!("{number}: {slash}{expression} = {text}\n"))
+    }
+
+    /// What is shown at every stop, as far as it has a value there.
+    fn shown_all(&self) -> String {
+        let rows = self.displays.iter().map(|(number, format, expression)| (*number, format, expression));
+        rows.filter_map(|(number, format, expression)| self.shown((number, format, expression)).ok())
+            .collect()
+    }
+
+    /// `thread apply all|N… COMMAND`: a command with each of these threads, the highest number first as in gdb.
+    fn apply(&mut self, rest: &str, output: Output<'_>) -> Result<String, DebugError> {
+        let words: Vec<&str> = rest.split_whitespace().skip(1).collect();
+        let is_number = |word: &&&str| **word == "all" || word.parse::<i32>().is_ok();
+        let count = words.iter().take_while(is_number).count();
+        let (chosen, command) = words.split_at(count);
+        if chosen.is_empty() || command.is_empty() {
+            return Err("thread apply all|N COMMAND".into());
+        }
+        let command = command.join(" ");
+        if self.is_move(&command) {
+            return Err(format!("`{command}` lets all threads go on").into());
+        }
+        let (thread, frame) = (self.debugger.thread(), self.debugger.frame());
+        let is_meant = |one: &ThreadId| chosen.contains(&"all") || chosen.contains(&one.to_string().as_str());
+        let mut threads: Vec<_> = ThreadId::all().filter(is_meant).collect();
+        threads.reverse();
+        let mut text = String::new();
+        for one in threads {
+            if state(&self.debugger, one).is_none() {
+                continue;
+            }
+            self.debugger.select(one, 0)?;
+            text += &format!("\nThread {one}:\n");
+            match self.one(&command, output) {
+                Ok(Said::Text(said)) => text += &said,
+                Ok(Said::Quit) => {}
+                Err(error) => text += &format!("{error}\n"),
+            }
+        }
+        self.debugger.select(thread, frame)?;
+        Ok(text)
     }
 
     /// Commands that let time pass, or go back in it.
@@ -114,20 +269,18 @@ impl<T: Target> Shell<T> {
         if name == "goto" {
             return self.go_to(rest, output);
         }
-        if matches!(name, "until" | "advance") {
-            let debugger = &mut self.debugger;
-            let mut teller = Teller::new(debugger, output);
-            let stop = debugger.until(rest, &mut |event| teller.tell(event))?;
-            return Ok(self.stop_text(&stop));
-        }
-        let count = if rest.is_empty() { 1.0 } else { self.debugger.number(rest)? };
+        let (count, place) = match name {
+            "until" | "advance" => (1.0, rest),
+            _ if rest.is_empty() => (1.0, rest),
+            _ => (self.debugger.number(rest)?, ""),
+        };
         let mut text = String::new();
         let times = if name == "continue" || name == "run" { 1 } else { (count as u64).max(1) };
         if name == "continue" && count > 1.0 {
-            self.ignore_present(count as u64 - 1);
+            self.ignore_present(count as u64 - 1, output);
         }
         for _ in 0..times {
-            let stop = self.once(name, output)?;
+            let stop = self.once(name, place, output)?;
             text = self.stop_text(&stop);
             if !matches!(stop.reason, Reason::Step | Reason::Time) {
                 break;
@@ -136,39 +289,33 @@ impl<T: Target> Shell<T> {
         Ok(text)
     }
 
-    fn once(&mut self, name: &str, output: Output<'_>) -> Result<Stop, DebugError> {
-        let debugger = &mut self.debugger;
-        let mut teller = Teller::new(debugger, output);
-        let events = &mut |event: &Event| teller.tell(event);
-        Ok(match name {
-            "run" => {
-                if debugger.stop().reason != Reason::Begin {
-                    debugger.restart()?;
-                }
-                debugger.go_on(events)
-            }
-            "step" => debugger.step(events)?,
-            "next" => debugger.next(events)?,
-            "finish" => debugger.finish(events)?,
-            "stepi" => debugger.step_instruction(events)?,
-            "tick" => debugger.step_tick(events),
-            "slice" => debugger.step_slice(events),
-            "reverse-continue" => debugger.reverse_continue(),
-            "reverse-step" => debugger.reverse_step()?,
-            "reverse-next" => debugger.reverse_next()?,
-            "reverse-stepi" => debugger.reverse_step_instruction(),
-            "reverse-finish" => debugger.reverse_finish()?,
-            _ => debugger.go_on(events),
-        })
+    /// Moves once; what programs have printed until then is shown, also what the board has not sent yet.
+    fn once(&mut self, name: &str, place: &str, output: Output<'_>) -> Result<Stop, DebugError> {
+        let Self { debugger, early, .. } = self;
+        let mut teller = Teller::new(debugger, early, output);
+        let stop = go(debugger, name, place, &mut |event| teller.tell(event));
+        let scene = std::mem::take(&mut teller.scene);
+        self.show_early(!name.starts_with("reverse"), output);
+        output(&scene);
+        stop
+    }
+
+    /// Shows the lines that the board has not sent yet; after a way back they were shown before.
+    fn show_early(&mut self, is_forward: bool, output: Output<'_>) {
+        let unsent = self.debugger.session().target().unsent_lines();
+        let known = self.early.len();
+        for line in unsent.iter().skip(known).filter(|_| is_forward) {
+            output(&format!("{}\n", String::from_utf8_lossy(line)));
+        }
+        self.early = unsent.into();
     }
 
     /// `continue COUNT` passes the breakpoint where one stands COUNT - 1 times.
-    fn ignore_present(&mut self, times: u64) {
-        if let Reason::Breakpoint(ids) = self.debugger.stop().reason.clone() {
-            for id in ids {
-                if let Some(breakpoint) = self.debugger.breakpoint_mut(id) {
-                    breakpoint.ignore = times;
-                }
+    fn ignore_present(&mut self, times: u64, output: Output<'_>) {
+        for id in ids_of(&self.debugger.stop().reason) {
+            if let Some(breakpoint) = self.debugger.breakpoint_mut(id) {
+                breakpoint.ignore = times;
+                output(&format!("Will ignore next {times} crossings of breakpoint {id}.  Continuing.\n"));
             }
         }
     }
@@ -181,13 +328,18 @@ impl<T: Target> Shell<T> {
             .map_err(|_| format!("`{rest}` is not a time in seconds"))?;
         // The last tick that is over at that time.
         let tick = Ticks::new(((seconds / TIMEBASE + 1e-6).floor() - 1.0).max(0.0) as u64);
-        let debugger = &mut self.debugger;
-        let stop = if tick <= debugger.session().tick() {
-            debugger.go_to(tick)?
+        let Self { debugger, early, .. } = self;
+        let is_forward = tick > debugger.session().tick();
+        let stop = if is_forward {
+            let mut teller = Teller::new(debugger, early, output);
+            let stop = debugger.run_to(tick, &mut |event| teller.tell(event));
+            let scene = std::mem::take(&mut teller.scene);
+            output(&scene);
+            stop
         } else {
-            let mut teller = Teller::new(debugger, output);
-            debugger.run_to(tick, &mut |event| teller.tell(event))
+            debugger.go_to(tick)?
         };
+        self.show_early(is_forward, output);
         Ok(self.stop_text(&stop))
     }
 
@@ -230,7 +382,11 @@ impl<T: Target> Shell<T> {
                 let number = argument.trim().parse().map_err(|_| "catch bit NUMBER")?;
                 catches.bits.push(number);
             }
-            _ => return Err("catch trap|no-trap|remark|start|end|console TEXT|bit N".into()),
+            "when" if !argument.trim().is_empty() => {
+                let (_, text) = self.debugger.catch_when(argument.trim().trim_matches('"'))?;
+                return Ok(text + "\n");
+            }
+            _ => return Err("catch trap|no-trap|remark|start|end|console TEXT|bit N|when EXPRESSION".into()),
         }
         Ok(format!("Catchpoint: {rest}\n"))
     }
@@ -264,29 +420,82 @@ impl<T: Target> Shell<T> {
     fn stop_text(&mut self, stop: &Stop) -> String {
         let place = self.debugger.present();
         self.listed = place.as_ref().map_or(self.listed, |place| place.line.saturating_sub(5));
-        show::stop(&self.debugger, stop)
+        let silent =
+            |id: &u32| self.commands.get(id).is_some_and(|lines| lines.iter().any(|line| line == "silent"));
+        if ids_of(&stop.reason).iter().any(silent) {
+            return String::new();
+        }
+        show::stop(&self.debugger, stop) + &self.shown_all()
+    }
+}
+
+/// Moves a board.
+fn go<T: Target>(
+    debugger: &mut Debugger<T>,
+    name: &str,
+    place: &str,
+    events: &mut dyn FnMut(&Event),
+) -> Result<Stop, DebugError> {
+    Ok(match name {
+        "run" => {
+            if debugger.stop().reason != Reason::Begin {
+                debugger.restart()?;
+            }
+            debugger.go_on(events)
+        }
+        "until" | "advance" => debugger.until(place, events)?,
+        "step" => debugger.step(events)?,
+        "next" => debugger.next(events)?,
+        "finish" => debugger.finish(events)?,
+        "stepi" => debugger.step_instruction(events)?,
+        "tick" => debugger.step_tick(events),
+        "slice" => debugger.step_slice(events),
+        "reverse-continue" => debugger.reverse_continue(),
+        "reverse-step" => debugger.reverse_step()?,
+        "reverse-next" => debugger.reverse_next()?,
+        "reverse-stepi" => debugger.reverse_step_instruction(),
+        "reverse-finish" => debugger.reverse_finish()?,
+        _ => debugger.go_on(events),
+    })
+}
+
+/// The breakpoints that a stop is about.
+fn ids_of(reason: &Reason) -> Vec<u32> {
+    match reason {
+        Reason::Breakpoint(ids) => ids.clone(),
+        Reason::Changed { id, .. } | Reason::When { id, .. } => vec![*id],
+        _ => Vec::new(),
     }
 }
 
 /// Hands events over as lines.
 struct Teller<'a, 'b> {
     infos: Vec<runtime::debug::DebugInfo>,
+    /// Lines that were shown already.
+    early: &'a mut VecDeque<Vec<u8>>,
+    /// What belongs to a trap, and comes after what was printed before it.
+    scene: String,
     output: &'a mut (dyn FnMut(&str) + 'b),
 }
 
 impl<'a, 'b> Teller<'a, 'b> {
-    fn new<T: Target>(debugger: &Debugger<T>, output: &'a mut (dyn FnMut(&str) + 'b)) -> Self {
+    fn new<T: Target>(
+        debugger: &Debugger<T>,
+        early: &'a mut VecDeque<Vec<u8>>,
+        output: &'a mut (dyn FnMut(&str) + 'b),
+    ) -> Self {
         let infos = debugger.session().debug().into_iter().map(|(_, info)| info).collect();
-        Self { infos, output }
+        Self { infos, early, scene: String::new(), output }
     }
 
     fn tell(&mut self, event: &Event) {
         match &event.kind {
+            EventKind::ConsoleLine(line) if self.early.front() == Some(line) => _ = self.early.pop_front(),
             EventKind::ConsoleLine(line) => (self.output)(&format!("{}\n", String::from_utf8_lossy(line))),
             // Its text is the reason of the stop.
             EventKind::Trap(_) => {
                 if let Some(scene) = remark::scene(event) {
-                    (self.output)(&scene.to_string());
+                    self.scene += &scene.to_string();
                 }
             }
             _ => {
@@ -306,6 +515,7 @@ fn breakpoints<T: Target>(debugger: &Debugger<T>) -> String {
             BreakpointKind::Code(place, _) if breakpoint.log.is_some() => format!("dprintf     {place}"),
             BreakpointKind::Code(place, _) => format!("breakpoint  {place}"),
             BreakpointKind::Watch(expression) => format!("watchpoint  {expression}"),
+            BreakpointKind::When(expression) => format!("catchpoint  when {expression}"),
         };
         let enabled = if breakpoint.is_enabled { 'y' } else { 'n' };
         out += &format!("{:<4} {enabled} {kind}\n", breakpoint.id);

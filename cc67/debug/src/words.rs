@@ -20,7 +20,8 @@ const COMMANDS: &[Command] = &[
     row("tbreak", &["tb"], "the same, once"),
     row("watch", &["wa"], "watch EXPRESSION [if CONDITION]: stop when its value changes, and say who did it"),
     row("dprintf", &[], "dprintf PLACE,TEXT: print a text there, {expression} is its value"),
-    row("catch", &[], "catch trap|remark|start|end|console TEXT|bit N: stop on it"),
+    row("catch", &[], "catch trap|remark|start|end|console TEXT|bit N|when EXPRESSION: stop on it"),
+    row("commands", &[], "commands [N]: the lines up to `end` are executed when breakpoint N stops"),
     row("condition", &["cond"], "condition N [EXPRESSION]: stop at breakpoint N only where it is not 0"),
     row("ignore", &[], "ignore N COUNT: pass breakpoint N so often"),
     row("enable", &["en"], "enable [N]"),
@@ -43,6 +44,8 @@ const COMMANDS: &[Command] = &[
     row("reverse-stepi", &["rsi"], "reverse-stepi [COUNT]: back by one instruction"),
     row("reverse-finish", &[], "back to the call of the function"),
     row("print", &["p", "inspect"], "print[/x] EXPRESSION"),
+    row("display", &[], "display[/x] [EXPRESSION]: show its value at every stop, or all of them now"),
+    row("undisplay", &[], "undisplay [N]: no longer show it, or any"),
     row("ptype", &["whatis"], "ptype EXPRESSION: its type"),
     row("x", &[], "x/NFU ADDRESS: memory; F is x d u f s c or i, U is b h w g"),
     row(
@@ -50,17 +53,52 @@ const COMMANDS: &[Command] = &[
         &[],
         "set var NAME = EXPRESSION: another value, which begins a new line of history in the past",
     ),
-    row("info", &["i"], "info threads|breakpoints|locals|variables|registers|line|frame|history"),
+    row(
+        "info",
+        &["i"],
+        "info threads|breakpoints|locals|args|variables|registers|display|line|frame|history",
+    ),
     row("backtrace", &["bt", "where"], "the calls that led here"),
     row("frame", &["f"], "frame [N]: look at a call"),
     row("up", &[], "look at the caller"),
     row("down", &[], "look at the called function"),
-    row("thread", &["t"], "thread [N]: look at a thread"),
+    row("thread", &["t"], "thread [N]: look at a thread; thread apply all|N COMMAND: a command for each"),
     row("list", &["l"], "list [LINE|FUNCTION]: the source"),
     row("disassemble", &["disas"], "the instructions of the function"),
     row("help", &["h"], "this list"),
     row("quit", &["q", "exit"], "end"),
 ];
+
+/// The commands that let time pass, or go back in it.
+const MOVES: &[&str] = &[
+    "run",
+    "continue",
+    "step",
+    "next",
+    "finish",
+    "stepi",
+    "until",
+    "advance",
+    "tick",
+    "slice",
+    "goto",
+    "reverse-continue",
+    "reverse-step",
+    "reverse-next",
+    "reverse-stepi",
+    "reverse-finish",
+];
+
+/// Whether a command lets time pass, or goes back in it.
+pub(crate) fn is_move(name: &str) -> bool {
+    MOVES.contains(&name)
+}
+
+/// The command that a line begins with, by its full name: the line may be an expression if it does not.
+pub(crate) fn command_of(line: &str) -> Option<&'static str> {
+    let end = line.find(|c: char| c.is_whitespace() || c == '/').unwrap_or(line.len());
+    LineReader::names().find(|name| *name == &line[..end])
+}
 
 impl Command {
     fn is_called(&self, word: &str) -> bool {

@@ -189,6 +189,12 @@ pub trait Target {
         self.read(address, bytes).ok()
     }
 
+    /// Whether there is memory or a register at an address.
+    fn is_mapped(&self, address: GuestAddr) -> bool {
+        let _ = address;
+        true
+    }
+
     /// Writes memory from an address on.
     ///
     /// # Errors
@@ -228,6 +234,11 @@ pub trait Target {
 
     /// Says whether the PC takes console lines.
     fn listen(&mut self, listens: bool);
+
+    /// The lines that programs have printed and the board has not sent yet, oldest first; empty where unknown.
+    fn unsent_lines(&self) -> Vec<Vec<u8>> {
+        Vec::new()
+    }
 
     /// Keeps from now on the bytes that the board sends over its link, for a PC that is elsewhere.
     fn tap_wire(&mut self);

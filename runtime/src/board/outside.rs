@@ -25,6 +25,12 @@ impl<E: Engine> Board<E> {
         self.machine.firmware().parts.pc.usb.is_busy()
     }
 
+    /// The lines that programs have printed and that wait to be sent, oldest first.
+    #[must_use]
+    pub fn unsent_lines(&self) -> Vec<Vec<u8>> {
+        self.machine.firmware().parts.out.console.unsent().map(<[u8]>::to_vec).collect()
+    }
+
     /// Says whether the PC takes console lines. If not, they wait in the board's queue, and once that is full, so do
     /// the programs that print.
     pub fn listen(&mut self, listens: bool) {

@@ -73,6 +73,11 @@ impl Console {
         servo.into_iter().chain(self.queue.drain(..)).collect()
     }
 
+    /// The strings that wait to be sent, in this order.
+    pub(crate) fn unsent(&self) -> impl Iterator<Item = &[u8]> {
+        self.queue.iter().map(Vec::as_slice)
+    }
+
     /// The line that was begun and has not ended.
     pub(crate) fn held(&self) -> &[u8] {
         &self.held

@@ -3,6 +3,7 @@
 //! An expression is compiled as a statement at the end of the innermost block around a line, so that every name in it
 //! means what it means there. It is computed from the board's memory and the registers of a call; it only reads.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use kmotiondef::GuestAddr;
@@ -35,6 +36,12 @@ pub trait DebugReader {
     /// The eight bytes from an address on; 0 outside the memory.
     fn bytes(&self, address: GuestAddr) -> [u8; 8];
 
+    /// Reports whether there is memory at an address.
+    fn is_mapped(&self, address: GuestAddr) -> bool {
+        let _ = address;
+        true
+    }
+
     /// The item of this place in the list that the expression was compiled with.
     fn item(&self, index: usize) -> f64;
 
@@ -63,6 +70,7 @@ pub struct Probe {
     /// The value is the address of what was requested.
     is_address: bool,
     locals: BTreeMap<LocalId, LocalModel>,
+    has_locals: bool,
 }
 
 /// The text inserted before and after an expression.
@@ -81,6 +89,8 @@ impl Model {
         expression: &str,
         items: &[&str],
     ) -> Result<Probe, String> {
+        let line = place.map_or(1, |place| place.line);
+        let expression = &with_line(expression, line);
         on_large_stack(|| {
             let whole = self.probe_as(place, &format!("&(\n{expression}\n)"), items, true);
             whole.or_else(|_| self.probe_as(place, &format!("(\n{expression}\n)"), items, false))
@@ -163,10 +173,18 @@ impl Model {
         let locals = locals_of(locals, function, &sources, start);
         let symbols = self.image.symbols.iter().filter(|entry| entry.kind == EntryKind::Object);
         let symbols = symbols.map(|entry| (entry.name.clone(), GuestAddr::new(entry.address))).collect();
-        let meanings = watch::meanings(&unit, index, value, &symbols, &self.options, items)?;
+        let named = watch::meanings(&unit, index, value, &symbols, &self.options, items)?;
+        let function = &unit.functions[index];
+        if is_address
+            && let ExprKind::Address(place) = function.exprs[value].kind
+            && let PlaceKind::Symbol(symbol, _) = function.places[place].kind
+            && matches!(named.meanings.get(&symbol), Some(watch::Meaning::Item(_)))
+        {
+            return Err("an item of the board has no address".to_owned());
+        }
         let function = unit.functions.swap_remove(index);
-        let expression = Expression::new(function, value, meanings);
-        Ok(Probe { unit, names, expression, value, is_address, locals })
+        let expression = Expression::new(function, value, named.meanings);
+        Ok(Probe { unit, names, expression, value, is_address, locals, has_locals: named.has_locals })
     }
 
     /// The value of a local, if it has one at present.
@@ -213,14 +231,43 @@ fn locals_of(
     locals
 }
 
+/// An expression in which `__LINE__` is the line of the place where it is evaluated.
+fn with_line(expression: &str, line: u32) -> String {
+    let mut whole = String::new();
+    let mut rest = expression;
+    while let Some(at) = rest.find("__LINE__") {
+        let (before, after) = (&rest[..at], &rest[at + "__LINE__".len()..]);
+        let is_part = |letter: Option<char>| letter.is_some_and(|c| c.is_ascii_alphanumeric() || c == '_');
+        whole.push_str(before);
+        let is_word = !is_part(before.chars().next_back()) && !is_part(after.chars().next());
+        if is_word {
+            whole.push_str(&line.to_string());
+        } else {
+            whole.push_str("__LINE__");
+        }
+        rest = after;
+    }
+    whole + rest
+}
+
+/// The message on a place where there is no memory.
+fn no_memory(address: GuestAddr) -> String {
+    format!("Cannot access memory at address {:#x}", address.get())
+}
+
 /// A reader as an expression wants it.
 struct Inner<'a> {
     reader: &'a dyn DebugReader,
     locals: &'a BTreeMap<LocalId, LocalModel>,
+    /// The last address read at which there is no memory.
+    unmapped: Cell<Option<GuestAddr>>,
 }
 
 impl watch::ItemReader for Inner<'_> {
     fn bytes(&self, address: GuestAddr) -> [u8; 8] {
+        if !self.reader.is_mapped(address) {
+            self.unmapped.set(Some(address));
+        }
         self.reader.bytes(address)
     }
 
@@ -240,13 +287,21 @@ impl Probe {
     /// The present value.
     ///
     /// # Errors
-    /// That a local is optimised out, or that an integer is divided by 0.
+    /// That a local is optimised out, that an integer is divided by 0, or that there is no memory where a pointer points.
     pub fn value(&self, reader: &dyn DebugReader) -> Result<DebugValue, String> {
-        let inner = Inner { reader, locals: &self.locals };
+        let inner = Inner { reader, locals: &self.locals, unmapped: Cell::new(None) };
+        let value = self.value_in(&inner)?;
+        let unmapped = inner.unmapped.get();
+        let place = value.address().filter(|address| !reader.is_mapped(*address));
+        unmapped.or(place).map_or(Ok(value), |address| Err(no_memory(address)))
+    }
+
+    fn value_in(&self, inner: &Inner<'_>) -> Result<DebugValue, String> {
+        let reader = inner.reader;
         let function = self.expression.function();
         let ty = function.exprs[self.value].ty;
         if !self.is_address {
-            let constant = self.expression.constant_of(self.value, &inner).ok_or_else(|| self.why(reader))?;
+            let constant = self.expression.constant_of(self.value, inner).ok_or_else(|| self.why(reader))?;
             return Ok(DebugValue { ty, data: Data::Constant(constant) });
         }
         let pointee = match self.unit.types.get(ty) {
@@ -262,12 +317,18 @@ impl Probe {
                 reader.local(local).ok_or_else(|| optimised_out(&local.name))?,
             ));
         }
-        match self.expression.constant_of(self.value, &inner) {
+        match self.expression.constant_of(self.value, inner) {
             Some(Constant::Int(address)) => {
                 Ok(DebugValue { ty: pointee, data: Data::Memory(GuestAddr::new(address as u32)) })
             }
             _ => Err(self.why(reader)),
         }
+    }
+
+    /// Reports whether the expression names locals of its call.
+    #[must_use]
+    pub const fn has_locals(&self) -> bool {
+        self.has_locals
     }
 
     /// The local that the expression names, for another value of it.

@@ -21,7 +21,7 @@ use kmotiondef::boards::{BOARDS, TargetBoard};
 
 use crate::driver::{Options, front_and_object, on_large_stack};
 use crate::image;
-use crate::inspect::{EntryKind, Inspection};
+use crate::inspect::{Entry, EntryKind, Inspection};
 use crate::link::Linked;
 use crate::names::Names;
 use crate::object::{InlinedPlaces, Object, ObjectFunction, VariablePlaces};
@@ -29,6 +29,7 @@ use crate::passes::Level;
 use crate::pp::Files;
 use crate::source::SourceMap;
 use crate::target::Target;
+use crate::ty::{FunctionType, ParameterTypes, Type};
 use crate::typed::Unit;
 
 pub use crate::object::Location;
@@ -120,6 +121,31 @@ impl LocalModel {
 }
 
 impl Model {
+    /// Number of the parameters of a function, which come first among its locals.
+    #[must_use]
+    pub fn parameters(&self, function: &str) -> usize {
+        let found = self.unit.symbols.values().find(|symbol| symbol.name == function);
+        let ty = found.map(|symbol| self.unit.types.get(symbol.ty));
+        match ty {
+            Some(Type::Function(FunctionType {
+                parameters: ParameterTypes::Prototype { types, .. },
+                ..
+            })) => types.len(),
+            _ => 0,
+        }
+    }
+
+    /// The function of the image that has an address, one of the library among them.
+    #[must_use]
+    pub fn image_function(&self, address: u32) -> Option<&str> {
+        let functions = self.image.symbols.iter().filter(|entry| entry.kind == EntryKind::Function);
+        let has = |entry: &&Entry| {
+            let size = entry.size.unwrap_or(0);
+            (entry.address..entry.address.saturating_add(size)).contains(&address)
+        };
+        functions.filter(has).map(|entry| entry.name.as_str()).next()
+    }
+
     /// Collects the information about a program from its source `text`, and its image for `thread`.
     ///
     /// # Errors

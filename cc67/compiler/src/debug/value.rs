@@ -68,6 +68,11 @@ pub struct Child {
     pub value: DebugValue,
 }
 
+/// The text for what cannot be read.
+fn unreadable(address: GuestAddr) -> String {
+    format!("<error: Cannot access memory at address {:#x}>", address.get())
+}
+
 /// Types, their names, and the memory that values are read from.
 #[derive(Clone, Copy)]
 pub struct Displayed<'a> {
@@ -175,6 +180,9 @@ impl Displayed<'_> {
     }
 
     fn text_at(&self, value: &DebugValue, depth: u32) -> String {
+        if let Some(address) = value.address().filter(|address| !self.reader.is_mapped(*address)) {
+            return unreadable(address);
+        }
         match self.types.get(value.ty) {
             Type::Void => "void".to_owned(),
             Type::Function(_) => "a function".to_owned(),
@@ -220,7 +228,10 @@ impl Displayed<'_> {
         let text = format!("{address:#x}");
         match self.types.get(to) {
             Type::Char if address != 0 => {
-                format!("{text} {}", self.string(GuestAddr::new(address), CHARACTERS))
+                let address = GuestAddr::new(address);
+                let is_mapped = self.reader.is_mapped(address);
+                let string = if is_mapped { self.string(address, CHARACTERS) } else { unreadable(address) };
+                format!("{text} {string}")
             }
             _ => text,
         }

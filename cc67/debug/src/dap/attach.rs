@@ -18,6 +18,7 @@ use serde_json::Value;
 use super::door::{Editor, editors};
 use super::{Herald, Server, read};
 use crate::debugger::{Debugger, Reason};
+use crate::shell::Shell;
 
 /// How long a board that is stopped waits for the next request at once.
 const PATIENCE: Duration = Duration::from_millis(10);
@@ -92,14 +93,14 @@ impl Visitor {
         stream.set_nodelay(true)?;
         let requests = read(BufReader::new(stream.try_clone()?), Arc::new(AtomicBool::new(false)));
         let mut server = Server::new(stream, None, Arc::default());
-        server.debugger = Some(Debugger::of_lent().map_err(io::Error::other)?);
+        server.shell = Some(Shell::new(Debugger::of_lent().map_err(io::Error::other)?));
         Ok(Self { server, requests })
     }
 
     /// Takes the board, or gives it back.
     fn swap(&mut self, session: &mut Session<AnyTarget>) {
-        if let Some(debugger) = &mut self.server.debugger {
-            debugger.swap(session);
+        if let Some(shell) = &mut self.server.shell {
+            shell.debugger_mut().swap(session);
         }
     }
 
@@ -111,7 +112,7 @@ impl Visitor {
                 Ok(false) | Err(_) => return false,
             }
             let server = &mut self.server;
-            let Some(debugger) = &mut server.debugger else { return false };
+            let Some(debugger) = server.shell.as_mut().map(Shell::debugger_mut) else { return false };
             let Some(goal) = server.goal.clone() else {
                 if idle(debugger.session_mut()).is_break() {
                     return false;
@@ -126,18 +127,22 @@ impl Visitor {
             if debugger.session().held().is_none() && debugger.session().tick() >= limit {
                 return true;
             }
-            let mut herald = Herald::new(&mut server.wire, debugger);
+            let mut herald = Herald::new(&mut server.wire, &mut server.early, debugger);
             let stop = debugger.proceed(&goal, limit, &mut |event| {
                 herald.tell(event);
                 events(event.clone());
             });
-            if herald.failed.is_some() {
+            let Herald { failed, late, .. } = herald;
+            if failed.is_some() || !late.is_empty() && server.wire.output("console", &late).is_err() {
                 return false;
             }
             if stop.reason == Reason::Time {
                 return server.tell_messages().is_ok();
             }
             server.goal = None;
+            if server.tell_early(true).is_err() {
+                return false;
+            }
             if server.tell_stop(&stop).is_err() {
                 return false;
             }

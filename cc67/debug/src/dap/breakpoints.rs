@@ -6,7 +6,7 @@ use cc67_host::Target;
 use serde_json::{Value, json};
 
 use super::{Reply, Server};
-use crate::debugger::{DebugError, Debugger};
+use crate::debugger::{DebugError, Debugger, HitCondition};
 
 /// Makes the breakpoint that the editor wants: its number, and what to say of it.
 type Maker<'a, T> = dyn FnMut(&mut Debugger<T>, &Value) -> Result<(u32, String), DebugError> + 'a;
@@ -61,12 +61,14 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         }
         let mut shown = Vec::new();
         for wanted in wanted.as_array().map(Vec::as_slice).unwrap_or_default() {
-            match make(debugger, wanted) {
-                Ok((id, text)) => {
+            let hits = wanted["hitCondition"].as_str().filter(|text| !text.trim().is_empty());
+            let hits = hits.map(str::parse::<HitCondition>).transpose();
+            match hits.and_then(|hits| Ok((make(debugger, wanted)?, hits))) {
+                Ok(((id, text), hits)) => {
                     made.push((set.to_owned(), id));
                     if let Some(breakpoint) = debugger.breakpoint_mut(id) {
                         breakpoint.log = wanted["logMessage"].as_str().map(str::to_owned);
-                        breakpoint.ignore = wanted["hitCondition"].as_str().map_or(0, passes);
+                        breakpoint.stops_at = hits;
                     }
                     shown.push(verified(debugger, id, &text));
                 }
@@ -103,14 +105,6 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         }
         Ok(json!({ "breakpoints": lines }))
     }
-}
-
-/// How often a breakpoint is passed that stops when it is met so often: `5`, `>= 5`, `> 4`.
-fn passes(condition: &str) -> u64 {
-    let digits: String = condition.chars().filter(char::is_ascii_digit).collect();
-    let count: u64 = digits.parse().unwrap_or(0);
-    let is_more = condition.contains('>') && !condition.contains(">=");
-    if is_more { count } else { count.saturating_sub(1) }
 }
 
 /// A breakpoint that is set, as clients see it.

@@ -97,6 +97,7 @@ pub(super) fn capabilities(is_own: bool) -> Value {
         "supportsConfigurationDoneRequest": true,
         "supportsFunctionBreakpoints": true,
         "supportsConditionalBreakpoints": true,
+        "supportsValueFormattingOptions": true,
         "supportsHitConditionalBreakpoints": true,
         "supportsEvaluateForHovers": true,
         "supportsStepBack": is_own,

@@ -3,13 +3,13 @@
 use std::io::Write;
 
 use cc67_host::Target;
-use kmotiondef::ThreadId;
+use kmotiondef::{GuestAddr, ThreadId};
 use serde_json::{Value, json};
 use vm::engine::ContextId;
 
 use super::{CALLBACK, Reply, Server, number_of, wire};
 use crate::debugger::{DebugError, Debugger, Reason, ShownVariable};
-use crate::shell::state;
+use crate::shell::{Assignment, number_as, state};
 
 /// Frames of one thread; the number of a frame says which thread it is of.
 const FRAMES: i64 = 100_000;
@@ -43,6 +43,21 @@ impl Handle {
             | Self::Persist(frame)
             | Self::Parts(frame, _) => *frame,
         }
+    }
+}
+
+/// Whether numbers are requested in hexadecimal.
+fn wants_hex(arguments: &Value) -> bool {
+    arguments["format"]["hex"] == true
+}
+
+/// The text of a variable; an integer in hexadecimal where that is wanted.
+fn text_of(variable: &ShownVariable, is_hex: bool) -> String {
+    let digits = variable.text.split(' ').next().unwrap_or_default();
+    match digits.parse::<i64>() {
+        Ok(number) if is_hex && (number >= 0 || number < i64::from(i32::MIN)) => format!("{number:#x}"),
+        Ok(number) if is_hex => format!("{:#x}", number as i32),
+        _ => variable.text.clone(),
     }
 }
 
@@ -102,7 +117,11 @@ impl<W: Write, T: Target> Server<'_, W, T> {
                 "instructionPointerReference": format!("{:#010x}", frame.address.get()),
             });
             if let Some(place) = &frame.place {
-                shown["name"] = json!(place.function);
+                let arguments = debugger.arguments(frame);
+                shown["name"] = match arguments.as_slice() {
+                    [] => json!(place.function),
+                    all => json!(format!("{}({})", place.function, all.join(", "))),
+                };
                 shown["line"] = json!(place.line);
                 shown["column"] = json!(1);
                 shown["source"] = source(&place.file);
@@ -141,14 +160,15 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         Ok(json!({ "scopes": scopes }))
     }
 
-    fn shown(&mut self, frame: i64, variable: &ShownVariable) -> Value {
+    fn shown(&mut self, frame: i64, variable: &ShownVariable, is_hex: bool) -> Value {
         let reference = if variable.parts > 0 {
             self.handle(Handle::Parts(frame, variable.expression.clone()))
         } else {
             0
         };
         let mut shown = json!({
-            "name": variable.name, "value": variable.text, "type": variable.ty, "variablesReference": reference,
+            "name": variable.name, "value": text_of(variable, is_hex), "type": variable.ty,
+            "variablesReference": reference,
             "evaluateName": variable.expression,
         });
         if variable.name.starts_with('[') || variable.ty.ends_with(']') {
@@ -184,7 +204,9 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         let count =
             arguments["count"].as_u64().filter(|count| *count > 0).map_or(PARTS, |count| count as u32);
         let listed = self.listed(&handle, first, count)?;
-        let shown: Vec<_> = listed.iter().map(|variable| self.shown(handle.frame(), variable)).collect();
+        let is_hex = wants_hex(arguments);
+        let shown: Vec<_> =
+            listed.iter().map(|variable| self.shown(handle.frame(), variable, is_hex)).collect();
         Ok(json!({ "variables": shown }))
     }
 
@@ -194,19 +216,26 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         if let Some(frame) = frame {
             self.select(frame)?;
         }
-        let assignment = (arguments["context"] == "repl").then(|| text.split_once('=')).flatten();
-        let assignment =
-            assignment.filter(|(place, value)| !value.starts_with('=') && !place.ends_with(['!', '<', '>']));
-        let variable = match assignment {
-            Some((place, value)) => self.debugger()?.set(place.trim(), value.trim())?,
+        // `n,x` is `n` in hexadecimal, as in other debuggers.
+        let (text, format) = match text.rsplit_once(',') {
+            Some((text, format)) if matches!(format.trim(), "x" | "h") => (text.trim().to_owned(), "x"),
+            Some((text, format @ ("d" | "o" | "t" | "c"))) => (text.trim().to_owned(), format),
+            _ => (text, if wants_hex(arguments) { "x" } else { "" }),
+        };
+        let assignment = (arguments["context"] == "repl").then(|| Assignment::of(&text)).flatten();
+        let mut variable = match assignment {
+            Some(Assignment { place, value, .. }) => self.debugger()?.set(&place, &value)?,
             None => self.debugger()?.evaluate(&text)?,
         };
+        if !format.is_empty() && format != "x" {
+            variable.text = number_as(self.debugger()?.number(&text)?, format)?;
+        }
         let number = frame.unwrap_or_else(|| {
-            self.debugger.as_ref().map_or(0, |debugger| number_of(debugger.context()) * FRAMES)
+            self.shell.as_ref().map_or(0, |shell| number_of(shell.debugger().context()) * FRAMES)
         });
-        let shown = self.shown(number, &variable);
+        let shown = self.shown(number, &variable, format == "x");
         let mut body = json!({
-            "result": variable.text, "type": variable.ty, "variablesReference": shown["variablesReference"],
+            "result": shown["value"], "type": variable.ty, "variablesReference": shown["variablesReference"],
         });
         if let Some(address) = variable.address {
             body["memoryReference"] = json!(format!("{address:#010x}"));
@@ -304,8 +333,16 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         let base = address_of(arguments["memoryReference"].as_str().unwrap_or_default())?;
         let address = base.wrapping_add_signed(arguments["offset"].as_i64().unwrap_or(0) as i32);
         let count = arguments["count"].as_u64().unwrap_or(0).min(1 << 20) as u32;
-        let bytes = self.debugger()?.bytes(address, count);
-        Ok(json!({ "address": format!("{address:#010x}"), "data": wire::encode(&bytes) }))
+        let debugger = self.debugger()?;
+        let is_mapped =
+            |at: &u32| debugger.session().target().is_mapped(GuestAddr::new(address.wrapping_add(*at)));
+        let readable = (0..count).take_while(is_mapped).count() as u32;
+        let bytes = debugger.bytes(address, readable);
+        let mut body = json!({ "address": format!("{address:#010x}"), "data": wire::encode(&bytes) });
+        if readable < count {
+            body["unreadableBytes"] = json!(count - readable);
+        }
+        Ok(body)
     }
 
     pub(super) fn write_memory(&mut self, arguments: &Value) -> Reply {

@@ -18,6 +18,7 @@ pub use attach::AttachPoint;
 pub use door::{Editor, editors};
 pub use launch::Launch;
 
+use std::collections::VecDeque;
 use std::io::{self, BufRead, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -30,6 +31,8 @@ use serde_json::{Value, json};
 use vm::engine::ContextId;
 
 use crate::debugger::{DebugError, Debugger, Goal, ONLY_FORWARD, Reason, Stop, Way};
+use crate::shell::{Said, Shell};
+use crate::words::{command_of, is_move};
 use look::Handle;
 use wire::ClientWire;
 
@@ -101,7 +104,10 @@ struct Server<'a, W, T: Target> {
     /// Where the board of somebody else goes; `None` while it is stopped.
     goal: Option<Goal>,
     interrupt: Arc<AtomicBool>,
-    debugger: Option<Debugger<T>>,
+    /// The debugger, with the commands of the terminal.
+    shell: Option<Shell<T>>,
+    /// Lines that were reported before the board has sent them.
+    early: VecDeque<Vec<u8>>,
     asked: Launch,
     /// What the variable references of the present stop stand for.
     handles: Vec<Handle>,
@@ -128,7 +134,8 @@ impl<'a, W: Write, T: Target> Server<'a, W, T> {
             launcher,
             goal: Some(Goal::None),
             interrupt,
-            debugger: None,
+            shell: None,
+            early: VecDeque::new(),
             asked: Launch::default(),
             handles: Vec::new(),
             set: Vec::new(),
@@ -144,6 +151,11 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         let arguments = &request["arguments"];
         if let Some(kind) = self.move_of(&command, arguments) {
             return self.do_move(request, kind);
+        }
+        if command == "evaluate"
+            && let Some(line) = self.command_in(arguments)
+        {
+            return self.command(request, &line);
         }
         let reply = self.reply(&command, arguments);
         let is_ok = reply.is_ok();
@@ -219,7 +231,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         let launcher = launcher.ok_or("a board runs here already; use \"request\": \"attach\"")?;
         let mut debugger = launcher(&self.asked)?;
         debugger.interrupted_by(Arc::clone(&self.interrupt));
-        self.debugger = Some(debugger);
+        self.shell = Some(Shell::new(debugger));
         Ok(json!({}))
     }
 
@@ -231,13 +243,14 @@ impl<W: Write, T: Target> Server<'_, W, T> {
     }
 
     fn debugger(&mut self) -> Result<&mut Debugger<T>, DebugError> {
-        self.debugger.as_mut().ok_or_else(|| "nothing is launched yet".into())
+        let shell = self.shell.as_mut().ok_or("nothing is launched yet")?;
+        Ok(shell.debugger_mut())
     }
 
     /// The client has said all: the board runs, or is at its beginning.
     fn begin(&mut self) -> io::Result<()> {
         if self.asked.0["stopOnEntry"] == true {
-            let stop = self.debugger.as_ref().map(|debugger| debugger.stop().clone());
+            let stop = self.shell.as_ref().map(|shell| shell.debugger().stop().clone());
             if self.launcher.is_none() {
                 return self.halt(Reason::Begin);
             }
@@ -255,7 +268,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         if self.goal.take().is_none() {
             return Ok(());
         }
-        let stop = self.debugger.as_mut().map(|debugger| debugger.halt(reason));
+        let stop = self.shell.as_mut().map(|shell| shell.debugger_mut().halt(reason));
         stop.map_or(Ok(()), |stop| self.tell_stop(&stop))
     }
 
@@ -305,7 +318,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
             Ok(stop) => self.tell_stop(&stop),
             Err(error) => {
                 self.wire.output("console", &format!("{error}\n"))?;
-                let Some(stop) = self.debugger.as_ref().map(|debugger| debugger.stop().clone()) else {
+                let Some(stop) = self.shell.as_ref().map(|shell| shell.debugger().stop().clone()) else {
                     return Ok(());
                 };
                 self.tell_stop(&Stop { reason: Reason::Step, ..stop })
@@ -316,8 +329,10 @@ impl<W: Write, T: Target> Server<'_, W, T> {
     /// Lets the board go; console lines are reported at once.
     fn run(&mut self, kind: Move) -> io::Result<Result<Stop, DebugError>> {
         self.handles.clear();
-        let Some(debugger) = &mut self.debugger else { return Ok(Err("nothing is launched yet".into())) };
-        let mut herald = Herald::new(&mut self.wire, debugger);
+        let Some(shell) = &mut self.shell else { return Ok(Err("nothing is launched yet".into())) };
+        let debugger = shell.debugger_mut();
+        let is_forward = matches!(kind, Move::Forward(_) | Move::Again);
+        let mut herald = Herald::new(&mut self.wire, &mut self.early, debugger);
         let mut tell = |event: &Event| herald.tell(event);
         let result = match kind {
             Move::Forward(Way::On) => Ok(debugger.go_on(&mut tell)),
@@ -330,15 +345,80 @@ impl<W: Write, T: Target> Server<'_, W, T> {
             Move::BackOn => Ok(debugger.reverse_continue()),
             Move::Again => debugger.restart().map(|_| debugger.go_on(&mut tell)),
         };
-        self.has_trapped |= herald.has_trapped;
-        match herald.failed {
-            Some(error) => Err(error),
-            None => Ok(result),
+        let Herald { failed, has_trapped, late, .. } = herald;
+        self.has_trapped |= has_trapped;
+        if let Some(error) = failed {
+            return Err(error);
+        }
+        self.tell_early(is_forward)?;
+        if !late.is_empty() {
+            self.wire.output("console", &late)?;
+        }
+        Ok(result)
+    }
+
+    /// Reports the lines that programs have printed and the board has not sent yet.
+    fn tell_early(&mut self, is_forward: bool) -> io::Result<()> {
+        let Some(shell) = &self.shell else { return Ok(()) };
+        let unsent = shell.debugger().session().target().unsent_lines();
+        for line in unsent.iter().skip(self.early.len()).filter(|_| is_forward) {
+            self.wire.output("stdout", &format!("{}\n", String::from_utf8_lossy(line)))?;
+        }
+        self.early = unsent.into();
+        Ok(())
+    }
+
+    /// Executes a command of the terminal that an editor's console has, and lets it know that the board has moved.
+    fn command(&mut self, request: &Value, line: &str) -> io::Result<()> {
+        let is_move = command_of(line).is_some_and(is_move);
+        if is_move && self.launcher.is_none() {
+            let text = format!("`{line}`: others use this board; the buttons of the editor continue it");
+            return self.wire.respond(request, Err(text.into()));
+        }
+        let Some(shell) = &mut self.shell else {
+            return self.wire.respond(request, Err("nothing is launched yet".into()));
+        };
+        let (wire, mut failed) = (&mut self.wire, None);
+        let said = shell.command(line, &mut |text| {
+            let category = if text.starts_with("cc67: ") { "console" } else { "stdout" };
+            failed = failed.take().or(wire.output(category, text).err());
+        });
+        if let Some(error) = failed {
+            return Err(error);
+        }
+        let is_done = said.is_ok();
+        let reply = said.map(|said| {
+            let text = if let Said::Text(text) = said { text } else { String::new() };
+            json!({ "result": text.trim_end(), "variablesReference": 0 })
+        });
+        self.wire.respond(request, reply)?;
+        self.tell_messages()?;
+        let stop = self.shell.as_ref().map(|shell| shell.debugger().stop().clone());
+        match stop.filter(|_| is_move && is_done) {
+            Some(stop) => {
+                self.handles.clear();
+                let thread = number_of(stop.context.unwrap_or(ContextId::CALLBACK));
+                self.wire.event("continued", json!({ "threadId": thread, "allThreadsContinued": true }))?;
+                self.tell_stop(&stop)
+            }
+            None => Ok(()),
         }
     }
 
+    /// The command of the terminal that an editor's console was given; `None` for an expression.
+    fn command_in(&mut self, arguments: &Value) -> Option<String> {
+        let text = arguments["expression"].as_str().filter(|_| arguments["context"] == "repl")?.trim();
+        if let Some(command) = text.strip_prefix("-exec ") {
+            return Some(command.trim().to_owned());
+        }
+        // A variable goes before a command of its name.
+        command_of(text)?;
+        let is_expression = self.debugger().is_ok_and(|debugger| debugger.evaluate(text).is_ok());
+        (!is_expression).then(|| text.to_owned())
+    }
+
     fn tell_messages(&mut self) -> io::Result<()> {
-        while let Some(message) = self.debugger.as_mut().and_then(Debugger::<T>::take_message) {
+        while let Some(message) = self.shell.as_mut().and_then(|shell| shell.debugger_mut().take_message()) {
             self.wire.output("console", &format!("{message}\n"))?;
         }
         Ok(())
@@ -346,7 +426,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
 
     fn tell_stop(&mut self, stop: &Stop) -> io::Result<()> {
         self.tell_messages()?;
-        let Some(debugger) = &self.debugger else { return Ok(()) };
+        let Some(debugger) = self.shell.as_ref().map(Shell::debugger) else { return Ok(()) };
         if stop.reason == Reason::AllEnded && self.asked.0["stopAtEnd"] != true {
             let code = if self.has_trapped { 3 } else { 0 };
             self.wire.event("exited", json!({ "exitCode": code }))?;
@@ -371,6 +451,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
             Reason::Started(thread) => ("pause", format!("thread {thread} begins")),
             Reason::Ended(thread) => ("pause", format!("thread {thread} has ended")),
             Reason::Console(text) | Reason::Bit(text) => ("pause", text.clone()),
+            Reason::When { expression, .. } => ("data breakpoint", format!("{expression} is true")),
         };
         let mut body = json!({
             "reason": reason,
@@ -384,7 +465,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         if let Reason::Breakpoint(ids) = &stop.reason {
             body["hitBreakpointIds"] = json!(ids);
         }
-        if let Reason::Changed { id, .. } = &stop.reason {
+        if let Reason::Changed { id, .. } | Reason::When { id, .. } = &stop.reason {
             body["hitBreakpointIds"] = json!([id]);
         }
         self.wire.event("stopped", body)
@@ -394,27 +475,44 @@ impl<W: Write, T: Target> Server<'_, W, T> {
 /// Tells a client what the board says while it runs.
 struct Herald<'a, W> {
     wire: &'a mut ClientWire<W>,
+    /// Lines that were reported already.
+    early: &'a mut VecDeque<Vec<u8>>,
+    /// Traps: they come after what was printed before them.
+    late: String,
     infos: Vec<runtime::debug::DebugInfo>,
     failed: Option<io::Error>,
     has_trapped: bool,
 }
 
 impl<'a, W: Write> Herald<'a, W> {
-    fn new<T: Target>(wire: &'a mut ClientWire<W>, debugger: &Debugger<T>) -> Self {
+    fn new<T: Target>(
+        wire: &'a mut ClientWire<W>,
+        early: &'a mut VecDeque<Vec<u8>>,
+        debugger: &Debugger<T>,
+    ) -> Self {
         let infos = debugger.session().debug().into_iter().map(|(_, info)| info).collect();
-        Self { wire, infos, failed: None, has_trapped: false }
+        Self { wire, early, late: String::new(), infos, failed: None, has_trapped: false }
     }
 
     fn tell(&mut self, event: &Event) {
         self.has_trapped |= matches!(event.kind, EventKind::Trap(_));
         let told = match &event.kind {
+            EventKind::ConsoleLine(line) if self.early.front() == Some(line) => {
+                self.early.pop_front();
+                Ok(())
+            }
             EventKind::ConsoleLine(line) => {
                 self.wire.output("stdout", &format!("{}\n", String::from_utf8_lossy(line)))
             }
             _ => match remark::describe(event, &self.infos) {
                 Some(text) => {
                     let scene = remark::scene(event).map_or(String::new(), ToString::to_string);
-                    self.wire.output("console", &format!("{text}\n{scene}"))
+                    let text = format!("{text}\n{scene}");
+                    if matches!(event.kind, EventKind::Trap(_)) {
+                        self.late += &text;
+                        return;
+                    }
+                    self.wire.output("console", &text)
                 }
                 None => Ok(()),
             },

@@ -55,7 +55,9 @@ impl<W: Write> ClientWire<W> {
             Err(error) => {
                 let text = error.to_string();
                 message["message"] = json!(text);
-                message["body"] = json!({ "error": { "id": 1, "format": text, "showUser": true } });
+                // What an editor evaluates by itself, such as what the mouse is over, interrupts nobody.
+                let is_shown = request["command"] != "evaluate";
+                message["body"] = json!({ "error": { "id": 1, "format": text, "showUser": is_shown } });
             }
         }
         self.send(message)

@@ -1,9 +1,11 @@
 //! The debugger: a session, its programs, breakpoints, and where it is.
 
+mod hits;
 mod run;
 mod travel;
 mod values;
 
+pub use hits::HitCondition;
 pub(crate) use run::{Goal, Way};
 pub(crate) use travel::ONLY_FORWARD;
 pub use values::ShownVariable;
@@ -15,9 +17,10 @@ use std::sync::atomic::AtomicBool;
 use cc67_host::{
     AnyTarget, Capability, History, HostError, Session, Setup, Snapshot, SnapshotError, Target, Timeline,
 };
-use compiler::debug::Probe;
+use compiler::firmware::FirmwareSymbols as _;
 use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::{Board, Event};
+use values::Prepared;
 use vm::engine::{ContextId, FrameView};
 
 use crate::programs::{Activation, Programs, Statement};
@@ -75,6 +78,8 @@ pub enum BreakpointKind {
     Code(String, Vec<u32>),
     /// A change of an expression's value.
     Watch(String),
+    /// An expression that becomes true, looked at after every tick.
+    When(String),
 }
 
 /// A breakpoint.
@@ -96,15 +101,66 @@ pub struct Breakpoint {
     pub is_enabled: bool,
     /// How often it was met.
     pub hits: u64,
-    watched: Option<WatchedExpression>,
+    /// At which of these times it stops; `None` at each.
+    pub stops_at: Option<HitCondition>,
+    /// The condition, compiled for each of its instructions; for a watched expression once.
+    conditions: Vec<(u32, Prepared)>,
+    /// The line that was requested.
+    line: u32,
+    subject: Subject,
+}
+
+/// What is looked at for a breakpoint.
+#[derive(Debug)]
+enum Subject {
+    /// Where a program is.
+    Instructions,
+    /// A watched expression.
+    Change(WatchedExpression),
+    /// An expression that becomes true, and whether it was at the last tick.
+    Truth(Prepared, bool),
+}
+
+impl Subject {
+    const fn watched(&self) -> Option<&WatchedExpression> {
+        if let Self::Change(watched) = self { Some(watched) } else { None }
+    }
+
+    const fn watched_mut(&mut self) -> Option<&mut WatchedExpression> {
+        if let Self::Change(watched) = self { Some(watched) } else { None }
+    }
+
+    const fn was_true_mut(&mut self) -> Option<&mut bool> {
+        if let Self::Truth(_, was_true) = self { Some(was_true) } else { None }
+    }
+
+    /// Whether it is looked at after every tick.
+    const fn is_polled(&self) -> bool {
+        match self {
+            Self::Instructions => false,
+            Self::Change(watched) => watched.is_polled,
+            Self::Truth(..) => true,
+        }
+    }
+}
+
+impl Breakpoint {
+    /// Whether it is looked at after every tick.
+    fn is_polled(&self) -> bool {
+        self.is_enabled && self.subject.is_polled()
+    }
 }
 
 /// A watched expression.
 #[derive(Debug)]
 struct WatchedExpression {
-    probe: Probe,
-    frame: Option<(ContextId, usize)>,
+    prepared: Prepared,
+    /// The memory that it is read from.
     ranges: Vec<(GuestAddr, u32)>,
+    /// Registers are among what it is read from: it is looked at before every line.
+    has_registers: bool,
+    /// Items of the board are: it is looked at after every tick.
+    is_polled: bool,
     last: String,
 }
 
@@ -127,6 +183,13 @@ pub enum Reason {
         new: String,
         /// Who did it.
         by: String,
+    },
+    /// An expression has become true.
+    When {
+        /// Number of the breakpoint.
+        id: u32,
+        /// The expression.
+        expression: String,
     },
     /// A step is over.
     Step,
@@ -402,23 +465,26 @@ impl<T: Target> Debugger<T> {
         condition: Option<&str>,
     ) -> Result<(u32, String), DebugError> {
         let (found, note) = self.resolve(place.trim(), thread)?;
-        if let Some(condition) = condition {
-            for one in &found {
-                self.condition_at(one, condition)?;
-            }
-        }
         let first = &found[0];
         let where_ = if first.line == 0 {
             format!("{:#010x}", first.address)
         } else {
-            let place = self.place(first.address);
+            let activations = self.programs.activations(first.address);
+            let with_line = activations.iter().find(|activation| activation.scope.line == first.line);
+            let place = with_line.or(activations.first()).map(place_of);
             place.map_or_else(
                 || format!("{:#010x}", first.address),
                 |place| format!("{}, {}:{}", place.function, file_name(&place.file), first.line),
             )
         };
         let addresses = found.iter().map(|one| one.address).collect();
-        let id = self.add(BreakpointKind::Code(where_.clone(), addresses), condition);
+        let line = first.line;
+        let kind = BreakpointKind::Code(where_.clone(), addresses);
+        let conditions = self.conditions(&kind, condition)?;
+        let id = self.add(kind, condition, conditions);
+        if let Some(added) = self.breakpoints.last_mut() {
+            added.line = line;
+        }
         let mut threads: Vec<_> = found.iter().map(|one| one.thread.to_string()).collect();
         threads.dedup();
         let text = format!("Breakpoint {id} at {where_} (thread {}){note}", threads.join(", "));
@@ -431,14 +497,27 @@ impl<T: Target> Debugger<T> {
     /// What is wrong with the expression.
     pub fn watch(&mut self, expression: &str, condition: Option<&str>) -> Result<(u32, String), DebugError> {
         let watched = self.watched(expression)?;
-        if let Some(condition) = condition {
-            self.probe(condition)?;
-        }
-        let id = self.add(BreakpointKind::Watch(expression.to_owned()), condition);
+        let kind = BreakpointKind::Watch(expression.to_owned());
+        let conditions = self.conditions(&kind, condition)?;
+        let id = self.add(kind, condition, conditions);
         if let Some(added) = self.breakpoints.last_mut() {
-            added.watched = Some(watched);
+            added.subject = Subject::Change(watched);
         }
         Ok((id, format!("Watchpoint {id}: {expression}")))
+    }
+
+    /// Stops at the end of the tick in which an expression becomes true, that is, is not 0; its number, and what there is
+    /// to say.
+    ///
+    /// # Errors
+    /// What is wrong with the expression.
+    pub fn catch_when(&mut self, expression: &str) -> Result<(u32, String), DebugError> {
+        let prepared = self.prepare(expression)?;
+        let id = self.add(BreakpointKind::When(expression.to_owned()), None, Vec::new());
+        if let Some(added) = self.breakpoints.last_mut() {
+            added.subject = Subject::Truth(prepared, false);
+        }
+        Ok((id, format!("Catchpoint {id} (when {expression})")))
     }
 
     /// Deletes a breakpoint; whether there was one of that number.
@@ -462,23 +541,49 @@ impl<T: Target> Debugger<T> {
         let kind = found
             .map(|breakpoint| breakpoint.kind.clone())
             .ok_or_else(|| format!("No breakpoint number {id}."))?;
-        if let Some(condition) = condition {
-            match &kind {
-                BreakpointKind::Code(_, addresses) => {
-                    for address in addresses {
-                        self.probe_at(*address, condition)?;
-                    }
-                }
-                BreakpointKind::Watch(_) => _ = self.probe(condition)?,
-            }
-        }
+        let conditions = self.conditions(&kind, condition)?;
         if let Some(breakpoint) = self.breakpoint_mut(id) {
             breakpoint.condition = condition.map(str::to_owned);
+            breakpoint.conditions = conditions;
         }
         Ok(())
     }
 
-    fn add(&mut self, kind: BreakpointKind, condition: Option<&str>) -> u32 {
+    /// A condition, compiled for where a breakpoint is.
+    fn conditions(
+        &self,
+        kind: &BreakpointKind,
+        condition: Option<&str>,
+    ) -> Result<Vec<(u32, Prepared)>, DebugError> {
+        let Some(condition) = condition else { return Ok(Vec::new()) };
+        match kind {
+            BreakpointKind::Code(_, addresses) => {
+                addresses.iter().map(|at| Ok((*at, self.prepare_at(*at, condition)?))).collect()
+            }
+            BreakpointKind::Watch(_) | BreakpointKind::When(_) => Ok(vec![(0, self.prepare(condition)?)]),
+        }
+    }
+
+    /// Other programs are loaded: what was compiled for them is compiled again.
+    fn compile_conditions(&mut self) {
+        for index in 0..self.breakpoints.len() {
+            let Breakpoint { id, kind, condition, .. } = &self.breakpoints[index];
+            let id = *id;
+            match self.conditions(kind, condition.as_deref()) {
+                Ok(conditions) => self.breakpoints[index].conditions = conditions,
+                Err(error) => {
+                    self.messages.push_back(format!("condition of breakpoint {id}: {error}"));
+                }
+            }
+        }
+    }
+
+    fn add(
+        &mut self,
+        kind: BreakpointKind,
+        condition: Option<&str>,
+        conditions: Vec<(u32, Prepared)>,
+    ) -> u32 {
         let id = self.next_id;
         self.next_id += 1;
         self.breakpoints.push(Breakpoint {
@@ -490,7 +595,10 @@ impl<T: Target> Debugger<T> {
             is_temporary: false,
             is_enabled: true,
             hits: 0,
-            watched: None,
+            stops_at: None,
+            conditions,
+            line: 0,
+            subject: Subject::Instructions,
         });
         id
     }
@@ -534,7 +642,16 @@ impl<T: Target> Debugger<T> {
             };
             return Ok((found, note));
         }
-        let found = self.programs.at_function(rest, thread);
+        let mut found = self.programs.at_function(rest, thread);
+        if found.is_empty() && file.is_none() {
+            found = self.calls_of(rest, thread);
+            if !found.is_empty() {
+                return Ok((found, format!("; before each call of {rest}")));
+            }
+            if self.session.options().firmware.find(rest).is_some() {
+                return Err(format!("No program calls {rest}, which is the firmware's.").into());
+            }
+        }
         if found.is_empty() {
             let why = self.programs.unknown().next();
             return Err(why.unwrap_or_else(|| format!("Function \"{rest}\" not defined.")).into());
@@ -542,8 +659,29 @@ impl<T: Target> Debugger<T> {
         Ok((found, String::new()))
     }
 
-    fn condition_at(&self, at: &Statement, condition: &str) -> Result<(), DebugError> {
-        self.probe_at(at.address, condition).map(|_| ())
+    /// The instructions of the programs that call a function of the firmware.
+    fn calls_of(&self, name: &str, thread: Option<ThreadId>) -> Vec<Statement> {
+        let Some(symbol) = self.session.options().firmware.find(name) else { return Vec::new() };
+        let target = format!(", {:#010x}", symbol.address.get());
+        let mut found = Vec::new();
+        for (number, model) in
+            self.programs.all().filter(|(number, _)| thread.is_none_or(|one| one == *number))
+        {
+            for function in &model.functions {
+                let mut at = function.addresses.start;
+                while at < function.addresses.end
+                    && let Some((text, size)) = self.session.target().disassemble(at)
+                {
+                    if text.starts_with("call_fw ") && text.ends_with(&target) {
+                        let line = model.line_at(at).unwrap_or(0);
+                        let function = function.name.clone();
+                        found.push(Statement { thread: number, address: at, line, function, call: None });
+                    }
+                    at = at.saturating_add(size);
+                }
+            }
+        }
+        found
     }
 
     /// Where the call that is looked at stands.
@@ -583,7 +721,19 @@ impl<T: Target> Debugger<T> {
         }
         self.frame = 0;
         self.stop = Stop { reason, context, at: self.now() };
+        self.frame = self.frame_of_breakpoint();
         self.stop.clone()
+    }
+
+    /// The call that a breakpoint is about where an inlined function begins: the one with its line.
+    fn frame_of_breakpoint(&self) -> usize {
+        let Reason::Breakpoint(ids) = &self.stop.reason else { return 0 };
+        let met = self.breakpoints.iter().find(|breakpoint| ids.contains(&breakpoint.id));
+        let Some(line) = met.map(|breakpoint| breakpoint.line) else { return 0 };
+        let has_line = |frame: &StackFrame| {
+            frame.real == 0 && frame.place.as_ref().is_some_and(|place| place.line == line)
+        };
+        self.frames(self.context()).iter().position(has_line).unwrap_or(0)
     }
 
     /// Tells the timeline that a person has changed something; says so if that makes another history.

@@ -9,6 +9,11 @@ use vm::engine::{ContextId, Hold, HoldReason};
 
 use super::{BreakpointKind, DebugError, Debugger, Events, Reason, Stop, file_name};
 
+/// Who changes what is looked at after every tick alone.
+const IN_TICK: &str = "a program or the board in the last tick";
+/// Who writes what no program writes.
+const BY_SERVO: &str = "the servo or the firmware";
+
 /// What ends a run besides breakpoints.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Goal {
@@ -185,9 +190,9 @@ impl<T: Target> Debugger<T> {
             if let BreakpointKind::Code(_, at) = &breakpoint.kind {
                 addresses.extend(at);
             }
-            let Some(watched) = &breakpoint.watched else { continue };
+            let Some(watched) = breakpoint.subject.watched() else { continue };
             ranges.extend(&watched.ranges);
-            if watched.ranges.is_empty() {
+            if watched.has_registers {
                 // A register is looked at before every line.
                 addresses.extend(self.statements());
             }
@@ -247,6 +252,7 @@ impl<T: Target> Debugger<T> {
             });
             if programs_changed {
                 self.programs.update(&self.session);
+                self.compile_conditions();
                 infos = self.session.debug().into_iter().map(|(_, info)| info).collect();
             }
             if let Some(timeline) = &mut self.timeline {
@@ -307,9 +313,7 @@ impl<T: Target> Debugger<T> {
 
     /// What is to stop at the end of a tick; with the threads that were and are active.
     fn between_ticks(&mut self, goal: &Goal, (before, now): (u8, u8), bits: &[bool]) -> Option<Reason> {
-        if let Some(index) = self.session.take_change()
-            && let Some(reason) = self.judge_change(index, "the servo or the firmware".to_owned(), true)
-        {
+        if let Some(reason) = self.judge_tick(true) {
             return Some(reason);
         }
         if before == now && bits.is_empty() {
@@ -338,15 +342,38 @@ impl<T: Target> Debugger<T> {
         Some(Reason::Bit(format!("bit {} is {level}", self.catches.bits[changed])))
     }
 
+    /// Whether breakpoints stop at the end of a tick: what they watch has changed in it, or has become true.
+    pub(super) fn judge_tick(&mut self, counts: bool) -> Option<Reason> {
+        if let Some(index) = self.session.take_change()
+            && let Some(reason) = self.judge_change(index, BY_SERVO.to_owned(), counts)
+        {
+            return Some(reason);
+        }
+        (0..self.breakpoints.len()).find_map(|index| {
+            if !self.breakpoints[index].is_polled() {
+                return None;
+            }
+            let id = self.breakpoints[index].id;
+            if self.breakpoints[index].subject.watched().is_some() {
+                return self.judge_watch(id, IN_TICK.to_owned(), counts);
+            }
+            let is_so = self.is_so(&self.breakpoints[index]);
+            let was_so = self.breakpoints[index].subject.was_true_mut()?;
+            let is_new = is_so && !std::mem::replace(was_so, is_so);
+            if !is_new || !self.is_to_stop(index, self.context(), counts) {
+                return None;
+            }
+            let BreakpointKind::When(expression) = self.breakpoints[index].kind.clone() else { return None };
+            Some(Reason::When { id, expression })
+        })
+    }
+
     /// Whether a context that is held has to stop there, and why; `counts` for a run that is not a search of the past.
     pub(super) fn judge(&mut self, hold: Hold, goal: &Goal, counts: bool) -> Option<Reason> {
         match hold.reason {
             HoldReason::Step => (*goal == Goal::Instruction(hold.context)).then_some(Reason::Step),
             HoldReason::Changed { index, by } => {
-                let by = by.map_or_else(
-                    || "the servo or the firmware".to_owned(),
-                    |at| self.writer(hold.context, at),
-                );
+                let by = by.map_or_else(|| BY_SERVO.to_owned(), |at| self.writer(hold.context, at));
                 self.judge_change(index, by, counts)
             }
             HoldReason::Breakpoint => {
@@ -372,7 +399,7 @@ impl<T: Target> Debugger<T> {
         let mut ranges = 0;
         let found =
             self.breakpoints.iter().filter(|breakpoint| breakpoint.is_enabled).position(|breakpoint| {
-                ranges += breakpoint.watched.as_ref().map_or(0, |watched| watched.ranges.len());
+                ranges += breakpoint.subject.watched().map_or(0, |watched| watched.ranges.len());
                 range < ranges
             })?;
         let id = self.breakpoints.iter().filter(|breakpoint| breakpoint.is_enabled).nth(found)?.id;
@@ -381,10 +408,10 @@ impl<T: Target> Debugger<T> {
 
     fn judge_registers(&mut self, context: ContextId, counts: bool) -> Option<Reason> {
         let watching = |watched: &super::WatchedExpression| {
-            watched.ranges.is_empty() && watched.frame.is_some_and(|(of, _)| of == context)
+            watched.has_registers && watched.prepared.frame.is_some_and(|(of, _)| of == context)
         };
         let ids: Vec<_> = (self.breakpoints.iter())
-            .filter(|breakpoint| breakpoint.is_enabled && breakpoint.watched.as_ref().is_some_and(watching))
+            .filter(|breakpoint| breakpoint.is_enabled && breakpoint.subject.watched().is_some_and(watching))
             .map(|breakpoint| breakpoint.id)
             .collect();
         let by =
@@ -394,15 +421,15 @@ impl<T: Target> Debugger<T> {
 
     fn judge_watch(&mut self, id: u32, by: String, counts: bool) -> Option<Reason> {
         let index = self.breakpoints.iter().position(|breakpoint| breakpoint.id == id)?;
-        let watched = self.breakpoints[index].watched.as_ref()?;
+        let watched = self.breakpoints[index].subject.watched()?;
         let new = self.watched_text(watched)?;
         if new == watched.last {
             return None;
         }
         let BreakpointKind::Watch(expression) = self.breakpoints[index].kind.clone() else { return None };
         let old = self.breakpoints[index]
-            .watched
-            .as_mut()
+            .subject
+            .watched_mut()
             .map(|watched| std::mem::replace(&mut watched.last, new.clone()))?;
         let context = self.session.held().map_or_else(|| self.context(), |(context, _)| context);
         if !self.is_to_stop(index, context, counts) {
@@ -430,13 +457,10 @@ impl<T: Target> Debugger<T> {
 
     /// Whether a breakpoint that is met stops: its condition holds, it was passed as often as needed, it is not a log point.
     fn is_to_stop(&mut self, index: usize, context: ContextId, counts: bool) -> bool {
-        if let Some(condition) = self.breakpoints[index].condition.clone() {
-            match self.holds(context, &condition) {
-                Ok(holds) => {
-                    if !holds {
-                        return false;
-                    }
-                }
+        if self.breakpoints[index].condition.is_some() {
+            match self.holds(context, &self.breakpoints[index].conditions) {
+                Ok(true) => {}
+                Ok(false) => return false,
                 Err(error) => {
                     let id = self.breakpoints[index].id;
                     self.messages.push_back(format!("condition of breakpoint {id}: {error}"));
@@ -464,7 +488,7 @@ impl<T: Target> Debugger<T> {
             breakpoint.ignore -= 1;
             return false;
         }
-        true
+        breakpoint.stops_at.is_none_or(|condition| condition.stops(breakpoint.hits))
     }
 
     fn is_reached(&self, goal: &Goal, context: ContextId, at: u32) -> bool {

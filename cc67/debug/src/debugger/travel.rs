@@ -260,7 +260,11 @@ impl<T: Target> Debugger<T> {
                 }
                 (Some(_), _) => None,
                 // What happens in the very last tick is where one stands already.
-                (None, _) => caught.filter(|_| !is_over).map(|(reason, _)| reason),
+                (None, Wanted::Stop) => {
+                    let changed = self.judge_tick(false);
+                    caught.map(|(reason, _)| reason).or(changed).filter(|_| !is_over)
+                }
+                (None, _) => None,
             };
             if let Some(reason) = reason {
                 count += 1;

@@ -1,7 +1,10 @@
 //! Values: expressions where a call stands, locals, and other values for them.
 
+use std::cell::{Cell, RefCell};
+
 use compiler::debug::{Child, DebugReader, DebugValue, Displayed, LocalModel, LocalPlace, Location, Probe};
 use kmotiondef::GuestAddr;
+use runtime::trace::Item;
 use vm::engine::{ContextId, FrameView};
 
 use super::{DebugError, Debugger, StackFrame, WatchedExpression};
@@ -30,23 +33,55 @@ pub struct ShownVariable {
 pub(crate) struct At<'a, T> {
     session: &'a Session<T>,
     view: Option<&'a FrameView>,
-    items: Vec<String>,
+    items: &'a [Item],
+    /// What was read so far, if that is of interest.
+    reads: Option<RefCell<Vec<GuestAddr>>>,
+    /// Whether registers were.
+    has_registers: Cell<bool>,
+}
+
+impl<'a, T> At<'a, T> {
+    const fn new(session: &'a Session<T>, view: Option<&'a FrameView>, items: &'a [Item]) -> Self {
+        Self { session, view, items, reads: None, has_registers: Cell::new(false) }
+    }
+}
+
+/// An expression that was compiled once, for the place where it was set.
+#[derive(Debug)]
+pub(super) struct Prepared {
+    probe: Probe,
+    items: Vec<Item>,
+    /// The call that it is of: its context, and how many calls of the machine there were with it.
+    pub(super) frame: Option<(ContextId, usize)>,
 }
 
 impl<T: Target> DebugReader for At<'_, T> {
     fn bytes(&self, address: GuestAddr) -> [u8; 8] {
-        std::array::from_fn(|offset| self.session.peek(address.offset(offset as u32)))
+        if let Some(reads) = &self.reads {
+            reads.borrow_mut().push(address);
+        }
+        let mut bytes = [0; 8];
+        // What a target does not answer reads 0.
+        let _ = self.session.target().read(address, &mut bytes);
+        bytes
     }
 
     fn item(&self, index: usize) -> f64 {
-        self.items.get(index).and_then(|item| self.session.item(item)).unwrap_or(0.0)
+        self.items.get(index).map_or(0.0, |item| self.session.target().value(*item))
+    }
+
+    fn is_mapped(&self, address: GuestAddr) -> bool {
+        self.session.target().is_mapped(address)
     }
 
     fn local(&self, local: &LocalModel) -> Option<LocalPlace> {
         let view = self.view?;
         let register = |number: u16| view.registers.get(usize::from(number)).copied();
         Some(match local.at(view.at.get())? {
-            Location::Register(number) => LocalPlace::Slot(register(number)?),
+            Location::Register(number) => {
+                self.has_registers.set(true);
+                LocalPlace::Slot(register(number)?)
+            }
             Location::Frame(offset) => LocalPlace::Memory(view.frame.offset(offset)),
             Location::Pointer(number) => LocalPlace::Memory(GuestAddr::new(register(number)? as u32)),
             Location::Constant(bits) => LocalPlace::Slot(bits),
@@ -55,23 +90,22 @@ impl<T: Target> DebugReader for At<'_, T> {
 }
 
 /// The names in an expression that are items of the board and not the program's.
-fn items_in<T: Target>(expression: &str, session: &Session<T>) -> Vec<String> {
+fn items_in(expression: &str) -> Vec<&str> {
     let words = expression.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
-    let mut items: Vec<_> = words.filter(|word| session.item(word).is_some()).map(str::to_owned).collect();
-    items.sort();
+    let mut items: Vec<_> = words.filter(|word| Item::new(word).is_ok()).collect();
+    items.sort_unstable();
     items.dedup();
     items
 }
 
 /// Compiles an expression for an instruction, in one of the functions that it is in, or outside of functions for a
 /// thread's program.
-fn compile<T: Target>(
+fn compile(
     programs: &Programs,
-    session: &Session<T>,
     thread: kmotiondef::ThreadId,
     at: Option<(u32, usize)>,
     expression: &str,
-) -> Result<(Probe, Vec<String>), DebugError> {
+) -> Result<(Probe, Vec<Item>), DebugError> {
     let (thread, expression) = match expression.split_once(':') {
         Some((number, rest)) if number.trim().parse().ok().and_then(kmotiondef::ThreadId::new).is_some() => {
             (number.trim().parse().ok().and_then(kmotiondef::ThreadId::new).unwrap_or(thread), rest)
@@ -89,15 +123,14 @@ fn compile<T: Target>(
     match model.probe(place, &expression, &[]) {
         Ok(probe) => Ok((probe, Vec::new())),
         Err(error) => {
-            let items = items_in(&expression, session);
-            if items.is_empty() {
+            let names = items_in(&expression);
+            if names.is_empty() {
                 return Err(format!("`{expression}`: {error}").into());
             }
-            let names: Vec<_> = items.iter().map(String::as_str).collect();
             let probe = model
                 .probe(place, &expression, &names)
                 .map_err(|error| format!("`{expression}`: {error}"))?;
-            Ok((probe, items))
+            Ok((probe, names.into_iter().filter_map(|name| Item::new(name).ok()).collect()))
         }
     }
 }
@@ -112,18 +145,45 @@ impl<T: Target> Debugger<T> {
         self.call().map(|frame| frame.view)
     }
 
-    pub(crate) fn probe(&self, expression: &str) -> Result<(Probe, Vec<String>), DebugError> {
+    fn probe(&self, expression: &str) -> Result<(Probe, Vec<Item>), DebugError> {
         let at = self.call().map(|frame| (frame.address.get(), frame.level));
-        compile(&self.programs, &self.session, self.thread, at, expression)
+        compile(&self.programs, self.thread, at, expression)
     }
 
-    pub(crate) fn probe_at(
-        &self,
-        address: u32,
-        expression: &str,
-    ) -> Result<(Probe, Vec<String>), DebugError> {
+    /// An expression, compiled for the call that is looked at.
+    pub(super) fn prepare(&self, expression: &str) -> Result<Prepared, DebugError> {
+        let (probe, items) = self.probe(expression)?;
+        let depth = |call: StackFrame| self.session.frames(self.context()).len() - call.real;
+        let call = self.call().filter(|_| probe.has_locals());
+        Ok(Prepared { probe, items, frame: call.map(|call| (self.context(), depth(call))) })
+    }
+
+    /// An expression, compiled for an instruction.
+    pub(super) fn prepare_at(&self, address: u32, expression: &str) -> Result<Prepared, DebugError> {
         let thread = self.programs.at(address).map_or(self.thread, |(thread, ..)| thread);
-        compile(&self.programs, &self.session, thread, Some((address, 0)), expression)
+        let (probe, items) = compile(&self.programs, thread, Some((address, 0)), expression)?;
+        Ok(Prepared { probe, items, frame: None })
+    }
+
+    /// The call that an expression was compiled for, if it is still in progress.
+    fn view_of(&self, prepared: &Prepared) -> Option<FrameView> {
+        let (context, depth) = prepared.frame?;
+        let mut views = self.session.frames(context);
+        let index = views.len().checked_sub(depth)?;
+        (index < views.len()).then(|| views.swap_remove(index))
+    }
+
+    /// Whether an expression is not 0 in a call.
+    fn is_true(&self, prepared: &Prepared, view: Option<&FrameView>) -> Result<bool, DebugError> {
+        let at = At::new(&self.session, view, &prepared.items);
+        let value = prepared.probe.value(&at)?;
+        Ok(prepared.probe.shown(&at).number(&value).is_some_and(|number| number != 0.0))
+    }
+
+    /// Whether the expression of a breakpoint is so at present; not where it has no value.
+    pub(super) fn is_so(&self, breakpoint: &super::Breakpoint) -> bool {
+        let super::Subject::Truth(prepared, _) = &breakpoint.subject else { return false };
+        self.is_true(prepared, self.view_of(prepared).as_ref()).unwrap_or(false)
     }
 
     fn with_value<R>(
@@ -133,7 +193,7 @@ impl<T: Target> Debugger<T> {
     ) -> Result<R, DebugError> {
         let (probe, items) = self.probe(expression)?;
         let view = self.view();
-        let at = At { session: &self.session, view: view.as_ref(), items };
+        let at = At::new(&self.session, view.as_ref(), &items);
         let value = probe.value(&at)?;
         Ok(work(&probe, &value, &probe.shown(&at)))
     }
@@ -143,6 +203,9 @@ impl<T: Target> Debugger<T> {
     /// # Errors
     /// What is wrong with the expression, or that a local is optimised out.
     pub fn evaluate(&self, expression: &str) -> Result<ShownVariable, DebugError> {
+        if let Some(literal) = string_literal(expression) {
+            return Ok(literal);
+        }
         self.with_value(expression, |_, value, shown| variable(expression, expression, value, shown))
     }
 
@@ -175,7 +238,7 @@ impl<T: Target> Debugger<T> {
         let Some(call) = self.call() else { return Vec::new() };
         let activations = self.programs.activations(call.address.get());
         let Some(Activation { model, scope, .. }) = activations.get(call.level) else { return Vec::new() };
-        let at = At { session: &self.session, view: Some(&call.view), items: Vec::new() };
+        let at = At::new(&self.session, Some(&call.view), &[]);
         let visible = |local: &&LocalModel| local.lines.contains(&scope.line);
         let mut shown: Vec<ShownVariable> = Vec::new();
         for local in scope.locals.iter().filter(visible) {
@@ -196,11 +259,24 @@ impl<T: Target> Debugger<T> {
         shown
     }
 
+    /// The arguments of a call, `NAME=VALUE` each, as it has them now.
+    #[must_use]
+    pub fn arguments(&self, call: &StackFrame) -> Vec<String> {
+        let activations = self.programs.activations(call.address.get());
+        let Some(Activation { model, scope, .. }) = activations.get(call.level) else { return Vec::new() };
+        let at = At::new(&self.session, Some(&call.view), &[]);
+        let text = |local: &LocalModel| {
+            let value = model.local(local, &at).map(|(value, types)| types.text(&value));
+            format!("{}={}", local.name, value.as_deref().unwrap_or("<optimised out>"))
+        };
+        scope.locals.iter().take(model.parameters(scope.function)).map(text).collect()
+    }
+
     /// The variables of the program outside of functions.
     #[must_use]
     pub fn globals(&self) -> Vec<ShownVariable> {
         let Ok(model) = self.programs.of(self.thread) else { return Vec::new() };
-        let at = At { session: &self.session, view: None, items: Vec::new() };
+        let at = At::new(&self.session, None, &[]);
         let all = model.globals();
         let shown = all.iter().filter_map(|(name, _, address)| {
             let (value, types) = model.global(name, *address, &at)?;
@@ -218,7 +294,7 @@ impl<T: Target> Debugger<T> {
         let (probe, items) = self.probe(expression)?;
         let view = self.view();
         let (bytes, address, register) = {
-            let at = At { session: &self.session, view: view.as_ref(), items };
+            let at = At::new(&self.session, view.as_ref(), &items);
             let place = probe.value(&at)?;
             let bytes = probe.bytes_of(&place, number, &at);
             let bytes = bytes.ok_or_else(|| format!("`{expression}` takes no number"))?;
@@ -269,15 +345,20 @@ impl<T: Target> Debugger<T> {
         bytes
     }
 
-    /// Whether a condition holds in the innermost call of a context.
-    pub(crate) fn holds(&self, context: ContextId, condition: &str) -> Result<bool, DebugError> {
+    /// Whether a condition holds: at an instruction in the innermost call of a context, and otherwise where it was set.
+    pub(super) fn holds(
+        &self,
+        context: ContextId,
+        conditions: &[(u32, Prepared)],
+    ) -> Result<bool, DebugError> {
+        if let [(0, prepared)] = conditions {
+            return self.is_true(prepared, self.view_of(prepared).as_ref());
+        }
         let views = self.session.frames(context);
-        let view = views.first();
-        let address = view.map_or(0, |view| view.at.get());
-        let (probe, items) = self.probe_at(address, condition)?;
-        let at = At { session: &self.session, view, items };
-        let value = probe.value(&at)?;
-        Ok(probe.shown(&at).number(&value).is_some_and(|number| number != 0.0))
+        let view = views.first().ok_or("its thread has ended")?;
+        let here = conditions.iter().find(|(address, _)| *address == view.at.get());
+        let (_, prepared) = here.ok_or("it does not compile for the program that is loaded now")?;
+        self.is_true(prepared, Some(view))
     }
 
     /// The text of a log point with the values of what is in braces.
@@ -302,45 +383,85 @@ impl<T: Target> Debugger<T> {
 
     /// A watched expression with its present value.
     pub(super) fn watched(&self, expression: &str) -> Result<WatchedExpression, DebugError> {
-        let (probe, items) = self.probe(expression)?;
+        let prepared = self.prepare(expression)?;
         let view = self.view();
-        let at = At { session: &self.session, view: view.as_ref(), items };
-        let value = probe.value(&at)?;
-        let shown = probe.shown(&at);
+        let mut at = At::new(&self.session, view.as_ref(), &prepared.items);
+        at.reads = Some(RefCell::default());
+        let value = prepared.probe.value(&at)?;
+        let shown = prepared.probe.shown(&at);
         let last = shown.text(&value);
-        let ranges: Vec<_> =
-            value.address().map(|address| (address, shown.size_of(&value))).into_iter().collect();
-        let real = self.call().map_or(0, |call| call.real);
-        let frame =
-            view.is_some().then(|| (self.context(), self.session.frames(self.context()).len() - real));
-        if ranges.is_empty() && probe.as_local().is_none() {
-            return Err(format!("`{expression}` is not a variable; watch one of those in it").into());
+        let own = value.address().map(|address| (address, shown.size_of(&value)));
+        let ranges = ranges(own, at.reads.as_ref().map(RefCell::take).unwrap_or_default());
+        let (has_registers, is_polled) = (at.has_registers.get(), !prepared.items.is_empty());
+        if ranges.is_empty() && !has_registers && !is_polled {
+            return Err(format!("Cannot watch constant value `{expression}'.").into());
         }
-        Ok(WatchedExpression { probe, frame, ranges, last })
+        Ok(WatchedExpression { prepared, ranges, has_registers, is_polled, last })
     }
 
     /// The present value of what a breakpoint watches; `None` if the call that it is of has ended, or it is nowhere.
     pub(super) fn watched_text(&self, watched: &WatchedExpression) -> Option<String> {
-        let views = watched.frame.map(|(context, _)| self.session.frames(context)).unwrap_or_default();
-        let view = match watched.frame {
-            Some((_, depth)) => views.len().checked_sub(depth).and_then(|index| views.get(index)),
-            None => None,
-        };
-        let at = At { session: &self.session, view, items: Vec::new() };
-        let value = watched.probe.value(&at).ok()?;
-        Some(watched.probe.shown(&at).text(&value))
+        let WatchedExpression { prepared, .. } = watched;
+        let view = self.view_of(prepared);
+        let at = At::new(&self.session, view.as_ref(), &prepared.items);
+        let value = prepared.probe.value(&at).ok()?;
+        Some(prepared.probe.shown(&at).text(&value))
     }
 
     /// What is watched has its present values, however it came to them.
     pub(super) fn refresh_watches(&mut self) {
         for index in 0..self.breakpoints.len() {
             let text =
-                self.breakpoints[index].watched.as_ref().and_then(|watched| self.watched_text(watched));
-            if let (Some(watched), Some(text)) = (&mut self.breakpoints[index].watched, text) {
+                self.breakpoints[index].subject.watched().and_then(|watched| self.watched_text(watched));
+            if let (Some(watched), Some(text)) = (self.breakpoints[index].subject.watched_mut(), text) {
                 watched.last = text;
+            }
+            let is_so = self.is_so(&self.breakpoints[index]);
+            if let Some(was_so) = self.breakpoints[index].subject.was_true_mut() {
+                *was_so = is_so;
             }
         }
     }
+}
+
+/// The memory that a value is in, and what else was read for it: pointers, indexes, operands.
+fn ranges(own: Option<(GuestAddr, u32)>, mut reads: Vec<GuestAddr>) -> Vec<(GuestAddr, u32)> {
+    let is_own = |at: &GuestAddr| own.is_some_and(|(from, size)| at.get().wrapping_sub(from.get()) < size);
+    reads.retain(|at| !is_own(at));
+    reads.sort_unstable();
+    reads.dedup();
+    let mut ranges: Vec<(GuestAddr, u32)> = own.into_iter().collect();
+    for at in reads {
+        // Which of the eight bytes were needed is not known; a change of the others alone changes no value.
+        match ranges.last_mut().filter(|_| own.is_none()) {
+            Some((from, size)) if at.get().wrapping_sub(from.get()) <= *size => {
+                *size = at.get().wrapping_sub(from.get()) + 8;
+            }
+            _ => ranges.push((at, 8)),
+        }
+    }
+    ranges
+}
+
+/// A string literal as a value.
+fn string_literal(expression: &str) -> Option<ShownVariable> {
+    let text = expression.trim();
+    let inside = text.strip_prefix('"')?.strip_suffix('"')?;
+    let mut is_escaped = false;
+    let is_whole = inside.chars().all(|letter| {
+        let is_end = letter == '"' && !is_escaped;
+        is_escaped = letter == '\\' && !is_escaped;
+        !is_end
+    });
+    let shown = |ty| ShownVariable {
+        name: text.to_owned(),
+        ty,
+        text: text.to_owned(),
+        expression: text.to_owned(),
+        parts: 0,
+        address: None,
+    };
+    (is_whole && !is_escaped).then(|| shown("char []".to_owned()))
 }
 
 fn variable(name: &str, expression: &str, value: &DebugValue, shown: &Displayed<'_>) -> ShownVariable {

@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 
 use cc67_host::{Capability, Target};
 use kmotiondef::limits::TIMEBASE;
-use kmotiondef::{Cycles, ThreadId};
+use kmotiondef::{Cycles, GuestAddr, ThreadId};
 use vm::engine::ContextId;
 use vm::thread::{Progress, ThreadState};
 
-use super::{Shell, breakpoints, context};
+use super::{Assignment, Shell, breakpoints, context};
 use crate::debugger::{CodePlace, DebugError, Debugger, Reason, StackFrame, Stop, file_name};
 use crate::words::LineReader;
 
@@ -22,11 +22,7 @@ const NO_LOCALS: &str = "where locals are in code for the processor is not noted
 
 impl<T: Target> Shell<T> {
     pub(super) fn values(&mut self, name: &str, rest: &str) -> Result<String, DebugError> {
-        let (format, rest) = match rest.strip_prefix('/') {
-            Some(more) => more.split_once(char::is_whitespace).unwrap_or((more, "")),
-            None => ("", rest),
-        };
-        let rest = rest.trim();
+        let (format, rest) = format_of(rest);
         match name {
             "print" => self.print(format, rest),
             "ptype" => Ok(format!("type = {}\n", self.debugger.evaluate(rest)?.ty)),
@@ -36,13 +32,19 @@ impl<T: Target> Shell<T> {
     }
 
     fn print(&mut self, format: &str, expression: &str) -> Result<String, DebugError> {
-        if let Some((place, value)) = split_assignment(expression) {
-            self.debugger.set(place, value)?;
-        }
-        let expression = split_assignment(expression).map_or(expression, |(place, _)| place);
-        let text = match format {
-            "" => self.debugger.evaluate(expression)?.text,
-            _ => number_as(self.debugger.number(expression)?, format)?,
+        let assignment = Assignment::of(expression);
+        let shown = assignment.as_ref().map_or(expression, |assignment| assignment.place.as_str());
+        let text_of = |debugger: &Debugger<T>| match format {
+            "" => Ok(debugger.evaluate(shown)?.text),
+            _ => number_as(debugger.number(shown)?, format),
+        };
+        let text = match &assignment {
+            Some(Assignment { place, value, is_postfix }) => {
+                let old = text_of(&self.debugger);
+                self.debugger.set(place, value)?;
+                if *is_postfix { old? } else { text_of(&self.debugger)? }
+            }
+            None => text_of(&self.debugger)?,
         };
         self.values += 1;
         Ok(format!("${} = {text}\n", self.values))
@@ -50,8 +52,8 @@ impl<T: Target> Shell<T> {
 
     fn set(&mut self, rest: &str) -> Result<String, DebugError> {
         let rest = rest.strip_prefix("variable ").or_else(|| rest.strip_prefix("var ")).unwrap_or(rest);
-        let (place, value) = split_assignment(rest).ok_or("set var NAME = EXPRESSION")?;
-        self.debugger.set(place, value)?;
+        let Assignment { place, value, .. } = Assignment::of(rest).ok_or("set var NAME = EXPRESSION")?;
+        self.debugger.set(&place, &value)?;
         Ok(String::new())
     }
 
@@ -77,6 +79,7 @@ impl<T: Target> Shell<T> {
         }
         let mut out = String::new();
         if kind == 's' {
+            self.must_be_mapped(address)?;
             let bytes = self.debugger.bytes(address, 256);
             let text: Vec<u8> = bytes.into_iter().take_while(|byte| *byte != 0).collect();
             return Ok(format!("{address:#010x}: {:?}\n", String::from_utf8_lossy(&text)));
@@ -87,6 +90,7 @@ impl<T: Target> Shell<T> {
             if index % row == 0 {
                 let _ = write!(out, "{}{at:#010x}:", if index == 0 { "" } else { "\n" });
             }
+            self.must_be_mapped(at)?;
             let mut bytes = [0; 8];
             bytes[..size as usize].copy_from_slice(&self.debugger.bytes(at, size));
             let whole = u64::from_le_bytes(bytes);
@@ -101,6 +105,11 @@ impl<T: Target> Shell<T> {
             };
         }
         Ok(out + "\n")
+    }
+
+    fn must_be_mapped(&self, address: u32) -> Result<(), DebugError> {
+        let is_mapped = self.debugger.session().target().is_mapped(GuestAddr::new(address));
+        if is_mapped { Ok(()) } else { Err(format!("Cannot access memory at address {address:#x}").into()) }
     }
 
     fn instructions(&self, address: u32, count: u32, end: u32) -> String {
@@ -165,7 +174,15 @@ impl<T: Target> Shell<T> {
         Ok(match what {
             _ if is("threads") => threads(&self.debugger),
             _ if is("breakpoints") || is("watchpoints") => breakpoints(&self.debugger),
-            _ if is("locals") || is("args") => {
+            _ if is("args") => {
+                let debugger = &self.debugger;
+                let frame = debugger.frames(debugger.context()).into_iter().nth(debugger.frame());
+                let all = frame.map_or(Vec::new(), |frame| debugger.arguments(&frame));
+                let text: String = all.iter().map(|one| one.replacen('=', " = ", 1) + "\n").collect();
+                if text.is_empty() { "No arguments.\n".to_owned() } else { text }
+            }
+            _ if is("display") => self.shown_all(),
+            _ if is("locals") => {
                 let is_real = self.debugger.session().can(Capability::ProcessorCode);
                 let none = if is_real { NO_LOCALS } else { "No locals." };
                 variables(self.debugger.locals(), none)
@@ -210,14 +227,17 @@ pub(crate) fn seconds(at: Cycles) -> f64 {
     at.get() as f64 / Cycles::PER_SECOND.get() as f64
 }
 
-/// `place = value`; comparisons are none.
-fn split_assignment(text: &str) -> Option<(&str, &str)> {
-    let (place, value) = text.split_once('=')?;
-    let is_comparison = value.starts_with('=') || place.ends_with(['=', '!', '<', '>']);
-    (!is_comparison).then(|| (place.trim(), value.trim()))
+/// The format of `print/x EXPRESSION`, and the expression.
+pub(super) fn format_of(rest: &str) -> (&str, &str) {
+    let (format, rest) = match rest.strip_prefix('/') {
+        Some(more) => more.split_once(char::is_whitespace).unwrap_or((more, "")),
+        None => ("", rest),
+    };
+    (format, rest.trim())
 }
 
-fn number_as(number: f64, format: &str) -> Result<String, DebugError> {
+/// A number in another base.
+pub(crate) fn number_as(number: f64, format: &str) -> Result<String, DebugError> {
     let whole = number as i64;
     Ok(match format {
         "x" if whole < 0 => format!("{:#x}", whole as i32),
@@ -272,6 +292,7 @@ pub(super) fn stop<T: Target>(debugger: &Debugger<T>, stop: &Stop) -> String {
         Reason::Ended(thread) => format!("Thread {thread} has ended.\n"),
         Reason::Console(text) => format!("Console: {text}\n"),
         Reason::Bit(text) => format!("Catchpoint: {text}\n"),
+        Reason::When { id, expression } => format!("Catchpoint {id} (when {expression})\n"),
         Reason::AllEnded => {
             return format!("[All threads have ended, {at}]\n", at = who.rsplit(", ").next().unwrap_or(""));
         }
@@ -311,7 +332,13 @@ fn frame_text<T: Target>(debugger: &Debugger<T>, index: usize) -> String {
     let Some(frame) = frames.get(index) else { return "No stack.\n".to_owned() };
     match &frame.place {
         Some(place) => {
-            format!("#{index}  {} () at {}:{}\n", place.function, file_name(&place.file), place.line)
+            let arguments = debugger.arguments(frame).join(", ");
+            format!(
+                "#{index}  {} ({arguments}) at {}:{}\n",
+                place.function,
+                file_name(&place.file),
+                place.line
+            )
         }
         None => format!("#{index}  {}\n", name_of(debugger, frame)),
     }
@@ -325,8 +352,12 @@ fn frame_line<T: Target>(debugger: &Debugger<T>, index: usize) -> String {
 
 /// The name of code that no program has: a function of the firmware, or its address.
 fn name_of<T: Target>(debugger: &Debugger<T>, frame: &StackFrame) -> String {
-    let name = debugger.session().target().firmware_function(frame.address);
-    name.map_or_else(|| frame.address.to_string(), |name| format!("{name} () of the firmware"))
+    if let Some(name) = debugger.session().target().firmware_function(frame.address) {
+        return format!("{name} () of the firmware");
+    }
+    let mut models = debugger.programs().all().map(|(_, model)| model);
+    let name = models.find_map(|model| model.image_function(frame.address.get()));
+    name.map_or_else(|| frame.address.to_string(), |name| format!("{name} () of the library"))
 }
 
 /// The registers of the processor.
@@ -356,8 +387,12 @@ pub(crate) fn state<T: Target>(debugger: &Debugger<T>, thread: ThreadId) -> Opti
 
 fn threads<T: Target>(debugger: &Debugger<T>) -> String {
     let mut out = String::from("  Id   State       Frame\n");
+    let endings = debugger.session().ending().threads;
     for thread in ThreadId::all() {
         let Some(state) = state(debugger, thread) else { continue };
+        let waits = endings.iter().find(|ending| ending.thread == thread && ending.state == "waiting");
+        let waits =
+            waits.map_or(String::new(), |ending| format!(", waits for {}", ending.waits_for.join(", ")));
         let mark = if thread == debugger.thread() { '*' } else { ' ' };
         let frames = debugger.frames(context(thread));
         // A function of the firmware, then the place in the program that has called it.
@@ -372,7 +407,7 @@ fn threads<T: Target>(debugger: &Debugger<T>) -> String {
                 None => name_of(debugger, frame),
             })
             .collect();
-        let frame = shown.join(" from ");
+        let frame = shown.join(" from ") + &waits;
         let _ = writeln!(out, "{mark} {:<4} {state:<11} {frame}", thread.to_string());
     }
     let _ = writeln!(

@@ -99,6 +99,8 @@ impl Target for AnyTarget {
         fn place_of(&self, address: GuestAddr) -> GuestAddr;
         fn read(&self, address: GuestAddr, bytes: &mut [u8]) -> Result<(), HostError>;
         fn glance(&self, address: GuestAddr, bytes: &mut [u8]) -> Option<()>;
+        fn is_mapped(&self, address: GuestAddr) -> bool;
+        fn unsent_lines(&self) -> Vec<Vec<u8>>;
         fn knows(&self, item: Item) -> bool;
         fn value(&self, item: Item) -> f64;
         fn bit(&self, bit: Bit) -> bool;

@@ -38,7 +38,7 @@ use vm::firmware::ExecutedPacket;
 use vm::scheduler::Turn;
 use vm::thread::{Progress, ThreadState};
 
-use super::model::read;
+use super::model::{is_mapped, read};
 use super::{CONSOLE_LINES, EventSink, Target, TargetSnapshot};
 use crate::capability::Capability;
 use crate::error::SnapshotError;
@@ -433,6 +433,10 @@ impl Target for BootedTarget {
     fn read(&self, address: GuestAddr, bytes: &mut [u8]) -> Result<(), HostError> {
         read(self.board.memory(), address, bytes);
         Ok(())
+    }
+
+    fn is_mapped(&self, address: GuestAddr) -> bool {
+        is_mapped(self.board.memory(), address)
     }
 
     fn write(&mut self, address: GuestAddr, bytes: &[u8]) -> Result<(), HostError> {

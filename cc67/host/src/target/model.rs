@@ -8,9 +8,10 @@ use runtime::trace::{Item, TraceRequest};
 use runtime::{Board, BoardSnapshot, OpenBox};
 use vm::engine::{ContextId, Engine, FrameView, Hold};
 use vm::loaded::Loaded;
-use vm::memory::GuestMemory;
+use vm::memory::{GuestMemory, is_on_bus};
 use vm::scheduler::Turn;
 use vm::thread::ThreadState;
+use vm::trap::Access;
 
 use super::{EXCHANGE, EventSink, Target, TargetSnapshot};
 use crate::capability::Capability;
@@ -41,6 +42,11 @@ pub(super) fn read(memory: &GuestMemory, address: GuestAddr, bytes: &mut [u8]) {
         // The end of a region.
         None => (0..).zip(bytes).for_each(|(offset, byte)| *byte = memory.peek(address.offset(offset))),
     }
+}
+
+/// Whether there is memory or a register of a device at an address.
+pub(super) fn is_mapped(memory: &GuestMemory, address: GuestAddr) -> bool {
+    memory.read_bytes(address, 1).is_ok() || is_on_bus(address, Access::Read)
 }
 
 impl<E: Engine> Target for Board<E> {
@@ -142,6 +148,14 @@ impl<E: Engine> Target for Board<E> {
     fn read(&self, address: GuestAddr, bytes: &mut [u8]) -> Result<(), HostError> {
         read(self.memory(), address, bytes);
         Ok(())
+    }
+
+    fn is_mapped(&self, address: GuestAddr) -> bool {
+        is_mapped(self.memory(), address)
+    }
+
+    fn unsent_lines(&self) -> Vec<Vec<u8>> {
+        self.unsent_lines()
     }
 
     fn write(&mut self, address: GuestAddr, bytes: &[u8]) -> Result<(), HostError> {
