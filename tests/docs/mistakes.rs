@@ -26,6 +26,7 @@ const WITHOUT_LINE: &[&str] = &[
     "request_of_another_thread_overwritten",
     "running_program_replaced",
     "sign_of_the_output_wrong_without_integrator",
+    "speed_that_the_gain_cannot_follow",
     "two_files_open_for_writing",
     "two_threads_move_one_axis",
 ];

@@ -7,21 +7,25 @@ use kmotiondef::firmware::Function;
 use kmotiondef::modes::{BacklashMode, InputMode, OutputMode};
 use kmotiondef::structs::{Chan, Iir};
 use kmotiondef::variables::KSTEP_PRESENT;
-use kmotiondef::{AxisId, Field};
+use kmotiondef::{AxisId, Bit, Field};
 use vm::firmware::Caller;
 use vm::memory::GuestMemory;
 
-use super::calls::EndedWait;
+use super::calls::{EndedWait, Jogged};
 use super::parts::Parts;
 use crate::io::kanalog;
 use crate::machine::Channel;
+use crate::machine::description::Condition;
 use crate::machine::wiring::{DACS, PWMS, channel_of};
 use crate::out::{Message, Speaker};
 use crate::servo::independent::has_motion;
+use crate::servo::limits::{WatchedLimit, watched_limits};
 use crate::views::{Typed, chan};
 
 /// PWM channels that belong to no option board.
 const WITHOUT_AMPLIFIER: std::ops::Range<usize> = 0..8;
+/// The drive of a load with the model `motor`, if the machine file names no channel.
+const SERVO: &str = "a servo amplifier (model = \"motor\"), which steps do not turn";
 /// Encoder inputs of a board and its SnapAmps.
 const ENCODERS: usize = 16;
 /// Numbers of step generators in `OutputChan0`: the low three bits are the generator, the others the kind of its pins.
@@ -61,6 +65,59 @@ fn connection(memory: &GuestMemory, axis: AxisId) -> [i32; CONNECTION.len()] {
     CONNECTION.map(|(_, field)| memory.axis(axis, field))
 }
 
+/// A limit switch that the machine has at the other end.
+fn limit_at_other_end(
+    parts: &Parts,
+    memory: &GuestMemory,
+    function: Function,
+    axis: AxisId,
+) -> Option<Message> {
+    watched_limits(memory, axis).into_iter().find_map(|WatchedLimit { end, bit, is_upper }| {
+        let (owner, place, _) = parts.machine.mechanics.contact(bit)?;
+        let place = place.filter(|_| owner == axis)?;
+        let is_wrong = match place {
+            Condition::AtMost(_) => is_upper,
+            Condition::AtLeast(_) => !is_upper,
+            Condition::Between(..) => false,
+        };
+        let place = place.to_string();
+        is_wrong.then_some(Message::LimitAtOtherEnd { function, axis, end, bit, place })
+    })
+}
+
+/// A thread hears that the motion of an axis has ended for which it has waited.
+pub(crate) fn arrived(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId) {
+    const FAR: f64 = 100.0;
+    let memory = &*caller.memory;
+    let (dest, position) = (memory.axis(axis, Chan::DEST), memory.axis(axis, Chan::POSITION));
+    let rest = (dest - position).abs();
+    let is_far = rest > FAR && rest > parts.calls.motions.way(axis) / 2.0;
+    if is_far && loop_input(memory, axis).is_some() {
+        parts.out.diagnose(caller, Message::NotThere { axis, position, dest });
+    }
+}
+
+/// A thread begins a jog, or ends one: whether a switch of the axis was as the thread waited for before it has moved.
+pub(crate) fn jogs(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, speed: f64) {
+    const MOVED: f64 = 1.0;
+    let Some(thread) = caller.thread else { return };
+    let dest = caller.memory.axis(axis, Chan::DEST);
+    let wait = parts.calls.waits.of(thread);
+    let (looks, last_bit) = (wait.looks, wait.last_bit);
+    let now = (speed != 0.0).then_some(Jogged { thread, dest, speed, looks });
+    let before =
+        parts.calls.motions.jogs(axis, now).filter(|before| now.is_none() && before.thread == thread);
+    let Some(Jogged { speed, .. }) =
+        before.filter(|before| (dest - before.dest).abs() < MOVED && looks > before.looks)
+    else {
+        return;
+    };
+    let of_axis = |bit: &Bit| parts.machine.mechanics.contact(*bit).is_some_and(|(owner, ..)| owner == axis);
+    if let Some(bit) = last_bit.filter(of_axis) {
+        parts.out.diagnose(caller, Message::JogEnded { axis, speed, bit });
+    }
+}
+
 /// A mode or channel that has changed since the axis was enabled.
 fn changed_connection(
     parts: &Parts,
@@ -91,6 +148,7 @@ pub(crate) fn moved(parts: &mut Parts, caller: &Caller<'_>, function: Function, 
         no_backlash_rate(memory, function, axis),
         changed_connection(parts, memory, function, axis),
         output_wraps(memory, function, axis),
+        limit_at_other_end(parts, memory, function, axis),
     ];
     for message in messages.into_iter().flatten() {
         parts.out.diagnose(caller, message);
@@ -176,9 +234,14 @@ fn wrong_input(parts: &Parts, memory: &GuestMemory, function: Function, axis: Ax
 }
 
 fn wrong_output(parts: &Parts, memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
-    let wired = parts.machine.wiring.drive(axis)?;
     let channel = channel_of(memory, axis)?;
-    let (channel, wired) = (channel.to_string(), wired.to_string());
+    let is_stepped = matches!(channel, Channel::Generator(_));
+    let wired = match parts.machine.wiring.drive(axis) {
+        Some(wired) => wired.to_string(),
+        None if is_stepped && parts.machine.loads[axis].has_motor() => SERVO.to_owned(),
+        None => return None,
+    };
+    let channel = channel.to_string();
     (channel != wired).then_some(Message::WrongOutput { function, axis, channel, wired })
 }
 
@@ -252,7 +315,8 @@ fn zero_of_loop(memory: &GuestMemory, axis: AxisId) -> Option<Zero> {
         [Iir::B0, Iir::B1, Iir::B2].into_iter().all(|field| memory.get(filter.field(field)) == 0.0)
     };
     let has_no_forward = is_zero(Chan::FF_VEL) && is_zero(Chan::FF_ACCEL);
-    let is_encoder = memory.axis(axis, Chan::INPUT_MODE) == InputMode::Encoder.get();
+    let input = memory.axis(axis, Chan::INPUT_MODE);
+    let is_encoder = input == InputMode::Encoder.get();
     if [Chan::P, Chan::I, Chan::D].into_iter().all(is_zero) && has_no_forward {
         Some(("P, I, D, FFVel and FFAccel", STAYS))
     } else if is_zero(Chan::MAX_OUTPUT) {
@@ -265,6 +329,10 @@ fn zero_of_loop(memory: &GuestMemory, axis: AxisId) -> Option<Zero> {
         Some(("iir[0] or iir[1].B0, B1 and B2", STAYS))
     } else if is_encoder && is_zero(Chan::INPUT_GAIN0) {
         Some(("InputGain0", "its Position never changes"))
+    } else if input == InputMode::None.get() && has_no_forward {
+        Some(("InputMode", "its Position never changes (ENCODER_MODE is 1)"))
+    } else if !is_zero(Chan::I) && is_zero(Chan::MAX_I) {
+        Some(("MaxI", "its integrator has no effect"))
     } else if memory.axis(axis, Chan::MAX_FOLLOWING_ERROR) == 0.0 {
         Some(("MaxFollowingError", "the least error while it moves disables it"))
     } else {

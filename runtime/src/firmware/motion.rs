@@ -238,14 +238,10 @@ fn request(parts: &mut Parts, caller: &mut Caller<'_>, request: &MoveRequest) ->
         notice_replaced(parts, caller, axis, request.function, target);
     }
     if caller.woken.is_none() {
+        let way = (target - caller.memory.axis(axis, Chan::DEST)).abs();
+        parts.calls.motions.goes(axis, way);
         axis_check::moved(parts, caller, request.function, axis);
-        axis_check::planned(
-            parts,
-            caller,
-            request.function,
-            axis,
-            (target - caller.memory.axis(axis, Chan::DEST)).abs(),
-        );
+        axis_check::planned(parts, caller, request.function, axis, way);
     }
     if let Some(wake) = planning_wait(parts, caller, axis) {
         parts.calls.keep(caller, Continuation::Target(target));
@@ -466,6 +462,9 @@ fn begin_jog(
     if !may_move(parts, caller, axis, Function::Jog) || !is_place(parts, caller, Function::Jog, velocity) {
         return Outcome::Done(());
     }
+    if caller.woken.is_none() {
+        axis_check::jogs(parts, caller, axis, velocity);
+    }
     if let Some(wake) = planning_wait(parts, caller, axis) {
         return Outcome::Wait(wake);
     }
@@ -589,7 +588,11 @@ pub(crate) fn check_done(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) 
     let done = done(memory, axis);
     let is_moving = |axis| has_motion(memory, axis) && memory.axis(axis, Chan::ENABLE) != 0;
     if let Some(thread) = caller.thread {
+        let has_waited = parts.calls.motions.waits_for(thread, axis);
         parts.calls.motions.asked(thread, axis, done, caller.at, is_moving);
+        if done == 1 && has_waited {
+            axis_check::arrived(parts, caller, axis);
+        }
     }
     done
 }

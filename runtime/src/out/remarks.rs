@@ -482,6 +482,18 @@ messages! {
     /// An axis does not move although its output drives it.
     NoResponse { axis: AxisId, output: f32 } = "no-response", Warning, [per axis],
         "axis {axis} has not moved since it was enabled, although its output is {output:.0}: check that OutputChan0 and InputChan0 name its amplifier and its encoder";
+    /// An axis in a closed loop falls behind a destination that moves.
+    Lags { axis: AxisId } = "lags", Warning, [per axis],
+        "axis {axis} falls behind its Dest by more than MaxFollowingError, in the right direction: raise P or FFVel, or lower Vel or Accel";
+    /// A motion has ended, but the axis is somewhere else.
+    NotThere { axis: AxisId, position: f64, dest: f64 } = "not-there", Warning, [per axis],
+        "CheckDone({axis}) is 1, but axis {axis} is at {position:.0} and its Dest is {dest:.0}: CheckDone looks only at Dest, which the motor does not follow (check P, OutputMode and the wiring)";
+    /// A limit switch of an axis is at its other end.
+    LimitAtOtherEnd { function: Function, axis: AxisId, end: &'static str, bit: Bit, place: String } = "limit-at-other-end", Warning, [per axis],
+        "{function}: LimitSwitch{end}Bit of axis {axis} is {bit}, a switch that is active {place}, at the other end";
+    /// A jog is stopped before the axis has moved.
+    JogEnded { axis: AxisId, speed: f64, bit: Bit } = "jog-ended", Hint, [per axis],
+        "Jog({axis}, 0): axis {axis} has not moved since Jog({axis}, {speed}): bit {bit} was already as the program waited for (is the switch inverted?)";
     /// An axis cannot follow because its output is at its limit.
     OutputLimit { axis: AxisId, most: f32 } = "output-limit", Warning, [per axis],
         "axis {axis} cannot follow: its output is at MaxOutput = {most}; lower Vel or Accel, or raise MaxOutput";

@@ -120,7 +120,8 @@ fn cause(memory: &GuestMemory, axis: AxisId, response: f64) -> Option<Message> {
     }
     // A destination that moves on in the direction of the error leaves the axis behind.
     if f64::from(velocity) * error > 0.0 {
-        return (output.abs() >= most).then_some(Message::OutputLimit { axis, most });
+        let is_at_limit = output.abs() >= most;
+        return Some(if is_at_limit { Message::OutputLimit { axis, most } } else { Message::Lags { axis } });
     }
     let cause = match memory.axis(axis, Chan::I) {
         0.0 => "the loop swings, so lower P or raise D",
@@ -146,16 +147,42 @@ pub(crate) fn active_switch(io: &Io, memory: &GuestMemory, axis: AxisId) -> Opti
     ENDS.iter().find_map(|end| active_bit(io, memory, axis, end))
 }
 
-/// The switch of an end if it is watched and active.
-fn active_bit(io: &Io, memory: &GuestMemory, axis: AxisId, end: &End) -> Option<Bit> {
+/// The switch of an end if it is watched.
+fn watched_bit(memory: &GuestMemory, axis: AxisId, end: &End) -> Option<Bit> {
     let options = memory.axis(axis, Chan::LIMIT_SWITCH_OPTIONS);
     if options >> end.watch & 1 == 0 {
         return None;
     }
     let number =
         if options & EXTENDED != 0 { memory.axis(axis, end.bit) } else { options >> end.packed_shift & 0xff };
-    let is_active_low = options >> (end.watch + 2) & 1 != 0;
-    Bit::new(number).filter(|&bit| bit_state(io, memory, bit).0 != is_active_low)
+    Bit::new(number)
+}
+
+/// The switch of an end if it is watched and active.
+fn active_bit(io: &Io, memory: &GuestMemory, axis: AxisId, end: &End) -> Option<Bit> {
+    let bit = watched_bit(memory, axis, end)?;
+    let is_active_low = memory.axis(axis, Chan::LIMIT_SWITCH_OPTIONS) >> (end.watch + 2) & 1 != 0;
+    (bit_state(io, memory, bit).0 != is_active_low).then_some(bit)
+}
+
+/// A limit switch that is watched.
+pub(crate) struct WatchedLimit {
+    /// `Neg` or `Pos`.
+    pub(crate) end: &'static str,
+    pub(crate) bit: Bit,
+    /// True at the end where Dest is high.
+    pub(crate) is_upper: bool,
+}
+
+/// The limit switches of an axis that are watched, if each end has its own.
+pub(crate) fn watched_limits(memory: &GuestMemory, axis: AxisId) -> Vec<WatchedLimit> {
+    let limit = |end: &End| {
+        let bit = watched_bit(memory, axis, end)?;
+        Some(WatchedLimit { end: end.name, bit, is_upper: end.direction > 0 })
+    };
+    let limits: Vec<_> = ENDS.iter().filter_map(limit).collect();
+    let is_shared = limits.windows(2).any(|pair| pair[0].bit == pair[1].bit);
+    if is_shared { Vec::new() } else { limits }
 }
 
 fn check_switch(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, end: &End) {

@@ -14,7 +14,7 @@ use vm::firmware::Caller;
 
 pub(crate) use globals::Globals;
 pub(crate) use heap::Heap;
-pub(crate) use motions::{EndedWait, Motions, WrongWait};
+pub(crate) use motions::{EndedWait, Jogged, Motions, WrongWait};
 pub(crate) use notices::{Named, Notices};
 pub(crate) use reading::Reading;
 pub(crate) use serial::SerialService;

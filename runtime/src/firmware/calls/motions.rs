@@ -30,6 +30,18 @@ pub(crate) struct EndedWait {
     pub(crate) at: Option<CodeAddr>,
 }
 
+/// A jog that a thread has begun.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Jogged {
+    pub(crate) thread: ThreadId,
+    /// Where Dest was.
+    pub(crate) dest: f64,
+    /// Units per second.
+    pub(crate) speed: f64,
+    /// How often the thread had looked at anything.
+    pub(crate) looks: u64,
+}
+
 /// What one thread has done.
 #[derive(Clone, Copy, Debug, Default)]
 struct Thread {
@@ -49,6 +61,9 @@ pub(crate) struct Motions {
     /// Mode and channels of each axis when a program enabled it.
     connections: [Option<[i32; 4]>; N_CHANNELS],
     threads: [Thread; ThreadId::MAX as usize],
+    /// The jog of each axis, and how far its last move goes.
+    jogged: [Option<Jogged>; N_CHANNELS],
+    ways: [f64; N_CHANNELS],
 }
 
 const fn bit(axis: AxisId) -> u8 {
@@ -62,6 +77,26 @@ impl Motions {
         for mover in &mut self.movers {
             mover.take_if(|mover| *mover == thread);
         }
+    }
+
+    /// A move of an axis goes this far.
+    pub(crate) fn goes(&mut self, axis: AxisId, way: f64) {
+        self.ways[axis.index()] = way;
+    }
+
+    /// How far the last move of an axis goes.
+    pub(crate) fn way(&self, axis: AxisId) -> f64 {
+        self.ways[axis.index()]
+    }
+
+    /// A jog begins, or ends for `None`; the one before.
+    pub(crate) fn jogs(&mut self, axis: AxisId, jog: Option<Jogged>) -> Option<Jogged> {
+        std::mem::replace(&mut self.jogged[axis.index()], jog)
+    }
+
+    /// Whether a thread has found an axis in motion when it last asked.
+    pub(crate) fn waits_for(&self, thread: ThreadId, axis: AxisId) -> bool {
+        self.threads[thread.index()].in_motion & bit(axis) != 0
     }
 
     /// A program enables an axis with this mode and these channels.

@@ -3,7 +3,7 @@
 //! A thread waits as long as it calls nothing but functions that look or let time pass. Any other call ends the wait.
 
 use kmotiondef::function::Polled;
-use kmotiondef::{AxisId, CodeAddr, Cycles, ThreadId};
+use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, ThreadId};
 use vm::firmware::Caller;
 
 /// Calls of a wait that are remembered.
@@ -27,6 +27,8 @@ pub(crate) struct Wait {
     pub(crate) since: Cycles,
     /// How often it has looked at anything.
     pub(crate) looks: u64,
+    /// The bit that it has read last.
+    pub(crate) last_bit: Option<Bit>,
     /// What it has called since.
     pub(crate) calls: Vec<Repeated>,
 }
@@ -45,6 +47,9 @@ impl Waits {
         let wait = &mut self.threads[thread.index()];
         wait.looks += 1;
         let call = Repeated { polls, argument: caller.arguments.get(0), at: caller.at };
+        if polls == Polled::Bit {
+            wait.last_bit = Bit::new(call.argument);
+        }
         if wait.calls.len() < MOST && !wait.calls.contains(&call) {
             wait.calls.push(call);
         }

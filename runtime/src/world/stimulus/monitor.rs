@@ -118,7 +118,7 @@ impl Player {
     }
 
     /// Whether something is so that belongs to a statement, and what was and should be.
-    fn look(
+    pub(super) fn look(
         &self,
         stage: &Stage<'_>,
         context: &TickContext<'_>,

@@ -248,11 +248,15 @@ impl Player {
 
     fn act(&mut self, stage: &mut Stage<'_>, context: &mut TickContext<'_>, index: usize) {
         let now = context.now;
-        if let Trigger::Every { period, from, until } = self.rules[index].trigger {
+        if let Trigger::Every { period, from, until, ref while_met } = self.rules[index].trigger {
+            let is_so = while_met.as_ref().is_none_or(|met| self.look(stage, context, index, met).0);
             // Counted from the first, so that rounding to ticks does not add up.
             let next = from + Cycles::new(((now - from).get() / period.get() + 1) * period.get());
             if until.is_none_or(|until| next <= until) {
                 self.plans.add(next, Due::Rule(index));
+            }
+            if !is_so {
+                return;
             }
         }
         self.progress[index].happened = true;

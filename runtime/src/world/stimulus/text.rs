@@ -134,7 +134,8 @@ impl StatementReader<'_> {
         }
         let from = if self.accept("from") { self.time()? } else { Cycles::default() };
         let until = if self.accept("until") { Some(self.time()?) } else { None };
-        Ok(Trigger::Every { period, from, until })
+        let while_met = if self.accept("while") { Some(expectation::expectation(self)?) } else { None };
+        Ok(Trigger::Every { period, from, until, while_met })
     }
 
     fn condition(&mut self) -> Result<Condition, Mistake> {
@@ -205,7 +206,7 @@ mod tests {
             ),
             (
                 "every 10ms from 1s until 2s toggle bit 24",
-                "Every { period: Cycles(2000000), from: Cycles(200000000), until: Some(Cycles(400000000)) } \
+                "Every { period: Cycles(2000000), from: Cycles(200000000), until: Some(Cycles(400000000)), while_met: None } \
                  Toggle(Bit(24))",
             ),
             ("adc 3 = 2.5V", "At(Cycles(0)) Adc(3, Constant(512.0))"),

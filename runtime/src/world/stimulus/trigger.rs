@@ -58,6 +58,8 @@ pub enum Trigger {
         from: Cycles,
         /// The last, if there is one.
         until: Option<Cycles>,
+        /// Only while this is so, if anything.
+        while_met: Option<Expectation>,
     },
     /// Some time after something happens, each time or only the first time.
     When {

@@ -1,0 +1,18 @@
+//@ says: thread 1 at integrator_without_its_limit.c:16:5 in `main`: Move: axis 0 has MaxI = 0, so its integrator has no effect
+#include "KMotionDef.h"
+
+main()
+{
+    ch0->InputMode = ENCODER_MODE;
+    ch0->OutputMode = DAC_SERVO_MODE;
+    ch0->MaxOutput = 2000;
+    ch0->Vel = 10000;
+    ch0->Accel = 100000;
+    ch0->Jerk = 1e6;
+    ch0->P = 1;
+    ch0->I = 0.01;
+    ch0->MaxI = 0;
+    EnableAxis(0);
+    Move(0, 1000);
+    while (!CheckDone(0)) WaitNextTimeSlice();
+}

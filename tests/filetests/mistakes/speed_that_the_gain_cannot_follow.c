@@ -1,0 +1,19 @@
+//@ args: --machine parts/ends.toml
+//@ prints: Following Error Disabled Axis:0
+//@ says: axis 0 falls behind its Dest by more than MaxFollowingError, in the right direction: raise P or FFVel, or lower Vel or Accel
+#include "KMotionDef.h"
+
+main()
+{
+    ch0->InputMode = ENCODER_MODE;
+    ch0->OutputMode = DAC_SERVO_MODE;
+    ch0->MaxOutput = 2000;
+    ch0->Vel = 10000;
+    ch0->Accel = 100000;
+    ch0->Jerk = 1e6;
+    ch0->P = 1;
+    ch0->MaxFollowingError = 200;
+    EnableAxis(0);
+    Move(0, 2000);
+    while (!CheckDone(0)) WaitNextTimeSlice();
+}
