@@ -10,8 +10,10 @@ use super::draw::COLORS;
 const PAGE: &str = include_str!("page.html");
 const MARK: &str = "@DATA@";
 
-/// Most points of a line; more are thinned so that a page stays quick to open.
-const POINTS: usize = 100_000;
+/// Most points of all lines, and most spans of all strips: more are thinned, so that a page has at most 2 MB whatever it
+/// shows, and is quick to open.
+const POINTS: usize = 60_000;
+const SPANS: usize = 20_000;
 
 #[derive(Serialize)]
 struct PageData<'a> {
@@ -46,6 +48,8 @@ struct PageStrip<'a> {
 
 /// The page of a chart.
 pub(super) fn html(chart: &Chart) -> Result<Vec<u8>> {
+    let lines: usize = chart.panels.iter().map(|panel| panel.lines.len()).sum();
+    let (points, spans) = (POINTS / lines.max(1), SPANS / chart.strips.len().max(1));
     let data = PageData {
         title: &chart.title,
         abscissa: &chart.abscissa,
@@ -57,13 +61,16 @@ pub(super) fn html(chart: &Chart) -> Result<Vec<u8>> {
             .map(|panel| PagePanel {
                 title: &panel.title,
                 unit: &panel.unit,
-                lines: panel.lines.iter().map(|line| page_line(line, chart.range)).collect(),
+                lines: panel.lines.iter().map(|line| page_line(line, chart.range, points)).collect(),
             })
             .collect(),
         strips: chart
             .strips
             .iter()
-            .map(|strip| PageStrip { name: &strip.name, spans: joined(&strip.spans) })
+            .map(|strip| PageStrip {
+                name: &strip.name,
+                spans: bounded(joined(&strip.spans), chart.range, spans),
+            })
             .collect(),
     };
     // A `</script>` in a name must not end the data.
@@ -71,8 +78,10 @@ pub(super) fn html(chart: &Chart) -> Result<Vec<u8>> {
     Ok(PAGE.replacen(MARK, &json, 1).into_bytes())
 }
 
-fn page_line(line: &Line, range: (f64, f64)) -> PageLine<'_> {
-    let points = corners(line.thinned(range, POINTS / 4));
+fn page_line(line: &Line, range: (f64, f64), most: usize) -> PageLine<'_> {
+    // What a line needs to look the same comes first: only what is left of it is thinned.
+    let line_of_corners = Line { name: String::new(), points: corners(line.points.clone()) };
+    let points = line_of_corners.thinned(range, most / 4);
     let (t, v) = points.into_iter().map(|(time, value)| (short(time), short(value))).unzip();
     PageLine { name: &line.name, t, v }
 }
@@ -106,6 +115,22 @@ fn joined(spans: &[(f64, f64)]) -> Vec<(f64, f64)> {
     joined
 }
 
+/// The spans, about `most` of them at most: those with less between them than can be told apart become one.
+fn bounded(spans: Vec<(f64, f64)>, range: (f64, f64), most: usize) -> Vec<(f64, f64)> {
+    if spans.len() <= most {
+        return spans;
+    }
+    let gap = (range.1 - range.0) / most as f64;
+    let mut bounded: Vec<(f64, f64)> = Vec::new();
+    for (from, to) in spans {
+        match bounded.last_mut() {
+            Some((_, end)) if from - *end < gap => *end = to,
+            _ => bounded.push((from, to)),
+        }
+    }
+    bounded
+}
+
 /// The number with nine digits, which is more than a page can show; all of them would double its size.
 fn short(value: f64) -> f64 {
     format!("{value:.8e}").parse().unwrap_or(value)
@@ -120,6 +145,27 @@ mod tests {
         let points = [1.0, 1.0, 1.0, 2.0, 2.0, 3.0].into_iter().enumerate();
         let kept = corners(points.map(|(time, value)| (time as f64, value)).collect());
         assert_eq!(kept, [(0.0, 1.0), (2.0, 1.0), (3.0, 2.0), (4.0, 2.0), (5.0, 3.0)]);
+    }
+
+    #[test]
+    fn a_page_is_bounded_whatever_it_shows() {
+        let points =
+            |seed: usize| (0..400_000).map(move |at| (at as f64 * 90e-6, ((at * seed) % 1009) as f64 / 7.0));
+        let line = |seed| Line { name: format!("line {seed}"), points: points(seed).collect() };
+        let panel = |seed| super::super::chart::Panel {
+            title: "a".to_owned(),
+            unit: String::new(),
+            lines: vec![line(seed), line(seed + 1)],
+        };
+        let spans = (0..300_000).map(|at| (at as f64 * 120e-6, at as f64 * 120e-6 + 60e-6)).collect();
+        let chart = Chart {
+            panels: (1..12).map(panel).collect(),
+            strips: vec![super::super::chart::Strip { name: "bit 46".to_owned(), spans }],
+            range: (0.0, 36.0),
+            ..Chart::default()
+        };
+        let page = html(&chart).expect("it is written");
+        assert!((1_000_000..2_000_000).contains(&page.len()), "{}", page.len());
     }
 
     #[test]
