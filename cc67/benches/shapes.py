@@ -114,7 +114,7 @@ SHAPES = {
     cases: 500,
     functions: 200,
     loops: 200,
-    initialisers: 8000,
+    initialisers: 4000,
     macros: 500,
     struct_copies: 400,
     struct_stores: 400,

@@ -284,7 +284,7 @@ fn tests_run_on_a_controller_and_say_what_was_not_checked() {
     let scratch = Scratch::new("controller-test");
     scratch.write("a.c", PROGRAM);
     scratch.write("a.expected", "count 0\ncount 1\ncount 2\n---- notes\ncc67: a remark of the model\n");
-    scratch.write("b.c", &format!("// cc67: run --time\n{PROGRAM}"));
+    scratch.write("b.c", format!("// cc67: run --time\n{PROGRAM}"));
     scratch.write("b.expected", "0.001 count 0\n0.002 count 1\n0.003 count 2\n");
     scratch.write("c.c", PROGRAM);
     scratch.write("c.expected", "count 0\n");

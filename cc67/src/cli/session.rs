@@ -160,11 +160,13 @@ impl Setup {
     }
 
     /// Whether the board is a connected controller.
+    #[cfg(feature = "live")]
     pub(crate) const fn is_of_controller(&self) -> bool {
         self.controller.is_some()
     }
 
     /// Takes the programs out: they are not loaded.
+    #[cfg(feature = "live")]
     pub(crate) fn take_programs(&mut self) -> Vec<UserProgram> {
         std::mem::take(&mut self.session.programs)
     }
