@@ -60,7 +60,8 @@ pub(crate) fn trigger_gather(_: &mut Parts, caller: &mut Caller<'_>) {
 /// 1 when recording has reached its end.
 pub(crate) fn check_done_gather(parts: &mut Parts, caller: &mut Caller<'_>) -> i32 {
     let memory = &*caller.memory;
-    if memory.get(GATHER.field(Gather::BUFPTR)) == IDLE {
+    // The PC may ask at any time.
+    if caller.thread.is_some() && memory.get(GATHER.field(Gather::BUFPTR)) == IDLE {
         parts.out.diagnose(caller, Message::NotRecording {});
     }
     i32::from(memory.get(GATHER.field(Gather::BUFPTR)) >= memory.get(GATHER.field(Gather::ENDPTR)))
