@@ -34,8 +34,6 @@ pub enum Stop {
     Waiting(Wake),
     /// The program has returned from its entry function or called `ThreadDone`.
     Ended,
-    /// The thread has paused itself.
-    Paused,
     /// The program did the impossible.
     Trapped(Trap),
 }

@@ -68,8 +68,6 @@ pub enum Outcome<T> {
     Wait(Wake),
     /// The calling thread has ended (`ThreadDone`).
     End,
-    /// The calling thread has paused itself; when it is resumed, the program continues after the call.
-    Pause,
 }
 
 /// The signature of a firmware function, as classes.

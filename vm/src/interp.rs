@@ -346,20 +346,15 @@ fn call_firmware<F: Firmware + ?Sized>(
     }
     slice.firmware.signature(address).ok_or(missing)?.check_call(address, called)?;
     let arguments = CallArguments::from_slots(context.arguments(called.params.len()));
-    let stop = match slice.call_firmware(id, address, arguments, program.address_of(context.calls.pc))? {
+    match slice.call_firmware(id, address, arguments, program.address_of(context.calls.pc))? {
         Outcome::Done(value) => {
             context.calls.result = value.into_slot();
-            None
+            context.calls.pc += 1;
+            Ok(None)
         }
-        Outcome::Wait(wake) => return Ok(Some(Stop::Waiting(wake))),
-        Outcome::End => return Ok(Some(Stop::Ended)),
-        Outcome::Pause => {
-            context.calls.result = 0;
-            Some(Stop::Paused)
-        }
-    };
-    context.calls.pc += 1;
-    Ok(stop)
+        Outcome::Wait(wake) => Ok(Some(Stop::Waiting(wake))),
+        Outcome::End => Ok(Some(Stop::Ended)),
+    }
 }
 
 #[cfg(test)]

@@ -375,7 +375,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
                 self.report_trap(begin, trap);
                 return Some(spent);
             }
-            Stop::Waiting(_) | Stop::Paused => TrapKind::CallbackWaits,
+            Stop::Waiting(_) => TrapKind::CallbackWaits,
             Stop::Preempted | Stop::NeedsBoard => TrapKind::CallbackEndless { limit: CALLBACK_TICKS },
         };
         let at = self.engines.backtrace(id, loaded).first().copied().unwrap_or_else(|| code_at(address));
@@ -470,6 +470,9 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             }
             (stop, _) => self.stopped(thread, window.end, left, stop),
         }
+        if self.held.is_none() && self.threads.take_pausing() {
+            self.threads.pause(thread);
+        }
     }
 
     /// Notes how `thread` has stopped in the slice that ends at `end`, with `left` of its budget.
@@ -483,7 +486,6 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             Stop::Waiting(wake) => {
                 self.threads.set_state(thread, ThreadState::Active(Progress::Waiting(wake)));
             }
-            Stop::Paused => self.threads.set_state(thread, ThreadState::Paused(Progress::Going)),
             Stop::Ended => self.threads.set_state(thread, ThreadState::Ready),
             Stop::Trapped(trap) => self.fault(end - left, thread, trap),
         }

@@ -179,7 +179,6 @@ impl Firmware for Fake {
                 let _ = target.map(|thread| caller.threads.start(thread));
                 unit
             }
-            TestFunction::Pause if target == caller.thread => Outcome::Pause,
             TestFunction::Pause => {
                 let _ = target.map(|thread| caller.threads.pause(thread));
                 unit

@@ -46,6 +46,12 @@ impl ThreadState {
     pub const fn is_active(&self) -> bool {
         matches!(self, Self::Active(_))
     }
+
+    /// Reports whether the thread is loaded and not started, or has ended.
+    #[must_use]
+    pub const fn is_ready(&self) -> bool {
+        matches!(self, Self::Ready)
+    }
 }
 
 /// A request for a thread in which no program is loaded.
@@ -65,6 +71,10 @@ struct Slot {
 pub struct Threads {
     slots: [Slot; ThreadId::MAX as usize],
     running: Option<ThreadId>,
+    /// Whether the running thread pauses when its slice is over.
+    is_pausing: bool,
+    /// The threads that have ever had a slice.
+    ran: ThreadSet,
 }
 
 impl Default for Threads {
@@ -78,7 +88,12 @@ impl Threads {
     #[must_use]
     pub fn new() -> Self {
         let empty = Slot { state: ThreadState::Empty, entry: GuestAddr::NULL, debt: Cycles::new(0) };
-        Self { slots: std::array::from_fn(|_| empty.clone()), running: None }
+        Self {
+            slots: std::array::from_fn(|_| empty.clone()),
+            running: None,
+            is_pausing: false,
+            ran: ThreadSet::default(),
+        }
     }
 
     /// Makes `thread` ready to start at `entry`, whatever it was doing.
@@ -112,10 +127,10 @@ impl Threads {
 
     /// Takes `thread` out of the rotation, keeping where it was; no effect unless it is active.
     ///
-    /// A thread cannot do this to itself: its firmware call yields
-    /// [`Outcome::Pause`](crate::firmware::Outcome::Pause) instead.
+    /// A thread that does this to itself continues to the end of its slice.
     pub fn pause(&mut self, thread: ThreadId) {
         if self.running == Some(thread) {
+            self.is_pausing = true;
             return;
         }
         let slot = self.slot(thread);
@@ -132,6 +147,9 @@ impl Threads {
     /// # Errors
     /// [`NotLoaded`] for an empty thread.
     pub fn resume(&mut self, thread: ThreadId) -> Result<(), NotLoaded> {
+        if self.running == Some(thread) {
+            self.is_pausing = false;
+        }
         let slot = self.slot(thread);
         match slot.state {
             ThreadState::Empty => return Err(NotLoaded),
@@ -168,6 +186,18 @@ impl Threads {
 
     pub(crate) fn set_running(&mut self, running: Option<ThreadId>) {
         self.running = running;
+        self.ran = running.map_or(self.ran, |thread| self.ran.with(thread));
+    }
+
+    /// Returns whether a thread has ever had a slice.
+    #[must_use]
+    pub fn has_run(&self, thread: ThreadId) -> bool {
+        self.ran.contains(thread)
+    }
+
+    /// Whether the thread whose slice is over has paused itself; said once.
+    pub(crate) const fn take_pausing(&mut self) -> bool {
+        std::mem::replace(&mut self.is_pausing, false)
     }
 
     pub(crate) fn set_state(&mut self, thread: ThreadId, state: ThreadState) {
@@ -247,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_thread_cannot_start_or_pause_itself() {
+    fn a_thread_does_not_start_itself_and_pauses_when_its_slice_is_over() {
         let thread = ThreadId::new(4).expect("4 is a thread");
         let mut threads = Threads::new();
         threads.set_entry(thread, GuestAddr::new(0x8008_0010));
@@ -256,5 +286,6 @@ mod tests {
         assert_eq!(threads.start(thread), Ok(()));
         threads.pause(thread);
         assert_eq!(*threads.state(thread), ThreadState::Active(Progress::Going));
+        assert!(threads.take_pausing() && !threads.take_pausing());
     }
 }

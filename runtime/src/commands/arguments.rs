@@ -6,7 +6,7 @@
 
 use kmotiondef::{AxisId, Bit, ThreadId};
 
-use crate::text::{float_prefix, integer_prefix};
+use crate::text::{float_value, integer_prefix};
 
 /// What a command takes at one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,6 +67,13 @@ impl Message {
     }
 }
 
+/// An integer at the beginning of a text, and its characters: a sign alone is 0.
+fn integer(text: &[u8]) -> (i32, usize) {
+    let (value, used) = integer_prefix(text, 10);
+    let sign = usize::from(matches!(text, [b'+' | b'-', ..]));
+    (value as i32, used.max(sign))
+}
+
 /// A line being read.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LineReader<'t> {
@@ -86,40 +93,42 @@ impl<'t> LineReader<'t> {
 
     /// Where it is once the spaces are skipped.
     fn behind_spaces(&self) -> Self {
-        let spaces = self.rest().iter().take_while(|&&byte| byte == b' ').count();
+        self.behind(b" ")
+    }
+
+    fn behind(&self, skipped: &[u8]) -> Self {
+        let spaces = self.rest().iter().take_while(|byte| skipped.contains(byte)).count();
         Self { column: self.column + spaces, ..*self }
+    }
+
+    /// Takes the characters of a number that `read` makes one of, if there are any; its value.
+    fn number<V>(&mut self, read: impl FnOnce(&[u8]) -> (V, usize)) -> Result<V, Mistake> {
+        let mut next = self.behind(b" \t");
+        let (value, used) = read(next.rest());
+        if used == 0 {
+            return Err(self.mistake(Message::Number));
+        }
+        next.column += used;
+        *self = next;
+        Ok(value)
     }
 
     fn mistake(&self, message: Message) -> Mistake {
         Mistake { column: self.column, message }
     }
 
-    /// A decimal integer.
+    /// A decimal integer; what cannot be read of it is 0.
     fn integer(&mut self, lo: i32, hi: i32) -> Result<i32, Mistake> {
-        let mut next = self.behind_spaces();
-        let (value, used) = integer_prefix(next.rest(), 10);
-        if used == 0 {
-            return Err(self.mistake(Message::Number));
-        }
-        next.column += used;
-        *self = next;
-        let value = value as i32;
+        let value = self.number(integer)?;
         if !(lo..=hi).contains(&value) {
             return Err(self.mistake(Message::Limits(format!("{lo} to {hi}"))));
         }
         Ok(value)
     }
 
-    /// A real number.
+    /// A real number; what cannot be read of it is 0.
     fn real(&mut self) -> Result<f64, Mistake> {
-        let mut next = self.behind_spaces();
-        let (value, used) = float_prefix(next.rest());
-        if used == 0 {
-            return Err(self.mistake(Message::Number));
-        }
-        next.column += used;
-        *self = next;
-        Ok(value)
+        self.number(float_value)
     }
 
     fn limited(&mut self, lo: f32, hi: f32) -> Result<f64, Mistake> {
@@ -313,8 +322,12 @@ mod tests {
         check(&thread, " +1 junk", Ok(&[1.0]));
         check(&thread, " x", Err((0, "Error:Expecting Number")));
         check(&thread, " 8", Err((2, "Error:Expecting value 1 to 7")));
-        check(&[Argument::Real; 2], "1e3 -.5", Ok(&[1000.0, -0.5]));
+        check(&[Argument::Real; 2], "1E3 -.5", Ok(&[1000.0, -0.5]));
         check(&[Argument::Real; 2], "1,2", Err((1, "Error:Expecting Number")));
+        check(&[Argument::Real; 2], "1.5.2 \t--1", Ok(&[1.5, 0.2]));
+        check(&[Argument::Real; 2], "+-E5", Ok(&[0.0, 0.0]));
+        check(&thread, "-", Err((1, "Error:Expecting value 1 to 7")));
+        check(&thread, " .5", Err((0, "Error:Expecting Number")));
     }
 
     #[test]

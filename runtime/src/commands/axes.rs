@@ -5,6 +5,7 @@ use kmotiondef::{AxisId, Field};
 use vm::memory::GuestMemory;
 
 use super::arguments::Values;
+use super::motion::planned;
 use super::numbers::{plain, precise};
 use super::session::{Answer, Session};
 use crate::firmware::motion;
@@ -70,14 +71,12 @@ pub(super) fn enabled(session: &mut Session<'_, '_>, values: &Values) -> Answer 
 }
 
 pub(super) fn enable(session: &mut Session<'_, '_>, values: &Values) -> Answer {
-    session.call(|parts, caller| motion::enable_axis(parts, caller, values.integer(0)));
-    Answer::Nothing
+    planned(session.call(|parts, caller| motion::enable_axis(parts, caller, values.integer(0))))
 }
 
 pub(super) fn enable_dest(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, dest) = (values.integer(0), values.real(1));
-    session.call(|parts, caller| motion::enable_axis_dest(parts, caller, axis, dest));
-    Answer::Nothing
+    planned(session.call(|parts, caller| motion::enable_axis_dest(parts, caller, axis, dest)))
 }
 
 pub(super) fn disable(session: &mut Session<'_, '_>, values: &Values) -> Answer {

@@ -12,8 +12,6 @@ use crate::views::Typed;
 const FLASH_COMPLETE: &str = "Program Flash Image Complete";
 /// What it prints when it has read back what `Flash` has written (dsp-board.md section 2.4).
 const VERIFIED: &str = "Verify Complete";
-/// Characters of `Echo` and the one after it.
-const ECHO: usize = 5;
 /// The UART's clock, 16 of whose periods make the shortest bit.
 const UART_CLOCK: i32 = 16_666_666 / 16;
 /// The rates that the board knows.
@@ -23,9 +21,9 @@ pub(super) fn version(session: &mut Session<'_, '_>, _: &Values) -> Answer {
     session.parts.level.board().version.to_owned().into()
 }
 
-/// The rest of the command as a console line.
+/// The rest of the command as a console line; without one, what an earlier command has left after it in the buffer.
 pub(super) fn echo(session: &mut Session<'_, '_>, _: &Values) -> Answer {
-    Answer::Console(session.part.get(ECHO..).unwrap_or_default().to_vec())
+    Answer::Console(session.rest.to_vec())
 }
 
 pub(super) fn reboot(session: &mut Session<'_, '_>, _: &Values) -> Answer {

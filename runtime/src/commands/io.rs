@@ -14,8 +14,8 @@ use crate::views::Typed;
 const LED0: i32 = 46;
 /// What the converters' words are above zero.
 const ZERO: i32 = 2048;
-/// Words of the extended virtual bits.
-const VIRTUAL_WORDS: usize = 32;
+/// Characters for which the board has room where it puts words together; the next ones are where it returns to.
+const ANSWER_ROOM: usize = 84;
 
 pub(super) fn set_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     session.call(|parts, caller| io::set_bit(parts, caller, values.integer(0)));
@@ -64,8 +64,9 @@ pub(super) fn get_virtual_bits(session: &mut Session<'_, '_>, values: &Values) -
     let memory = &*session.memory();
     let start = memory.locate(VIRTUAL_BITS_EX);
     let word = |index: usize| format!("{:X}", memory.peek::<u32>(start.offset(4 * index as u32)));
-    let answer = (first..first + count).map(word).collect::<Vec<_>>().join(" ").into();
-    if first + count > VIRTUAL_WORDS { Answer::Stopped(Box::new(answer)) } else { answer }
+    let answer = (first..first + count).map(word).collect::<Vec<_>>().join(" ");
+    let fits = answer.len() < ANSWER_ROOM;
+    if fits { answer.into() } else { Answer::Stopped(Box::new(answer.into())) }
 }
 
 pub(super) fn adc(session: &mut Session<'_, '_>, values: &Values) -> Answer {

@@ -5,6 +5,7 @@
 //! and 2.
 
 use std::collections::VecDeque;
+use std::ops::Range;
 
 use kmotiondef::boards::TargetBoard;
 use vm::firmware::TickContext;
@@ -21,14 +22,18 @@ use crate::pc::{Arrival, ByteLink, Pc};
 
 /// Characters of a line; the last of them ends it.
 const LINE_LIMIT: usize = 2560;
+/// Characters of `Echo` and the one after it.
+const ECHO: usize = 5;
 /// Characters of a data line.
 const DATA_LIMIT: usize = 256;
 
 /// What the command loop remembers of one end of the link: the USB port, or the UART.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Link {
-    /// Commands of the line that are still to be executed.
-    parts: VecDeque<Vec<u8>>,
+    /// The buffer of lines, each with a 0 after it: what an earlier one has left stays after that.
+    buffer: Vec<u8>,
+    /// Where in it the commands are that are still to be executed.
+    parts: VecDeque<Range<usize>>,
     /// What the command in progress waits for.
     data: Option<Data>,
     /// Whether name and `Ready` are due when the line is done.
@@ -42,6 +47,25 @@ impl Link {
         self.data.is_some()
     }
 
+    /// Puts a line into the buffer: a 0 ends each of its commands.
+    fn begin(&mut self, line: &[u8]) {
+        let mut start = 0;
+        for part in line.split(|&byte| byte == b';') {
+            self.parts.push_back(start..start + part.len());
+            start += part.len() + 1;
+        }
+        self.buffer.resize(self.buffer.len().max(start), 0);
+        for (place, &byte) in self.buffer.iter_mut().zip(line.iter().chain([&0])) {
+            *place = if byte == b';' { 0 } else { byte };
+        }
+    }
+
+    /// The text of the buffer from a place on.
+    fn rest(&self, from: usize) -> Vec<u8> {
+        let rest = self.buffer.get(from..).unwrap_or_default();
+        rest.iter().copied().take_while(|&byte| byte != 0).collect()
+    }
+
     /// Takes the next line; `None` when the bytes run out before its end.
     fn take_line(&mut self, line: &mut ByteLink, out: &mut Vec<Output>) -> Option<Vec<u8>> {
         loop {
@@ -52,7 +76,8 @@ impl Link {
             }
             match arrival? {
                 Arrival::Abort => {
-                    *self = Self { geometry: self.geometry, ..Self::default() };
+                    let buffer = std::mem::take(&mut self.buffer);
+                    *self = Self { geometry: self.geometry, buffer, ..Self::default() };
                     out.push(Output::Aborted);
                 }
                 Arrival::Line(text, is_echoed) => {
@@ -133,12 +158,14 @@ impl Turn<'_, '_> {
         if let Some(data) = self.link.data.take() {
             self.data(data, &line);
         } else {
-            self.link.parts = line.split(|&byte| byte == b';').map(<[u8]>::to_vec).collect();
+            self.link.begin(&line);
         }
         while self.link.data.is_none() {
             let Some(part) = self.link.parts.pop_front() else { break };
             if !part.is_empty() {
-                self.part(&part);
+                let text = self.link.buffer.get(part.clone()).unwrap_or_default().to_vec();
+                let rest = self.link.rest(part.start + ECHO);
+                self.part(&text, &rest);
             }
         }
         let is_alive = !(self.side)(&mut self.parts.pc).is_dead();
@@ -159,8 +186,8 @@ impl Turn<'_, '_> {
         }
     }
 
-    /// One command.
-    fn part(&mut self, part: &[u8]) {
+    /// One command, and the text after what would be the word of `Echo`.
+    fn part(&mut self, part: &[u8], rest: &[u8]) {
         let has_later = self.parts.level.behaviour().has_later_commands;
         let Some((command, length)) = find(part, has_later) else {
             if let Some(message) = absent::explain(part) {
@@ -169,19 +196,19 @@ impl Turn<'_, '_> {
             return self.mistake(part, &Mistake { column: 0, message: MistakeText::InvalidCommand });
         };
         match Values::read(command.arguments, &mut LineReader::new(part, length)) {
-            Ok(values) => self.execute(command, &values, part),
+            Ok(values) => self.execute(command, &values, rest),
             Err(mistake) => self.mistake(part, &mistake),
         }
     }
 
-    fn execute(&mut self, command: &Command, values: &Values, part: &[u8]) {
+    fn execute(&mut self, command: &Command, values: &Values, rest: &[u8]) {
         self.parts.out.is_commanding = true;
         let mut session = Session {
             parts: self.parts,
             experiment: self.experiment,
             context: self.context,
             geometry: &mut self.link.geometry,
-            part,
+            rest,
         };
         let answer = (command.run)(&mut session, values);
         self.parts.out.is_commanding = false;

@@ -4,10 +4,11 @@ use kmotiondef::AxisId;
 
 use crate::servo::coordinated::download::Point;
 
-/// The latest line that was sent.
+/// The latest line that was sent in hexadecimal; at power-up one from 0 to 0.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Geometry {
-    pub(super) line: Option<(Point, Point)>,
+    pub(super) begin: Point,
+    pub(super) end: Point,
 }
 
 /// A recorded motion in progress.

@@ -144,9 +144,15 @@ fn find(text: &[u8], has_later: bool) -> Option<(&'static Command, usize)> {
     let matches = |command: &&Command| {
         let length = command.name.len();
         let word = text.get(..length).is_some_and(|word| word.eq_ignore_ascii_case(command.name.as_bytes()));
-        // Odd and kept: a sign ends this one word as well.
-        let has_sign = command.name == "DisableAxis" && text.get(length) == Some(&b'-');
-        word && (has_sign || text.get(length).is_none_or(|byte| matches!(byte, b' ' | b'=' | b'0'..=b'9')))
+        let ends = |byte: &u8| match byte {
+            b' ' | b'=' | b'0'..=b'9' => true,
+            // Odd and kept: a sign ends this one word, and anything a word that ends in a digit.
+            b'-' => {
+                command.name == "DisableAxis" || command.name.ends_with(|last: char| last.is_ascii_digit())
+            }
+            _ => command.name.ends_with(|last: char| last.is_ascii_digit()),
+        };
+        word && text.get(length).is_none_or(ends)
     };
     let later = LATER_COMMANDS.iter().filter(|_| has_later);
     // Of two with one name the last counts.
@@ -180,6 +186,10 @@ mod tests {
             ("3PH0=1 1", Some("3PH")),
             ("LHEX11 2", Some("LHex1")),
             ("INPUTCHAN0 3=5", Some("InputChan0")),
+            ("INPUTCHAN0-3", Some("InputChan0")),
+            ("LHEX1X", Some("LHex1")),
+            ("DISABLEAXIS-3", Some("DisableAxis")),
+            ("ENABLEAXIS-3", None),
             ("VERSIO", None),
             ("VERSIONX", None),
             (" VERSION", None),

@@ -3,7 +3,7 @@
 //! A stretch that is sent in hexadecimal leaves out what the board remembers: its beginning (`LHex1`), or its
 //! beginning and end (`LHex2`). [`Geometry`] is that memory.
 
-use kmotiondef::structs::{Chan, Spindle};
+use kmotiondef::structs::Spindle;
 use kmotiondef::variables::{CS0_STOPPING_STATE, SPINDLE};
 
 use super::arguments::Values;
@@ -48,9 +48,8 @@ fn noted(session: &mut Session<'_, '_>, result: Result<(), Message>) -> Answer {
     Answer::Nothing
 }
 
-/// Adds a line and remembers it.
+/// Adds a line.
 fn add_line(session: &mut Session<'_, '_>, begin: Point, end: Point, numbers: &[f32]) -> Answer {
-    session.geometry.line = Some((begin, end));
     let result = download::line(session.memory(), &begin, &end, &timing(numbers));
     noted(session, result)
 }
@@ -63,25 +62,31 @@ pub(super) fn linear(session: &mut Session<'_, '_>, values: &Values, letters: us
     add_line(session, point(0, begin), point(0, end), timing)
 }
 
+/// `LinearHex` and its variants: as `linear`, and remembered.
+pub(super) fn linear_hex(session: &mut Session<'_, '_>, values: &Values, letters: usize) -> Answer {
+    let numbers = values.singles();
+    let (begin, rest) = numbers.split_at(letters.min(numbers.len()));
+    let (end, timing) = rest.split_at(letters.min(rest.len()));
+    *session.geometry = Geometry { begin: point(0, begin), end: point(0, end) };
+    linear_again_with(session, timing)
+}
+
 /// `LHex1` and its variants: a line on from the end of the one before.
 pub(super) fn linear_on(session: &mut Session<'_, '_>, values: &Values, letters: usize) -> Answer {
     let numbers = values.singles();
     let (end, timing) = numbers.split_at(letters.min(numbers.len()));
-    let begin = session.geometry.line.map_or_else(|| present(session), |(_, end)| end);
-    add_line(session, begin, point(0, end), timing)
+    *session.geometry = Geometry { begin: session.geometry.end, end: point(0, end) };
+    linear_again_with(session, timing)
 }
 
 /// `LHex2`: the line before again, with another timing.
 pub(super) fn linear_again(session: &mut Session<'_, '_>, values: &Values) -> Answer {
-    let here = present(session);
-    let (begin, end) = session.geometry.line.unwrap_or((here, here));
-    add_line(session, begin, end, &values.singles())
+    linear_again_with(session, &values.singles())
 }
 
-/// Where the letters are now.
-fn present(session: &mut Session<'_, '_>) -> Point {
-    let memory = session.memory();
-    letters(memory).map(|axis| axis.map_or(0.0, |axis| memory.axis(axis, Chan::DEST) as f32))
+fn linear_again_with(session: &mut Session<'_, '_>, timing: &[f32]) -> Answer {
+    let Geometry { begin, end } = *session.geometry;
+    add_line(session, begin, end, timing)
 }
 
 /// `Arc` and its variants: centre, radii, angles, the other letters' beginning and end, timing.
@@ -145,7 +150,6 @@ pub(super) fn end_rapid(session: &mut Session<'_, '_>, _: &Values) -> Answer {
 }
 
 pub(super) fn open(session: &mut Session<'_, '_>, _: &Values) -> Answer {
-    *session.geometry = Geometry::default();
     buffer::open(session.memory());
     Answer::Nothing
 }

@@ -51,8 +51,8 @@ pub(super) struct Session<'a, 'c> {
     pub(super) context: &'a mut TickContext<'c>,
     /// What the commands of coordinated motion remember.
     pub(super) geometry: &'a mut Geometry,
-    /// The whole command, in upper case.
-    pub(super) part: &'a [u8],
+    /// The text after the word of `Echo` and the character that ends it, in upper case.
+    pub(super) rest: &'a [u8],
 }
 
 impl Session<'_, '_> {

@@ -14,7 +14,8 @@ const THREAD: Argument = Integer(1, 7);
 const AXIS: Argument = Integer(0, 7);
 const BIT: Argument = Integer(0, 2047);
 const SWITCH: Argument = Integer(0, 1);
-const ANY: Argument = Integer(i32::MIN, i32::MAX);
+/// The axis of a letter, or none.
+const LETTER: Argument = Integer(-1, 7);
 const ELEMENT: Argument = Integer(0, 199);
 const WORD: Argument = Integer(0, GATHER_WORDS - 1);
 const SAMPLES: Argument = Integer(1, 40_000);
@@ -162,8 +163,8 @@ commands! {
     "CheckDoneXYZABC" &[] => motion::check_done_xyzabc, "reports whether all axes of the coordinate system are done";
 
     // Coordinated motion.
-    "DefineCS" &[Assign, ANY, ANY, ANY, ANY, ANY, ANY] => path::define_cs, "axes of the letters X Y Z A B C, -1 for none";
-    "DefineCSEX" &[Assign, ANY, ANY, ANY, ANY, ANY, ANY, ANY, ANY] => path::define_cs_ex, "axes of the letters X Y Z A B C U V";
+    "DefineCS" &[Assign, LETTER, LETTER, LETTER, LETTER, LETTER, LETTER] => path::define_cs, "axes of the letters X Y Z A B C, -1 for none";
+    "DefineCSEX" &[Assign, LETTER, LETTER, LETTER, LETTER, LETTER, LETTER, LETTER, LETTER] => path::define_cs_ex, "axes of the letters X Y Z A B C U V";
     "OpenBuf" &[] => path::open, "empties the buffer of coordinated motion";
     "ExecBuf" &[] => path::execute, "executes the buffer";
     "FlushBuf" &[] => path::flush, "marks the buffer as complete";
@@ -171,8 +172,8 @@ commands! {
     "CheckDoneBuf" &[] => path::check_done, "reports whether the buffer is done: 1, 0, or -1 if an axis is disabled";
     "Linear" &[Real; 17] => |s, v| path::linear(s, v, 6), "adds a line: begin, end, a b c d, time";
     "LinearEx" &[Real; 21] => |s, v| path::linear(s, v, 8), "adds a line of eight letters";
-    "LinearHex" &[Hex; 17] => |s, v| path::linear(s, v, 6), "adds a line, in hexadecimal singles";
-    "LinearHexEx" &[Hex; 21] => |s, v| path::linear(s, v, 8), "adds a line of eight letters, in hexadecimal singles";
+    "LinearHex" &[Hex; 17] => |s, v| path::linear_hex(s, v, 6), "adds a line, in hexadecimal singles";
+    "LinearHexEx" &[Hex; 21] => |s, v| path::linear_hex(s, v, 8), "adds a line of eight letters, in hexadecimal singles";
     "LHex1" &[Hex; 11] => |s, v| path::linear_on(s, v, 6), "continues from the last line: end, a b c d, time";
     "LHexEx1" &[Hex; 13] => |s, v| path::linear_on(s, v, 8), "continues from the last line, with eight letters";
     "LHex2" &[Hex; 5] => path::linear_again, "repeats the last line with a new a b c d, time";

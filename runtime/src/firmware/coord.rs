@@ -19,8 +19,8 @@ use crate::views::Typed;
 pub(crate) fn define(parts: &mut Parts, caller: &mut Caller<'_>, axes: &[i32]) {
     let valid = |&axis: &i32| axis == -1 || AxisId::new(axis).is_some();
     if !axes.iter().all(valid) {
+        // The board takes any number; one that is not an axis is none.
         parts.out.diagnose(caller, Message::BadCoordSystem { axes: format!("{axes:?}") });
-        return;
     }
     let mut named: Vec<i32> = axes.iter().copied().filter(|&axis| axis >= 0).collect();
     named.sort_unstable();

@@ -107,7 +107,6 @@ impl<T: IntoOutcome> IntoOutcome for Outcome<T> {
             Self::Done(value) => value.into_outcome(),
             Self::Wait(wake) => Ok(Outcome::Wait(wake)),
             Self::End => Ok(Outcome::End),
-            Self::Pause => Ok(Outcome::Pause),
         }
     }
 }

@@ -72,7 +72,6 @@ fn address(outcome: Outcome<i32>) -> Outcome<GuestAddr> {
         Outcome::Done(value) => Outcome::Done(GuestAddr::new(value.cast_unsigned())),
         Outcome::Wait(wake) => Outcome::Wait(wake),
         Outcome::End => Outcome::End,
-        Outcome::Pause => Outcome::Pause,
     }
 }
 

@@ -13,7 +13,7 @@ use crate::out::Message;
 use crate::views::{Typed, chan};
 
 /// A place beyond any end: recording is idle.
-const IDLE: GuestAddr = GuestAddr::new(0xFFFF_FFF8);
+const IDLE: GuestAddr = GuestAddr::new(0xFFFF_FFFC);
 /// Bytes of a sample of six doubles.
 const SAMPLE: u32 = 48;
 /// Samples of six doubles in the buffer.

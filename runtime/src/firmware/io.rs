@@ -57,7 +57,7 @@ fn check_jp7(parts: &mut Parts, caller: &Caller<'_>, bit: Bit) {
 /// 1 for outputs. Outputs of option boards count as 0, as the board has it.
 pub(crate) fn get_bit_direction(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) -> i32 {
     let Some(bit) = checked(parts, caller, Function::GetBitDirection, bit) else { return 0 };
-    i32::from(bits::is_output(&parts.io, bit))
+    i32::from(bits::is_output(&parts.io, caller.memory, bit))
 }
 
 pub(crate) fn set_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) {
@@ -178,9 +178,15 @@ pub(crate) fn write_pwmr(parts: &mut Parts, caller: &mut Caller<'_>, channel: i3
     store_pwm(caller.memory, channel, recirculate(value));
 }
 
+/// The first channel of a SnapAmp.
+const FIRST_CURRENT: i32 = 8;
+
 pub(crate) fn write_pwmc(parts: &mut Parts, caller: &mut Caller<'_>, channel: i32, value: i32) {
     check_pwm(parts, caller, Function::WritePWMC, (channel, value), MAX_PWMC_VALUE);
-    store_pwm(caller.memory, channel, current(value));
+    // The board's own channels have no current mode.
+    if channel >= FIRST_CURRENT {
+        store_pwm(caller.memory, channel, current(value));
+    }
 }
 
 #[cfg(test)]

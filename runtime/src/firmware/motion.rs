@@ -8,7 +8,7 @@ pub(crate) use structure::{
 };
 
 use kmotiondef::firmware::Function;
-use kmotiondef::limits::TIMEBASE;
+use kmotiondef::limits::{N_CHANNELS, TIMEBASE};
 use kmotiondef::modes::{InputMode, LastMotion, OutputMode};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::{COORD_SYSTEM0, CS0_STOPPING_STATE};
@@ -29,9 +29,22 @@ use crate::servo::{hold, switching};
 use crate::views::Typed;
 use chips::stepgen::generator_of;
 
+/// The number after the last axis, which the board does not refuse: it takes what comes after the axes in memory for one.
+const AFTER_AXES: i32 = N_CHANNELS as i32;
+
 /// What the board prints when a program names an axis that does not exist.
-fn invalid(parts: &mut Parts, what: &str) {
-    parts.out.console.message(&format!("Attempt to {what} invalid Chan"));
+fn invalid(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: i32, what: &str) {
+    if axis == AFTER_AXES {
+        parts.out.diagnose(caller, Message::NoSuchAxis { function, axis });
+    } else {
+        parts.out.console.message(&format!("Attempt to {what} invalid Chan"));
+    }
+}
+
+/// An axis that does not exist is enabled; that after the last ends the program.
+fn enable_invalid(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: i32) -> Outcome<()> {
+    invalid(parts, caller, function, axis, "enable");
+    if axis == AFTER_AXES { Outcome::End } else { Outcome::Done(()) }
 }
 
 /// Checks an axis number that a program names.
@@ -43,14 +56,17 @@ fn checked(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: i32
     checked
 }
 
-pub(crate) fn enable_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) {
+pub(crate) fn enable_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) -> Outcome<()> {
     axis_check::goes_on(parts, caller);
-    let Some(axis) = checked(parts, caller, Function::EnableAxis, axis) else { return };
+    let Some(axis) = AxisId::new(axis) else {
+        return enable_invalid(parts, caller, Function::EnableAxis, axis);
+    };
     let mode = OutputMode::new(caller.memory.axis(axis, Chan::OUTPUT_MODE));
     let keeps_dest = mode.is_some_and(|mode| mode.traits().keeps_dest);
     let field = if keeps_dest { Chan::DEST } else { Chan::POSITION };
     let dest = caller.memory.axis(axis, field);
     enable(parts, caller, Function::EnableAxis, axis, dest);
+    Outcome::Done(())
 }
 
 /// An axis is enabled: the pins of its step output become outputs, and stay so when it is disabled. Tells which of them
@@ -70,12 +86,18 @@ fn take_pins(parts: &mut Parts, caller: &mut Caller<'_>, axis: AxisId) {
     parts.lines(caller.now()).settle();
 }
 
-pub(crate) fn enable_axis_dest(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, dest: f64) {
+pub(crate) fn enable_axis_dest(
+    parts: &mut Parts,
+    caller: &mut Caller<'_>,
+    axis: i32,
+    dest: f64,
+) -> Outcome<()> {
     axis_check::goes_on(parts, caller);
-    match AxisId::new(axis) {
-        Some(axis) => enable(parts, caller, Function::EnableAxisDest, axis, dest),
-        None => invalid(parts, "enable"),
-    }
+    let Some(axis) = AxisId::new(axis) else {
+        return enable_invalid(parts, caller, Function::EnableAxisDest, axis);
+    };
+    enable(parts, caller, Function::EnableAxisDest, axis, dest);
+    Outcome::Done(())
 }
 
 /// Puts an axis at a destination and turns it on.
@@ -87,14 +109,18 @@ fn enable(parts: &mut Parts, caller: &mut Caller<'_>, function: Function, axis: 
 }
 
 pub(crate) fn disable_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) {
-    let Some(axis) = AxisId::new(axis) else { return invalid(parts, "Disable") };
+    let Some(axis) = AxisId::new(axis) else {
+        return invalid(parts, caller, Function::DisableAxis, axis, "Disable");
+    };
     switching::switch_off(&mut parts.servo, &mut parts.machine, caller.memory, axis);
     hold::abort_if_member(caller.memory, axis);
 }
 
 pub(crate) fn zero(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) {
     axis_check::goes_on(parts, caller);
-    let Some(axis) = AxisId::new(axis) else { return invalid(parts, Function::Zero.name()) };
+    let Some(axis) = AxisId::new(axis) else {
+        return invalid(parts, caller, Function::Zero, axis, Function::Zero.name());
+    };
     axis_check::ends_motion(parts, caller, Function::Zero, axis);
     switching::zero(&mut parts.servo, &mut parts.machine, caller.memory, axis);
     hold::abort_if_member(caller.memory, axis);
@@ -114,8 +140,8 @@ fn may_move(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Func
     }
     let is_member = system::is_member(memory, axis);
     if is_member && !memory.get(COORD_SYSTEM0).is_null() {
+        // The motion begins, and shows when the path has ended.
         parts.out.diagnose(caller, Message::AxisOnPath { function, axis });
-        return false;
     }
     let may = !(is_member && memory.get(CS0_STOPPING_STATE) != 0);
     let drives_nothing = memory.axis(axis, Chan::OUTPUT_MODE) == OutputMode::None.get();
@@ -458,6 +484,11 @@ fn begin_jog(
     // To stop an axis that is disabled is no mistake.
     if !is_enabled && velocity == 0.0 {
         return Outcome::Done(());
+    }
+    // Odd and kept: to stop an axis of the coordinate system gives up a feedhold, and the path that it holds.
+    let is_held = caller.memory.get(CS0_STOPPING_STATE) != 0;
+    if velocity == 0.0 && is_held && system::is_member(caller.memory, axis) {
+        hold::clear(&mut parts.servo, caller.memory);
     }
     if !may_move(parts, caller, axis, Function::Jog) || !is_place(parts, caller, Function::Jog, velocity) {
         return Outcome::Done(());

@@ -12,11 +12,8 @@ use super::string::LONGEST;
 use crate::out::Message;
 use crate::text::{float_prefix, integer_prefix};
 
-/// Alignment of an ordinary block.
-const ALIGNMENT: u32 = 8;
-
 pub(crate) fn malloc(parts: &mut Parts, _: &mut Caller<'_>, size: u32) -> GuestAddr {
-    parts.calls.heap.take(size, ALIGNMENT).unwrap_or_default()
+    parts.calls.heap.take(size).unwrap_or_default()
 }
 
 pub(crate) fn calloc(
@@ -26,7 +23,7 @@ pub(crate) fn calloc(
     size: u32,
 ) -> Result<GuestAddr, TrapKind> {
     let Some((bytes, block)) =
-        count.checked_mul(size).and_then(|bytes| Some((bytes, parts.calls.heap.take(bytes, ALIGNMENT)?)))
+        count.checked_mul(size).and_then(|bytes| Some((bytes, parts.calls.heap.take(bytes)?)))
     else {
         return Ok(GuestAddr::NULL);
     };
@@ -37,7 +34,7 @@ pub(crate) fn calloc(
 
 pub(crate) fn memalign(parts: &mut Parts, _: &mut Caller<'_>, alignment: u32, size: u32) -> GuestAddr {
     if alignment.is_power_of_two() {
-        parts.calls.heap.take(size, alignment).unwrap_or_default()
+        parts.calls.heap.take_aligned(size, alignment).unwrap_or_default()
     } else {
         GuestAddr::NULL
     }
@@ -49,7 +46,14 @@ pub(crate) fn realloc(
     block: GuestAddr,
     size: u32,
 ) -> Result<GuestAddr, TrapKind> {
-    let Some(new) = parts.calls.heap.take(size, ALIGNMENT) else {
+    if size == 0 {
+        parts.calls.heap.give(block);
+        return Ok(GuestAddr::NULL);
+    }
+    if parts.calls.heap.resize(block, size) {
+        return Ok(block);
+    }
+    let Some(new) = parts.calls.heap.take(size) else {
         return Ok(GuestAddr::NULL);
     };
     if let Some(old_size) = parts.calls.heap.size(block) {

@@ -37,8 +37,17 @@ pub(crate) fn start(
     threads.start(thread).is_ok()
 }
 
+/// The released firmware stops here: no thread runs any more, and nothing is answered.
+fn stop_board(parts: &mut Parts, caller: &mut Caller<'_>, function: Function) {
+    parts.out.diagnose(caller, Message::FirmwareStops { command: function.name() });
+    ThreadId::all().for_each(|thread| caller.threads.pause(thread));
+    parts.out.console.die();
+    parts.pc.usb.die();
+    parts.pc.uart.die();
+}
+
 /// Starts the program of a thread; the caller's own number has no effect.
-pub(crate) fn start_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i32) {
+pub(crate) fn start_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i32) -> Outcome<()> {
     match ThreadId::new(thread) {
         // The caller's number needs no start, which would look for a download there.
         Some(id) if caller.thread != Some(id) && !start(parts, caller.memory, caller.threads, id) => {
@@ -48,26 +57,34 @@ pub(crate) fn start_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i
             parts.out.diagnose(caller, Message::StartsItself { thread: id });
         }
         Some(_) => {}
-        None => invalid(parts, caller, Function::StartThread, thread),
-    }
-}
-
-/// Stops a thread where it is; a thread may name itself.
-pub(crate) fn pause_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i32) -> Outcome<()> {
-    match ThreadId::new(thread) {
-        Some(id) if caller.thread == Some(id) => {
-            parts.out.diagnose(caller, Message::PausesItself { thread: id });
-            return Outcome::Pause;
+        None => {
+            invalid(parts, caller, Function::StartThread, thread);
+            stop_board(parts, caller, Function::StartThread);
+            return Outcome::End;
         }
-        Some(id) => caller.threads.pause(id),
-        None => invalid(parts, caller, Function::PauseThread, thread),
     }
     Outcome::Done(())
 }
 
-/// Lets a paused thread continue: 0, or 1 when no program is loaded there.
+/// Stops a thread where it is. A thread that names itself continues to the end of its slice.
+pub(crate) fn pause_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i32) {
+    let Some(id) = ThreadId::new(thread) else {
+        return invalid(parts, caller, Function::PauseThread, thread);
+    };
+    if caller.thread == Some(id) {
+        parts.out.diagnose(caller, Message::PausesItself { thread: id });
+    }
+    caller.threads.pause(id);
+}
+
+/// Lets a paused thread continue: 0, or 1 when no program is loaded there. One that has never run has no place to
+/// continue from: the board stops there.
 pub(crate) fn resume_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i32) -> i32 {
     match ThreadId::new(thread) {
+        Some(id) if caller.threads.state(id).is_ready() && !caller.threads.has_run(id) => {
+            stop_board(parts, caller, Function::ResumeThread);
+            0
+        }
         Some(id) => i32::from(caller.threads.resume(id).is_err()),
         None => {
             invalid(parts, caller, Function::ResumeThread, thread);

@@ -1,5 +1,6 @@
 //! Numbered inputs and outputs, wherever they are: pins, option boards, words of guest memory. Source: io.md.
 
+use chips::pins::PINS;
 use kmotiondef::bits::{BitKind, range_of};
 use kmotiondef::variables::{
     BIT_DIR_SHADOW, BIT_DIR_SHADOW_SNAP0, BIT_DIR_SHADOW_SNAP1, KSTEP_PRESENT, VIRTUAL_BITS, VIRTUAL_BITS_EX,
@@ -30,12 +31,22 @@ fn memory_bit(bit: Bit, kind: BitKind) -> Option<(Place<i32>, i32)> {
     }
 }
 
-/// The word and mask that hold the direction of a SnapAmp's pin.
-fn snap_direction(bit: Bit) -> (Place<i32>, i32) {
-    if bit.get() < SNAP[1] {
-        (BIT_DIR_SHADOW_SNAP0, 1 << (bit.get() - SNAP[0]))
-    } else {
-        (BIT_DIR_SHADOW_SNAP1, 1 << (bit.get() - SNAP[1]))
+/// Where the direction of a bit from 64 on is noted.
+struct SnapDirection {
+    word: Place<i32>,
+    /// By how many bits a mask is shifted there; from 32 on it is shifted out.
+    shift: u32,
+}
+
+impl SnapDirection {
+    /// Odd and kept: there are words for 64 bits, the processor shifts by six bits of a number, and bits after those are
+    /// noted where these are, or nowhere.
+    fn of(bit: Bit) -> Self {
+        if bit.get() < SNAP[1] {
+            Self { word: BIT_DIR_SHADOW_SNAP0, shift: u32::from(bit.get() - SNAP[0]) }
+        } else {
+            Self { word: BIT_DIR_SHADOW_SNAP1, shift: u32::from(bit.get() - SNAP[1]) % 64 }
+        }
     }
 }
 
@@ -45,28 +56,29 @@ fn change(memory: &mut GuestMemory, word: Place<i32>, mask: i32, set: bool) {
     memory.set(word, if set { value | mask } else { value & !mask });
 }
 
-/// Makes a pin an output or an input; other bits are what they are.
+/// Makes a pin an output or an input; virtual bits are what they are. Of other bits the direction is noted, whether
+/// there is a SnapAmp or not.
 pub(crate) fn set_direction(io: &mut Io, memory: &mut GuestMemory, bit: Bit, is_output: bool, now: Cycles) {
-    match range_of(bit).map(|range| range.kind) {
-        Some(BitKind::Pin) => {
-            io.pins.set_output(bit, is_output, now);
-            let word = BIT_DIR_SHADOW.element(bit.index() / 32);
-            change(memory, word, 1 << (bit.get() % 32), is_output);
-        }
-        Some(BitKind::SnapGpio) => {
-            let (word, mask) = snap_direction(bit);
-            change(memory, word, mask, is_output);
-        }
-        _ => {}
+    if bit.get() < PINS {
+        io.pins.set_output(bit, is_output, now);
+        let word = BIT_DIR_SHADOW.element(bit.index() / 32);
+        change(memory, word, 1 << (bit.get() % 32), is_output);
+    } else if bit.get() >= SNAP[0] {
+        let SnapDirection { word, shift } = SnapDirection::of(bit);
+        change(memory, word, 1_i32.checked_shl(shift).unwrap_or(0), is_output);
     }
 }
 
-/// Whether a bit is an output. Outputs of option boards count as inputs, as the board has it.
-pub(crate) fn is_output(io: &Io, bit: Bit) -> bool {
-    match range_of(bit).map(|range| range.kind) {
-        Some(BitKind::Pin | BitKind::Led) => io.pins.is_output(bit),
-        Some(BitKind::Virtual) => true,
-        _ => false,
+/// Whether a bit is an output. Outputs of option boards count as inputs until a program says otherwise, as the board has
+/// it.
+pub(crate) fn is_output(io: &Io, memory: &GuestMemory, bit: Bit) -> bool {
+    if bit.get() < PINS {
+        io.pins.is_output(bit)
+    } else if bit.get() < SNAP[0] {
+        true
+    } else {
+        let SnapDirection { word, shift } = SnapDirection::of(bit);
+        memory.get(word) >> shift.min(31) & 1 != 0
     }
 }
 
@@ -108,7 +120,8 @@ pub(crate) fn bit_state(io: &Io, memory: &GuestMemory, bit: Bit) -> (bool, bool)
             (pins.written(bit), false)
         }
         BitKind::SnapGpio => {
-            let (word, mask) = snap_direction(bit);
+            let SnapDirection { word, shift } = SnapDirection::of(bit);
+            let mask = 1 << shift;
             if memory.get(word) & mask != 0 { (pins.written(bit), false) } else { (pins.input(bit), true) }
         }
         // Nobody switches the banks of KStep's inputs through before it is announced.

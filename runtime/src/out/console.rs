@@ -21,11 +21,16 @@ pub(crate) struct Console {
     servo: Option<String>,
     /// Strings queued since power-up.
     queued: u64,
+    /// Whether nobody sends anything any more.
+    is_dead: bool,
 }
 
 impl Console {
     /// Takes as much of `text` as the queue has room for and returns the rest.
     pub(crate) fn put<'t>(&mut self, text: &'t [u8]) -> &'t [u8] {
+        if self.is_dead {
+            return &[];
+        }
         let mut rest = text;
         while let Some((&byte, tail)) = rest.split_first() {
             if byte == b'\n' || self.held.len() == HELD_LIMIT {
@@ -44,7 +49,7 @@ impl Console {
 
     /// A message of the board itself; a full queue loses it.
     pub(crate) fn message(&mut self, text: &str) {
-        if self.queue.len() < QUEUE_LIMIT {
+        if self.queue.len() < QUEUE_LIMIT && !self.is_dead {
             self.queue.push_back(text.as_bytes().to_vec());
             self.queued += 1;
         }
@@ -53,7 +58,9 @@ impl Console {
     /// A message of the servo, which waits for the primary thread. One that finds another waiting is lost
     /// (axes-and-motion.md section 7.4).
     pub(crate) fn servo_message(&mut self, text: &str) {
-        self.servo.get_or_insert_with(|| text.to_owned());
+        if !self.is_dead {
+            self.servo.get_or_insert_with(|| text.to_owned());
+        }
     }
 
     /// The primary thread's slice: it sends what the servo reports, past the queue.
@@ -64,6 +71,11 @@ impl Console {
     /// The string that is sent next.
     pub(crate) fn send(&mut self) -> Option<Vec<u8>> {
         self.queue.pop_front()
+    }
+
+    /// Nobody sends anything any more.
+    pub(crate) fn die(&mut self) {
+        *self = Self { is_dead: true, queued: self.queued, ..Self::default() };
     }
 
     /// Everything not sent yet. A line that has not ended stays: the board never sends it

@@ -538,7 +538,7 @@ messages! {
         "{function}: axis {axis} is disabled, so nothing moves";
     /// A motion call names an axis that follows a path.
     AxisOnPath { function: Function, axis: AxisId } = "axis-on-path", Warning, [always],
-        "{function}: axis {axis} is executing coordinated motion, which continues";
+        "{function}: axis {axis} is executing coordinated motion, which continues; the axis moves by itself when that has ended";
     /// A call moves an axis that has switches but no output.
     AxisUndriven { function: Function, axis: AxisId } = "axis-undriven", Hint, [per axis],
         "{function}: axis {axis} drives nothing because its OutputMode is NO_OUTPUT_MODE, so the machine does not move (should an init program run first?)";
@@ -562,7 +562,7 @@ messages! {
         "axis {axis}: with this CommutationOffset a real brushless motor would not turn as commanded; the simulated one follows (model \"follow\")";
     /// A coordinate system is defined with numbers that are not axes.
     BadCoordSystem { axes: String } = "bad-coord-system", Warning, [always],
-        "DefineCoordSystem: {axes} must be axes 0 to 7 or -1";
+        "DefineCoordSystem: {axes} must be axes 0 to 7 or -1; the board does not check them";
     /// A coordinate system is defined with the same axis for two letters.
     CoordSystemTwice { axes: String } = "coord-system-twice", Warning, [always],
         "DefineCoordSystem: {axes} names an axis twice";

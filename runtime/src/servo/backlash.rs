@@ -20,11 +20,12 @@ pub(crate) fn advance(chan: &mut AxisView<'_>) {
     } else if is_above {
         chan.set(Chan::BACKLASH_DIRECTION, 1);
     }
-    let step = (f64::from(chan.get(Chan::BACKLASH_RATE)) * TIMEBASE) as f32;
+    let step = f64::from(chan.get(Chan::BACKLASH_RATE)) * TIMEBASE;
+    let after = |step: f64| (f64::from(offset) + step) as f32;
     let offset = match chan.get(Chan::BACKLASH_DIRECTION) {
         _ if is_above => amount,
-        1 => (offset + step).min(amount),
-        -1 => (offset - step).max(0.0),
+        1 => after(step).min(amount),
+        -1 => after(-step).max(0.0),
         _ => return,
     };
     chan.set(Chan::BACKLASH, offset);

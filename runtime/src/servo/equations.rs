@@ -144,7 +144,7 @@ fn lead_makes_a_knee_where_the_table_says() {
             let cycles = f64::from(tick) * TIMEBASE * frequency;
             desk.memory.set_axis(axis(), Chan::DEST, cycles);
             desk.run(1);
-            let wave = 20.0 * super::sine::sine(cycles, 0);
+            let wave = f64::from(20.0 * super::sine::sine(cycles, 0));
             let expect = (wave + (wave - last) * lead).clamp(-230.0, 230.0);
             last = wave;
             let word = f64::from(desk.memory.get(LAST_PWM.element(0)) - 1280);

@@ -11,7 +11,7 @@ use vm::memory::GuestMemory;
 use super::coordinated::feedhold::{self, HoldState};
 use super::coordinated::path;
 use super::coordinated::system::{is_member, members};
-use super::independent::{has_motion, is_moving};
+use super::independent::has_motion;
 use super::moves::{limits, start_jog, start_move_to};
 use super::spindle;
 use super::state::Servo;
@@ -79,9 +79,9 @@ pub(crate) fn complete(servo: &mut Servo, memory: &mut GuestMemory) {
     while stop_next(servo, memory) {}
 }
 
-/// The axes of the coordinate system that move by themselves.
+/// The axes of the coordinate system that have a motion of their own, also those that are disabled.
 pub(crate) fn moving_members(memory: &GuestMemory) -> Vec<AxisId> {
-    members(memory).filter(|&axis| is_moving(memory, axis)).collect()
+    members(memory).filter(|&axis| has_motion(memory, axis)).collect()
 }
 
 /// Decelerates an axis to rest.
@@ -117,10 +117,8 @@ pub(crate) fn resume_axis(servo: &mut Servo, memory: &mut GuestMemory, axis: Axi
     }
 }
 
-/// Gives up what a feedhold holds.
+/// Gives up what a feedhold holds, and the path.
 pub(crate) fn clear(servo: &mut Servo, memory: &mut GuestMemory) {
-    if !feedhold::clear(memory) {
-        memory.set(CS0_STOPPING_STATE, HoldState::Running.number());
-    }
+    feedhold::clear(memory);
     servo.axes.iter_mut().for_each(|axis| axis.held = None);
 }

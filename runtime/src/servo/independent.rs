@@ -6,7 +6,7 @@ use kmotiondef::{AxisId, GuestAddr, GuestType, Place};
 use vm::memory::GuestMemory;
 
 use super::profile::{LEAD, MAX_STATES, Mode, MotionState, Point};
-use super::trajectory::{Approach, Cursor, Step, point, step};
+use super::trajectory::{Approach, Cursor, Step, entered, point, step};
 use crate::views::{AxisView, Typed, field_of};
 
 /// The state list of an axis.
@@ -116,7 +116,8 @@ pub(crate) fn present(memory: &GuestMemory, axis: AxisId) -> Point {
     }
     let current = memory.axis(axis, Chan::PCOEFF);
     let velocity = f64::from(memory.axis(axis, Chan::LAST_VEL));
-    point(cursor(memory, axis), dest, velocity, |index| read(memory, current, index))
+    let read = |index| read(memory, current, index);
+    point(entered(cursor(memory, axis), read), dest, velocity, read)
 }
 
 /// Advances the motion of an axis by one tick; whether its pointer points at a state.

@@ -241,12 +241,12 @@ fn run_axis(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId) -> bool
     if let Some((channel, count)) = input::count(&plan.input, &mut machine.loads, &mut chan, axis) {
         io.encoders.count(channel, count, &mut io.pins, *now);
     }
-    let moves = direction(own, &mut chan);
     if chan.get(Chan::ENABLE) == 0 {
         machine.loads[axis].release();
         io.stepgens.release(axis, &mut io.pins, *now);
-        return moves;
+        return false;
     }
+    let moves = direction(own, &mut chan);
     if plan.has_backlash {
         backlash::advance(&mut chan);
     } else {

@@ -19,6 +19,8 @@ use crate::views::{AxisView, Typed};
 
 /// The first PWM channel of a SnapAmp: its loops control current.
 const SNAP_AMP: i32 = 8;
+/// Steps of a cycle in the word of a vector's angle.
+const VECTOR_STEPS: f32 = 360.0;
 /// Marks a word of a brushless vector; the magnitude is in the low half.
 const VECTOR: u32 = 0x8000_0000;
 
@@ -57,11 +59,13 @@ fn drive_otherwise(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, 
         Some(OutputMode::StepDir | OutputMode::ClosedLoopStepDir) => Drive::Steps(command),
         Some(OutputMode::Microstep) => {
             let gain = f64::from(chan.get(Chan::OUTPUT_GAIN));
-            microstep(memory, axis, gain * command);
+            let angle = gain * stepped_to(&chan);
+            microstep(memory, axis, angle);
             Drive::Steps(command)
         }
         Some(OutputMode::ClosedLoopMicrostep) => {
-            microstep(memory, axis, command + f64::from(output));
+            let angle = stepped_to(&chan) + f64::from(output);
+            microstep(memory, axis, angle);
             Drive::Steps(command)
         }
         Some(OutputMode::DacServo) => {
@@ -76,6 +80,11 @@ fn drive_otherwise(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, 
         }
     };
     tick.machine.loads[axis].drive = drive;
+}
+
+/// Where the phases of a microstepped axis go: its command without the offset of the destination.
+fn stepped_to(chan: &AxisView<'_>) -> f64 {
+    chan.get(Chan::DEST) + f64::from(chan.get(Chan::BACKLASH))
 }
 
 /// What drives the load of an enabled axis whose outputs somebody else has computed; `stepped` is where its step
@@ -123,7 +132,7 @@ fn turn(
     let (angle, channel) = (phase(&chan), chan.get(Chan::OUTPUT_CHAN0));
     check_commutation(tick, axis, angle, chan.get(Chan::INV_DIST_PER_CYCLE));
     if mode == OutputMode::Brushless3Ph {
-        three_phase(memory, axis, output);
+        three_phase(memory, axis, output, angle);
     } else {
         four_phase(memory, axis, output, angle);
     }
@@ -184,34 +193,37 @@ fn note_overwritten(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId) {
 /// Sine and cosine currents with lead compensation.
 fn microstep(memory: &mut GuestMemory, axis: AxisId, position: f64) {
     let angle = position * memory.axis(axis, Chan::INV_DIST_PER_CYCLE);
-    let amplitude = f64::from(memory.axis(axis, Chan::STEPPER_AMPLITUDE));
-    let lead = f64::from(memory.axis(axis, Chan::LEAD));
-    let phases: [(f64, Field<f32>, Field<i32>); 2] = [
+    let amplitude = memory.axis(axis, Chan::STEPPER_AMPLITUDE);
+    let lead = memory.axis(axis, Chan::LEAD);
+    let phases: [(f32, Field<f32>, Field<i32>); 2] = [
         (amplitude * sine(angle, 0), Chan::X1_LAST, Chan::OUTPUT_CHAN0),
         (amplitude * sine(angle, QUARTER), Chan::X2_LAST, Chan::OUTPUT_CHAN1),
     ];
     for (value, last, channel) in phases {
-        let led = value + (value - f64::from(memory.axis(axis, last))) * lead;
-        memory.set_axis(axis, last, value as f32);
+        let led = value + (value - memory.axis(axis, last)) * lead;
+        memory.set_axis(axis, last, value);
         let channel = memory.axis(axis, channel);
-        store_pwm(memory, channel, pwm(channel, libm::round(led) as i32));
+        store_pwm(memory, channel, pwm(channel, libm::roundf(led) as i32));
     }
 }
 
-/// Applies a three-phase vector. The word says its magnitude only; the phases are the amplifier's.
-pub(crate) fn three_phase(memory: &mut GuestMemory, axis: AxisId, v: f32) {
+/// Applies a three-phase vector, whose angle is in cycles: the phases are the amplifier's.
+pub(crate) fn three_phase(memory: &mut GuestMemory, axis: AxisId, v: f32, angle: f64) {
     let value = v.clamp(-MAXV, MAXV) as i16;
     let word = VECTOR | u32::from(value.cast_unsigned());
     let channel = memory.axis(axis, Chan::OUTPUT_CHAN0);
     store_pwm(memory, channel, word.cast_signed());
+    if channel >= SNAP_AMP {
+        let fraction = (angle - libm::floor(angle)) as f32;
+        store_pwm(memory, channel.wrapping_add(1), (fraction * VECTOR_STEPS) as i32);
+    }
 }
 
-/// Applies a vector to two coils a quarter of a cycle apart; the angle is in cycles.
+/// Applies a vector to two coils a quarter of a cycle apart; the angle is in cycles. Each coil has its own limit.
 pub(crate) fn four_phase(memory: &mut GuestMemory, axis: AxisId, v: f32, angle: f64) {
-    let magnitude = f64::from(v.clamp(-MAXV, MAXV));
     let phases = [(sine(angle, 0), Chan::OUTPUT_CHAN0), (sine(angle, QUARTER), Chan::OUTPUT_CHAN1)];
     for (value, channel) in phases {
         let channel = memory.axis(axis, channel);
-        store_pwm(memory, channel, pwm(channel, libm::round(magnitude * value) as i32));
+        store_pwm(memory, channel, pwm(channel, libm::roundf(v * value) as i32));
     }
 }

@@ -116,7 +116,7 @@ impl AxisPlan {
             is_open_loop: OutputMode::is_open_loop(mode),
             is_slave: chan.get(Chan::MASTER_AXIS) >= 0,
             watches_switches: watches_switches(&chan),
-            has_backlash: BacklashMode::new(chan.get(Chan::BACKLASH_MODE)) == Some(BacklashMode::Linear),
+            has_backlash: chan.get(Chan::BACKLASH_MODE) != BacklashMode::Off.get(),
             soft_limit_neg: chan.get(Chan::SOFT_LIMIT_NEG).into(),
             soft_limit_pos: chan.get(Chan::SOFT_LIMIT_POS).into(),
             max_following_error: chan.get(Chan::MAX_FOLLOWING_ERROR),

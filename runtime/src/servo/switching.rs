@@ -26,6 +26,7 @@ pub(crate) fn enable(
     }
     clear_filters(memory, axis);
     memory.set_axis(axis, Chan::BACKLASH, 0.0);
+    memory.set_axis(axis, Chan::PREV_BACKLASH_DEST, dest as f32);
     memory.set_axis(axis, Chan::LAST_NON_ZERO_DIR, 0);
     memory.set_axis(axis, Chan::DIRECTION_OF_MOTION, 0);
     memory.set_axis(axis, Chan::LAST_VEL, 0.0);
@@ -38,6 +39,10 @@ pub(crate) fn enable(
 /// Makes the present place of an axis its zero.
 pub(crate) fn zero(servo: &mut Servo, machine: &mut Machine, memory: &mut GuestMemory, axis: AxisId) {
     memory.set_axis(axis, Chan::PCOEFF, GuestAddr::NULL);
+    // The place in the electrical cycle stays the same.
+    let commutation =
+        f64::from(memory.axis(axis, Chan::COMMUTATION_OFFSET)) + memory.axis(axis, Chan::POSITION);
+    memory.set_axis(axis, Chan::COMMUTATION_OFFSET, commutation as f32);
     memory.set_axis(axis, Chan::POSITION, 0.0);
     let zeroed =
         [Chan::DEST, Chan::UNFILTERED_DEST, Chan::LAST_DEST, Chan::PREV_DEST, Chan::LAST_FOLLOWING_ERROR];
@@ -47,6 +52,7 @@ pub(crate) fn zero(servo: &mut Servo, machine: &mut Machine, memory: &mut GuestM
     memory.set_axis(axis, Chan::LAST_NON_ZERO_DIR, 0);
     memory.set_axis(axis, Chan::DIRECTION_OF_MOTION, 0);
     memory.set_axis(axis, Chan::PREV_BACKLASH_DEST, 0.0);
+    output_nothing(memory, axis);
     servo.cache.invalidate(Change::Motion);
     servo.axes[axis.index()] = AxisMemory::rest(0.0);
     machine.loads[axis].refer_to(0.0);
@@ -78,6 +84,11 @@ pub(crate) fn switch_off(servo: &mut Servo, machine: &mut Machine, memory: &mut 
     memory.set_axis(axis, Chan::ENABLE, 0);
     servo.cache.invalidate(Change::SwitchedOff);
     machine.loads[axis].drive = Drive::None;
+    output_nothing(memory, axis);
+}
+
+/// Sets the outputs of an axis to zero.
+fn output_nothing(memory: &mut GuestMemory, axis: AxisId) {
     let channels = [memory.axis(axis, Chan::OUTPUT_CHAN0), memory.axis(axis, Chan::OUTPUT_CHAN1)];
     let mode = OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE));
     let mut stop = |channels: &[i32]| {

@@ -50,12 +50,8 @@ pub(crate) fn step(
     approach: impl FnOnce() -> Approach,
     state: impl Fn(usize) -> MotionState,
 ) -> Step {
-    let (mut cursor, mut current) = (cursor, state(cursor.index));
-    while current.mode == Mode::Independent && cursor.t >= current.t {
-        cursor.t -= current.t;
-        cursor.index += 1;
-        current = state(cursor.index);
-    }
+    let mut cursor = entered(cursor, &state);
+    let current = state(cursor.index);
     let dest = match current.mode {
         Mode::Off => return Step::Ended,
         Mode::Independent => current.at(cursor.t).x,
@@ -63,6 +59,17 @@ pub(crate) fn step(
     };
     cursor.t += TIMEBASE;
     Step::Moving(dest, cursor)
+}
+
+/// The place in the list after the states that are over.
+pub(crate) fn entered(mut cursor: Cursor, state: impl Fn(usize) -> MotionState) -> Cursor {
+    let mut current = state(cursor.index);
+    while current.mode == Mode::Independent && cursor.t >= current.t {
+        cursor.t -= current.t;
+        cursor.index += 1;
+        current = state(cursor.index);
+    }
+    cursor
 }
 
 /// Position, velocity and acceleration from which a new motion is planned.

@@ -187,8 +187,10 @@ fn convert<A: Arguments>(
         b'd' | b'i' => signed(spec, (arguments.word()? as i32).into(), out),
         b'u' | b'x' | b'X' | b'o' => unsigned(spec, arguments.word()?.into(), letter, out),
         b'p' => {
+            let digits = precise(spec, &format!("{:x}", arguments.word()?));
             let prefix = if spec.alternate && spec.is_nearer_to_c() { "0x" } else { "" };
-            pad(spec, b"", format!("{prefix}{:x}", arguments.word()?).as_bytes(), out);
+            let head = if spec.is_nearer_to_c() { b"" } else { sign(spec, false) };
+            pad(&filled(spec), head, format!("{prefix}{digits}").as_bytes(), out);
         }
         b'c' => {
             out.spend(cost::CHARACTER);

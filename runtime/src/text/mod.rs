@@ -13,6 +13,7 @@ pub(crate) mod vectors;
 pub(crate) use format::{Arguments, format, format_counted};
 pub(crate) use number::{float_prefix, integer_prefix};
 pub(crate) use scan::{Scanned, Sink, scan};
+pub(crate) use scanned::float_value;
 
 /// The rules of `printf` and `sscanf` that a firmware follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

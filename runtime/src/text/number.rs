@@ -1,5 +1,7 @@
 //! Numbers at the beginning of a text, as `strtol` and `strtod` read them.
 
+use super::scanned::float_value;
+
 /// Reads an integer: optional sign, prefix where `base` allows it, digits.
 ///
 /// Returns the value modulo 2^64 and how many bytes it took; 0 bytes when there is no number. `base` 0 takes the
@@ -24,32 +26,23 @@ pub(crate) fn integer_prefix(text: &[u8], base: u32) -> (i64, usize) {
     (if negative { value.wrapping_neg() } else { value }, used)
 }
 
-/// Reads a decimal floating-point number; 0 bytes when there is none.
+/// Reads a decimal floating-point number as the board does; 0 bytes where none begins.
 ///
-/// An exponent without digits makes the value 0 (as the board has it).
+/// A sign begins one, whatever comes after it. An exponent without digits makes the value 0, and does not belong to it.
 pub(crate) fn float_prefix(text: &[u8]) -> (f64, usize) {
-    let (_, signed) = sign(text);
-    let whole = digit_count(&text[signed..]);
-    let mut used = signed + whole;
-    let mut digits = whole;
-    if text.get(used) == Some(&b'.') {
-        let decimals = digit_count(&text[used + 1..]);
-        digits += decimals;
-        used += if digits > 0 { 1 + decimals } else { 0 };
-    }
-    if digits == 0 {
+    let begins = match text {
+        [b'+' | b'-', ..] => true,
+        [b'.', digit, ..] | [digit, ..] => digit.is_ascii_digit(),
+        [] => false,
+    };
+    if !begins {
         return (0.0, 0);
     }
-    if matches!(text.get(used), Some(b'e' | b'E')) {
-        let (_, signed) = sign(&text[used + 1..]);
-        let exponent = digit_count(&text[used + 1 + signed..]);
-        used += 1 + signed + exponent;
-        if exponent == 0 {
-            return (0.0, used);
-        }
-    }
-    let value = std::str::from_utf8(&text[..used]).ok().and_then(|text| text.parse().ok());
-    (value.unwrap_or(0.0), used)
+    let (value, used) = float_value(text);
+    let taken = &text[..used];
+    let letter = taken.iter().position(|byte| matches!(byte, b'e' | b'E'));
+    let is_cut = |at: &usize| !taken[*at..].iter().any(u8::is_ascii_digit);
+    (value, letter.filter(is_cut).unwrap_or(used))
 }
 
 /// Whether there is a minus sign, and how many bytes the sign takes.
@@ -59,10 +52,6 @@ fn sign(text: &[u8]) -> (bool, usize) {
         Some(b'+') => (false, 1),
         _ => (false, 0),
     }
-}
-
-fn digit_count(text: &[u8]) -> usize {
-    text.iter().take_while(|byte| byte.is_ascii_digit()).count()
 }
 
 #[cfg(test)]
@@ -84,6 +73,8 @@ mod tests {
         assert_eq!(float_prefix(b".5"), (0.5, 2));
         assert_eq!(float_prefix(b"5."), (5.0, 2));
         assert_eq!(float_prefix(b"."), (0.0, 0));
-        assert_eq!(float_prefix(b"1e"), (0.0, 2));
+        assert_eq!(float_prefix(b"1e"), (0.0, 1));
+        assert_eq!(float_prefix(b"- 5"), (-0.0, 1));
+        assert_eq!(float_prefix(b"1e400"), (f64::MAX, 5));
     }
 }

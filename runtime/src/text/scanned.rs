@@ -72,7 +72,7 @@ const EXPONENT_MAX: i64 = 308;
 /// Reads a float at the beginning of `text`: its value, and how many bytes belong to it.
 ///
 /// An exponent letter without digits makes the value 0.
-pub(super) fn float_value(text: &[u8]) -> (f64, usize) {
+pub(crate) fn float_value(text: &[u8]) -> (f64, usize) {
     let mut reader = Reader { text, at: 0 };
     let negative = reader.sign();
     let whole = reader.take(u8::is_ascii_digit);

@@ -2,7 +2,7 @@
 // it stands. 1000 units a second, so what is printed is the time base.
 //@ prints: forward: X 100 Y 50, bit 1
 //@ prints: back: X 50 Y 0, bit 1
-//@ prints: at the beginning: X 0 Y 0, time base 0
+//@ prints: at the beginning: X 0 Y 0, time base -9e-05
 //@ prints: forward again: X 50 Y 0
 #include "KMotionDef.h"
 

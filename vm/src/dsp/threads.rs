@@ -271,10 +271,6 @@ impl Processor {
             }
             Outcome::Wait(wake) => Ok(Some(Stop::Waiting(wake))),
             Outcome::End => Ok(Some(Stop::Ended)),
-            Outcome::Pause => {
-                self.return_from(changed, Value::Unit);
-                Ok(Some(Stop::Paused))
-            }
         }
     }
 

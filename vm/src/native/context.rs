@@ -49,7 +49,6 @@ enum Halt {
     Preempted,
     NeedsBoard,
     Ended,
-    Paused,
 }
 
 impl From<Halt> for Stop {
@@ -58,7 +57,6 @@ impl From<Halt> for Stop {
             Halt::Preempted => Self::Preempted,
             Halt::NeedsBoard => Self::NeedsBoard,
             Halt::Ended => Self::Ended,
-            Halt::Paused => Self::Paused,
         }
     }
 }
@@ -354,10 +352,6 @@ impl Context {
                 NextStep::Wait(wake)
             }
             Outcome::End => self.halt(Halt::Ended, Next::Nothing(Stop::Ended)),
-            Outcome::Pause => {
-                self.at += 1;
-                self.halt(Halt::Paused, Next::Answer(Answer::Slot(0)))
-            }
         })
     }
 }

@@ -1,7 +1,9 @@
 //! The firmware's heap: the SDRAM that the board's own buffers leave free.
 //!
-//! Sizes are rounded up to 8 bytes and each block has 8 bytes in front, as the board has it; where the free blocks
-//! are is kept here, so that no program can damage the heap.
+//! Sizes are rounded up to 8 bytes and each block has 8 bytes in front, as the board has it. Free blocks are in a list in
+//! the order of their sizes, from which the first that is large enough is taken; of two of the same size the one that was
+//! given back last. Neighbours that are free are one block. Where the blocks are is kept here, so that no program can
+//! damage the heap.
 
 use std::collections::BTreeMap;
 
@@ -13,40 +15,134 @@ const START: u32 = 0x80FE_0D68;
 const END: u32 = 0x80FF_9020;
 /// Bytes before each block.
 const HEADER: u32 = 8;
+/// What a remainder must have at least to be a block: a header, and 8 bytes.
+const LEAST: u32 = HEADER + 8;
 
-/// The blocks in use: address of the block, and its size without header.
-#[derive(Clone, Debug, Default)]
+/// A free block: its address after the header, and its size without it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Free {
+    block: u32,
+    size: u32,
+}
+
+/// The blocks: those in use by address, with their sizes without header, and those that are free.
+#[derive(Clone, Debug)]
 pub(crate) struct Heap {
-    blocks: BTreeMap<u32, u32>,
+    used: BTreeMap<u32, u32>,
+    free: Vec<Free>,
+}
+
+impl Default for Heap {
+    fn default() -> Self {
+        let block = START + HEADER;
+        Self { used: BTreeMap::new(), free: vec![Free { block, size: END - block }] }
+    }
 }
 
 impl Heap {
-    /// Takes a block at a multiple of `alignment` in the first gap that is large enough.
-    pub(crate) fn take(&mut self, size: u32, alignment: u32) -> Option<GuestAddr> {
-        let size = size.max(1).checked_next_multiple_of(8)?;
-        let alignment = alignment.max(8);
-        let mut gap = START;
-        let ends = self.blocks.iter().map(|(&block, &size)| (block - HEADER, block + size));
-        for (end, next) in ends.chain([(END, END)]) {
-            let block = gap.checked_add(HEADER)?.checked_next_multiple_of(alignment)?;
-            if block.checked_add(size)? <= end {
-                self.blocks.insert(block, size);
-                return Some(GuestAddr::new(block));
-            }
-            gap = next;
+    /// Takes a block; none of no bytes.
+    pub(crate) fn take(&mut self, size: u32) -> Option<GuestAddr> {
+        let size = rounded(size)?;
+        let place = self.free.iter().position(|free| free.size >= size)?;
+        let Free { block, size: found } = self.free.remove(place);
+        self.use_part(block, found, size);
+        Some(GuestAddr::new(block))
+    }
+
+    /// Takes a block at a multiple of `alignment`, which is a power of two.
+    pub(crate) fn take_aligned(&mut self, size: u32, alignment: u32) -> Option<GuestAddr> {
+        let size = rounded(size)?;
+        let begin = |free: &Free| {
+            let aligned = free.block.checked_next_multiple_of(alignment.max(8))?;
+            // What is left in front is a block of its own.
+            let begin = if aligned == free.block || aligned - free.block >= LEAST {
+                aligned
+            } else {
+                aligned.checked_add(alignment.max(LEAST))?
+            };
+            (begin.checked_add(size)? <= free.block + free.size).then_some(begin)
+        };
+        let place = self.free.iter().position(|free| begin(free).is_some())?;
+        let begin = begin(self.free.get(place)?)?;
+        let Free { block, size: found } = self.free.remove(place);
+        if begin > block {
+            self.insert(Free { block, size: begin - block - HEADER });
         }
-        None
+        self.use_part(begin, found - (begin - block), size);
+        Some(GuestAddr::new(begin))
+    }
+
+    /// Marks a block as used, whose rest is free if it is large enough.
+    fn use_part(&mut self, block: u32, found: u32, size: u32) {
+        if found - size < LEAST {
+            self.used.insert(block, found);
+            return;
+        }
+        self.used.insert(block, size);
+        self.insert(Free { block: block + size + HEADER, size: found - size - HEADER });
+    }
+
+    /// Puts a free block in front of those that are as large.
+    fn insert(&mut self, free: Free) {
+        let place = self.free.iter().position(|other| other.size >= free.size);
+        self.free.insert(place.unwrap_or(self.free.len()), free);
+    }
+
+    /// Takes the free block that a condition holds for out of the list.
+    fn remove(&mut self, is_it: impl Fn(&Free) -> bool) -> Option<Free> {
+        self.free.iter().position(is_it).map(|place| self.free.remove(place))
+    }
+
+    /// Changes the size of a block where it is; whether that was possible.
+    pub(crate) fn resize(&mut self, block: GuestAddr, size: u32) -> bool {
+        let (Some(old), Some(size)) = (self.size(block), rounded(size)) else { return false };
+        let block = block.get();
+        if size <= old {
+            if old - size >= LEAST {
+                self.used.insert(block, size);
+                self.release(Free { block: block + size + HEADER, size: old - size - HEADER });
+            }
+            return true;
+        }
+        let end = block + old + HEADER;
+        let next = self.free.iter().find(|free| free.block == end).map_or(0, |free| free.size + HEADER);
+        if old + next < size {
+            return false;
+        }
+        self.remove(|free| free.block == end);
+        self.use_part(block, old + next, size);
+        true
     }
 
     /// The size of a block in use.
     pub(crate) fn size(&self, block: GuestAddr) -> Option<u32> {
-        self.blocks.get(&block.get()).copied()
+        self.used.get(&block.get()).copied()
     }
 
     /// Gives a block back; `false` if there is none at that address.
     pub(crate) fn give(&mut self, block: GuestAddr) -> bool {
-        self.blocks.remove(&block.get()).is_some()
+        let Some(size) = self.used.remove(&block.get()) else { return false };
+        self.release(Free { block: block.get(), size });
+        true
     }
+
+    /// Makes a block free, together with neighbours that are.
+    fn release(&mut self, mut released: Free) {
+        let end = released.block + released.size + HEADER;
+        if let Some(next) = self.remove(|free| free.block == end) {
+            released.size += next.size + HEADER;
+        }
+        let begin = released.block - HEADER;
+        if let Some(last) = self.remove(|free| free.block + free.size == begin) {
+            released = Free { block: last.block, size: last.size + HEADER + released.size };
+        }
+        self.insert(released);
+    }
+}
+
+/// The size of the block for so many bytes; none for no bytes.
+fn rounded(size: u32) -> Option<u32> {
+    if size == 0 { None } else { size.checked_next_multiple_of(8) }
 }
 
 #[cfg(test)]
@@ -56,18 +152,18 @@ mod tests {
     #[test]
     fn blocks_do_not_overlap_and_are_reused() {
         let mut heap = Heap::default();
-        let first = heap.take(10, 8).expect("room");
-        let second = heap.take(100, 64).expect("room");
+        let first = heap.take(10).expect("room");
+        let second = heap.take_aligned(100, 64).expect("room");
         assert_eq!(first.get(), START + HEADER);
         assert!(second.get() >= first.get() + 16 + HEADER && second.get().is_multiple_of(64));
         assert!(heap.give(first) && !heap.give(first));
-        assert_eq!(heap.take(16, 8), Some(first));
+        assert_eq!(heap.take(16), Some(first));
     }
 
     #[test]
     fn about_99000_bytes_are_free() {
-        assert!(Heap::default().take(98_992, 8).is_some());
-        assert!(Heap::default().take(99_000, 8).is_none());
-        assert!(Heap::default().take(u32::MAX, 8).is_none());
+        assert!(Heap::default().take(98_992).is_some());
+        assert!(Heap::default().take(99_000).is_none());
+        assert!(Heap::default().take(u32::MAX).is_none());
     }
 }

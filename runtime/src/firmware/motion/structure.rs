@@ -2,6 +2,7 @@
 //! Source: axes-and-motion.md sections 3 to 6 and 12.
 
 use kmotiondef::firmware::Function;
+use kmotiondef::limits::TIMEBASE;
 use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, GuestAddr};
 use vm::firmware::Caller;
@@ -56,11 +57,13 @@ pub(crate) fn setup_for_move(
     };
     let ramps = [abrupt_start, abrupt_end].map(|flag| if flag != 0 { Ramp::Abrupt } else { Ramp::Smooth });
     // Without the end, which comes from SetupForMotionEnd.
-    let states = profile::bare_move(from, to, ramps, &limits);
-    write(caller.memory, axis, index(offset), &states);
+    let mut states = profile::bare_move(from, to, ramps, &limits);
     if !count.is_null() {
         caller.memory.store(count, states.len() as i32)?;
     }
+    // Odd and kept: the resting tick stands once more after the end, uncounted.
+    states.extend([MotionState::END, MotionState::hold(to, TIMEBASE)]);
+    write(caller.memory, axis, index(offset), &states);
     if starts != 0 {
         start(caller.memory, axis);
     }
@@ -96,7 +99,7 @@ pub(crate) fn setup_for_motion_end(parts: &mut Parts, caller: &mut Caller<'_>, c
 pub(crate) fn write_3ph(parts: &mut Parts, caller: &mut Caller<'_>, chan: GuestAddr, v: f32, angle: f64) {
     match axis_at(caller.memory, chan) {
         Some(axis) => {
-            three_phase(caller.memory, axis, v);
+            three_phase(caller.memory, axis, v, angle);
             apply(parts, caller.memory, axis, v, angle);
         }
         None => parts.out.console.message("Error Invalid Chan Pointer Write3PH"),

@@ -100,7 +100,9 @@ pub(crate) fn line(
 ) -> Result<(), Message> {
     let letters = [0, 1, 2, 3, 4, 5, 6, 7];
     let Some(entry) = stretch(memory, TrajectoryMode::Linear, letters, timing) else { return Ok(()) };
-    for (coefficients, letter) in [ParametricCoeff::COORD_X, ParametricCoeff::COORD_Y].into_iter().zip(0..) {
+    let has_y = system::letters(memory)[1].is_some();
+    let coefficients = [ParametricCoeff::COORD_X, ParametricCoeff::COORD_Y];
+    for (coefficients, letter) in coefficients.into_iter().zip(0..).take(if has_y { 2 } else { 1 }) {
         let (from, to) = (f64::from(begin[letter]), f64::from(end[letter]));
         set_arc(memory, entry, coefficients, [0.0, 0.0, to - from, from]);
     }
@@ -181,9 +183,12 @@ fn set_arc(memory: &mut GuestMemory, entry: Entry, coefficients: Field<TripCircl
     }
 }
 
-/// Fills the slots after the first two.
+/// Fills the slots after the first two. Odd and kept: the slot of the letter that is left of X, Y and Z is filled if Z
+/// has an axis, whichever letter it is; what is not filled keeps what an earlier entry has left there.
 fn set_lines(memory: &mut GuestMemory, entry: Entry, letters: [usize; LETTERS], begin: &Point, end: &Point) {
-    for (coefficients, letter) in LINEAR.into_iter().zip(letters.into_iter().skip(2)) {
+    let has_axis = system::letters(memory).map(|axis| axis.is_some());
+    let slots = LINEAR.into_iter().zip(letters.into_iter().skip(2)).zip(has_axis.into_iter().skip(2));
+    for ((coefficients, letter), _) in slots.filter(|(_, has_axis)| *has_axis) {
         let (from, to) = (f64::from(begin[letter]), f64::from(end[letter]));
         memory.set(entry.field(coefficients.field(TripLinear::C)), to - from);
         memory.set(entry.field(coefficients.field(TripLinear::D)), from);

@@ -3,9 +3,7 @@
 //! Independent motions of the member axes are held too, when no path is executing; that part is the axes' own.
 
 use kmotiondef::GuestAddr;
-use kmotiondef::variables::{
-    COORD_SYSTEM0, CS0_DECEL_TIME, CS0_STOPPING_STATE, CS0_TIME_BASE_DELTA, CS0_TIME_BASE_DESIRED,
-};
+use kmotiondef::variables::{COORD_SYSTEM0, CS0_DECEL_TIME, CS0_STOPPING_STATE, CS0_TIME_BASE_DELTA};
 use vm::memory::GuestMemory;
 
 use super::{rate, system};
@@ -82,16 +80,11 @@ pub(crate) fn resume(memory: &mut GuestMemory) -> bool {
     held
 }
 
-/// Gives up a held path; its times stay as they are. Says whether one was held.
-pub(crate) fn clear(memory: &mut GuestMemory) -> bool {
-    let held = is_path_held(memory);
-    if held {
-        memory.set(CS0_STOPPING_STATE, HoldState::Running.number());
-        memory.set(COORD_SYSTEM0, GuestAddr::NULL);
-        memory.set(CS0_TIME_BASE_DESIRED, 0.0);
-        memory.set(CS0_TIME_BASE_DELTA, 0.0);
-    }
-    held
+/// Ends a feedhold and the path, whether it is held or not; its times and its rate stay as they are.
+pub(crate) fn clear(memory: &mut GuestMemory) {
+    memory.set(CS0_STOPPING_STATE, HoldState::Running.number());
+    memory.set(COORD_SYSTEM0, GuestAddr::NULL);
+    memory.set(CS0_TIME_BASE_DELTA, 0.0);
 }
 
 fn is_path_held(memory: &GuestMemory) -> bool {

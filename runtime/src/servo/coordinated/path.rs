@@ -184,7 +184,8 @@ fn go_on(memory: &mut GuestMemory, bits: &mut impl Bits, mut entry: Entry) -> Ha
     Halt::Segment(entry)
 }
 
-/// Goes back over the stretches that the path time has left; stops abruptly at the first one.
+/// Goes back over the stretches that the path time has left. The axes stop abruptly at the beginning of the first one,
+/// where the time base stays what it is.
 fn go_back(memory: &mut GuestMemory, mut entry: Entry) -> Entry {
     for _ in 0..MAX_SEGMENTS {
         let t = memory.get(CS0_T);
@@ -193,7 +194,6 @@ fn go_back(memory: &mut GuestMemory, mut entry: Entry) -> Entry {
         }
         let Some(previous) = stretch_before(memory, entry) else {
             memory.set(CS0_T, 0.0);
-            memory.set(CS0_TIME_BASE, 0.0);
             break;
         };
         entry = previous;

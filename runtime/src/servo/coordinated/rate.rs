@@ -6,7 +6,7 @@ use kmotiondef::limits::TIMEBASE;
 use kmotiondef::variables::{
     CS0_DOING_RAPID, CS0_FLUSHED, CS0_LAST_FRO, CS0_LAST_RAPID_FRO, CS0_NOM_DECEL_2TB2, CS0_STOPPING_STATE,
     CS0_T, CS0_TIME_BASE, CS0_TIME_BASE_DELTA, CS0_TIME_BASE_DESIRED, CS0_TIME_DOWNLOADED, CS0_TIME_EXECUTED,
-    CS0_TIME_LOST,
+    CS0_TIME_LOST, PARAMETRIC_INDEX_WRAPPED,
 };
 use vm::memory::GuestMemory;
 
@@ -23,20 +23,16 @@ pub(crate) fn current_override(memory: &GuestMemory) -> f32 {
     if memory.get(CS0_DOING_RAPID) != 0 { memory.get(CS0_LAST_RAPID_FRO) } else { memory.get(CS0_LAST_FRO) }
 }
 
-/// Ramps to a feed override, with `time` seconds for a change of 1.0.
+/// Sets the feed override and ramps to the one that applies, with `time` seconds for a change of 1.0.
 pub(crate) fn set_feed(memory: &mut GuestMemory, fro: f32, time: f32) {
     memory.set(CS0_LAST_FRO, fro);
-    if memory.get(CS0_DOING_RAPID) == 0 {
-        aim_unless_held(memory, fro, time);
-    }
+    aim_unless_held(memory, time);
 }
 
-/// Ramps to a rapid override, with `time` seconds for a change of 1.0.
+/// Sets the override of rapids and ramps to the one that applies, with `time` seconds for a change of 1.0.
 pub(crate) fn set_rapid(memory: &mut GuestMemory, fro: f32, time: f32) {
     memory.set(CS0_LAST_RAPID_FRO, fro);
-    if memory.get(CS0_DOING_RAPID) != 0 {
-        aim_unless_held(memory, fro, time);
-    }
+    aim_unless_held(memory, time);
 }
 
 /// Ramps to an override even in feedhold; a resume does not come back to it.
@@ -45,27 +41,27 @@ pub(crate) fn aim(memory: &mut GuestMemory, fro: f32, time: f32) {
     memory.set(CS0_TIME_BASE_DELTA, change_per_tick(time));
 }
 
-fn aim_unless_held(memory: &mut GuestMemory, fro: f32, time: f32) {
+fn aim_unless_held(memory: &mut GuestMemory, time: f32) {
     if HoldState::of(memory) == HoldState::Running {
-        aim(memory, fro, time);
+        aim(memory, current_override(memory), time);
     }
 }
 
-/// The change of the time base in a tick when a change of 1.0 takes `time` seconds; 0 for no limit.
+/// The change of the time base in a tick when a change of 1.0 takes `time` seconds. In no time it is the board's quotient
+/// by zero, which limits nothing because no comparison with it holds.
 fn change_per_tick(time: f32) -> f64 {
-    if time > 0.0 { TIMEBASE_SQUARED / f64::from(time) } else { 0.0 }
+    if time == 0.0 { f64::from_bits(u64::MAX >> 1) } else { TIMEBASE_SQUARED / f64::from(time) }
 }
 
 /// Starts a path at the override that applies, without a ramp.
 pub(crate) fn start(memory: &mut GuestMemory, change_time: f32) {
     memory.set(CS0_NOM_DECEL_2TB2, (f64::from(change_time) / (2.0 * TIMEBASE_SQUARED)) as f32);
     memory.set(CS0_TIME_BASE_DELTA, change_per_tick(change_time));
-    jump(memory);
+    jump(memory, f64::from(current_override(memory)) * TIMEBASE);
 }
 
-/// Goes to the override that applies at once.
-fn jump(memory: &mut GuestMemory) {
-    let time_base = f64::from(current_override(memory)) * TIMEBASE;
+/// Goes to a time base at once.
+fn jump(memory: &mut GuestMemory, time_base: f64) {
     memory.set(CS0_TIME_BASE, time_base);
     memory.set(CS0_TIME_BASE_DESIRED, time_base);
 }
@@ -75,19 +71,16 @@ pub(crate) fn set_doing_rapid(memory: &mut GuestMemory, doing: bool) {
     memory.set(CS0_DOING_RAPID, i32::from(doing));
     // A hold in progress is stronger: the resume finds the override.
     if HoldState::of(memory) == HoldState::Running {
-        jump(memory);
+        jump(memory, f64::from(current_override(memory)) * TIMEBASE);
     }
 }
 
 /// One tick of the ramp, after the advance of the path time.
 pub(crate) fn ramp(memory: &mut GuestMemory) {
     let (now, delta) = (memory.get(CS0_TIME_BASE), memory.get(CS0_TIME_BASE_DELTA));
-    let exact = aim_within_data(memory, now);
-    // The board computes the aim as a single where it ramps.
-    let aim = f64::from(exact as f32);
-    let next = if delta <= 0.0 {
-        exact
-    } else if aim > now + delta {
+    // The board computes the aim as a single.
+    let aim = f64::from(aim_within_data(memory, now) as f32);
+    let next = if aim > now + delta {
         now + delta
     } else if aim < now - delta {
         now - delta
@@ -108,7 +101,8 @@ fn aim_within_data(memory: &GuestMemory, now: f64) -> f64 {
     let lost = memory.get(CS0_TIME_LOST);
     let ahead = memory.get(CS0_TIME_DOWNLOADED) - position;
     let starves = memory.get(CS0_FLUSHED) == 0 && desired > 0.0 && now >= 0.0 && ahead - RESERVE < stopping;
-    let starves_behind = lost > 0.0 && desired < 0.0 && now <= 0.0 && position - lost - RESERVE < stopping;
+    let has_wrapped = memory.get(PARAMETRIC_INDEX_WRAPPED) != 0;
+    let starves_behind = has_wrapped && desired < 0.0 && now <= 0.0 && position - lost - RESERVE < stopping;
     if starves || starves_behind { 0.0 } else { desired }
 }
 
@@ -134,13 +128,23 @@ mod tests {
 
     #[test]
     fn a_rate_change_without_time_is_immediate() {
-        for time in [0.0, -1.0, f32::NAN] {
+        for time in [0.0, f32::NAN] {
             let mut memory = powered_memory();
             memory.set(CS0_FLUSHED, 1);
             set_feed(&mut memory, 0.5, time);
             ramp(&mut memory);
-            assert_eq!(memory.get(CS0_TIME_BASE), 0.5 * TIMEBASE);
+            assert_eq!(memory.get(CS0_TIME_BASE) as f32, (0.5 * TIMEBASE) as f32);
         }
+    }
+
+    #[test]
+    fn a_change_of_nothing_per_tick_changes_nothing() {
+        let mut memory = powered_memory();
+        memory.set(CS0_FLUSHED, 1);
+        set_feed(&mut memory, 0.5, 1.0);
+        memory.set(CS0_TIME_BASE_DELTA, 0.0);
+        ramp(&mut memory);
+        assert_eq!(memory.get(CS0_TIME_BASE), TIMEBASE);
     }
 
     #[test]
@@ -149,6 +153,7 @@ mod tests {
         set_feed(&mut memory, -1.0, 0.0);
         memory.set(CS0_TIME_BASE, 0.0);
         memory.set(CS0_TIME_LOST, 2.0);
+        memory.set(PARAMETRIC_INDEX_WRAPPED, 1);
         for (position, moves) in [(2.0005, false), (2.5, true)] {
             memory.set(CS0_TIME_EXECUTED, position);
             memory.set(CS0_TIME_BASE, 0.0);

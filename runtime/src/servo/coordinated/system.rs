@@ -17,7 +17,7 @@ pub(crate) const LETTERS: usize = 8;
 const LETTER_AXES: [Place<i32>; LETTERS] =
     [CS0_AXIS_X, CS0_AXIS_Y, CS0_AXIS_Z, CS0_AXIS_A, CS0_AXIS_B, CS0_AXIS_C, CS0_AXIS_U, CS0_AXIS_V];
 
-/// Seconds of an override change when no axis sets a limit.
+/// Seconds of an override change when the axes have no limits.
 const DEFAULT_CHANGE_TIME: f32 = 1.0;
 
 /// The axis of each letter, if it has one.
@@ -47,8 +47,11 @@ pub(crate) fn is_disabled(memory: &GuestMemory) -> bool {
     members(memory).any(|axis| memory.axis(axis, Chan::ENABLE) == 0)
 }
 
-/// Seconds in which every axis of the system can change the override by 1.0 at its full speed.
+/// Seconds in which every axis of the system can change the override by 1.0 at its full speed; 0 without axes.
 pub(crate) fn nominal_change_time(memory: &GuestMemory) -> f32 {
+    if members(memory).next().is_none() {
+        return 0.0;
+    }
     let times = members(memory).map(|axis| change_time(memory, axis, memory.axis(axis, Chan::VEL)));
     longest(times).unwrap_or(DEFAULT_CHANGE_TIME)
 }

@@ -277,11 +277,11 @@ impl<'a, T: Target> Console<'a, T> {
             self.send(line.as_bytes());
             return Flow::Continue;
         }
-        let line = line.trim();
-        if line.is_empty() || line.starts_with('#') {
+        let text = line.trim();
+        if text.is_empty() || text.starts_with('#') {
             return Flow::Continue;
         }
-        match words::parse(line) {
+        match words::parse(text) {
             Some(Ok(Word::Quit)) => return Flow::Leave,
             Some(Ok(word)) => {
                 if let Err(error) = self.obey(&word) {
@@ -289,7 +289,8 @@ impl<'a, T: Target> Console<'a, T> {
                 }
             }
             Some(Err(error)) => self.shown.screen.note(&error.to_string()),
-            None => self.send(line.as_bytes()),
+            // Blanks at the end are the board's: it shows them in the line of an error.
+            None => self.send(line.trim_start().as_bytes()),
         }
         Flow::Continue
     }
