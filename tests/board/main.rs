@@ -10,6 +10,7 @@ mod disk_files;
 mod fidelity;
 mod firmware_5;
 mod host;
+mod injection;
 mod measured;
 mod released;
 mod session;

@@ -20,6 +20,7 @@ use super::memory::Experiment;
 use super::session::{Answer, Session};
 use crate::firmware::gather;
 use crate::firmware::parts::Parts;
+use crate::servo::dsp::divide_singles;
 use crate::servo::{Servo, moves};
 use crate::views::{Typed, chan};
 
@@ -163,27 +164,23 @@ pub(super) fn read_disk_data(session: &mut Session<'_, '_>, values: &Values) -> 
     Answer::Nothing
 }
 
-/// Numbers between -1 and 1 from one seed, by a linear congruence (Knuth's MMIX).
-struct Noise(u64);
+/// The largest number of `rand`.
+const RAND_MAX: f32 = 32_767.0;
 
-impl Noise {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-}
-
-/// Puts noise below a frequency into the buffer, and has the servo add it to an axis and record.
+/// Puts noise below a frequency into the buffer, and has the servo add it to an axis and record. The noise is that of
+/// `rand` through a low-pass filter of first order (tuning.md section 7).
 pub(super) fn inject(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (chan, cutoff, amplitude) = (chan(values.axis()), values.real(1), values.real(2));
-    let memory = session.memory();
-    let start = memory.get(GATHER_BUFFER);
-    let share = 1.0 - libm::exp(-TAU * cutoff.max(0.0) * TIMEBASE);
-    let (mut noise, mut level) = (Noise(1), 0.0);
+    let start = session.memory().get(GATHER_BUFFER);
+    let turn = TAU * cutoff * TIMEBASE;
+    let kept = (2.0 - turn) / (2.0 + turn);
+    let mut level = 0.0;
     for sample in 0..N_CPLX as u32 {
-        level += share * (noise.next() - level);
-        memory.poke(start.offset(sample * INJECTED * DOUBLE), level * amplitude);
+        let random = divide_singles(session.parts.calls.random() as f32, RAND_MAX) - 0.5;
+        level = kept * level + (1.0 - kept) * f64::from(random) * amplitude;
+        session.memory().poke(start.offset(sample * INJECTED * DOUBLE), level);
     }
+    let memory = session.memory();
     let items = [
         (GatherType::Double, memory.locate(chan.field(Chan::DEST_OFFSET))),
         (GatherType::Double, memory.locate(chan.field(Chan::POSITION))),

@@ -168,6 +168,8 @@ impl Turn<'_, '_> {
                 self.part(&text, &rest);
             }
         }
+        // The board queues what goes to the console, and sends it after the replies to the line.
+        self.out.sort_by_key(|output| matches!(output, Output::Console(_)));
         let is_alive = !(self.side)(&mut self.parts.pc).is_dead();
         if self.link.data.is_none() && std::mem::take(&mut self.link.prompts) && is_alive {
             for line in [board_name(self.parts.level.board()), "Ready"] {

@@ -1,6 +1,7 @@
 //! The coordinate system, feed override and feedhold. Source: coordinated-motion.md sections 1 and 4 to 5.
 
 use kmotiondef::AxisId;
+use kmotiondef::structs::Chan;
 use kmotiondef::variables::CS0_STOPPING_STATE;
 use vm::firmware::{Caller, Outcome, Wake};
 
@@ -90,6 +91,12 @@ pub(crate) fn stop_coordinated_motion(parts: &mut Parts, caller: &mut Caller<'_>
                 return Outcome::Done(());
             }
             let mut moving = hold::moving_members(caller.memory);
+            let is_moving = !moving.is_empty();
+            // Of an axis that is disabled the motion stays as it is, and takes no slice.
+            moving.retain(|&axis| caller.memory.axis(axis, Chan::ENABLE) != 0);
+            if is_moving && moving.is_empty() {
+                caller.memory.set(CS0_STOPPING_STATE, HoldState::StoppingAxes.number());
+            }
             moving.reverse();
             return stop_later(parts, caller, moving);
         }
@@ -216,8 +223,6 @@ pub(crate) fn inc_parametric_index(parts: &mut Parts, caller: &mut Caller<'_>) {
 
 #[cfg(test)]
 mod tests {
-    use kmotiondef::structs::Chan;
-
     use super::*;
     use crate::testing::Desk;
 

@@ -1,4 +1,6 @@
-//! Mathematics, from `libm` so that every host computes the same.
+//! Mathematics, from `libm` so that every host computes the same; where the firmware's own results are known, those.
+
+mod elementary;
 
 use kmotiondef::GuestAddr;
 use vm::arith::{self, WordDivision, canonical_f32, canonical_f64};
@@ -55,15 +57,15 @@ functions! {
     /// Square root.
     sqrtf(x) -> f32 = libm::sqrtf(x);
     /// e to the power x.
-    exp(x) -> f64 = libm::exp(x);
+    exp(x) -> f64 = elementary::exp(x);
     /// e to the power x.
     expf(x) -> f32 = libm::expf(x);
     /// Natural logarithm.
-    log(x) -> f64 = libm::log(x);
+    log(x) -> f64 = elementary::log(x);
     /// Natural logarithm.
     logf(x) -> f32 = libm::logf(x);
     /// Logarithm to base 10.
-    log10(x) -> f64 = libm::log10(x);
+    log10(x) -> f64 = elementary::log10(x);
     /// Logarithm to base 10.
     log10f(x) -> f32 = libm::log10f(x);
     /// x to the power y.
@@ -71,11 +73,11 @@ functions! {
     /// x to the power y.
     powf(x, y) -> f32 = libm::powf(x, y);
     /// Sine.
-    sin(x) -> f64 = libm::sin(x);
+    sin(x) -> f64 = elementary::sin(x);
     /// Sine.
     sinf(x) -> f32 = libm::sinf(x);
     /// Cosine.
-    cos(x) -> f64 = libm::cos(x);
+    cos(x) -> f64 = elementary::cos(x);
     /// Cosine.
     cosf(x) -> f32 = libm::cosf(x);
     /// Cube root.
@@ -85,15 +87,15 @@ functions! {
     /// Tangent.
     tanf(x) -> f32 = libm::tanf(x);
     /// Arc sine.
-    asin(x) -> f64 = libm::asin(x);
+    asin(x) -> f64 = elementary::asin(x);
     /// Arc sine.
     asinf(x) -> f32 = libm::asinf(x);
     /// Arc cosine.
-    acos(x) -> f64 = libm::acos(x);
+    acos(x) -> f64 = elementary::acos(x);
     /// Arc cosine.
     acosf(x) -> f32 = libm::acosf(x);
     /// Arc tangent.
-    atan(x) -> f64 = libm::atan(x);
+    atan(x) -> f64 = elementary::atan(x);
     /// Arc tangent.
     atanf(x) -> f32 = libm::atanf(x);
     /// Arc tangent of y/x in all four quadrants.
@@ -109,15 +111,15 @@ functions! {
     /// Absolute value.
     fabsf(x) -> f32 = x.abs();
     /// 2 to the power x.
-    exp2(x) -> f64 = libm::exp2(x);
+    exp2(x) -> f64 = elementary::exp2(x);
     /// 2 to the power x.
     exp2f(x) -> f32 = libm::exp2f(x);
     /// 10 to the power x.
-    exp10(x) -> f64 = libm::exp10(x);
+    exp10(x) -> f64 = elementary::exp10(x);
     /// 10 to the power x.
     exp10f(x) -> f32 = libm::exp10f(x);
     /// Logarithm to base 2.
-    log2(x) -> f64 = libm::log2(x);
+    log2(x) -> f64 = elementary::log2(x);
     /// Logarithm to base 2.
     log2f(x) -> f32 = libm::log2f(x);
     /// Largest whole number not above x.

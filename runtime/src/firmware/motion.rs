@@ -34,9 +34,8 @@ const AFTER_AXES: i32 = N_CHANNELS as i32;
 
 /// What the board prints when a program names an axis that does not exist.
 fn invalid(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: i32, what: &str) {
-    if axis == AFTER_AXES {
-        parts.out.diagnose(caller, Message::NoSuchAxis { function, axis });
-    } else {
+    parts.out.diagnose(caller, Message::NoSuchAxis { function, axis });
+    if axis != AFTER_AXES {
         parts.out.console.message(&format!("Attempt to {what} invalid Chan"));
     }
 }

@@ -69,14 +69,12 @@ pub(crate) fn free(parts: &mut Parts, caller: &mut Caller<'_>, block: GuestAddr)
     }
 }
 
-/// The generator of the C standard's example; the board's is not known.
 pub(crate) fn rand(parts: &mut Parts, _: &mut Caller<'_>) -> i32 {
-    parts.calls.random = parts.calls.random.wrapping_mul(1_103_515_245).wrapping_add(12_345);
-    (parts.calls.random >> 16 & 0x7fff) as i32
+    parts.calls.random()
 }
 
 pub(crate) fn srand(parts: &mut Parts, _: &mut Caller<'_>, seed: u32) {
-    parts.calls.random = seed;
+    parts.calls.seed = seed;
 }
 
 /// Bytes of white space in front of a number.

@@ -9,12 +9,15 @@ use kmotiondef::structs::Chan;
 
 use crate::views::AxisView;
 
+/// The change of the destination that counts as one of direction, as a part of the amount.
+const LEAST_CHANGE: f32 = 0.005;
+
 /// Advances the offset of an axis that has one by one tick.
 pub(crate) fn advance(chan: &mut AxisView<'_>) {
     let (dest, judged) = (chan.get(Chan::DEST) as f32, chan.get(Chan::PREV_BACKLASH_DEST));
     let (offset, amount) = (chan.get(Chan::BACKLASH), chan.get(Chan::BACKLASH_AMOUNT));
     let is_above = offset > amount;
-    if dest != judged {
+    if (dest - judged).abs() > LEAST_CHANGE * amount.abs() {
         chan.set(Chan::BACKLASH_DIRECTION, if dest > judged { 1 } else { -1 });
         chan.set(Chan::PREV_BACKLASH_DEST, dest);
     } else if is_above {

@@ -26,9 +26,15 @@ fn dead_band(error: f64, range: f64, gain: f64) -> f64 {
     }
 }
 
-/// One tick: returns the output and stores it.
+/// One tick: returns the output and stores it. An approach by a time constant has no feed forward of its acceleration.
 #[inline(always)]
-pub(crate) fn advance(own: &AxisMemory, gains: &Gains, chan: &mut AxisView<'_>, command: f64) -> f32 {
+pub(crate) fn advance(
+    own: &AxisMemory,
+    gains: &Gains,
+    chan: &mut AxisView<'_>,
+    command: f64,
+    is_exponential: bool,
+) -> f32 {
     let position = chan.get(Chan::POSITION);
     let mut error = command - position;
     if let Some((range, slope)) = gains.dead_band {
@@ -47,7 +53,7 @@ pub(crate) fn advance(own: &AxisMemory, gains: &Gains, chan: &mut AxisView<'_>, 
     let filtered = filter(chan, Chan::IIR.element(1), second, filtered);
     // The feed forward sees the destination alone, without backlash and offset.
     let mut forward = gains.ff_vel * own.velocity;
-    if gains.ff_accel != 0.0 {
+    if gains.ff_accel != 0.0 && !is_exponential {
         forward += gains.ff_accel * ((own.velocity - own.last_velocity) / TIMEBASE);
     }
     let filtered = filter(chan, Chan::IIR.element(2), last, filtered + forward);

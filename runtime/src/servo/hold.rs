@@ -46,8 +46,12 @@ pub(super) fn begin(servo: &mut Servo, memory: &mut GuestMemory) -> bool {
     if feedhold::stop(memory) {
         return true;
     }
-    let moving = moving_members(memory);
+    let mut moving = moving_members(memory);
     let moves = !moving.is_empty();
+    moving.retain(|&axis| memory.axis(axis, Chan::ENABLE) != 0);
+    if moves && moving.is_empty() {
+        memory.set(CS0_STOPPING_STATE, HoldState::StoppingAxes.number());
+    }
     servo.stop_request.stop_in_turn(moving);
     moves
 }

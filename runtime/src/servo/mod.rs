@@ -11,7 +11,7 @@ mod closed_form;
 mod compensation;
 pub(crate) mod coordinated;
 mod direct;
-mod dsp;
+pub(crate) mod dsp;
 mod duration;
 #[cfg(test)]
 mod equations;
@@ -274,17 +274,18 @@ fn run_guarded(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, comm
 /// Compensation and output of an enabled axis.
 #[inline(always)]
 fn put_out(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, command: f64) {
-    let mut chan = AxisView::of(memory, axis);
     let own = &mut tick.servo.axes[axis.index()];
     own.has_run = true;
     let plan = tick.servo.cache.plan(axis);
+    let is_exponential = plan.gains.ff_accel != 0.0 && independent::is_exponential(memory, axis);
+    let mut chan = AxisView::of(memory, axis);
     let output = if plan.is_open_loop {
         chan.set(Chan::OUTPUT, 0.0);
         0.0
     } else {
         let moved = chan.get(Chan::POSITION) - chan.get(Chan::LAST_POSITION);
         own.response += f64::from(chan.get(Chan::OUTPUT)) * moved;
-        compensation::advance(own, &plan.gains, &mut chan, command)
+        compensation::advance(own, &plan.gains, &mut chan, command, is_exponential)
     };
     chan.set(Chan::PREV_DEST, chan.get(Chan::DEST));
     output::drive(tick, memory, axis, command, output);

@@ -36,6 +36,8 @@ pub(crate) fn sample(memory: &mut GuestMemory) -> bool {
         let target = memory.get(GATHER.field(Gather::LIST.element(0).field(GatherValueDef::ADDR)));
         let stimulus: f64 = memory.peek(place);
         memory.poke(target, stimulus);
+        // The stimulus keeps its place in the record.
+        place = place.offset(8);
         first = 1;
     }
     for index in first..MAX_GATHER_VALUES {
@@ -47,6 +49,10 @@ pub(crate) fn sample(memory: &mut GuestMemory) -> bool {
         place = place.offset(8);
     }
     memory.untouched(|memory| memory.set(GATHER.field(Gather::BUFPTR), place));
+    if injects(memory) && !is_recording(memory) {
+        let target = memory.get(GATHER.field(Gather::LIST.element(0).field(GatherValueDef::ADDR)));
+        memory.poke(target, 0.0_f64);
+    }
     true
 }
 

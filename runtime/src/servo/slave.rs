@@ -6,7 +6,6 @@ use kmotiondef::modes::OutputMode;
 use kmotiondef::structs::Chan;
 use vm::memory::GuestMemory;
 
-use super::independent;
 use super::state::Servo;
 use crate::views::Typed;
 
@@ -33,7 +32,8 @@ fn change(
     let master = AxisId::new(memory.axis(axis, Chan::MASTER_AXIS)).filter(|_| is_enabled && depth > 0);
     if let Some(master) = master {
         let moved = change(servo, memory, master, moved, depth - 1);
-        if moved != 0.0 && !independent::is_moving(memory, axis) {
+        // A motion of its own does not know that: in the next tick the slave is where that says, and changes by that tick.
+        if moved != 0.0 {
             let dest = memory.axis(axis, Chan::DEST) + memory.axis(axis, Chan::SLAVE_GAIN) * moved;
             memory.set_axis(axis, Chan::DEST, dest);
         }

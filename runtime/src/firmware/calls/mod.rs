@@ -48,7 +48,7 @@ pub(crate) struct Calls {
     pub(crate) reading: Reading,
     pub(crate) globals: Globals,
     /// State of `rand`.
-    pub(crate) random: u32,
+    pub(crate) seed: u32,
     /// Where `strtok` continues.
     pub(crate) token: GuestAddr,
     /// Ticks that a motion call plans before its motion begins.
@@ -71,7 +71,7 @@ impl Default for Calls {
             heap: Heap::default(),
             reading: Reading::default(),
             globals: Globals::default(),
-            random: 1,
+            seed: 1,
             token: GuestAddr::NULL,
             plan_ticks: 0,
             hurried_calls: [0; N_CHANNELS],
@@ -83,6 +83,12 @@ impl Default for Calls {
 }
 
 impl Calls {
+    /// The next number of `rand`, 0 to 32767: the generator of the C standard's example, as measured.
+    pub(crate) const fn random(&mut self) -> i32 {
+        self.seed = self.seed.wrapping_mul(1_103_515_245).wrapping_add(12_345);
+        (self.seed >> 16 & 0x7fff).cast_signed()
+    }
+
     /// Remembers something for the call that is made again when its wake comes true.
     pub(crate) fn keep(&mut self, caller: &Caller<'_>, continuation: Continuation) {
         self.continuations[slot(caller.thread)] = Some(continuation);
@@ -100,7 +106,7 @@ impl Calls {
         self.serial = SerialService::default();
         self.heap = Heap::default();
         self.waits = Waits::default();
-        self.random = 1;
+        self.seed = 1;
         self.token = GuestAddr::NULL;
     }
 }

@@ -129,11 +129,14 @@ fn is_held_open(memory: &GuestMemory) -> bool {
     memory.get(CS0_HOLD_AT_END) != 0
 }
 
-/// Rests at a command or at a held end. Only backwards does the path time continue, into the stretch before.
+/// Rests at a command or at a held end. Only backwards does the path time continue, into the stretch before. A path that
+/// has not moved yet keeps its time base.
 fn wait(memory: &mut GuestMemory, entry: Entry) {
     memory.set(COORD_SYSTEM0, entry.address());
     let time_base = memory.get(CS0_TIME_BASE);
-    run_clock(memory);
+    if memory.get(CS0_TIME_EXECUTED) + memory.get(CS0_T) > 0.0 {
+        run_clock(memory);
+    }
     if time_base < 0.0 {
         memory.set(CS0_T, memory.get(CS0_T) + time_base);
         let entry = go_back(memory, entry);

@@ -41,16 +41,19 @@ pub(crate) fn aim(memory: &mut GuestMemory, fro: f32, time: f32) {
     memory.set(CS0_TIME_BASE_DELTA, change_per_tick(time));
 }
 
+/// In a feedhold only the rate of the change is taken over.
 fn aim_unless_held(memory: &mut GuestMemory, time: f32) {
     if HoldState::of(memory) == HoldState::Running {
         aim(memory, current_override(memory), time);
+    } else {
+        memory.set(CS0_TIME_BASE_DELTA, change_per_tick(time));
     }
 }
 
-/// The change of the time base in a tick when a change of 1.0 takes `time` seconds. In no time it is the board's quotient
-/// by zero, which limits nothing because no comparison with it holds.
+/// The change of the time base in a tick when a change of 1.0 takes `time` seconds. In no time it is not a number, which
+/// limits nothing because no comparison with it holds.
 fn change_per_tick(time: f32) -> f64 {
-    if time == 0.0 { f64::from_bits(u64::MAX >> 1) } else { TIMEBASE_SQUARED / f64::from(time) }
+    if time > 0.0 { TIMEBASE_SQUARED / f64::from(time) } else { f64::from_bits(u64::MAX >> 1) }
 }
 
 /// Starts a path at the override that applies, without a ramp.
@@ -88,7 +91,8 @@ pub(crate) fn ramp(memory: &mut GuestMemory) {
         aim
     };
     memory.set(CS0_TIME_BASE, next);
-    if HoldState::of(memory) == HoldState::StoppingPath && next == 0.0 {
+    // Odd and kept: a path that runs backwards stops without a change of the state.
+    if HoldState::of(memory) == HoldState::StoppingPath && next == 0.0 && now > 0.0 {
         memory.set(CS0_STOPPING_STATE, HoldState::PathStopped.number());
     }
 }
@@ -128,7 +132,7 @@ mod tests {
 
     #[test]
     fn a_rate_change_without_time_is_immediate() {
-        for time in [0.0, f32::NAN] {
+        for time in [0.0, -1.0, f32::NAN] {
             let mut memory = powered_memory();
             memory.set(CS0_FLUSHED, 1);
             set_feed(&mut memory, 0.5, time);

@@ -1,0 +1,238 @@
+//! The elementary functions of the firmware's library, which prints the last digits that programs see.
+//!
+//! They are those of Cody and Waite (Software Manual for the Elementary Functions), with the firmware's divisions; its
+//! arc sine is a plain polynomial. Coefficients, and the order in which sums are formed, were found by comparison with
+//! the released firmware: of 350 arguments of each function all results are the same to the last bit, except for
+//! two arc tangents and a tenth of the arc sines and cosines beyond one half, which depend on its square root.
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, LN_2, LN_10, LOG2_E, LOG10_E, SQRT_2};
+
+use crate::servo::dsp::divide;
+
+/// π in two parts, of which the first has few digits.
+const PI_HIGH: f64 = 3.141_601_562_5;
+const PI_LOW: f64 = -8.908_910_206_761_537e-6;
+/// From this on the number of turns does not fit into an integer, and the sine is 0.
+const TOO_LARGE: f64 = 2_147_483_648.0;
+/// Below this the sine is its angle.
+const SMALL_ANGLE: f64 = 1.490_116_119_384_765_6e-8;
+
+/// A polynomial by Horner's rule; its first coefficient is the constant.
+fn polynomial(coefficients: &[f64], x: f64) -> f64 {
+    coefficients.iter().rev().copied().reduce(|sum, coefficient| sum * x + coefficient).unwrap_or(0.0)
+}
+
+/// The sine of an angle that is not below 0, and its sign.
+fn sine(angle: f64, sign: f64) -> f64 {
+    const EVEN: [f64; 4] = [
+        -0.166_666_666_666_666_65,
+        -0.198_412_698_412_018_4e-3,
+        -0.250_521_067_982_745_85e-7,
+        -0.764_291_780_689_104_7e-12,
+    ];
+    const ODD: [f64; 4] = [
+        0.833_333_333_333_316_5e-2,
+        0.275_573_192_101_527_56e-5,
+        0.160_589_364_903_715_9e-9,
+        0.272_047_909_578_888_46e-14,
+    ];
+    if !(angle < TOO_LARGE) {
+        return 0.0;
+    }
+    let half_turns = libm::floor(angle * std::f64::consts::FRAC_1_PI + 0.5);
+    let sign = if libm::fmod(half_turns, 2.0) == 0.0 { sign } else { -sign };
+    let rest = (angle - half_turns * PI_HIGH) - half_turns * PI_LOW;
+    if rest.abs() < SMALL_ANGLE {
+        return sign * rest;
+    }
+    let square = rest * rest;
+    let fourth = square * square;
+    let change = polynomial(&EVEN, fourth) * square + polynomial(&ODD, fourth) * fourth;
+    sign * (rest + rest * change)
+}
+
+pub(super) fn sin(x: f64) -> f64 {
+    sine(x.abs(), if x < 0.0 { -1.0 } else { 1.0 })
+}
+
+pub(super) fn cos(x: f64) -> f64 {
+    sine(x.abs() + FRAC_PI_2, 1.0)
+}
+
+/// ln 2 in two parts, of which the first has few digits.
+const LN_2_HIGH: f64 = 0.693_359_375;
+const LN_2_LOW: f64 = -2.121_944_400_546_905_8e-4;
+/// The logarithms of the largest double and of the smallest normal one.
+const LARGEST: f64 = 709.782_712_893_384;
+const SMALLEST: f64 = -708.396_418_532_264_1;
+
+/// The largest power of two that the firmware multiplies with.
+const LARGEST_POWER: f64 = 1023.0;
+
+pub(super) fn exp(x: f64) -> f64 {
+    const P: [f64; 3] = [0.25, 0.694_360_001_511_792_9e-2, 0.165_203_300_268_279_13e-4];
+    const Q: [f64; 3] = [0.5, 0.555_538_666_969_001_2e-1, 0.495_862_884_905_441_3e-3];
+    if x > LARGEST {
+        return f64::MAX;
+    }
+    if x < SMALLEST {
+        return 0.0;
+    }
+    let power = libm::copysign(libm::floor(x.abs() * LOG2_E + 0.5), x);
+    if power > LARGEST_POWER {
+        // Odd and kept: the last of the results that there are overflow into the sign.
+        return -0.0;
+    }
+    let rest = (x - power * LN_2_HIGH) - power * LN_2_LOW;
+    let square = rest * rest;
+    let product = rest * polynomial(&P, square);
+    let half = 0.5 + divide(product, polynomial(&Q, square) - product);
+    libm::ldexp(half, power as i32 + 1)
+}
+
+pub(super) fn exp2(x: f64) -> f64 {
+    exp(x * LN_2)
+}
+
+pub(super) fn exp10(x: f64) -> f64 {
+    exp(x * LN_10)
+}
+
+/// The natural logarithm; of what has none the lowest number.
+pub(super) fn log(x: f64) -> f64 {
+    const A: [f64; 3] = [-64.124_943_423_745_58, 16.383_943_563_021_534, -0.789_561_128_874_912_6];
+    const B: [f64; 4] = [-769.499_321_084_948_8, 312.032_220_919_245_3, -35.667_977_739_034_646, 1.0];
+    if x < f64::MIN_POSITIVE {
+        return -f64::MAX;
+    }
+    let (fraction, power) = libm::frexp(x);
+    let (numerator, denominator, power) = if fraction > SQRT_2 / 2.0 {
+        ((fraction - 0.5) - 0.5, fraction * 0.5 + 0.5, power)
+    } else {
+        (fraction - 0.5, (fraction - 0.5) * 0.5 + 0.5, power - 1)
+    };
+    let z = divide(numerator, denominator);
+    let square = z * z;
+    let ratio = divide(polynomial(&A, square), polynomial(&B, square));
+    f64::from(power) * LN_2 + (z + z * (square * ratio))
+}
+
+pub(super) fn log2(x: f64) -> f64 {
+    scaled(log(x), LOG2_E)
+}
+
+pub(super) fn log10(x: f64) -> f64 {
+    scaled(log(x), LOG10_E)
+}
+
+/// A logarithm in another base.
+fn scaled(log: f64, factor: f64) -> f64 {
+    if log == -f64::MAX { log } else { log * factor }
+}
+
+/// The arc sine of a number up to one half, and twice of the arc sine of a root.
+fn arc(x: f64, square: f64) -> f64 {
+    const COEFFICIENTS: [f64; 12] = [
+        0.166_666_666_666_648_4,
+        0.075_000_000_004_048_58,
+        0.044_642_856_791_215_726,
+        0.030_381_960_271_494_882,
+        0.022_371_736_603_202_38,
+        0.017_359_969_965_436_58,
+        0.013_883_027_830_534_857,
+        0.012_181_679_081_196_953,
+        0.006_480_855_383_860_01,
+        0.019_642_396_610_005_285,
+        -0.016_384_436_278_236_554,
+        0.032_011_340_198_495_324,
+    ];
+    x + x * (polynomial(&COEFFICIENTS, square) * square)
+}
+
+/// −2 arcsin √((1 − x)/2), which is the arc sine of `x` less a quarter of a turn.
+fn beyond_half(x: f64) -> f64 {
+    let square = (1.0 - x) * 0.5;
+    arc(-2.0 * libm::sqrt(square), square)
+}
+
+/// The arc sine; of what has none that of the nearest number that has one.
+pub(super) fn asin(x: f64) -> f64 {
+    let magnitude = x.abs().min(1.0);
+    let angle = if magnitude <= 0.5 {
+        arc(magnitude, magnitude * magnitude)
+    } else {
+        FRAC_PI_2 + beyond_half(magnitude)
+    };
+    if x < 0.0 { -angle } else { angle }
+}
+
+/// The arc cosine; of what has none that of the nearest number that has one.
+pub(super) fn acos(x: f64) -> f64 {
+    let magnitude = x.abs().min(1.0);
+    if magnitude <= 0.5 {
+        let angle = arc(magnitude, magnitude * magnitude);
+        (FRAC_PI_4 - if x < 0.0 { -angle } else { angle }) + FRAC_PI_4
+    } else if x < 0.0 {
+        (FRAC_PI_2 + beyond_half(magnitude)) + FRAC_PI_2
+    } else {
+        -beyond_half(magnitude)
+    }
+}
+
+pub(super) fn atan(x: f64) -> f64 {
+    const P: [f64; 4] =
+        [-13.688_768_894_191_927, -20.505_855_195_861_652, -8.494_624_035_132_068, -0.837_582_993_681_500_6];
+    const Q: [f64; 5] =
+        [41.066_306_682_575_78, 86.157_349_597_130_24, 59.578_436_142_597_344, 15.024_001_160_028_576, 1.0];
+    /// The tangent of 15°, up to which the quotient is good.
+    const LIMIT: f64 = 0.267_949_192_431_122_7;
+    const ROOT_3: f64 = 1.732_050_807_568_877_2;
+    /// What is left of the angle: 0°, 30°, 90°, 60°.
+    const ANGLES: [f64; 4] = [0.0, 0.523_598_775_598_298_9, FRAC_PI_2, 1.047_197_551_196_597_9];
+    if x.abs() < f64::MIN_POSITIVE {
+        return 0.0;
+    }
+    let (mut rest, mut angle) = if x.abs() > 1.0 { (divide(1.0, x.abs()), 2) } else { (x.abs(), 0) };
+    if rest > LIMIT {
+        rest = divide((((ROOT_3 - 1.0) * rest - 0.5) - 0.5) + rest, ROOT_3 + rest);
+        angle += 1;
+    }
+    let square = rest * rest;
+    let arc = rest + rest * divide(polynomial(&P, square) * square, polynomial(&Q, square));
+    let result = ANGLES[angle] + if angle > 1 { -arc } else { arc };
+    if x < 0.0 { -result } else { result }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_are_near_those_of_c() {
+        for step in -400..=400 {
+            let x = f64::from(step) / 37.0;
+            for (found, expect) in [
+                (sin(x), libm::sin(x)),
+                (cos(x), libm::cos(x)),
+                (atan(x), libm::atan(x)),
+                (exp(x) / libm::exp(x), 1.0),
+                (exp2(x) / libm::exp2(x), 1.0),
+                (log(x.abs() + 0.1), libm::log(x.abs() + 0.1)),
+                (log10(x.abs() + 0.1), libm::log10(x.abs() + 0.1)),
+            ] {
+                assert!((found - expect).abs() < 4e-15, "{x}: {found} {expect}");
+            }
+            let x = x / 11.0;
+            for (found, expect) in [(asin(x), libm::asin(x)), (acos(x), libm::acos(x))] {
+                assert!((found - expect).abs() < 2e-13, "{x}: {found} {expect}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_has_no_result_has_that_of_the_board() {
+        assert_eq!([log(0.0), log(-1.0), exp(1000.0)], [-f64::MAX, -f64::MAX, f64::MAX]);
+        assert_eq!([asin(2.0), acos(2.0), exp(-1000.0)], [FRAC_PI_2, 0.0, 0.0]);
+        assert_eq!([sin(1e10), cos(f64::INFINITY), exp(709.5)], [0.0; 3]);
+    }
+}
