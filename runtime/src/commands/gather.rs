@@ -168,7 +168,7 @@ pub(super) fn read_disk_data(session: &mut Session<'_, '_>, values: &Values) -> 
 const RAND_MAX: f32 = 32_767.0;
 
 /// Puts noise below a frequency into the buffer, and has the servo add it to an axis and record. The noise is that of
-/// `rand` through a low-pass filter of first order (tuning.md section 7).
+/// `rand` through a low-pass filter of first order, as measured.
 pub(super) fn inject(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (chan, cutoff, amplitude) = (chan(values.axis()), values.real(1), values.real(2));
     let start = session.memory().get(GATHER_BUFFER);

@@ -178,18 +178,18 @@ const SINES: [u32; LINES + 1] = [
     0x3F56_B31E,
 ];
 
-/// A line: its slope for a turn, and its value at 0.
+/// A line between two sines: its slope for a turn, and its value at 0.
 #[derive(Clone, Copy, Debug, Default)]
-struct Line {
+struct Secant {
     slope: f32,
     origin: f32,
 }
 
-static TABLE: LazyLock<[Line; LINES]> = LazyLock::new(|| {
+static TABLE: LazyLock<[Secant; LINES]> = LazyLock::new(|| {
     std::array::from_fn(|index| {
         let [begin, end] = [index, index + 1].map(|index| f32::from_bits(SINES[index]));
         let slope = (end - begin) * TURN as f32;
-        Line { slope, origin: begin - slope * along(index) }
+        Secant { slope, origin: begin - slope * along(index) }
     })
 });
 

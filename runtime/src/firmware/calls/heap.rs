@@ -54,7 +54,7 @@ impl Heap {
         let size = rounded(size)?;
         let begin = |free: &Free| {
             let aligned = free.block.checked_next_multiple_of(alignment.max(8))?;
-            // What is left in front is a block of its own.
+            // What is left before it is a block of its own.
             let begin = if aligned == free.block || aligned - free.block >= LEAST {
                 aligned
             } else {
@@ -82,7 +82,7 @@ impl Heap {
         self.insert(Free { block: block + size + HEADER, size: found - size - HEADER });
     }
 
-    /// Puts a free block in front of those that are as large.
+    /// Puts a free block before those that are as large.
     fn insert(&mut self, free: Free) {
         let place = self.free.iter().position(|other| other.size >= free.size);
         self.free.insert(place.unwrap_or(self.free.len()), free);
@@ -140,7 +140,7 @@ impl Heap {
     }
 }
 
-/// The size of the block for so many bytes; none for no bytes.
+/// The size of the block for a number of bytes; none for no bytes.
 fn rounded(size: u32) -> Option<u32> {
     if size == 0 { None } else { size.checked_next_multiple_of(8) }
 }
