@@ -5,7 +5,7 @@
 //! the released firmware: of 350 arguments of each function all results are the same to the last bit, except for
 //! two arc tangents and a tenth of the arc sines and cosines beyond one half, which depend on its square root.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, LN_2, LN_10, LOG2_E, LOG10_E, SQRT_2};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, FRAC_PI_6, LN_2, LN_10, LOG2_E, LOG10_E, SQRT_2};
 
 use crate::servo::dsp::divide;
 
@@ -36,7 +36,7 @@ fn sine(angle: f64, sign: f64) -> f64 {
         0.160_589_364_903_715_9e-9,
         0.272_047_909_578_888_46e-14,
     ];
-    if !(angle < TOO_LARGE) {
+    if angle >= TOO_LARGE || angle.is_nan() {
         return 0.0;
     }
     let half_turns = libm::floor(angle * std::f64::consts::FRAC_1_PI + 0.5);
@@ -101,7 +101,7 @@ pub(super) fn exp10(x: f64) -> f64 {
 /// The natural logarithm; of what has none the lowest number.
 pub(super) fn log(x: f64) -> f64 {
     const A: [f64; 3] = [-64.124_943_423_745_58, 16.383_943_563_021_534, -0.789_561_128_874_912_6];
-    const B: [f64; 4] = [-769.499_321_084_948_8, 312.032_220_919_245_3, -35.667_977_739_034_646, 1.0];
+    const B: [f64; 4] = [-769.499_321_084_948_8, 312.032_220_919_245_3, -35.667_977_739_034_65, 1.0];
     if x < f64::MIN_POSITIVE {
         return -f64::MAX;
     }
@@ -136,7 +136,7 @@ fn arc(x: f64, square: f64) -> f64 {
         0.166_666_666_666_648_4,
         0.075_000_000_004_048_58,
         0.044_642_856_791_215_726,
-        0.030_381_960_271_494_882,
+        0.030_381_960_271_494_88,
         0.022_371_736_603_202_38,
         0.017_359_969_965_436_58,
         0.013_883_027_830_534_857,
@@ -183,12 +183,12 @@ pub(super) fn atan(x: f64) -> f64 {
     const P: [f64; 4] =
         [-13.688_768_894_191_927, -20.505_855_195_861_652, -8.494_624_035_132_068, -0.837_582_993_681_500_6];
     const Q: [f64; 5] =
-        [41.066_306_682_575_78, 86.157_349_597_130_24, 59.578_436_142_597_344, 15.024_001_160_028_576, 1.0];
+        [41.066_306_682_575_78, 86.157_349_597_130_24, 59.578_436_142_597_35, 15.024_001_160_028_576, 1.0];
     /// The tangent of 15°, up to which the quotient is good.
     const LIMIT: f64 = 0.267_949_192_431_122_7;
     const ROOT_3: f64 = 1.732_050_807_568_877_2;
     /// What is left of the angle: 0°, 30°, 90°, 60°.
-    const ANGLES: [f64; 4] = [0.0, 0.523_598_775_598_298_9, FRAC_PI_2, 1.047_197_551_196_597_9];
+    const ANGLES: [f64; 4] = [0.0, FRAC_PI_6, FRAC_PI_2, FRAC_PI_3];
     if x.abs() < f64::MIN_POSITIVE {
         return 0.0;
     }
