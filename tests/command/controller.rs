@@ -303,6 +303,49 @@ skipped  c: `--stim` is about a simulated board: it does not work with `--on`
     assert!(output.code == 1 && output.stdout.contains("- count 7"), "{output:?}");
 }
 
+#[cfg(unix)]
+#[test]
+fn a_port_without_access_rights_is_named_with_what_gives_them() {
+    use std::os::unix::fs::{MetadataExt, PermissionsExt};
+    use std::os::unix::process::CommandExt;
+
+    let scratch = Scratch::new("controller-rights");
+    scratch.write("a.c", PROGRAM);
+    let (_server, place) = served("controller-rights-board", &[]);
+    let path = place.strip_prefix("serial:").expect("a pseudo-terminal");
+    fs::set_permissions(path, fs::Permissions::from_mode(0)).expect("it is ours");
+    let mut run = Command::new(command());
+    run.args(["run", "--yes", "--on", &place, "a.c"]).current_dir(scratch.path());
+    if fs::metadata(path).expect("it is there").uid() == 0 {
+        // The administrator may open every file.
+        fs::set_permissions(scratch.path(), fs::Permissions::from_mode(0o777)).expect("it is ours");
+        run.uid(65534).gid(65534);
+    }
+    let Ok(output) = run.output() else {
+        println!("not tried: this user's commands cannot be executed by another one");
+        return;
+    };
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    assert!(stderr.contains(path) && stderr.contains("dialout"), "{stderr}");
+}
+
+#[test]
+fn two_clients_of_the_vendors_server_share_a_board() {
+    let scratch = Scratch::new("controller-shared");
+    scratch.write("a.c", PROGRAM);
+    let server = Server::start("controller-shared-board", &["serve", "--listen", "tcp:0"], PROGRAM, 1);
+    let place = server.places[0].replace("tcp:", "server:").replace("localhost", "127.0.0.1");
+    let outputs = thread::scope(|scope| {
+        let runs =
+            ["1:a.c", "2:a.c"].map(|program| scope.spawn(|| on(&scratch, &["run"], &place, &[program])));
+        runs.map(|run| run.join().expect("no run panics"))
+    });
+    // The server hands each console line to one of its clients.
+    let lines: usize = outputs.iter().map(|output| output.stdout.lines().count()).sum();
+    assert_eq!((outputs.each_ref().map(|output| output.code), lines), ([0, 0], 6), "{outputs:?}");
+}
+
 #[test]
 fn boards_lists_what_is_connected_or_says_where_it_looked() {
     let scratch = Scratch::new("controller-boards");

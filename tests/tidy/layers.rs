@@ -198,7 +198,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
             ("functions", &["image", "command"]),
             ("what a board begins with", &["setup"]),
             ("programs", &["program"]),
-            ("sessions", &["residence"]),
+            ("link", &["controller"]),
             ("control", &["control"]),
             ("values over time", &["trace"]),
             ("exceptions", &["errors"]),

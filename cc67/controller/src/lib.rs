@@ -31,3 +31,12 @@ mod seen;
 
 pub use cc67_wire::{Address, AddressError, Client, FoundBoard, Progress, WireError, boards};
 pub use controller::{Controller, ControllerLink};
+
+/// The facts that a person should know before the first connection of a project.
+pub const FIRST_TIME: &str = "\
+This connects to a real controller, and programs on it move real machines.
+
+  - cc67's link, downloads and code have run on the released firmware in emulation, never on a controller.
+  - Switch the drives off for the first trials, and keep the emergency stop within reach.
+  - Connecting starts nothing. A program that is started moves whatever it wants, and continues when cc67 ends.
+";

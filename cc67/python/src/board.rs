@@ -5,7 +5,11 @@ use std::sync::{LazyLock, Mutex, PoisonError, TryLockError};
 use std::thread::{self, ThreadId};
 use std::time::{Duration, Instant};
 
+use cc67_controller::ControllerLink;
 use cc67_host::{Session, Target, Until};
+use compiler::Options;
+use compiler::firmware::Firmware;
+use compiler::target::Target as CodeTarget;
 use kmotiondef::Bit;
 use kmotiondef::limits::TIMEBASE;
 use numpy::PyArray1;
@@ -14,7 +18,8 @@ use vm::interp::BytecodeEngine;
 use vm::native::{NativeEngine, SharedCode};
 
 use crate::control::{AxisField, Control, Fault, Portion, Rig, Said, Unwritten, fields};
-use crate::errors::{Error, ExpectationError, RangeError, ThreadError, TrapError, input};
+use crate::controller::Controller;
+use crate::errors::{Error, ExpectationError, LinkError, RangeError, ThreadError, TrapError, input};
 use crate::program::{LinkableProgram, thread};
 use crate::setup::{BoardArguments, refused};
 use crate::trace::MOST_VALUES;
@@ -122,6 +127,7 @@ fn exception(fault: Fault) -> PyErr {
     match fault {
         Fault::Unmet { text } => ExpectationError::new_err(text),
         Fault::Trap { text, time, thread, place } => TrapError::new_err((text, time, thread, place)),
+        Fault::Lost { text } => LinkError::new_err(text),
     }
 }
 
@@ -131,6 +137,13 @@ where
     T::Snapshot: Send,
 {
     Box::new(Rig::new(session))
+}
+
+/// How programs and expressions for a controller are compiled: for its processor and its firmware.
+fn connected_options(link: &ControllerLink) -> Options {
+    let other = link.board().filter(|board| !board.is_default());
+    let firmware = other.map_or_else(Firmware::default, Firmware::Board);
+    Options { firmware, target: CodeTarget::C67x, ..Options::default() }
 }
 
 /// Converts the reason why a value is not stored into an exception.
@@ -166,6 +179,22 @@ impl Board {
             }
             _ => return Err(input(format!("engine must be \"native\" or \"bytecode\", not {engine:?}"))),
         };
+        let used = Mutex::new(Used { control: Some(control.map_err(refused)?), owner: None });
+        Ok(Self { used, axes: arranged.axes, number: NUMBERS.fetch_add(1, Ordering::Relaxed) })
+    }
+
+    /// Make a board of a controller, and load and start its programs.
+    #[staticmethod]
+    fn on(
+        py: Python<'_>,
+        controller: &Controller,
+        request: BoardArguments<'_>,
+        is_forced: bool,
+    ) -> PyResult<Self> {
+        let arranged = request.arrange()?;
+        let (link, mut setup) = (controller.take()?, arranged.setup);
+        setup.options = connected_options(&link);
+        let control = py.detach(|| link.session(setup, is_forced, |_, _| ()).map(boxed));
         let used = Mutex::new(Used { control: Some(control.map_err(refused)?), owner: None });
         Ok(Self { used, axes: arranged.axes, number: NUMBERS.fetch_add(1, Ordering::Relaxed) })
     }
@@ -318,7 +347,8 @@ impl Board {
 
     fn bit(&self, py: Python<'_>, number: i32) -> PyResult<bool> {
         let bit = bit(number)?;
-        self.call(py, move |control| control.bit(bit))
+        let level = self.call(py, move |control| control.bit(bit))?;
+        level.map_err(|error| Error::new_err(error.to_string()))
     }
 
     fn drive(&self, py: Python<'_>, number: i32, level: bool) -> PyResult<()> {
@@ -327,7 +357,18 @@ impl Board {
     }
 
     fn read(&self, py: Python<'_>, expression: String) -> PyResult<f64> {
-        self.call(py, move |control| control.read(&expression))?.map_err(input)
+        let (value, is_connected) = self.call(py, {
+            let expression = expression.clone();
+            move |control| (control.read(&expression), control.is_connected())
+        })?;
+        let value = value.map_err(input)?;
+        if is_connected && value.is_nan() {
+            return Err(Error::new_err(format!(
+                "{expression:?} cannot be read: no command of a controller reads memory besides persist.UserData and what \
+                 its status record has"
+            )));
+        }
+        Ok(value)
     }
 
     fn write(&self, py: Python<'_>, expression: String, value: f64) -> PyResult<()> {
@@ -335,7 +376,8 @@ impl Board {
     }
 
     fn field(&self, py: Python<'_>, axis: usize, name: String) -> PyResult<Option<f64>> {
-        self.call(py, move |control| control.field(axis, &name))
+        let field = self.call(py, move |control| control.field(axis, &name))?;
+        field.map_err(|error| Error::new_err(error.to_string()))
     }
 
     fn set_field(&self, py: Python<'_>, axis: usize, name: String, value: f64) -> PyResult<bool> {

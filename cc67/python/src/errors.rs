@@ -9,6 +9,7 @@ use pyo3::exceptions::PyOSError;
 
 pyo3::import_exception!(cc67._errors, Error);
 pyo3::import_exception!(cc67._errors, InputError);
+pyo3::import_exception!(cc67._errors, LinkError);
 pyo3::import_exception!(cc67._errors, LoadError);
 pyo3::import_exception!(cc67._errors, RangeError);
 pyo3::import_exception!(cc67._errors, ThreadError);

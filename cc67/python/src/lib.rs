@@ -6,6 +6,7 @@
 //! ```text
 //! board      a board for Python: its owning thread, signals while it runs, exceptions
 //! control    a session on any engine behind one set of calls; its messages so far
+//! controller the link to a controller
 //! trace      values over time, in columns
 //! setup      the initial state of a board
 //! program    sources compiled to a program that can be linked for any thread
@@ -23,6 +24,7 @@
 mod board;
 mod command;
 mod control;
+mod controller;
 mod errors;
 mod image;
 mod program;
@@ -39,6 +41,8 @@ mod _native {
     use crate::board::Board;
     #[pymodule_export]
     use crate::command::command;
+    #[pymodule_export]
+    use crate::controller::{Controller, first_time};
     #[pymodule_export]
     use crate::image::{disassembly, inspection, parts};
     #[pymodule_export]

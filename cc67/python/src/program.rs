@@ -18,6 +18,7 @@ use compiler::render::{self, Format};
 use compiler::target::Target;
 use compiler::{Compilation, Options, files, link_units, pp};
 use kmotiondef::ThreadId;
+use kmotiondef::boards::{BOARDS, TargetBoard};
 use pyo3::prelude::*;
 
 use crate::errors::{LoadError, input, unreadable};
@@ -34,6 +35,8 @@ pub(crate) struct CompileArguments {
     std: String,
     firmware: Option<PathBuf>,
     boot: Option<PathBuf>,
+    board: Option<String>,
+    target: Option<String>,
 }
 
 impl CompileArguments {
@@ -60,13 +63,29 @@ impl CompileArguments {
                 other => return Err(input(format!("optimize must be 0, 1, 2 or \"s\", not {other:?}"))),
             },
             firmware: self.firmware()?,
-            target: if self.boot.is_some() { Target::C67x } else { Options::default().target },
+            target: self.target()?,
             gc_sections: self.optimize != "0",
             ..Options::default()
         })
     }
 
+    fn target(&self) -> PyResult<Target> {
+        match self.target.as_deref() {
+            None if self.boot.is_some() => Ok(Target::C67x),
+            None => Ok(Options::default().target),
+            Some("c67x") => Ok(Target::C67x),
+            Some("sim") => Ok(Target::Sim),
+            Some(other) => Err(input(format!("target must be \"c67x\" or \"sim\", not {other:?}"))),
+        }
+    }
+
     fn firmware(&self) -> PyResult<Firmware> {
+        if let Some(name) = &self.board {
+            let names = || BOARDS.iter().map(|board| board.name).collect::<Vec<_>>().join(", ");
+            let board = TargetBoard::named(name)
+                .ok_or_else(|| input(format!("no board is called {name:?}; the boards are {}", names())))?;
+            return Ok(if board.is_default() { Firmware::default() } else { Firmware::Board(board) });
+        }
         let Some(path) = self.boot.as_ref().or(self.firmware.as_ref()) else {
             return Ok(Firmware::default());
         };

@@ -15,12 +15,14 @@ from __future__ import annotations
 from importlib.metadata import PackageNotFoundError, version
 
 from ._board import Board, Condition, Snapshot, ended, printed, started
+from ._controller import connect
 from ._diagnostics import Diagnostic, Span
 from ._errors import (
     CompileError,
     Error,
     ExpectationError,
     InputError,
+    LinkError,
     LoadError,
     NotBuiltError,
     RangeError,
@@ -58,6 +60,7 @@ __all__ = [
     "ExpectationError",
     "Image",
     "InputError",
+    "LinkError",
     "LoadError",
     "NotBuiltError",
     "Persist",
@@ -70,6 +73,7 @@ __all__ = [
     "Trace",
     "TrapError",
     "UnknownNameError",
+    "connect",
     "cycles",
     "ended",
     "inspect",

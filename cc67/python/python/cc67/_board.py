@@ -118,7 +118,7 @@ class Board(Fixed):
 
     # Everything that the parts refer to is the native board, so that there is no cycle: the memory of the board is free
     # when the last reference to it goes.
-    __slots__ = ("_native", "_boot", "_programs", "_bits", "_adc", "_dac", "_axes", "_persist", "__weakref__")
+    __slots__ = ("_native", "_compiled_for", "_programs", "_bits", "_adc", "_dac", "_axes", "_persist", "__weakref__")
 
     def __init__(
         self,
@@ -143,8 +143,9 @@ class Board(Fixed):
         if isinstance(machine, Mapping):
             settings = [*_settings(machine), *settings]
             machine = None
-        self._boot = None if boot is None else os.fspath(boot)
-        assigned = _assign(programs, load, self._boot)
+        boot = None if boot is None else os.fspath(boot)
+        self._compiled_for: Mapping[str, Any] = {"boot": boot}
+        assigned = _assign(programs, load, self._compiled_for)
         request = {
             "programs": [(thread, program._native, starts) for thread, program, starts in assigned],
             "machine": None if machine is None else _machine(machine),
@@ -155,9 +156,44 @@ class Board(Fixed):
             "assist": bool(assist),
             "shortcuts": bool(shortcuts),
             "uart_input": bytes(uart_input),
-            "boot": self._boot,
+            "boot": boot,
         }
-        native = self._native = _native.Board(request, engine)
+        self._begin(_native.Board(request, engine), assigned, on_fault)
+
+    @classmethod
+    def _on(
+        cls,
+        controller: _native.Controller,
+        programs: Any,
+        load: Any,
+        *,
+        set: Mapping[str, object] | Iterable[str],
+        files: PathLike | None,
+        answers: Mapping[str, object] | Iterable[str],
+        force: bool,
+        on_fault: str,
+    ) -> Board:
+        """Make the board of a controller, for `connect`."""
+        board = cls.__new__(cls)
+        board._compiled_for = {"board": controller.board, "target": "c67x"}
+        assigned = _assign(programs, load, board._compiled_for)
+        request = {
+            "programs": [(thread, program._native, starts) for thread, program, starts in assigned],
+            "machine": None,
+            "settings": _settings(set),
+            "stim": [],
+            "files": None if files is None else os.fspath(files),
+            "answers": _pairs(answers, "answers"),
+            "assist": False,
+            "shortcuts": True,
+            "uart_input": b"",
+            "boot": None,
+        }
+        board._begin(_native.Board.on(controller, request, force), assigned, on_fault)
+        return board
+
+    def _begin(self, native: _native.Board, assigned: list[tuple[int, Program, bool]], on_fault: str) -> None:
+        self._native = native
         self._programs = {thread: program for thread, program, _ in assigned}
         self._bits, self._adc, self._dac = Bits(native), Adc(native), Dac(native)
         self._axes, self._persist = Axes(native), Persist(native)
@@ -286,7 +322,7 @@ class Board(Fixed):
             LoadError: the board refuses the program; the current program of the thread continues.
             CompileError: the source has errors.
         """
-        made = _program(program, None, self._boot)
+        made = _program(program, None, self._compiled_for)
         number = thread or made.thread or 1
         self._native.load(number, made._native, start)
         self._programs[number] = made
@@ -496,14 +532,14 @@ def _split(items: str) -> list[str]:
     return [*parts, part.strip()]
 
 
-def _program(source: Source, thread: int | None, boot: str | None = None) -> Program:
+def _program(source: Source, thread: int | None, compiled_for: Mapping[str, Any]) -> Program:
     if isinstance(source, Program):
         return source
     if not isinstance(source, (str, os.PathLike)):
         raise TypeError(f"a program must be a cc67.Program or a file, not {source!r}")
     if Path(source).suffix.lower() == ".out":
         return load(source, thread=thread)
-    return compile(source, thread=thread, boot=boot)
+    return compile(source, thread=thread, **compiled_for)
 
 
 def _rows(sources: Any) -> list[tuple[int | None, Source]]:
@@ -518,10 +554,10 @@ def _rows(sources: Any) -> list[tuple[int | None, Source]]:
     return [(None, source) for source in sources]
 
 
-def _assign(programs: Any, load: Any, boot: str | None) -> list[tuple[int, Program, bool]]:
+def _assign(programs: Any, load: Any, compiled_for: Mapping[str, Any]) -> list[tuple[int, Program, bool]]:
     """Assign each program its thread: the one it is for, else the lowest free one."""
     rows = [(*row, True) for row in _rows(programs)] + [(*row, False) for row in _rows(load)]
-    made = [(thread, _program(source, thread, boot), starts) for thread, source, starts in rows]
+    made = [(thread, _program(source, thread, compiled_for), starts) for thread, source, starts in rows]
     fixed = [(thread or program.thread, program, starts) for thread, program, starts in made]
     free = iter([n for n in range(1, 8) if n not in {thread for thread, _, _ in fixed}])
     result = []

@@ -13,6 +13,7 @@ __all__ = [
     "Error",
     "ExpectationError",
     "InputError",
+    "LinkError",
     "LoadError",
     "NotBuiltError",
     "RangeError",
@@ -57,6 +58,10 @@ class CompileError(Error):
 
     def __reduce__(self) -> tuple[type[CompileError], tuple[list[Diagnostic]]]:
         return (CompileError, (self.diagnostics,))
+
+
+class LinkError(Error, ConnectionError):
+    """There is no controller at an address, it does not answer, or the link to it is lost."""
 
 
 class LoadError(Error):

@@ -26,6 +26,8 @@ class _Request(TypedDict):
     std: str
     firmware: str | None
     boot: str | None
+    board: str | None
+    target: str | None
 
 
 class Program:
@@ -105,6 +107,8 @@ def compile(
     std: str = "vendor",
     firmware: PathLike | None = None,
     boot: PathLike | None = None,
+    board: str | None = None,
+    target: str | None = None,
 ) -> Program:
     """Compile a C program for the board.
 
@@ -122,6 +126,9 @@ def compile(
         firmware: a firmware file whose symbols replace the built-in ones of firmware 4.34.
         boot: the firmware file that the program is to run on: it is compiled for the processor, as
             `Board(boot=FILE)` needs it.
+        board: the board and firmware that the program is for, such as "kflop-5.3.2", as with `--board`.
+        target: "c67x" for code of the controller's processor, as a connected controller needs it, or "sim" for bytecode
+            of the simulated board; by default "sim", and with `boot` "c67x".
 
     Returns:
         The program. Its warnings are in `Program.diagnostics`.
@@ -152,6 +159,8 @@ def compile(
         "std": std,
         "firmware": None if firmware is None else os.fspath(firmware),
         "boot": None if boot is None else os.fspath(boot),
+        "board": board,
+        "target": target,
     }
     native, found = _native.compile([str(path) for path in paths], request, thread or 1)
     diagnostics = [from_json(text) for text in found]

@@ -414,7 +414,7 @@ def _content(name: str, value: Any, boot: str | None) -> Any:
     if name == "boot" and value is not None:
         return Path(value).read_bytes()
     if name == "load":
-        return [(thread, program.image(thread)) for thread, program, _ in _assign((), value, boot)]
+        return [(thread, program.image(thread)) for thread, program, _ in _assign((), value, {"boot": boot})]
     return value
 
 

@@ -1,6 +1,6 @@
 //! The fields of an axis by their names in C.
 
-use cc67_host::{Session, Target};
+use cc67_host::{HostError, Session, Target};
 use kmotiondef::GuestAddr;
 use kmotiondef::ctype::CType;
 use kmotiondef::limits::N_CHANNELS;
@@ -8,25 +8,32 @@ use kmotiondef::structs::{Chan, StructureField};
 use kmotiondef::variables::CHAN;
 
 /// The value of a field of an axis; `None` for another name, or a field that is not one number.
-pub(crate) fn field<T: Target>(session: &Session<T>, axis: usize, name: &str) -> Option<f64> {
-    if axis >= N_CHANNELS {
-        return None;
-    }
-    let field = number(name)?;
-    let address = CHAN.element(axis).address().offset(field.offset);
-    Some(match field.ty {
-        CType::Double => session.peek_object::<f64>(address),
-        CType::Float => session.peek_object::<f32>(address).into(),
-        CType::Short => session.peek_object::<i16>(address).into(),
-        CType::UnsignedShort => session.peek_object::<u16>(address).into(),
-        CType::Char | CType::SignedChar => session.peek_object::<i8>(address).into(),
-        CType::UnsignedChar => session.peek_object::<u8>(address).into(),
-        CType::UnsignedInt | CType::UnsignedLong => session.peek_object::<u32>(address).into(),
-        CType::Void | CType::Int | CType::Long | CType::Named(_) => {
-            session.peek_object::<i32>(address).into()
-        }
-        _ => return None,
-    })
+///
+/// # Errors
+/// The target does not tell it.
+pub(crate) fn field<T: Target>(
+    session: &Session<T>,
+    axis: usize,
+    name: &str,
+) -> Result<Option<f64>, HostError> {
+    let (Some(field), true) = (number(name), axis < N_CHANNELS) else { return Ok(None) };
+    let target = session.target();
+    let address = target.place_of(CHAN.element(axis).address().offset(field.offset));
+    let mut bytes = [0; 8];
+    target.read(address, &mut bytes[..field.size as usize])?;
+    let [first, second, third, fourth, ..] = bytes;
+    let (half, word) = ([first, second], [first, second, third, fourth]);
+    Ok(Some(match field.ty {
+        CType::Double => f64::from_le_bytes(bytes),
+        CType::Float => f32::from_le_bytes(word).into(),
+        CType::Short => i16::from_le_bytes(half).into(),
+        CType::UnsignedShort => u16::from_le_bytes(half).into(),
+        CType::Char | CType::SignedChar => first.cast_signed().into(),
+        CType::UnsignedChar => first.into(),
+        CType::UnsignedInt | CType::UnsignedLong => u32::from_le_bytes(word).into(),
+        CType::Void | CType::Int | CType::Long | CType::Named(_) => i32::from_le_bytes(word).into(),
+        _ => return Ok(None),
+    }))
 }
 
 /// The address of a field of an axis, and the bytes of a value in it; `None` for another name.

@@ -33,6 +33,11 @@ pub(crate) enum Fault {
         /// The expectation, in words.
         text: String,
     },
+    /// The link to the controller is lost.
+    Lost {
+        /// The reason.
+        text: String,
+    },
 }
 
 /// The log of a board.

@@ -5,8 +5,9 @@ mod log;
 
 use std::collections::BTreeMap;
 
-use cc67_host::{HostError, Session, Snapshot, SnapshotError, Target, Until, UserProgram, Watch, WatchError};
+use cc67_host::{Capability, HostError, Session, Snapshot, SnapshotError, Target, Until, UserProgram, Watch, WatchError};
 use kmotiondef::{Bit, ThreadId, Ticks};
+use runtime::trace::Item;
 use runtime::{Event, EventKind};
 
 pub(crate) use fields::{AxisField, field, fields, stored};
@@ -49,7 +50,7 @@ impl From<WatchError> for Unwritten {
 /// A board under control, whichever engine it has.
 pub(crate) trait Control: 'static {
     /// Number of the last tick that is over.
-    fn tick(&self) -> u64;
+    fn tick(&mut self) -> u64;
     /// A portion of a run to the end of a tick.
     fn advance(&mut self, limit: u64) -> Portion;
     /// A portion of a run until all has ended.
@@ -61,7 +62,7 @@ pub(crate) trait Control: 'static {
     /// Runs to the end of the next slice of a thread.
     fn step_thread(&mut self, thread: ThreadId, limit: u64) -> Portion;
     /// Reports whether nothing is active and nothing is under way.
-    fn has_ended(&self) -> bool;
+    fn has_ended(&mut self) -> bool;
     /// Sends a line, lets pass the time that it takes, and returns the lines of the reply.
     fn exchange(&mut self, line: &[u8]) -> (Vec<String>, Option<Fault>);
     /// Does what a statement of a stimulus says.
@@ -69,23 +70,25 @@ pub(crate) trait Control: 'static {
     /// Drives an input.
     fn drive(&mut self, bit: Bit, level: bool) -> Result<(), HostError>;
     /// The level of a bit.
-    fn bit(&self, bit: Bit) -> bool;
+    fn bit(&mut self, bit: Bit) -> Result<bool, HostError>;
     /// Parses an item or expression to be watched.
     fn watch(&mut self, text: &str) -> Result<Watch, WatchError>;
+    /// Reports whether the board is a controller, of whose memory not everything can be read.
+    fn is_connected(&self) -> bool;
     /// The value of an item or an expression.
     fn read(&mut self, text: &str) -> Result<f64, WatchError>;
     /// Stores a value.
     fn write(&mut self, text: &str, value: f64) -> Result<(), Unwritten>;
     /// A field of an axis, by its name in C.
-    fn field(&self, axis: usize, name: &str) -> Option<f64>;
+    fn field(&mut self, axis: usize, name: &str) -> Result<Option<f64>, HostError>;
     /// Stores a value in a field of an axis; `false` for another name.
     fn set_field(&mut self, axis: usize, name: &str, value: f64) -> Result<bool, Unwritten>;
     /// An element of `persist.UserData`.
-    fn user_data(&self, index: usize) -> Option<i32>;
+    fn user_data(&mut self, index: usize) -> Option<i32>;
     /// Stores an element of `persist.UserData`.
     fn set_user_data(&mut self, index: usize, value: i32) -> bool;
     /// Reports whether a thread is active.
-    fn is_active(&self, thread: ThreadId) -> bool;
+    fn is_active(&mut self, thread: ThreadId) -> bool;
     /// Loads a program.
     fn load(&mut self, program: UserProgram) -> Result<(), HostError>;
     /// Starts a thread.
@@ -198,20 +201,35 @@ impl<T: Target> Rig<T> {
 
     /// Returns the fault that stops a run now, if there is one.
     fn fault(&mut self) -> Option<Fault> {
+        if let Some(reason) = self.session.target().lost() {
+            return Some(Fault::Lost { text: reason.to_owned() });
+        }
         if self.stops_at_faults { self.log.take_fault() } else { None }
+    }
+
+    /// Takes up what a controller has sent: its time passes by itself.
+    fn refresh(&mut self) {
+        if !self.session.can(Capability::StopTime) {
+            self.pass(|session, events| session.step(session.tick().next(), events));
+        }
+    }
+
+    /// Steps of a portion; those of a controller wait for it.
+    fn steps(&self) -> usize {
+        if self.session.can(Capability::StopTime) { STEPS } else { 1 }
     }
 
     /// Steps until `is_over` returns true or the portion is used up.
     fn portion(&mut self, limit: Ticks, is_over: impl Fn(&Session<T>) -> bool) -> Portion {
         let mut events = Vec::new();
-        for _ in 0..STEPS {
+        for _ in 0..self.steps() {
             let is_met = is_over(&self.session);
             if is_met || self.session.tick() >= limit {
                 return Portion { is_over: true, is_met, fault: None };
             }
             self.session.step(limit, &mut |event| events.push(event));
             // Most steps have no message.
-            if !events.is_empty() {
+            if !events.is_empty() || self.session.target().lost().is_some() {
                 self.hear(std::mem::take(&mut events));
                 if let Some(fault) = self.fault() {
                     return Portion { is_over: true, is_met: false, fault: Some(fault) };
@@ -227,7 +245,8 @@ impl<T: Target> Rig<T> {
 }
 
 impl<T: Target + 'static> Control for Rig<T> {
-    fn tick(&self) -> u64 {
+    fn tick(&mut self) -> u64 {
+        self.refresh();
         self.session.tick().get()
     }
 
@@ -243,7 +262,7 @@ impl<T: Target + 'static> Control for Rig<T> {
         let stops = self.stops_at_faults;
         let either =
             Until::Any(if stops { vec![condition.clone(), Until::Trapped] } else { vec![condition.clone()] });
-        let end = self.tick().saturating_add(TICKS).min(limit);
+        let end = self.session.tick().get().saturating_add(TICKS).min(limit);
         let is_met = self.pass(|session, events| session.run_until(&either, Ticks::new(end), events));
         let fault = self.fault();
         Portion {
@@ -259,13 +278,14 @@ impl<T: Target + 'static> Control for Rig<T> {
     }
 
     fn step_thread(&mut self, thread: ThreadId, limit: u64) -> Portion {
-        let end = self.tick().saturating_add(TICKS).min(limit);
+        let end = self.session.tick().get().saturating_add(TICKS).min(limit);
         let is_met = self.pass(|session, events| session.step_thread(thread, Ticks::new(end), events));
         let fault = self.fault();
         Portion { is_over: is_met || fault.is_some() || end >= limit, is_met, fault }
     }
 
-    fn has_ended(&self) -> bool {
+    fn has_ended(&mut self) -> bool {
+        self.refresh();
         self.session.has_ended()
     }
 
@@ -283,8 +303,14 @@ impl<T: Target + 'static> Control for Rig<T> {
         self.session.drive_input(bit, level)
     }
 
-    fn bit(&self, bit: Bit) -> bool {
-        self.session.bit(bit)
+    fn bit(&mut self, bit: Bit) -> Result<bool, HostError> {
+        self.refresh();
+        if self.session.can(Capability::StopTime) {
+            return Ok(self.session.bit(bit));
+        }
+        let level = self.session.target().value(Item::of_bit(bit));
+        let unknown = || HostError::Link(format!("the status record of a controller does not have bit {bit}"));
+        if level.is_nan() { Err(unknown()) } else { Ok(level != 0.0) }
     }
 
     fn watch(&mut self, text: &str) -> Result<Watch, WatchError> {
@@ -292,8 +318,13 @@ impl<T: Target + 'static> Control for Rig<T> {
     }
 
     fn read(&mut self, text: &str) -> Result<f64, WatchError> {
+        self.refresh();
         let watch = self.watch(text)?;
         Ok(self.session.value(&watch))
+    }
+
+    fn is_connected(&self) -> bool {
+        !self.session.can(Capability::StopTime)
     }
 
     fn write(&mut self, text: &str, value: f64) -> Result<(), Unwritten> {
@@ -308,7 +339,8 @@ impl<T: Target + 'static> Control for Rig<T> {
         Ok(self.session.write_to(&place, value)?)
     }
 
-    fn field(&self, axis: usize, name: &str) -> Option<f64> {
+    fn field(&mut self, axis: usize, name: &str) -> Result<Option<f64>, HostError> {
+        self.refresh();
         field(&self.session, axis, name)
     }
 
@@ -320,7 +352,8 @@ impl<T: Target + 'static> Control for Rig<T> {
         is_stored.map(|()| true).map_err(|error| Unwritten::Refused(error.to_string()))
     }
 
-    fn user_data(&self, index: usize) -> Option<i32> {
+    fn user_data(&mut self, index: usize) -> Option<i32> {
+        self.refresh();
         self.session.user_data(index)
     }
 
@@ -328,7 +361,8 @@ impl<T: Target + 'static> Control for Rig<T> {
         self.session.set_user_data(index, value)
     }
 
-    fn is_active(&self, thread: ThreadId) -> bool {
+    fn is_active(&mut self, thread: ThreadId) -> bool {
+        self.refresh();
         self.session.thread(thread).is_active()
     }
 
@@ -378,13 +412,14 @@ impl<T: Target + 'static> Control for Rig<T> {
         let Some(mut recorder) = self.recorder.take() else { return self.over(false) };
         let mut portion = Portion { is_over: false, is_met: false, fault: None };
         let mut events = Vec::new();
-        for _ in 0..STEPS {
+        for _ in 0..self.steps() {
             let Some(next) = recorder.next(self.session.tick()) else {
                 portion.is_over = true;
                 break;
             };
             self.session.step(next, &mut |event| events.push(event));
-            if self.session.tick() == next {
+            // The time of a controller may be past it.
+            if self.session.tick() >= next {
                 recorder.sample(&self.session);
             }
             if !events.is_empty() {

@@ -5,7 +5,7 @@ use std::io::{self, BufRead, IsTerminal};
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
-use cc67_controller::{Address, ControllerLink, Progress};
+use cc67_controller::{Address, ControllerLink, FIRST_TIME, Progress};
 use cc67_host::{EventSink, Session, Target};
 use compiler::firmware::Firmware;
 use kmotiondef::ThreadId;
@@ -13,15 +13,6 @@ use kmotiondef::ThreadId;
 use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::args::controller::ControllerArguments;
 use crate::cli::io::terminal;
-
-/// The facts that a person should know before the first connection of a project.
-const FIRST_TIME: &str = "\
-This connects to a real controller, and programs on it move real machines.
-
-  - cc67's link, downloads and code have run on the released firmware in emulation, never on a controller.
-  - Switch the drives off for the first trials, and keep the emergency stop within reach.
-  - Connecting starts nothing. A program that is started moves whatever it wants, and continues when cc67 ends.
-";
 
 /// Connects to the controller at an address, after a person has agreed.
 pub(super) fn connect(address: &Address, arguments: &ControllerArguments) -> Result<ControllerLink> {

@@ -28,6 +28,9 @@ use refusals::Errors;
 
 /// Within which time a command is answered.
 const ANSWER_WITHIN: Duration = Duration::from_secs(3);
+/// Within which time a board that disconnects at once is tried again, and the pause before that. Source: wire.md section 2.
+const OPEN_WITHIN: Duration = Duration::from_secs(3);
+const OPEN_AGAIN: Duration = Duration::from_millis(100);
 /// The pause after which no line feed follows the answer to an abort.
 const SETTLED_AFTER: Duration = Duration::from_millis(20);
 /// Console lines that wait for the client's user; further ones are counted and dropped.
@@ -64,9 +67,15 @@ impl Client {
     /// # Errors
     /// There is no board there, it may not be opened, or it does not answer.
     pub fn connect(address: &Address) -> Result<Self, WireError> {
-        let mut client = Self::over(crate::transport::open(address)?)?;
-        client.address = Some(address.clone());
-        Ok(client)
+        let end = now() + OPEN_WITHIN;
+        loop {
+            match Self::over(crate::transport::open(address)?) {
+                Ok(client) => return Ok(Self { address: Some(address.clone()), ..client }),
+                // A board that starts, or that another client is just leaving, comes and goes.
+                Err(error) if error.is_disconnected() && now() < end => std::thread::sleep(OPEN_AGAIN),
+                Err(error) => return Err(error),
+            }
+        }
     }
 
     /// Connects to the board at the other end of a link.
