@@ -313,7 +313,7 @@ fn a_port_without_access_rights_is_named_with_what_gives_them() {
     scratch.write("a.c", PROGRAM);
     let (_server, place) = served("controller-rights-board", &[]);
     let path = place.strip_prefix("serial:").expect("a pseudo-terminal");
-    fs::set_permissions(path, fs::Permissions::from_mode(0)).expect("it is ours");
+    fs::set_permissions(path, fs::Permissions::from_mode(0o000)).expect("it is ours");
     let mut run = Command::new(command());
     run.args(["run", "--yes", "--on", &place, "a.c"]).current_dir(scratch.path());
     if fs::metadata(path).expect("it is there").uid() == 0 {
