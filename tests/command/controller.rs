@@ -335,7 +335,7 @@ fn two_clients_of_the_vendors_server_share_a_board() {
     let scratch = Scratch::new("controller-shared");
     scratch.write("a.c", PROGRAM);
     let server = Server::start("controller-shared-board", &["serve", "--listen", "tcp:0"], PROGRAM, 1);
-    let place = server.places[0].replace("tcp:", "server:").replace("localhost", "127.0.0.1");
+    let place = format!("server:127.0.0.1:{}", server.places[0].rsplit(':').next().expect("a port"));
     let outputs = thread::scope(|scope| {
         let runs =
             ["1:a.c", "2:a.c"].map(|program| scope.spawn(|| on(&scratch, &["run"], &place, &[program])));
