@@ -138,7 +138,7 @@ Breakpoint 1, twice at twice.c:5 [thread 1]
 Breakpoint 1, twice at twice.c:5 [thread 1]
 5\t    return n + n;
 $2 = 6
-#0  twice () at twice.c:5
+#0  twice (n=3) at twice.c:5
 #1  main () at twice.c:12
 Breakpoint 1, twice at twice.c:5 [thread 1]
 5\t    return n + n;

@@ -153,7 +153,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
     (
         "cc67/host",
         &[
-            ("clients", &["client"]),
+            ("clients", &["client", "seats"]),
             ("shared state", &["state"]),
             ("session", &["session"]),
             ("targets", &["target"]),
@@ -178,7 +178,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
         &[
             ("protocol", &["dap"]),
             ("commands", &["shell"]),
-            ("words of commands", &["words"]),
+            ("words of commands, lines", &["words", "early"]),
             ("debugger", &["debugger"]),
             ("programs", &["programs"]),
         ],

@@ -552,6 +552,11 @@ impl Target for Controller {
         })
     }
 
+    fn refresh(&mut self) {
+        self.time.next_status = now();
+        self.poll();
+    }
+
     fn glance(&self, address: GuestAddr, bytes: &mut [u8]) -> Option<()> {
         self.seen.look(address, bytes)
     }

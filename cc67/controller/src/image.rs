@@ -28,12 +28,14 @@ pub(crate) fn of_program(
     };
     let parts = image.sections.iter().filter(|section| !section.data().is_empty());
     let parts = parts.map(|section| (section.address, section.data().to_vec())).collect();
-    let firmware = match (program.is_image, header.version_stamp) {
-        (false, _) => Some(linked_for.to_owned()),
+    let stated = header.version_stamp;
+    let firmware = match (stated, program.is_image) {
         // Images of other linkers state nothing.
-        (true, 0) => None,
-        (true, number) if stamp(board) == Some(number) => None,
-        (true, number) => Some(format!("version {}.{:02}", number / 100, number % 100)),
+        (0, true) => None,
+        (0, false) => Some(linked_for.to_owned()),
+        (_, false) if stamp(linked_for) == Some(stated) => Some(linked_for.to_owned()),
+        _ if stamp(board) != Some(stated) => Some(format!("version {}.{:02}", stated / 100, stated % 100)),
+        _ => None,
     };
     Ok(LoadImage { thread: program.thread, entry: header.entry, parts, firmware })
 }

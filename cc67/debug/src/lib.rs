@@ -12,6 +12,7 @@
 //! words      their names, and how their lines are read
 //! debugger   breakpoints, runs, steps, values
 //!   travel     the same, back in time
+//! early      lines that the board has not sent yet
 //! programs   debug information of the programs in the threads
 //! ```
 //!
@@ -24,6 +25,7 @@
 
 pub mod dap;
 mod debugger;
+mod early;
 mod programs;
 mod shell;
 mod words;

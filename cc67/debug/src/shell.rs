@@ -15,6 +15,7 @@ use runtime::{Board, Event, EventKind};
 use vm::engine::ContextId;
 
 use crate::debugger::{BreakpointKind, DebugError, Debugger, Reason, Stop};
+use crate::early::EarlyLines;
 use crate::words::{BreakWords, LineReader, is_move, split_if};
 
 /// What comes of a command.
@@ -42,7 +43,7 @@ pub struct Shell<T: Target = Board> {
     /// The breakpoint whose commands are being read.
     reading: Option<u32>,
     /// Lines that were shown before the board has sent them.
-    early: VecDeque<Vec<u8>>,
+    early: EarlyLines,
 }
 
 /// What receives what the board says while it runs: console lines, and words about events.
@@ -61,7 +62,7 @@ impl<T: Target> Shell<T> {
             last_display: 0,
             commands: BTreeMap::new(),
             reading: None,
-            early: VecDeque::new(),
+            early: EarlyLines::default(),
         }
     }
 
@@ -303,11 +304,13 @@ impl<T: Target> Shell<T> {
     /// Shows the lines that the board has not sent yet; after a way back they were shown before.
     fn show_early(&mut self, is_forward: bool, output: Output<'_>) {
         let unsent = self.debugger.session().target().unsent_lines();
-        let known = self.early.len();
-        for line in unsent.iter().skip(known).filter(|_| is_forward) {
-            output(&format!("{}\n", String::from_utf8_lossy(line)));
+        if !is_forward {
+            self.early.go_back(unsent);
+            return;
         }
-        self.early = unsent.into();
+        for line in self.early.show(unsent) {
+            output(&format!("{}\n", String::from_utf8_lossy(&line)));
+        }
     }
 
     /// `continue COUNT` passes the breakpoint where one stands COUNT - 1 times.
@@ -472,7 +475,7 @@ fn ids_of(reason: &Reason) -> Vec<u32> {
 struct Teller<'a, 'b> {
     infos: Vec<runtime::debug::DebugInfo>,
     /// Lines that were shown already.
-    early: &'a mut VecDeque<Vec<u8>>,
+    early: &'a mut EarlyLines,
     /// What belongs to a trap, and comes after what was printed before it.
     scene: String,
     output: &'a mut (dyn FnMut(&str) + 'b),
@@ -481,7 +484,7 @@ struct Teller<'a, 'b> {
 impl<'a, 'b> Teller<'a, 'b> {
     fn new<T: Target>(
         debugger: &Debugger<T>,
-        early: &'a mut VecDeque<Vec<u8>>,
+        early: &'a mut EarlyLines,
         output: &'a mut (dyn FnMut(&str) + 'b),
     ) -> Self {
         let infos = debugger.session().debug().into_iter().map(|(_, info)| info).collect();
@@ -490,7 +493,7 @@ impl<'a, 'b> Teller<'a, 'b> {
 
     fn tell(&mut self, event: &Event) {
         match &event.kind {
-            EventKind::ConsoleLine(line) if self.early.front() == Some(line) => _ = self.early.pop_front(),
+            EventKind::ConsoleLine(line) if self.early.take(line) => {}
             EventKind::ConsoleLine(line) => (self.output)(&format!("{}\n", String::from_utf8_lossy(line))),
             // Its text is the reason of the stop.
             EventKind::Trap(_) => {

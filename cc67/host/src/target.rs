@@ -195,6 +195,9 @@ pub trait Target {
         true
     }
 
+    /// Reads the status record of a connected target: what was known before is out of date.
+    fn refresh(&mut self) {}
+
     /// Writes memory from an address on.
     ///
     /// # Errors

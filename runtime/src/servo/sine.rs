@@ -1,7 +1,7 @@
 //! The board's sine: 120 straight lines a turn, each with its slope and its value at angle 0, in single precision.
 //!
 //! The lines go through sines that the firmware computes when it starts. Its sines of singles are not always the nearest,
-//! so they are measured values here. Measured: 240 values of `Sine3PH` agree bit by bit, both phases.
+//! so they are values here that were measured in the memory of the booted firmware. 240 values of `Sine3PH` agree bit by bit, both phases.
 
 use std::sync::LazyLock;
 

@@ -18,7 +18,6 @@ pub use attach::AttachPoint;
 pub use door::{Editor, editors};
 pub use launch::Launch;
 
-use std::collections::VecDeque;
 use std::io::{self, BufRead, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -31,6 +30,7 @@ use serde_json::{Value, json};
 use vm::engine::ContextId;
 
 use crate::debugger::{DebugError, Debugger, Goal, ONLY_FORWARD, Reason, Stop, Way};
+use crate::early::EarlyLines;
 use crate::shell::{Said, Shell};
 use crate::words::{command_of, is_move};
 use look::Handle;
@@ -107,7 +107,7 @@ struct Server<'a, W, T: Target> {
     /// The debugger, with the commands of the terminal.
     shell: Option<Shell<T>>,
     /// Lines that were reported before the board has sent them.
-    early: VecDeque<Vec<u8>>,
+    early: EarlyLines,
     asked: Launch,
     /// What the variable references of the present stop stand for.
     handles: Vec<Handle>,
@@ -135,7 +135,7 @@ impl<'a, W: Write, T: Target> Server<'a, W, T> {
             goal: Some(Goal::None),
             interrupt,
             shell: None,
-            early: VecDeque::new(),
+            early: EarlyLines::default(),
             asked: Launch::default(),
             handles: Vec::new(),
             set: Vec::new(),
@@ -361,10 +361,13 @@ impl<W: Write, T: Target> Server<'_, W, T> {
     fn tell_early(&mut self, is_forward: bool) -> io::Result<()> {
         let Some(shell) = &self.shell else { return Ok(()) };
         let unsent = shell.debugger().session().target().unsent_lines();
-        for line in unsent.iter().skip(self.early.len()).filter(|_| is_forward) {
-            self.wire.output("stdout", &format!("{}\n", String::from_utf8_lossy(line)))?;
+        if !is_forward {
+            self.early.go_back(unsent);
+            return Ok(());
         }
-        self.early = unsent.into();
+        for line in self.early.show(unsent) {
+            self.wire.output("stdout", &format!("{}\n", String::from_utf8_lossy(&line)))?;
+        }
         Ok(())
     }
 
@@ -476,7 +479,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
 struct Herald<'a, W> {
     wire: &'a mut ClientWire<W>,
     /// Lines that were reported already.
-    early: &'a mut VecDeque<Vec<u8>>,
+    early: &'a mut EarlyLines,
     /// Traps: they come after what was printed before them.
     late: String,
     infos: Vec<runtime::debug::DebugInfo>,
@@ -487,7 +490,7 @@ struct Herald<'a, W> {
 impl<'a, W: Write> Herald<'a, W> {
     fn new<T: Target>(
         wire: &'a mut ClientWire<W>,
-        early: &'a mut VecDeque<Vec<u8>>,
+        early: &'a mut EarlyLines,
         debugger: &Debugger<T>,
     ) -> Self {
         let infos = debugger.session().debug().into_iter().map(|(_, info)| info).collect();
@@ -497,10 +500,7 @@ impl<'a, W: Write> Herald<'a, W> {
     fn tell(&mut self, event: &Event) {
         self.has_trapped |= matches!(event.kind, EventKind::Trap(_));
         let told = match &event.kind {
-            EventKind::ConsoleLine(line) if self.early.front() == Some(line) => {
-                self.early.pop_front();
-                Ok(())
-            }
+            EventKind::ConsoleLine(line) if self.early.take(line) => Ok(()),
             EventKind::ConsoleLine(line) => {
                 self.wire.output("stdout", &format!("{}\n", String::from_utf8_lossy(line)))
             }

@@ -189,6 +189,11 @@ impl<T: Target> Session<T> {
         self.target.require(capability)
     }
 
+    /// Reads the status record of a connected target, so that what is looked at next is present.
+    pub fn refresh(&mut self) {
+        self.target.refresh();
+    }
+
     /// A value in memory; 0 where there is none, or where the target does not answer.
     #[must_use]
     pub fn peek<S: Scalar>(&self, address: GuestAddr) -> S {

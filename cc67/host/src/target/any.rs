@@ -125,6 +125,7 @@ impl Target for AnyTarget {
         fn start(&mut self, thread: ThreadId) -> Result<(), HostError>;
         fn stop(&mut self, thread: ThreadId);
         fn write(&mut self, address: GuestAddr, bytes: &[u8]) -> Result<(), HostError>;
+        fn refresh(&mut self);
         fn receive(&mut self, bytes: &[u8]);
         fn answer(&mut self, setting: &str) -> Result<(), HostError>;
         fn listen(&mut self, listens: bool);

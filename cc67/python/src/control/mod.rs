@@ -210,6 +210,7 @@ impl<T: Target> Rig<T> {
     /// Takes up what a controller has sent: its time passes by itself.
     fn refresh(&mut self) {
         if !self.session.can(Capability::StopTime) {
+            self.session.refresh();
             self.pass(|session, events| session.step(session.tick().next(), events));
         }
     }

@@ -1,9 +1,10 @@
 //! The elementary functions of the firmware's library, which prints the last digits that programs see.
 //!
 //! They are those of Cody and Waite (Software Manual for the Elementary Functions), with the firmware's divisions; its
-//! arc sine is a plain polynomial. Coefficients, and the order in which sums are formed, were found by comparison with
-//! the released firmware: of 350 arguments of each function all results are the same to the last bit, except for
-//! two arc tangents and a tenth of the arc sines and cosines beyond one half, which depend on its square root.
+//! arc sine is a plain polynomial, whose coefficients are measured: they are those that the released firmware has in its
+//! memory. The order in which sums are formed was found by comparison with it: of 350 arguments of each function all
+//! results are the same to the last bit, except for two arc tangents and a tenth of the arc sines and cosines beyond one
+//! half, which depend on its square root.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, FRAC_PI_6, LN_2, LN_10, LOG2_E, LOG10_E, SQRT_2};
 
