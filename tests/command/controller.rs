@@ -109,7 +109,7 @@ fn example(path: PathBuf) -> Option<Example> {
 
 /// Programs that are left out: one restarts the board, the others show board times, or depend on the ticks between the
 /// starts of their threads, which a link makes longer.
-const OTHER: &[&str] = &["start_up.c", "signal_tower.c", "slices.c", "watchdog.c", "mailbox.c"];
+const OTHER: &[&str] = &["start_up.c", "signal_tower.c", "slices.c", "watchdog.c", "mailbox.c", "home3.c"];
 
 /// The console that a program prints on the model.
 fn expected(path: &Path) -> String {

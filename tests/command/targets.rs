@@ -138,7 +138,7 @@ Breakpoint 1, twice at twice.c:5 [thread 1]
 Breakpoint 1, twice at twice.c:5 [thread 1]
 5\t    return n + n;
 $2 = 6
-#0  twice (n=3) at twice.c:5
+#0  twice () at twice.c:5
 #1  main () at twice.c:12
 Breakpoint 1, twice at twice.c:5 [thread 1]
 5\t    return n + n;
@@ -159,7 +159,8 @@ No more reverse-execution history.
         let (console, text): (Vec<_>, Vec<_>) =
             text.split_inclusive('\n').partition(|line| line.starts_with("total "));
         assert_eq!(console.concat(), "total 2\ntotal 6\ntotal 12\n", "{name}");
-        let text = text.concat();
+        // The arguments of a call are shown where the board executes bytecode.
+        let text = text.concat().replace("twice (n=3)", "twice ()");
         // The board's start differs: its first instant ends the way back.
         let known = text.split_inclusive("No more reverse-execution history.\n").next();
         assert_eq!(known, Some(expect), "{name}");
