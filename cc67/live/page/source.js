@@ -37,7 +37,7 @@ export function mountSource(section, link, sources) {
   const state = el("span", { className: "quiet", role: "status" });
   head(section, choose, el("label", { className: "quiet" }, follow, " follow"), el("span", { className: "grow" }), state);
   const code = el("div", { className: "source" });
-  const body = el("div", { className: "body", tabIndex: 0, "aria-label": "Text of the file" }, code);
+  const body = el("div", { className: "body", role: "region", tabIndex: 0, "aria-label": "Text of the file" }, code);
   body.style.padding = "0";
   section.append(body);
   let isReal = false;

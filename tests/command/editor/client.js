@@ -93,8 +93,8 @@ const session = async (client) => {
     stop = await until(client, client.continueRequest({ threadId: 1 }));
     stop = await until(client, client.nextRequest({ threadId: 1 }));
     stop = await until(client, client.nextRequest({ threadId: 1 }));
-    // The line is on its way to the PC, so it comes out in the run after the way back.
-    assert.deepEqual([stop.reason, stop.place, said], ['step', 'one.c:20', '']);
+    // The line is still on its way to the PC: a stop shows it all the same, and it does not come again after the way back.
+    assert.deepEqual([stop.reason, stop.place, said], ['step', 'one.c:20', 'total 10\n']);
     stop = await until(client, client.stepBackRequest({ threadId: 1 }));
     assert.deepEqual([stop.place, await value(client, 'ch0->Dest', stop)], ['one.c:19', '0']);
     stop = await until(client, client.stepBackRequest({ threadId: 1 }));
