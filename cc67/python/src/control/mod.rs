@@ -5,7 +5,9 @@ mod log;
 
 use std::collections::BTreeMap;
 
-use cc67_host::{Capability, HostError, Session, Snapshot, SnapshotError, Target, Until, UserProgram, Watch, WatchError};
+use cc67_host::{
+    Capability, HostError, Session, Snapshot, SnapshotError, Target, Until, UserProgram, Watch, WatchError,
+};
 use kmotiondef::{Bit, ThreadId, Ticks};
 use runtime::trace::Item;
 use runtime::{Event, EventKind};
@@ -310,7 +312,8 @@ impl<T: Target + 'static> Control for Rig<T> {
             return Ok(self.session.bit(bit));
         }
         let level = self.session.target().value(Item::of_bit(bit));
-        let unknown = || HostError::Link(format!("the status record of a controller does not have bit {bit}"));
+        let unknown =
+            || HostError::Link(format!("the status record of a controller does not have bit {bit}"));
         if level.is_nan() { Err(unknown()) } else { Ok(level != 0.0) }
     }
 
