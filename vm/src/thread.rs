@@ -71,7 +71,7 @@ struct Slot {
 pub struct Threads {
     slots: [Slot; ThreadId::MAX as usize],
     running: Option<ThreadId>,
-    /// Whether the running thread pauses when its slice is over.
+    /// True if the running thread pauses when its slice is over.
     is_pausing: bool,
     /// The threads that have ever had a slice.
     ran: ThreadSet,
@@ -195,7 +195,7 @@ impl Threads {
         self.ran.contains(thread)
     }
 
-    /// Whether the thread whose slice is over has paused itself; said once.
+    /// Returns whether the thread whose slice is over has paused itself; said once.
     pub(crate) const fn take_pausing(&mut self) -> bool {
         std::mem::replace(&mut self.is_pausing, false)
     }

@@ -168,7 +168,7 @@ struct Check<'a> {
     has_locals: bool,
 }
 
-/// What an expression names.
+/// The names in an expression.
 pub(crate) struct Named {
     /// The meanings of its names outside of the function.
     pub(crate) meanings: BTreeMap<SymbolId, Meaning>,

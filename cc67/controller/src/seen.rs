@@ -24,7 +24,7 @@ const ZERO: i32 = 2048;
 #[derive(Debug)]
 pub(crate) struct SeenMemory {
     bytes: BTreeMap<u32, u8>,
-    /// Whether somebody has looked since the last [call](Self::take_look).
+    /// True if somebody has looked since the last [call](Self::take_look).
     is_looked_at: Cell<bool>,
     /// The element of `persist.UserData` that is read next for whoever looks.
     next_element: usize,

@@ -38,7 +38,7 @@ pub struct Shell<T: Target = Board> {
     /// Expressions that are shown at every stop: number, format, expression.
     displays: Vec<(u32, String, String)>,
     last_display: u32,
-    /// What is executed when a breakpoint stops, by its number.
+    /// The commands that are executed when a breakpoint stops, by its number.
     commands: BTreeMap<u32, Vec<String>>,
     /// The breakpoint whose commands are being read.
     reading: Option<u32>,
@@ -129,7 +129,7 @@ impl<T: Target> Shell<T> {
         Ok(said)
     }
 
-    /// Whether a line lets time pass.
+    /// Returns whether a line lets time pass.
     fn is_move(&self, line: &str) -> bool {
         self.lines.clone().read(line).ok().flatten().is_some_and(|(name, _)| is_move(name))
     }
@@ -221,7 +221,7 @@ impl<T: Target> Shell<T> {
         Ok(format!("{number}: {slash}{expression} = {text}\n"))
     }
 
-    /// What is shown at every stop, as far as it has a value there.
+    /// The text of the expressions that are shown at every stop, as far as they have values there.
     fn shown_all(&self) -> String {
         let rows = self.displays.iter().map(|(number, format, expression)| (*number, format, expression));
         rows.filter_map(|(number, format, expression)| self.shown((number, format, expression)).ok())
@@ -476,7 +476,7 @@ struct Teller<'a, 'b> {
     infos: Vec<runtime::debug::DebugInfo>,
     /// Lines that were shown already.
     early: &'a mut EarlyLines,
-    /// What belongs to a trap, and comes after what was printed before it.
+    /// The words about a trap, which come after what was printed before it.
     scene: String,
     output: &'a mut (dyn FnMut(&str) + 'b),
 }

@@ -89,7 +89,7 @@ const MOVES: &[&str] = &[
     "reverse-finish",
 ];
 
-/// Whether a command lets time pass, or goes back in it.
+/// Returns whether a command lets time pass, or goes back in it.
 pub(crate) fn is_move(name: &str) -> bool {
     MOVES.contains(&name)
 }

@@ -46,7 +46,7 @@ fn shell(folder: &Folder, level: Level, programs: &[&str]) -> Shell<Board> {
     Shell::new(debugger.expect("it holds programs"))
 }
 
-/// What commands say, board time left out; what is refused says why.
+/// Returns the output of commands without board times; a refused command says why.
 fn session(level: Level, programs: &[&str], commands: &str) -> String {
     let folder = Folder::new();
     let mut shell = shell(&folder, level, programs);

@@ -189,7 +189,7 @@ pub trait Target {
         self.read(address, bytes).ok()
     }
 
-    /// Whether there is memory or a register at an address.
+    /// Returns whether there is memory or a register at an address.
     fn is_mapped(&self, address: GuestAddr) -> bool {
         let _ = address;
         true
@@ -288,7 +288,7 @@ pub trait Target {
     /// statement of a stimulus.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The answer is wrong.
     fn answer(&mut self, setting: &str) -> Result<(), HostError> {
         let _ = setting;
         Err(Unsupported { target: self.name(), capability: Capability::Answers }.into())

@@ -1,4 +1,4 @@
-//! What pages may do to the board and to its time.
+//! The rights of pages over the board and its time.
 
 use crate::request::PageRequest;
 

@@ -43,7 +43,7 @@ pub(crate) enum PageRequest {
     Halt {},
     /// Let pages act on a connected controller, or only look.
     Control {
-        /// Whether they may act.
+        /// True if they may act.
         on: bool,
     },
     /// Start a thread.

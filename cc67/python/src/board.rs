@@ -94,7 +94,7 @@ impl Board {
 
     /// A run in portions, with a look at signals every [`LOOK`]; whether what it waited for came true.
     ///
-    /// Where it looks changes nothing that a program can see.
+    /// The moments of these looks change nothing that a program can see.
     fn run_in_portions(
         &self,
         py: Python<'_>,
@@ -139,7 +139,7 @@ where
     Box::new(Rig::new(session))
 }
 
-/// How programs and expressions for a controller are compiled: for its processor and its firmware.
+/// Returns the options for programs and expressions of a controller: its processor and its firmware.
 fn connected_options(link: &ControllerLink) -> Options {
     let other = link.board().filter(|board| !board.is_default());
     let firmware = other.map_or_else(Firmware::default, Firmware::Board);

@@ -32,7 +32,7 @@ const DATA_LIMIT: usize = 256;
 pub(crate) struct Link {
     /// The buffer of lines, each with a 0 after it: what an earlier one has left stays after that.
     buffer: Vec<u8>,
-    /// Where in it the commands are that are still to be executed.
+    /// The ranges of its commands that are still to be executed.
     parts: VecDeque<Range<usize>>,
     /// What the command in progress waits for.
     data: Option<Data>,

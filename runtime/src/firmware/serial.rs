@@ -85,7 +85,7 @@ fn fill(parts: &mut Parts, memory: &mut GuestMemory) {
     }
 }
 
-/// Whether the service that moves characters between the port and its rings was started.
+/// Returns whether the service that moves characters between the port and its rings was started.
 fn check_service(parts: &mut Parts, caller: &Caller<'_>, function: Function) {
     if !parts.calls.serial.is_on {
         parts.out.diagnose(caller, Message::UartNotServed { function });

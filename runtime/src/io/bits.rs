@@ -31,7 +31,7 @@ fn memory_bit(bit: Bit, kind: BitKind) -> Option<(Place<i32>, i32)> {
     }
 }
 
-/// Where the direction of a bit from 64 on is noted.
+/// The place of the direction of a bit from 64 on.
 struct SnapDirection {
     word: Place<i32>,
     /// By how many bits a mask is shifted there; from 32 on it is shifted out.
@@ -69,8 +69,8 @@ pub(crate) fn set_direction(io: &mut Io, memory: &mut GuestMemory, bit: Bit, is_
     }
 }
 
-/// Whether a bit is an output. Outputs of option boards count as inputs until a program says otherwise, as the board has
-/// it.
+/// Returns whether a bit is an output. Outputs of option boards count as inputs until a program says otherwise, as the
+/// board has it.
 pub(crate) fn is_output(io: &Io, memory: &GuestMemory, bit: Bit) -> bool {
     if bit.get() < PINS {
         io.pins.is_output(bit)

@@ -161,7 +161,7 @@ impl Machine {
         out.remark(now, Message::DevicesEndless {});
     }
 
-    /// What devices do at the beginning of a tick; `hears_uart` says whether what the UART sends is told. Returns what
+    /// Runs the devices at the beginning of a tick; `hears_uart` says whether what the UART sends is told. Returns what
     /// it has sent since the last tick.
     pub(crate) fn run_devices(
         &mut self,

@@ -21,7 +21,7 @@ pub(crate) struct Console {
     servo: Option<String>,
     /// Strings queued since power-up.
     queued: u64,
-    /// Whether nobody sends anything any more.
+    /// True if nobody sends anything any more.
     is_dead: bool,
 }
 

@@ -108,7 +108,7 @@ impl RequestServer {
     /// Gives the next answer, such as `msgbox=ok`.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The answer is wrong.
     pub fn answer(&mut self, setting: &str) -> Result<(), AnswerError> {
         self.host.answer_next(setting)
     }

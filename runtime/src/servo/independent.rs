@@ -98,7 +98,7 @@ pub(crate) fn is_planned(memory: &GuestMemory, axis: AxisId) -> bool {
         && (first.t, first.a, first.b) == (LEAD, 0.0, 0.0)
 }
 
-/// Whether an axis approaches its target by a time constant.
+/// Returns whether an axis approaches its target by a time constant.
 pub(crate) fn is_exponential(memory: &GuestMemory, axis: AxisId) -> bool {
     has_motion(memory, axis) && read(memory, memory.axis(axis, Chan::PCOEFF), 0).mode == Mode::Exponential
 }

@@ -82,7 +82,7 @@ fn drive_otherwise(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, 
     tick.machine.loads[axis].drive = drive;
 }
 
-/// Where the phases of a microstepped axis go: its command without the offset of the destination.
+/// Returns the position of the phases of a microstepped axis: its command without the offset of the destination.
 fn stepped_to(chan: &AxisView<'_>) -> f64 {
     chan.get(Chan::DEST) + f64::from(chan.get(Chan::BACKLASH))
 }

@@ -70,7 +70,7 @@ enum Subject<'f> {
 }
 
 impl Subject<'_> {
-    /// Where a row differs on this board.
+    /// Returns the differences of a row on this board.
     fn differences(self, index: usize, row: &Json) -> Vec<String> {
         let scratch = Scratch::new(&format!("measured-{index}"));
         let mut setup = Setup::default();

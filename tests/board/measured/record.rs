@@ -13,7 +13,7 @@ const PATH: u32 = 2784;
 const STATES: u32 = 2900;
 const SAMPLES: u32 = 2944;
 
-/// How far a double may be off, relative to the larger of it and 1: divisions differ in the last bit.
+/// The tolerance of a double, relative to the larger of it and 1: divisions differ in the last bit.
 const PRECISION: f64 = 1e-9;
 
 /// Columns that are single precision in memory.
@@ -62,7 +62,7 @@ struct Value {
 }
 
 impl Value {
-    /// Whether it is the recorded one, to the last bit where it is a whole number or has single precision.
+    /// Returns whether it is the recorded one, to the last bit where it is a whole number or has single precision.
     fn is(&self, recorded: &Json) -> bool {
         let Some(recorded) = recorded.as_f64() else { return self.value.is_nan() };
         if self.is_single {
@@ -72,7 +72,7 @@ impl Value {
     }
 }
 
-/// What a program has left in the gather buffer.
+/// The values that a program has left in the gather buffer.
 pub(super) struct Record<'s, T> {
     session: &'s Session<T>,
     begin: GuestAddr,

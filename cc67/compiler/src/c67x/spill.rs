@@ -31,7 +31,7 @@ pub(super) fn to_memory(code: &mut Code, moved: &[VReg]) {
 
 /// The instructions that use registers that move, taken out of the code; so each register looks only at its own.
 struct Mentions {
-    /// What the beginning of the function needs.
+    /// Instructions for the beginning of the function.
     first: Vec<Inst>,
     /// In the order of the code.
     all: Vec<Mention>,

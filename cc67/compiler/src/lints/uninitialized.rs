@@ -313,7 +313,7 @@ impl Search<'_> {
         }
     }
 
-    /// What had no value before an update has none after it.
+    /// Leaves a place without a value that had none before an update.
     fn update(&mut self, place: PlaceId) {
         if let PlaceKind::Local(local, _) = self.function.places[place].kind {
             self.flow.insert(local);

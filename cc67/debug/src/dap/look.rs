@@ -46,7 +46,7 @@ impl Handle {
     }
 }
 
-/// Whether numbers are requested in hexadecimal.
+/// Reports whether a request wants numbers in hexadecimal.
 fn wants_hex(arguments: &Value) -> bool {
     arguments["format"]["hex"] == true
 }

@@ -110,10 +110,10 @@ pub struct Breakpoint {
     subject: Subject,
 }
 
-/// What is looked at for a breakpoint.
+/// The subject of a breakpoint.
 #[derive(Debug)]
 enum Subject {
-    /// Where a program is.
+    /// The positions of programs.
     Instructions,
     /// A watched expression.
     Change(WatchedExpression),
@@ -134,7 +134,7 @@ impl Subject {
         if let Self::Truth(_, was_true) = self { Some(was_true) } else { None }
     }
 
-    /// Whether it is looked at after every tick.
+    /// Reports whether it is looked at after every tick.
     const fn is_polled(&self) -> bool {
         match self {
             Self::Instructions => false,
@@ -145,7 +145,7 @@ impl Subject {
 }
 
 impl Breakpoint {
-    /// Whether it is looked at after every tick.
+    /// Reports whether it is looked at after every tick.
     fn is_polled(&self) -> bool {
         self.is_enabled && self.subject.is_polled()
     }
@@ -494,7 +494,7 @@ impl<T: Target> Debugger<T> {
     /// Stops when the value of an expression changes; its number, and what there is to say.
     ///
     /// # Errors
-    /// What is wrong with the expression.
+    /// The expression is wrong.
     pub fn watch(&mut self, expression: &str, condition: Option<&str>) -> Result<(u32, String), DebugError> {
         let watched = self.watched(expression)?;
         let kind = BreakpointKind::Watch(expression.to_owned());
@@ -510,7 +510,7 @@ impl<T: Target> Debugger<T> {
     /// to say.
     ///
     /// # Errors
-    /// What is wrong with the expression.
+    /// The expression is wrong.
     pub fn catch_when(&mut self, expression: &str) -> Result<(u32, String), DebugError> {
         let prepared = self.prepare(expression)?;
         let id = self.add(BreakpointKind::When(expression.to_owned()), None, Vec::new());

@@ -9,9 +9,9 @@ use vm::engine::{ContextId, Hold, HoldReason};
 
 use super::{BreakpointKind, DebugError, Debugger, Events, Reason, Stop, file_name};
 
-/// Who changes what is looked at after every tick alone.
+/// The writer of a value that is looked at only after every tick.
 const IN_TICK: &str = "a program or the board in the last tick";
-/// Who writes what no program writes.
+/// The writer of a value that no program writes.
 const BY_SERVO: &str = "the servo or the firmware";
 
 /// What ends a run besides breakpoints.
@@ -342,7 +342,7 @@ impl<T: Target> Debugger<T> {
         Some(Reason::Bit(format!("bit {} is {level}", self.catches.bits[changed])))
     }
 
-    /// Whether breakpoints stop at the end of a tick: what they watch has changed in it, or has become true.
+    /// Returns whether breakpoints stop at the end of a tick: what they watch has changed in it, or has become true.
     pub(super) fn judge_tick(&mut self, counts: bool) -> Option<Reason> {
         if let Some(index) = self.session.take_change()
             && let Some(reason) = self.judge_change(index, BY_SERVO.to_owned(), counts)

@@ -34,9 +34,9 @@ pub(crate) struct At<'a, T> {
     session: &'a Session<T>,
     view: Option<&'a FrameView>,
     items: &'a [Item],
-    /// What was read so far, if that is of interest.
+    /// The addresses that were read so far, if they are of interest.
     reads: Option<RefCell<Vec<GuestAddr>>>,
-    /// Whether registers were.
+    /// True if registers were.
     has_registers: Cell<bool>,
 }
 
@@ -173,14 +173,14 @@ impl<T: Target> Debugger<T> {
         (index < views.len()).then(|| views.swap_remove(index))
     }
 
-    /// Whether an expression is not 0 in a call.
+    /// Returns whether an expression is not 0 in a call.
     fn is_true(&self, prepared: &Prepared, view: Option<&FrameView>) -> Result<bool, DebugError> {
         let at = At::new(&self.session, view, &prepared.items);
         let value = prepared.probe.value(&at)?;
         Ok(prepared.probe.shown(&at).number(&value).is_some_and(|number| number != 0.0))
     }
 
-    /// Whether the expression of a breakpoint is so at present; not where it has no value.
+    /// Returns whether the expression of a breakpoint is so at present; not where it has no value.
     pub(super) fn is_so(&self, breakpoint: &super::Breakpoint) -> bool {
         let super::Subject::Truth(prepared, _) = &breakpoint.subject else { return false };
         self.is_true(prepared, self.view_of(prepared).as_ref()).unwrap_or(false)
@@ -201,7 +201,7 @@ impl<T: Target> Debugger<T> {
     /// The value of an expression where the call that is looked at stands.
     ///
     /// # Errors
-    /// What is wrong with the expression, or that a local is optimised out.
+    /// The expression is wrong, or a local is optimised out.
     pub fn evaluate(&self, expression: &str) -> Result<ShownVariable, DebugError> {
         if let Some(literal) = string_literal(expression) {
             return Ok(literal);
@@ -221,7 +221,7 @@ impl<T: Target> Debugger<T> {
     /// The parts of a structure, an array, or what a pointer points at.
     ///
     /// # Errors
-    /// What is wrong with the expression.
+    /// The expression is wrong.
     pub fn parts(&self, expression: &str, first: u32, count: u32) -> Result<Vec<ShownVariable>, DebugError> {
         self.with_value(expression, |_, value, shown| {
             let children = shown.children(value, expression, first, count);
@@ -288,7 +288,7 @@ impl<T: Target> Debugger<T> {
     /// Gives a variable another value, as an assignment in C would.
     ///
     /// # Errors
-    /// What is wrong with the expressions, or that the first is not a place.
+    /// An expression is wrong, or the first is not a place.
     pub fn set(&mut self, expression: &str, value: &str) -> Result<ShownVariable, DebugError> {
         let number = self.number(value)?;
         let (probe, items) = self.probe(expression)?;
@@ -345,7 +345,7 @@ impl<T: Target> Debugger<T> {
         bytes
     }
 
-    /// Whether a condition holds: at an instruction in the innermost call of a context, and otherwise where it was set.
+    /// Returns whether a condition holds: at an instruction in the innermost call of a context, otherwise where it was set.
     pub(super) fn holds(
         &self,
         context: ContextId,

@@ -169,7 +169,7 @@ impl<T: Target> Session<T> {
     /// one at once.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The answer is wrong.
     pub fn answer(&mut self, setting: &str) -> Result<(), HostError> {
         match self.can(Capability::Answers) {
             true => self.target.answer(setting),

@@ -146,7 +146,7 @@ impl<T: Target> Session<T> {
     /// Stores a value in a variable, a field, an element or what a pointer points at, as an assignment in C would.
     ///
     /// # Errors
-    /// What is wrong with the expression, or that it is no place.
+    /// The expression is wrong, or it is no place.
     pub fn write(&mut self, text: &str, value: f64) -> Result<(), WatchError> {
         let place = self.place(text)?;
         self.write_to(&place, value)
@@ -156,7 +156,7 @@ impl<T: Target> Session<T> {
     /// again and again.
     ///
     /// # Errors
-    /// What is wrong with the expression, or that it is no place.
+    /// The expression is wrong, or it is no place.
     pub fn place(&self, text: &str) -> Result<Watch, WatchError> {
         let watch = self.watch(&with_user_data(text))?;
         match &watch.0 {

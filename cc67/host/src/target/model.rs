@@ -44,7 +44,7 @@ pub(super) fn read(memory: &GuestMemory, address: GuestAddr, bytes: &mut [u8]) {
     }
 }
 
-/// Whether there is memory or a register of a device at an address.
+/// Returns whether there is memory or a register of a device at an address.
 pub(super) fn is_mapped(memory: &GuestMemory, address: GuestAddr) -> bool {
     memory.read_bytes(address, 1).is_ok() || is_on_bus(address, Access::Read)
 }

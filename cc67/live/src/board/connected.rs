@@ -10,10 +10,10 @@ use crate::TimeControl;
 use crate::control::is_harmless;
 use crate::request::PageRequest;
 
-/// What pages do to axes, what they may do to a connected controller, and what they know of its link.
+/// The jogs of pages, their rights over a connected controller, and their knowledge of its link.
 #[derive(Debug, Default)]
 pub(super) struct PageAccess {
-    /// Whether pages may act.
+    /// True if pages may act.
     is_controlled: bool,
     /// The reason, once the link is lost.
     lost: Option<String>,
@@ -29,7 +29,7 @@ impl PageAccess {
 }
 
 impl<T: Target> Stage<T> {
-    /// Whether the board is a controller.
+    /// Returns whether the board is a controller.
     pub(super) fn is_real(&self) -> bool {
         self.show.time == TimeControl::Real
     }

@@ -105,7 +105,7 @@ struct Page {
     generation: u32,
 }
 
-/// What pages know.
+/// The last messages to pages.
 #[derive(Debug)]
 struct Told {
     /// The threads, and the moment of the message.
@@ -126,7 +126,7 @@ struct Stage<T: Target> {
     samples: Samples,
     log: Log,
     pages: BTreeMap<PageId, Page>,
-    /// What pages know.
+    /// The last messages to pages.
     told: Told,
     /// Which thread had each of the last ticks.
     turns: Turns,
@@ -134,7 +134,7 @@ struct Stage<T: Target> {
     wishes: Wishes,
     /// Who else is with the board.
     company: Company<T>,
-    /// What pages do to axes and may do to a connected controller.
+    /// The jogs of pages, and their rights over a connected controller.
     access: PageAccess,
 }
 

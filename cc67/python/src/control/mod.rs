@@ -33,7 +33,7 @@ pub(crate) struct Portion {
     pub(crate) fault: Option<Fault>,
 }
 
-/// Why a value is not stored.
+/// The reason why a value is not stored.
 pub(crate) enum Unwritten {
     /// The expression is wrong.
     Wrong(WatchError),

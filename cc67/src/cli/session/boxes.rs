@@ -21,7 +21,7 @@ const LOOK: f64 = 0.1;
 struct Person {
     /// The box that was asked about.
     asked: Option<OpenBox>,
-    /// What the person types; `None` before the first question.
+    /// The lines that the person types; `None` before the first question.
     lines: Option<Receiver<String>>,
 }
 

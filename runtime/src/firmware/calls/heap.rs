@@ -15,7 +15,7 @@ const START: u32 = 0x80FE_0D68;
 const END: u32 = 0x80FF_9020;
 /// Bytes before each block.
 const HEADER: u32 = 8;
-/// What a remainder must have at least to be a block: a header, and 8 bytes.
+/// The least size in bytes of a remainder that becomes a block: a header, and 8 bytes.
 const LEAST: u32 = HEADER + 8;
 
 /// A free block: its address after the header, and its size without it.

@@ -34,11 +34,11 @@ pub(crate) struct EndedWait {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Jogged {
     pub(crate) thread: ThreadId,
-    /// Where Dest was.
+    /// Dest at the call.
     pub(crate) dest: f64,
     /// Units per second.
     pub(crate) speed: f64,
-    /// How often the thread had looked at anything.
+    /// The number of times that the thread had looked at anything.
     pub(crate) looks: u64,
 }
 
@@ -84,7 +84,7 @@ impl Motions {
         self.ways[axis.index()] = way;
     }
 
-    /// How far the last move of an axis goes.
+    /// Returns the distance of the last move of an axis.
     pub(crate) fn way(&self, axis: AxisId) -> f64 {
         self.ways[axis.index()]
     }
@@ -94,7 +94,7 @@ impl Motions {
         std::mem::replace(&mut self.jogged[axis.index()], jog)
     }
 
-    /// Whether a thread has found an axis in motion when it last asked.
+    /// Returns whether a thread has found an axis in motion when it last asked.
     pub(crate) fn waits_for(&self, thread: ThreadId, axis: AxisId) -> bool {
         self.threads[thread.index()].in_motion & bit(axis) != 0
     }

@@ -188,7 +188,7 @@ pub(super) fn atan(x: f64) -> f64 {
     /// The tangent of 15°, up to which the quotient is good.
     const LIMIT: f64 = 0.267_949_192_431_122_7;
     const ROOT_3: f64 = 1.732_050_807_568_877_2;
-    /// What is left of the angle: 0°, 30°, 90°, 60°.
+    /// The angles of the intervals: 0°, 30°, 90°, 60°.
     const ANGLES: [f64; 4] = [0.0, FRAC_PI_6, FRAC_PI_2, FRAC_PI_3];
     if x.abs() < f64::MIN_POSITIVE {
         return 0.0;

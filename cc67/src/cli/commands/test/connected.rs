@@ -9,7 +9,7 @@ use super::near;
 use super::verdict::Verdict;
 use crate::cli::io::exit::Exit;
 
-/// How `cc67 run` refuses an option.
+/// The words with which `cc67 run` refuses an option.
 const REFUSED: [&str; 2] = ["is about a simulated board", "does not work with `--on`"];
 /// Seconds after which a program that does not end is stopped.
 const LIMIT: &str = "--for=60";
@@ -65,7 +65,7 @@ fn without_time(line: &str) -> &str {
     }
 }
 
-/// What a run on the controller says.
+/// Returns the verdict on a run on the controller.
 pub(super) fn verdict(case: &Case, shown: Shown) -> Verdict {
     let Some(expected) = &case.expected else { return Verdict::Unknown };
     let is_refusal = |line: &&str| REFUSED.iter().any(|words| line.contains(words));

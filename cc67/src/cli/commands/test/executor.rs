@@ -1,4 +1,4 @@
-//! What executes tests.
+//! The executors of tests.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 
 use crate::cli::args::engine::EngineName;
 
-/// What executes a test.
+/// The executor of a test.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Executor {
     /// An engine, with the modelled firmware.
@@ -37,7 +37,7 @@ impl Executor {
         }
     }
 
-    /// What reports call it.
+    /// The name for reports.
     pub(super) fn name(&self) -> &'static str {
         match self {
             Self::Engine(engine) => engine.name(),

@@ -1,10 +1,10 @@
-//! How tests end.
+//! The verdicts on tests.
 
 use super::executor::Executor;
 use super::golden::Shown;
 use super::schedules::FailingSchedule;
 
-/// How a test ended.
+/// The verdict on a test.
 #[derive(Debug)]
 pub(super) enum Verdict {
     /// Every engine showed what was expected.
@@ -28,12 +28,12 @@ pub(super) enum Verdict {
 }
 
 impl Verdict {
-    /// Whether the test has failed.
+    /// Returns whether the test has failed.
     pub(super) fn is_bad(&self) -> bool {
         !self.is_good() && !matches!(self, Self::Skipped(_))
     }
 
-    /// Whether the test was run and is as it should be.
+    /// Returns whether the test was run and is as it should be.
     pub(super) fn is_good(&self) -> bool {
         matches!(self, Self::Passed | Self::Blessed)
     }
