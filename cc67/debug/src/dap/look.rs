@@ -46,7 +46,7 @@ impl Handle {
     }
 }
 
-/// Reports whether a request wants numbers in hexadecimal.
+/// Reports whether a request is for numbers in hexadecimal.
 fn wants_hex(arguments: &Value) -> bool {
     arguments["format"]["hex"] == true
 }

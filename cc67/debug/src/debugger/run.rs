@@ -7,6 +7,7 @@ use kmotiondef::{Bit, CodeAddr, GuestAddr, ThreadId, Ticks};
 use runtime::{Event, EventKind};
 use vm::engine::{ContextId, Hold, HoldReason};
 
+use super::breakpoints::WatchedExpression;
 use super::{BreakpointKind, DebugError, Debugger, Events, Reason, Stop, file_name};
 
 /// The writer of a value that is looked at only after every tick.
@@ -407,7 +408,7 @@ impl<T: Target> Debugger<T> {
     }
 
     fn judge_registers(&mut self, context: ContextId, counts: bool) -> Option<Reason> {
-        let watching = |watched: &super::WatchedExpression| {
+        let watching = |watched: &WatchedExpression| {
             watched.has_registers && watched.prepared.frame.is_some_and(|(of, _)| of == context)
         };
         let ids: Vec<_> = (self.breakpoints.iter())

@@ -7,7 +7,8 @@ use kmotiondef::GuestAddr;
 use runtime::trace::Item;
 use vm::engine::{ContextId, FrameView};
 
-use super::{DebugError, Debugger, StackFrame, WatchedExpression};
+use super::breakpoints::{Subject, WatchedExpression};
+use super::{DebugError, Debugger, StackFrame};
 use crate::programs::{Activation, Programs};
 use cc67_host::session::with_user_data;
 use cc67_host::{Session, Target};
@@ -182,7 +183,7 @@ impl<T: Target> Debugger<T> {
 
     /// Returns whether the expression of a breakpoint is so at present; not where it has no value.
     pub(super) fn is_so(&self, breakpoint: &super::Breakpoint) -> bool {
-        let super::Subject::Truth(prepared, _) = &breakpoint.subject else { return false };
+        let Subject::Truth(prepared, _) = &breakpoint.subject else { return false };
         self.is_true(prepared, self.view_of(prepared).as_ref()).unwrap_or(false)
     }
 

@@ -1,0 +1,336 @@
+//! Breakpoints: code, watched expressions, expressions that become true; their conditions.
+
+use cc67_host::Target;
+use compiler::firmware::FirmwareSymbols as _;
+use kmotiondef::{GuestAddr, ThreadId};
+
+use super::values::Prepared;
+use super::{DebugError, Debugger, HitCondition, file_name, place_of};
+use crate::programs::Statement;
+
+/// What a breakpoint is about.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum BreakpointKind {
+    /// Instructions: where to stop in words, and their addresses.
+    Code(String, Vec<u32>),
+    /// A change of an expression's value.
+    Watch(String),
+    /// An expression that becomes true, looked at after every tick.
+    When(String),
+}
+
+/// A breakpoint.
+#[derive(Debug)]
+pub struct Breakpoint {
+    /// Its number, counted from 1.
+    pub id: u32,
+    /// What it is about.
+    pub kind: BreakpointKind,
+    /// Stops only where this is not 0, an expression of the program.
+    pub condition: Option<String>,
+    /// Passes so often before it stops.
+    pub ignore: u64,
+    /// Prints this in place of stopping; `{expression}` is its value.
+    pub log: Option<String>,
+    /// It is deleted when it stops.
+    pub is_temporary: bool,
+    /// It is in effect.
+    pub is_enabled: bool,
+    /// How often it was met.
+    pub hits: u64,
+    /// At which of these times it stops; `None` at each.
+    pub stops_at: Option<HitCondition>,
+    /// The condition, compiled for each of its instructions; for a watched expression once.
+    pub(super) conditions: Vec<(u32, Prepared)>,
+    /// The line that was requested.
+    pub(super) line: u32,
+    pub(super) subject: Subject,
+}
+
+/// The subject of a breakpoint.
+#[derive(Debug)]
+pub(super) enum Subject {
+    /// The positions of programs.
+    Instructions,
+    /// A watched expression.
+    Change(WatchedExpression),
+    /// An expression that becomes true, and whether it was at the last tick.
+    Truth(Prepared, bool),
+}
+
+impl Subject {
+    pub(super) const fn watched(&self) -> Option<&WatchedExpression> {
+        if let Self::Change(watched) = self { Some(watched) } else { None }
+    }
+
+    pub(super) const fn watched_mut(&mut self) -> Option<&mut WatchedExpression> {
+        if let Self::Change(watched) = self { Some(watched) } else { None }
+    }
+
+    pub(super) const fn was_true_mut(&mut self) -> Option<&mut bool> {
+        if let Self::Truth(_, was_true) = self { Some(was_true) } else { None }
+    }
+
+    /// Reports whether it is looked at after every tick.
+    pub(super) const fn is_polled(&self) -> bool {
+        match self {
+            Self::Instructions => false,
+            Self::Change(watched) => watched.is_polled,
+            Self::Truth(..) => true,
+        }
+    }
+}
+
+impl Breakpoint {
+    /// Reports whether it is looked at after every tick.
+    pub(super) fn is_polled(&self) -> bool {
+        self.is_enabled && self.subject.is_polled()
+    }
+}
+
+/// A watched expression.
+#[derive(Debug)]
+pub(super) struct WatchedExpression {
+    pub(super) prepared: Prepared,
+    /// The memory that it is read from.
+    pub(super) ranges: Vec<(GuestAddr, u32)>,
+    /// Registers are among what it is read from: it is looked at before every line.
+    pub(super) has_registers: bool,
+    /// Items of the board are: it is looked at after every tick.
+    pub(super) is_polled: bool,
+    pub(super) last: String,
+}
+
+/// Setting and finding them.
+impl<T: Target> Debugger<T> {
+    /// Sets a breakpoint at `FILE:LINE`, `LINE`, `FUNCTION` or `*ADDRESS`, of the program in one thread or of all that have it;
+    /// its number, and what there is to say.
+    ///
+    /// # Errors
+    /// There is no code, or the condition does not compile.
+    pub fn break_at(
+        &mut self,
+        place: &str,
+        thread: Option<ThreadId>,
+        condition: Option<&str>,
+    ) -> Result<(u32, String), DebugError> {
+        let (found, note) = self.resolve(place.trim(), thread)?;
+        let first = &found[0];
+        let where_ = if first.line == 0 {
+            format!("{:#010x}", first.address)
+        } else {
+            let activations = self.programs.activations(first.address);
+            let with_line = activations.iter().find(|activation| activation.scope.line == first.line);
+            let place = with_line.or(activations.first()).map(place_of);
+            place.map_or_else(
+                || format!("{:#010x}", first.address),
+                |place| format!("{}, {}:{}", place.function, file_name(&place.file), first.line),
+            )
+        };
+        let addresses = found.iter().map(|one| one.address).collect();
+        let line = first.line;
+        let kind = BreakpointKind::Code(where_.clone(), addresses);
+        let conditions = self.conditions(&kind, condition)?;
+        let id = self.add(kind, condition, conditions);
+        if let Some(added) = self.breakpoints.last_mut() {
+            added.line = line;
+        }
+        let mut threads: Vec<_> = found.iter().map(|one| one.thread.to_string()).collect();
+        threads.dedup();
+        let text = format!("Breakpoint {id} at {where_} (thread {}){note}", threads.join(", "));
+        Ok((id, text))
+    }
+
+    /// Stops when the value of an expression changes; its number, and what there is to say.
+    ///
+    /// # Errors
+    /// The expression is wrong.
+    pub fn watch(&mut self, expression: &str, condition: Option<&str>) -> Result<(u32, String), DebugError> {
+        let watched = self.watched(expression)?;
+        let kind = BreakpointKind::Watch(expression.to_owned());
+        let conditions = self.conditions(&kind, condition)?;
+        let id = self.add(kind, condition, conditions);
+        if let Some(added) = self.breakpoints.last_mut() {
+            added.subject = Subject::Change(watched);
+        }
+        Ok((id, format!("Watchpoint {id}: {expression}")))
+    }
+
+    /// Stops at the end of the tick in which an expression becomes true, that is, is not 0; its number, and what there is
+    /// to say.
+    ///
+    /// # Errors
+    /// The expression is wrong.
+    pub fn catch_when(&mut self, expression: &str) -> Result<(u32, String), DebugError> {
+        let prepared = self.prepare(expression)?;
+        let id = self.add(BreakpointKind::When(expression.to_owned()), None, Vec::new());
+        if let Some(added) = self.breakpoints.last_mut() {
+            added.subject = Subject::Truth(prepared, false);
+        }
+        Ok((id, format!("Catchpoint {id} (when {expression})")))
+    }
+
+    /// Deletes a breakpoint; whether there was one of that number.
+    pub fn delete(&mut self, id: u32) -> bool {
+        let count = self.breakpoints.len();
+        self.breakpoints.retain(|breakpoint| breakpoint.id != id);
+        self.breakpoints.len() < count
+    }
+
+    /// A breakpoint, to change it.
+    pub fn breakpoint_mut(&mut self, id: u32) -> Option<&mut Breakpoint> {
+        self.breakpoints.iter_mut().find(|breakpoint| breakpoint.id == id)
+    }
+
+    /// Gives a breakpoint a condition, or takes it away.
+    ///
+    /// # Errors
+    /// There is no such breakpoint, or the condition does not compile.
+    pub fn set_condition(&mut self, id: u32, condition: Option<&str>) -> Result<(), DebugError> {
+        let found = self.breakpoints.iter().find(|breakpoint| breakpoint.id == id);
+        let kind = found
+            .map(|breakpoint| breakpoint.kind.clone())
+            .ok_or_else(|| format!("No breakpoint number {id}."))?;
+        let conditions = self.conditions(&kind, condition)?;
+        if let Some(breakpoint) = self.breakpoint_mut(id) {
+            breakpoint.condition = condition.map(str::to_owned);
+            breakpoint.conditions = conditions;
+        }
+        Ok(())
+    }
+
+    /// A condition, compiled for where a breakpoint is.
+    fn conditions(
+        &self,
+        kind: &BreakpointKind,
+        condition: Option<&str>,
+    ) -> Result<Vec<(u32, Prepared)>, DebugError> {
+        let Some(condition) = condition else { return Ok(Vec::new()) };
+        match kind {
+            BreakpointKind::Code(_, addresses) => {
+                addresses.iter().map(|at| Ok((*at, self.prepare_at(*at, condition)?))).collect()
+            }
+            BreakpointKind::Watch(_) | BreakpointKind::When(_) => Ok(vec![(0, self.prepare(condition)?)]),
+        }
+    }
+
+    /// Other programs are loaded: what was compiled for them is compiled again.
+    pub(super) fn compile_conditions(&mut self) {
+        for index in 0..self.breakpoints.len() {
+            let Breakpoint { id, kind, condition, .. } = &self.breakpoints[index];
+            let id = *id;
+            match self.conditions(kind, condition.as_deref()) {
+                Ok(conditions) => self.breakpoints[index].conditions = conditions,
+                Err(error) => {
+                    self.messages.push_back(format!("condition of breakpoint {id}: {error}"));
+                }
+            }
+        }
+    }
+
+    pub(super) fn add(
+        &mut self,
+        kind: BreakpointKind,
+        condition: Option<&str>,
+        conditions: Vec<(u32, Prepared)>,
+    ) -> u32 {
+        let id = self.next_id;
+        self.next_id += 1;
+        self.breakpoints.push(Breakpoint {
+            id,
+            kind,
+            condition: condition.map(str::to_owned),
+            ignore: 0,
+            log: None,
+            is_temporary: false,
+            is_enabled: true,
+            hits: 0,
+            stops_at: None,
+            conditions,
+            line: 0,
+            subject: Subject::Instructions,
+        });
+        id
+    }
+
+    /// What a person means by a place, and what there is to say of it.
+    pub(crate) fn resolve(
+        &self,
+        place: &str,
+        thread: Option<ThreadId>,
+    ) -> Result<(Vec<Statement>, String), DebugError> {
+        if let Some(address) = place.strip_prefix('*') {
+            let value = self.number(address)?;
+            let address = value as u32 & !7;
+            let found = self.programs.at(address);
+            let (thread, _, function) = found.ok_or_else(|| format!("no code at {address:#x}"))?;
+            let line = self.place(address).map_or(0, |place| place.line);
+            return Ok((
+                vec![Statement { thread, address, line, function: function.name.clone(), call: None }],
+                String::new(),
+            ));
+        }
+        let (file, rest) = place.rsplit_once(':').map_or((None, place), |(file, rest)| (Some(file), rest));
+        if let Ok(line) = rest.parse::<u32>() {
+            let present = || self.present().map(|place| place.file).filter(|_| file.is_none());
+            let own = present();
+            let file = file.or(own.as_deref());
+            let thread = thread.or_else(|| file.is_none().then_some(self.thread));
+            let (found, taken) = self.programs.at_line(file, line, thread);
+            if found.is_empty() {
+                let why = self.programs.unknown().next();
+                let text = format!(
+                    "No code at line {line} or below{}",
+                    why.map_or_else(String::new, |why| format!("; {why}"))
+                );
+                return Err(text.into());
+            }
+            let note = if taken == line {
+                String::new()
+            } else {
+                format!("; line {line} has no code, {taken} is the next with some")
+            };
+            return Ok((found, note));
+        }
+        let mut found = self.programs.at_function(rest, thread);
+        if found.is_empty() && file.is_none() {
+            found = self.calls_of(rest, thread);
+            if !found.is_empty() {
+                return Ok((found, format!("; before each call of {rest}")));
+            }
+            if self.session.options().firmware.find(rest).is_some() {
+                return Err(format!("No program calls {rest}, which is the firmware's.").into());
+            }
+        }
+        if found.is_empty() {
+            let why = self.programs.unknown().next();
+            return Err(why.unwrap_or_else(|| format!("Function \"{rest}\" not defined.")).into());
+        }
+        Ok((found, String::new()))
+    }
+
+    /// The instructions of the programs that call a function of the firmware.
+    fn calls_of(&self, name: &str, thread: Option<ThreadId>) -> Vec<Statement> {
+        let Some(symbol) = self.session.options().firmware.find(name) else { return Vec::new() };
+        let target = format!(", {:#010x}", symbol.address.get());
+        let mut found = Vec::new();
+        for (number, model) in
+            self.programs.all().filter(|(number, _)| thread.is_none_or(|one| one == *number))
+        {
+            for function in &model.functions {
+                let mut at = function.addresses.start;
+                while at < function.addresses.end
+                    && let Some((text, size)) = self.session.target().disassemble(at)
+                {
+                    if text.starts_with("call_fw ") && text.ends_with(&target) {
+                        let line = model.line_at(at).unwrap_or(0);
+                        let function = function.name.clone();
+                        found.push(Statement { thread: number, address: at, line, function, call: None });
+                    }
+                    at = at.saturating_add(size);
+                }
+            }
+        }
+        found
+    }
+}
