@@ -18,8 +18,8 @@ use crate::passes::Level;
 /// The most loops of a function that are tried in two ways.
 const MOST_TRIED: u32 = 6;
 /// The work for a function, and for each of its instructions.
-const WORK: u32 = 600_000;
-const WORK_PER_INST: u32 = 4_500;
+const WORK: u32 = 1_200_000;
+const WORK_PER_INST: u32 = 6_000;
 /// The work that an attempt is, for each instruction of the function.
 const ATTEMPT: u32 = 400;
 

@@ -89,9 +89,17 @@ fn shortest(
 ) -> Result<Option<Overlap>, Exceeded> {
     // Waits that count everywhere lead to a place with fewer tries.
     let exposed = waits.exposed();
+    let kinds = [(&exposed, false), (waits, true)];
+    let feasible = kinds.map(|(waits, _)| waits.first_feasible(steps, periods.clone()));
     for period in periods {
-        for (waits, is_sheltered) in [(&exposed, false), (waits, true)] {
-            let Some(heights) = waits.heights(steps, period, work)? else { continue };
+        for ((waits, is_sheltered), first) in kinds.into_iter().zip(feasible) {
+            if period < first {
+                // The budget counts what a loop demands, not how fast that is found out.
+                work.spend((steps.len() + 1) * waits.all.len())?;
+                continue;
+            }
+            let Some((heights, rounds)) = waits.heights(steps, period) else { continue };
+            work.spend(rounds * waits.all.len())?;
             for commit in 0..2 {
                 let search = Finder { steps, waits, is_certain, period, commit, heights: &heights };
                 if let Some(places) = search.run(work)? {
@@ -170,12 +178,28 @@ impl Waits {
         &self.all[self.starts[step]..self.starts[step + 1]]
     }
 
-    /// Cycles from each step to the end of its iteration; `None` if an iteration waits too long for the one before.
-    fn heights(&self, steps: &[Step], period: u32, work: &mut Work) -> Result<Option<Vec<i64>>, Exceeded> {
+    /// Returns the first of some periods in which no iteration waits too long for the one before; their end if there is
+    /// none. What a period allows, a longer one allows as well.
+    fn first_feasible(&self, steps: &[Step], periods: Range<u32>) -> u32 {
+        let Range { start: mut low, end: mut high } = periods;
+        // Most loops wait for nothing of the iteration before.
+        let mut middle = low;
+        while low < high {
+            match self.heights(steps, middle) {
+                Some(_) => high = middle,
+                None => low = middle + 1,
+            }
+            middle = low + (high - low) / 2;
+        }
+        low
+    }
+
+    /// Cycles from each step to the end of its iteration, and the rounds over all waits that they took; `None` if an
+    /// iteration waits too long for the one before.
+    fn heights(&self, steps: &[Step], period: u32) -> Option<(Vec<i64>, usize)> {
         let landing = |step: &Step| step.forms.first().map_or(1, graph::landing);
         let mut heights: Vec<i64> = steps.iter().map(|step| landing(step).into()).collect();
-        for _ in 0..=steps.len() {
-            work.spend(self.all.len())?;
+        for round in 0..=steps.len() {
             let mut is_changed = false;
             // Most waits lead forward, so one way back settles most heights.
             for wait in self.all.iter().rev() {
@@ -186,10 +210,10 @@ impl Waits {
                 }
             }
             if !is_changed {
-                return Ok(Some(heights));
+                return Some((heights, round + 1));
             }
         }
-        Ok(None)
+        None
     }
 }
 
