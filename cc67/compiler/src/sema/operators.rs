@@ -260,9 +260,10 @@ impl Sema<'_> {
             }
         } else if a.is_floating() || b.is_floating() {
             diagnostic = diagnostic.note("floating-point values support only `+ - * /` and comparisons");
-            if operator == "^" {
-                diagnostic = diagnostic.help("`^` is not a power: write `x * x`, or `pow(x, y)`");
-            }
+            diagnostic = diagnostic.help(match operator {
+                "^" => "`^` is not a power: write `x * x`, or `pow(x, y)`",
+                _ => "convert the value first: `(int)(…)`",
+            });
         }
         self.report(diagnostic);
         None
