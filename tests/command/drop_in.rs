@@ -1,7 +1,7 @@
 //! `cc67` in place of the vendor's compiler: its command lines, messages and images.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use coff::{
     BaseType, Contents, FileFlags, Image, Name, Section, SectionFlags, SectionNumber, StorageClass, Symbol,
@@ -88,21 +88,9 @@ fn call(scratch: &Scratch, arguments: &[&str]) -> Output {
 fn call_as(name: &str, scratch: &Scratch, arguments: &[&str]) -> Output {
     let other: PathBuf = scratch.path().join(name);
     if !other.exists() {
-        give_other_name(Path::new(harness::command()), &other);
+        harness::place_command(&other);
     }
     run_in(&other.to_string_lossy(), scratch.path(), arguments)
-}
-
-/// A link, not a copy: a file that was just written cannot be executed as long as a process that
-/// another test starts at this moment still holds the writer's descriptor ("text file busy").
-#[cfg(unix)]
-fn give_other_name(command: &Path, other: &Path) {
-    std::os::unix::fs::symlink(command, other).expect("links can be made");
-}
-
-#[cfg(not(unix))]
-fn give_other_name(command: &Path, other: &Path) {
-    fs::copy(command, other).expect("the command can be copied");
 }
 
 fn read(scratch: &Scratch, name: &str) -> Image {

@@ -412,7 +412,7 @@ fn a_run_in_real_time_takes_real_time_and_prints_the_same() {
 fn the_command_needs_no_file_but_itself() {
     let scratch = Scratch::new("command-alone");
     let command = scratch.path().join("cc67");
-    std::fs::copy(harness::command(), &command).expect("there is room");
+    harness::place_command(&command);
     scratch.write("a.c", "#include \"KMotionDef.h\"\nmain() { printf(\"alone %d\\n\", 7 * 6); }\n");
     let run = |arguments: &[&str]| {
         let output = std::process::Command::new(&command)

@@ -92,6 +92,25 @@ fn beside_this_process() -> PathBuf {
     folder.join(format!("cc67-under-test{}", std::env::consts::EXE_SUFFIX))
 }
 
+/// Gives the command under test another place or name: a hard link, or a copy where that is on another file system.
+///
+/// The copy is written by a process of its own. A file that this process wrote cannot be executed as long as a child that
+/// another test starts at this moment still holds the writer's descriptor ("text file busy").
+///
+/// # Panics
+/// If the file cannot be made.
+pub fn place_command(at: &Path) {
+    if std::fs::hard_link(command(), at).is_ok() {
+        return;
+    }
+    if cfg!(unix) {
+        let copied = std::process::Command::new("cp").arg(command()).arg(at).status();
+        assert!(copied.is_ok_and(|status| status.success()), "{} cannot be written", at.display());
+    } else {
+        std::fs::copy(command(), at).expect("the command can be copied");
+    }
+}
+
 /// Runs cc67 in a folder.
 ///
 /// # Panics

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 
-use harness::{Scratch, command, node_modules, root, run_in};
+use harness::{Scratch, command, node_modules, place_command, root, run_in};
 
 #[test]
 fn an_editor_debugs_two_threads_forwards_and_backwards() {
@@ -41,10 +41,7 @@ fn programs(scratch: &Scratch) -> PathBuf {
     let folder = scratch.path().join("programs");
     fs::create_dir(&folder).expect("folders can be made");
     let file = folder.join(format!("cc67{}", std::env::consts::EXE_SUFFIX));
-    // A link takes no time, but only exists within a file system.
-    if fs::hard_link(command(), &file).is_err() {
-        fs::copy(command(), &file).expect("files can be copied");
-    }
+    place_command(&file);
     folder
 }
 
