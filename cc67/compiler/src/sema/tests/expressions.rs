@@ -81,7 +81,7 @@ fn wrong_operands_are_errors() {
     said(
         "struct S { int a; } s; int *p, *r; double d; void f(void);\nint g(int i) {\n d % 2.0;\n p + r;\n p * 2;\n ~d;\n s + 1;\n *i;\n i[i];\n s->a;\n p.a;\n s.b;\n i();\n &3;\n 3 = i;\n f = 0;\n p = d;\n d = p;\n (double)p;\n s = i;\n return s;\n}",
         &[
-            "3: error: `%` cannot be used on `double` and `double`",
+            "3: error: `%` cannot be used on `double` and `double` (convert the value first: `(int)(…)`)",
             "4: error: `+` cannot be used on `int *` and `int *`",
             "5: error: `*` cannot be used on `int *` and `int`",
             "6: error: `~` needs an integer",
