@@ -107,9 +107,8 @@ fn example(path: PathBuf) -> Option<Example> {
     Some(Example { path, words })
 }
 
-/// Programs that are left out: one restarts the board, the others show board times, or depend on the ticks between the
-/// starts of their threads, which a link makes longer.
-const OTHER: &[&str] = &["start_up.c", "signal_tower.c", "slices.c", "watchdog.c", "mailbox.c", "home3.c"];
+/// Programs that are left out: one restarts the board, the others show board times.
+const OTHER: &[&str] = &["start_up.c", "signal_tower.c", "slices.c", "watchdog.c", "mailbox.c"];
 
 /// The console that a program prints on the model.
 fn expected(path: &Path) -> String {
@@ -232,10 +231,92 @@ fn options_of_a_simulated_board_and_missing_consent_are_refused_by_name() {
     assert!(output.code == 2 && output.stderr.contains("Switch the drives off"), "{output:?}");
     let output = cc67(&scratch, ["run", "--on", "lpt1", "a.c"]);
     assert!(output.code == 2 && output.stderr.contains("serial:PATH"), "{output:?}");
-    for command in [&["debug"][..], &["serve"], &["console", "--serve=tcp:0"]] {
+    for command in [&["serve"][..], &["console", "--serve=tcp:0"]] {
         let output = on(&scratch, command, "tcp:localhost:1", &["a.c"]);
         assert!(output.code == 2 && output.stderr.contains("does not work with `--on` yet"), "{output:?}");
     }
+}
+
+/// Variables for a debugger, and a loop that changes them.
+const NAMED: &str = "\
+#include \"KMotionDef.h\"
+int ticks;
+double level = 2.5;
+struct Point { int a; float b; } point = {3, 4.5};
+main()
+{
+    for (;;) { Delay_sec(0.01); ticks++; point.a += 2; level += point.b; }
+}
+";
+
+#[test]
+fn a_debugger_shows_and_sets_variables_of_a_running_program_and_controls_its_threads() {
+    let scratch = Scratch::new("controller-debug");
+    scratch.write("a.c", NAMED);
+    let (_server, place) = served("controller-debug-board", &[]);
+    let debug = ["debug", "--yes", "--on", &place, "--for", "1", "2:a.c"];
+    let commands = "p ticks\np point\nset var level = 100\np level + 1\nrun\npause 2\ninfo threads\np ticks\np ticks\n\
+                    p point.a - 2 * ticks\nresume 2\np level > 110\nkill 2\ninfo threads\nset var persist.UserData[3] = 7\n\
+                    p persist.UserData[3]\np missing\nbreak 7\nstep\nwatch ticks\nrc\nslice\n";
+    let output = cc67_with_input(&scratch, debug, commands);
+    assert_eq!(output.code, 0, "{output:?}");
+    let lines: Vec<_> = output.stdout.lines().collect();
+    let value = |number: usize| {
+        let start = format!("${number} = ");
+        lines.iter().find_map(|line| line.strip_prefix(&start)).unwrap_or_else(|| panic!("{output:?}"))
+    };
+    // Before it runs.
+    assert_eq!([value(1), value(2), value(3)], ["0", "{a = 3, b = 4.5}", "101"]);
+    // A paused thread changes nothing, and continues.
+    assert_eq!([value(4), value(6), value(7)], [value(5), "3", "1"]);
+    assert!(value(4).parse::<u32>().expect("a number") > 20, "{output:?}");
+    assert_eq!(value(8), "7");
+    for state in ["* 2    paused      ", "* 2    not active  "] {
+        assert!(lines.contains(&state), "{output:?}");
+    }
+    let refusals = "\
+`missing`: `missing` is not declared
+a connected controller cannot stop at breakpoints
+a connected controller cannot stop at breakpoints
+a connected controller cannot stop where a variable changes
+a connected controller cannot go back to an earlier state
+a connected controller cannot stop its time
+";
+    assert!(output.stdout.ends_with(refusals), "{output:?}");
+    assert!(output.stderr.contains("thread 7 holds cc67's monitor now"), "{output:?}");
+    let output = on(&scratch, &["debug"], &place, &["--dap"]);
+    assert!(output.code == 2 && output.stderr.contains("do not work with `--on`"), "{output:?}");
+}
+
+#[test]
+fn a_load_is_compared_with_the_memory_of_the_controller() {
+    let scratch = Scratch::new("controller-verify");
+    scratch.write("a.c", PROGRAM);
+    let spoils = "main() { for (;;) *(int *)0x80070010 += 1; }\n";
+    scratch.write("spoils.c", spoils);
+    let (_server, place) = served("controller-verify-board", &[]);
+    let output = on(&scratch, &["run"], &place, &["--verify", "3:a.c"]);
+    assert_eq!((output.code, output.stdout.as_str()), (0, "count 0\ncount 1\ncount 2\n"), "{output:?}");
+    let endless = on(&scratch, &["debug"], &place, &["--batch", "run.txt", "1:spoils.c"]);
+    assert_eq!(endless.code, 2, "there is no such file: {endless:?}");
+    scratch.write("run.txt", "run\n");
+    let endless = on(&scratch, &["debug"], &place, &["--for", "0.1", "--batch", "run.txt", "1:spoils.c"]);
+    assert!(endless.stderr.contains("thread 1 continues on the controller"), "{endless:?}");
+    let output = on(&scratch, &["run"], &place, &["--verify", "3:a.c"]);
+    assert!(output.code == 2 && output.stderr.contains("is not what was loaded"), "{output:?}");
+    assert_eq!(output.stdout, "", "it was not started");
+}
+
+#[test]
+fn the_monitor_needs_a_free_thread() {
+    let scratch = Scratch::new("controller-monitor");
+    scratch.write("a.c", NAMED);
+    scratch.write("b.c", "main() {}\n");
+    let (_server, place) = served("controller-monitor-board", &[]);
+    let loads: Vec<String> = (2..8).flat_map(|thread| ["--load".into(), format!("{thread}:b.c")]).collect();
+    let words = ["debug", "--yes", "--on", &place, "1:a.c"].map(str::to_owned);
+    let output = cc67_with_input(&scratch, words.into_iter().chain(loads), "p ticks\nset var ticks = 1\n");
+    assert!(output.stdout.contains("no thread is free for cc67's monitor"), "{output:?}");
 }
 
 #[test]

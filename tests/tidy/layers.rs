@@ -145,9 +145,12 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
     (
         "cc67/controller",
         &[
+            ("connections", &["connection"]),
             ("target", &["controller"]),
+            ("the monitor", &["monitor"]),
             ("files, images, memory", &["files", "image", "seen"]),
-            ("words", &["clock"]),
+            ("commands and threads", &["commands", "threads"]),
+            ("words", &["clock", "terms"]),
         ],
     ),
     (

@@ -3,15 +3,13 @@
 use std::cell::RefCell;
 use std::fmt;
 use std::ops::Range;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use cc67_host::target::Target;
-use cc67_host::{
-    Capability, EventSink, HostError, Session, Setup, SnapshotError, TargetSnapshot, Unsupported, UserProgram,
-};
-use cc67_wire::{Address, Client, Progress, Status, WireError};
-use compiler::firmware::{Firmware, FirmwareNames};
+use cc67_host::{Capability, EventSink, HostError, SnapshotError, TargetSnapshot, Unsupported, UserProgram};
+use cc67_wire::{Client, LoadImage, Progress, Status, WireError};
+use compiler::Options;
+use compiler::firmware::FirmwareNames;
 use kmotiondef::boards::TargetBoard;
 use kmotiondef::limits::{N_CHANNELS, N_USER_DATA_VARS};
 use kmotiondef::structs::{Chan, Persist};
@@ -19,17 +17,19 @@ use kmotiondef::variables::{CHAN, PERSIST};
 use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
 use runtime::trace::Item;
-use runtime::{Event, EventKind, OpenBox, RemoteBoard, RequestServer};
+use runtime::{Answers, Event, EventKind, HostFiles, OpenBox, RemoteBoard as _, RequestServer};
 use vm::scheduler::Turn;
-use vm::thread::{Progress as ThreadProgress, ThreadState};
+use vm::thread::ThreadState;
 
-use crate::clock::now;
+use crate::clock::{PassingTime, now};
+use crate::commands::Commands;
 use crate::files::{FileRemarks, Files};
 use crate::image;
+use crate::monitor::{self, Monitor};
 use crate::seen::SeenMemory;
+use crate::terms::LoadTerms;
+use crate::threads::BoardThreads;
 
-/// Nanoseconds of a tick: 90 µs.
-const TICK_NANOSECONDS: u128 = 90_000;
 /// The pause between two readings of the status record: 20 a second.
 const STATUS_EVERY: Duration = Duration::from_millis(50);
 /// The longest time that a call waits for the console before it looks at something else.
@@ -39,61 +39,6 @@ const SILENCE: Duration = Duration::from_millis(200);
 /// The longest time that the last lines are waited for.
 const LAST_LINES: Duration = Duration::from_secs(5);
 
-/// A controller that answers, before it is given programs.
-#[derive(Debug)]
-pub struct ControllerLink(Client);
-
-impl ControllerLink {
-    /// Connects to the controller at an address.
-    ///
-    /// # Errors
-    /// There is none, it may not be opened, or it does not answer.
-    pub fn open(address: &Address) -> Result<Self, WireError> {
-        Client::connect(address).map(Self)
-    }
-
-    /// Returns the controller's own words for its firmware.
-    #[must_use]
-    pub fn version(&self) -> &str {
-        self.0.version()
-    }
-
-    /// Returns the place of the controller, for messages.
-    #[must_use]
-    pub fn place(&self) -> &str {
-        self.0.place()
-    }
-
-    /// Returns the board whose firmware this is; `None` for a version that is not known.
-    #[must_use]
-    pub fn board(&self) -> Option<&'static TargetBoard> {
-        TargetBoard::of_version(self.version().trim_end())
-    }
-
-    /// Loads the programs of a setup and starts those that should be started.
-    ///
-    /// Of the setup the controller takes the programs, the values of `persist.UserData`, and the PC's files. `is_forced`
-    /// loads programs also where they were linked for another firmware. `progress` is called after each piece.
-    ///
-    /// # Errors
-    /// A program is refused, a value is not in `persist.UserData`, or the link fails.
-    pub fn session(
-        self,
-        setup: Setup,
-        is_forced: bool,
-        progress: impl FnMut(ThreadId, Progress) + Send + 'static,
-    ) -> Result<Session<Controller>, HostError> {
-        let Setup { config, options, programs, offered, values, .. } = setup;
-        let mut target = Controller::new(self.0, &options.firmware, is_forced, Box::new(progress));
-        let files = Files::new(config.files, target.remarks.clone());
-        target.client.get_mut().serve_files(Box::new(files));
-        target.requests = RequestServer::new(config.answers);
-        target.requests.leave_boxes_open();
-        target.begin(&programs, &values)?;
-        Ok(Session::on_target(target, options, programs, offered))
-    }
-}
-
 /// A receiver of the progress after each piece of a download.
 type ProgressSink = Box<dyn FnMut(ThreadId, Progress) + Send>;
 
@@ -101,55 +46,21 @@ type ProgressSink = Box<dyn FnMut(ThreadId, Progress) + Send>;
 struct Loading {
     /// The version of the firmware that sources are linked for.
     linked_for: String,
-    is_forced: bool,
+    terms: LoadTerms,
     progress: ProgressSink,
-}
-
-/// Board time, which passes by itself.
-#[derive(Debug)]
-struct PassingTime {
-    /// The moment of tick 0.
-    origin: Instant,
-    /// The last tick that was over at the end of the last call.
-    tick: Ticks,
-    /// The moment at which the status record is due.
-    next_status: Instant,
-    /// The moment of the last console line.
-    heard: Instant,
-}
-
-impl PassingTime {
-    fn new() -> Self {
-        let now = now();
-        Self { origin: now, tick: Ticks::new(0), next_status: now, heard: now }
-    }
-
-    /// The moment at which a tick is over.
-    fn moment_of(&self, tick: Ticks) -> Option<Instant> {
-        let nanoseconds = u128::from(tick.get()) * TICK_NANOSECONDS;
-        self.origin.checked_add(Duration::from_nanos(u64::try_from(nanoseconds).ok()?))
-    }
-
-    /// Time has passed by itself.
-    fn note(&mut self) {
-        let ticks = now().duration_since(self.origin).as_nanos() / TICK_NANOSECONDS;
-        self.tick = Ticks::new(u64::try_from(ticks).unwrap_or(u64::MAX));
-    }
 }
 
 /// A connected controller, see the [crate](crate).
 pub struct Controller {
     client: RefCell<Client>,
+    monitor: RefCell<Monitor>,
     loading: Loading,
     time: PassingTime,
     /// The last status record.
     status: Option<Status>,
     /// Memory as far as it is known.
     seen: SeenMemory,
-    threads: [ThreadState; ThreadId::MAX as usize],
-    programs: [Option<Arc<DebugInfo>>; ThreadId::MAX as usize],
-    /// Threads that were active before the connection.
-    before: Vec<ThreadId>,
+    threads: BoardThreads,
     requests: RequestServer,
     /// Events that wait for the next step.
     pending: Vec<EventKind>,
@@ -170,23 +81,35 @@ impl fmt::Debug for Controller {
 }
 
 impl Controller {
-    fn new(client: Client, firmware: &Firmware, is_forced: bool, progress: ProgressSink) -> Self {
+    pub(crate) fn new(client: Client, options: &Options, terms: LoadTerms, progress: ProgressSink) -> Self {
+        let firmware = &options.firmware;
         let linked_for = firmware.version().unwrap_or(FirmwareNames::board(firmware).version).to_owned();
         let board = TargetBoard::of_version(client.version().trim_end());
+        let mut monitor = Monitor::new(options.clone(), linked_for.clone());
+        if terms.has_monitor || terms.verifies {
+            monitor.allow();
+        }
         Self {
             client: RefCell::new(client),
+            monitor: RefCell::new(monitor),
             seen: SeenMemory::new(board),
-            loading: Loading { linked_for, is_forced, progress },
+            loading: Loading { linked_for, terms, progress },
             time: PassingTime::new(),
             status: None,
-            threads: std::array::from_fn(|_| ThreadState::Empty),
-            programs: std::array::from_fn(|_| None),
-            before: Vec::new(),
+            threads: BoardThreads::new(),
             requests: RequestServer::new(None),
             pending: Vec::new(),
             remarks: FileRemarks::default(),
             lost: None,
         }
+    }
+
+    /// Gives programs on the board the files and the answers of a PC; boxes without an answer stay open.
+    pub(crate) fn serve(&mut self, files: Box<dyn HostFiles>, answers: Option<Answers>) {
+        let files = Files::new(files, self.remarks.clone());
+        self.client.get_mut().serve_files(Box::new(files));
+        self.requests = RequestServer::new(answers);
+        self.requests.leave_boxes_open();
     }
 
     /// Returns the last status record.
@@ -202,10 +125,17 @@ impl Controller {
     }
 
     /// Notes what runs already, stores the values, loads the programs, and starts those that should be started.
-    fn begin(&mut self, programs: &[UserProgram], values: &[(GuestAddr, Vec<u8>)]) -> Result<(), HostError> {
+    ///
+    /// # Errors
+    /// A program is refused, a value is not in `persist.UserData`, or the link fails.
+    pub(crate) fn begin(
+        &mut self,
+        programs: &[UserProgram],
+        values: &[(GuestAddr, Vec<u8>)],
+    ) -> Result<(), HostError> {
         let status = self.client.get_mut().status().map_err(link)?;
-        self.before = ThreadId::all().filter(|thread| status.is_active(*thread)).collect();
         self.note_status(status);
+        self.threads.note_foreign();
         for (address, bytes) in values {
             self.write(self.seen.place_of(*address), bytes)?;
         }
@@ -213,32 +143,19 @@ impl Controller {
             self.load(program)?;
         }
         self.time.origin = now();
-        for program in programs.iter().filter(|program| program.starts) {
-            self.start(program.thread)?;
-        }
-        Ok(())
+        let starts_now = !self.loading.terms.starts_later;
+        let starting = programs.iter().filter(|program| program.starts && starts_now);
+        let starting: Vec<_> = starting.map(|program| program.thread).collect();
+        self.start_together(&starting)
     }
 
     /// Takes up a status record.
     fn note_status(&mut self, status: Status) {
         for thread in ThreadId::all() {
-            self.note_thread(thread, status.is_active(thread));
+            self.threads.note(thread, status.is_active(thread));
         }
         self.seen.note_status(&status);
         self.status = Some(status);
-    }
-
-    fn note_thread(&mut self, thread: ThreadId, is_active: bool) {
-        let is_loaded = self.programs[thread.index()].is_some();
-        let state = &mut self.threads[thread.index()];
-        *state = match is_active {
-            true => ThreadState::Active(ThreadProgress::Going),
-            false if is_loaded => ThreadState::Ready,
-            false => ThreadState::Empty,
-        };
-        if !is_active {
-            self.before.retain(|other| *other != thread);
-        }
     }
 
     /// Takes up a failure: of the link for good, of anything else as an event.
@@ -343,6 +260,11 @@ impl Controller {
         if !lines.is_empty() {
             self.time.heard = now();
         }
+        if let Some(thread) = self.monitor.get_mut().take_announced() {
+            self.pending.push(EventKind::Host(format!(
+                "thread {thread} holds cc67's monitor now, which reads memory and pauses threads"
+            )));
+        }
         let remarks = self.remarks.take().into_iter().map(EventKind::Host);
         let lines = lines.into_iter().map(EventKind::ConsoleLine);
         let all: Vec<_> = lines.chain(remarks).chain(self.pending.drain(..)).collect();
@@ -371,38 +293,6 @@ fn link(error: WireError) -> HostError {
     HostError::Link(error.to_string())
 }
 
-/// A controller for the PC that answers its requests.
-struct Commands<'a>(&'a mut Client);
-
-impl RemoteBoard for Commands<'_> {
-    type Error = WireError;
-
-    fn user_data(&mut self, first: usize, count: usize) -> Result<Vec<u32>, WireError> {
-        let commands = (first..first + count).map(|index| format!("GetPersistHex {index}"));
-        let command = commands.collect::<Vec<_>>().join(";");
-        let answers = self.0.ask_lines(&command, count)?;
-        let words = answers.iter().map(|answer| u32::from_str_radix(answer.trim(), 16).ok());
-        let words: Option<Vec<u32>> = words.collect();
-        words.ok_or_else(|| self.0.unexpected(&command, &answers.join(" / ")))
-    }
-
-    fn set_user_data(&mut self, index: usize, word: u32) -> Result<(), WireError> {
-        self.0.command(&format!("SetPersistHex {index} {word:X}"))
-    }
-
-    fn gather(&mut self, offset: u32, count: u32) -> Result<Vec<u32>, WireError> {
-        self.0.gather(offset, count)
-    }
-
-    fn set_gather(&mut self, offset: u32, words: &[u32]) -> Result<(), WireError> {
-        self.0.set_gather(offset, words)
-    }
-
-    fn command(&mut self, line: &str) -> Result<(), WireError> {
-        self.0.command(line)
-    }
-}
-
 /// A controller has no snapshots.
 #[derive(Debug)]
 pub enum NoSnapshot {}
@@ -429,7 +319,7 @@ impl Target for Controller {
     }
 
     fn can(&self, capability: Capability) -> bool {
-        capability == Capability::Answers
+        matches!(capability, Capability::Answers | Capability::Pauses)
     }
 
     fn open_box(&self) -> Option<OpenBox> {
@@ -476,10 +366,10 @@ impl Target for Controller {
     }
 
     fn has_ended(&self) -> bool {
-        let is_ours = |thread: &ThreadId| !self.before.contains(thread);
-        let is_active = ThreadId::all().filter(is_ours).any(|thread| self.thread(thread).is_active());
         self.lost.is_some()
-            || !is_active && self.pending.is_empty() && now().duration_since(self.time.heard) >= SILENCE
+            || !self.threads.has_own_active()
+                && self.pending.is_empty()
+                && now().duration_since(self.time.heard) >= SILENCE
     }
 
     fn turn(&self) -> Turn {
@@ -491,39 +381,39 @@ impl Target for Controller {
         let board = client.version().trim_end().to_owned();
         let image = image::of_program(program, &self.loading.linked_for, &board)?;
         let progress = &mut self.loading.progress;
-        let loaded =
-            client.load(&image, self.loading.is_forced, &mut |piece| progress(program.thread, piece));
+        let is_forced = self.loading.terms.is_forced;
+        let loaded = client.load(&image, is_forced, &mut |piece| progress(program.thread, piece));
         loaded.map_err(link)?;
-        self.programs[program.thread.index()] = Some(Arc::new(program.debug_info()));
-        self.note_thread(program.thread, false);
+        self.monitor.get_mut().forget(program.thread);
+        self.monitor.get_mut().note_change();
+        self.threads.note_loaded(program.thread, program.debug_info());
+        if self.loading.terms.verifies {
+            self.verify(&image)?;
+        }
         Ok(())
     }
 
     fn debug(&self, thread: ThreadId) -> Option<&DebugInfo> {
-        self.programs[thread.index()].as_deref()
+        self.threads.program(thread)
     }
 
     fn start(&mut self, thread: ThreadId) -> Result<(), HostError> {
-        self.client.get_mut().execute(thread).map_err(link)?;
-        self.before.retain(|other| *other != thread);
-        self.threads[thread.index()] = ThreadState::Active(ThreadProgress::Going);
-        self.time.next_status = now();
-        Ok(())
+        self.start_together(&[thread])
     }
 
     fn stop(&mut self, thread: ThreadId) {
         match self.client.get_mut().kill(thread) {
-            Ok(()) => self.note_thread(thread, false),
+            Ok(()) => self.threads.note_stopped(thread),
             Err(error) => self.note_error(&error),
         }
     }
 
     fn thread(&self, thread: ThreadId) -> &ThreadState {
-        &self.threads[thread.index()]
+        self.threads.state(thread)
     }
 
     fn runs_processor_code(&self, thread: ThreadId) -> Option<bool> {
-        self.programs[thread.index()].as_ref().map(|_| true)
+        self.threads.program(thread).map(|_| true)
     }
 
     fn place_of(&self, address: GuestAddr) -> GuestAddr {
@@ -543,13 +433,22 @@ impl Target for Controller {
                 .for_each(|(place, word)| place.copy_from_slice(&word.to_le_bytes()));
             return Ok(());
         }
-        self.seen.read(address, bytes).ok_or_else(|| {
-            HostError::Link(
+        if self.seen.read(address, bytes).is_some() {
+            return Ok(());
+        }
+        let mut monitor = self.monitor.borrow_mut();
+        if !monitor.is_allowed() {
+            return Err(HostError::Link(
                 "no command of the controller reads this: only persist.UserData, and what its status record has of \
-                 axes, bits and analog channels"
+                 axes, bits and analog channels; cc67's monitor, which does, is not allowed here"
                     .to_owned(),
-            )
-        })
+            ));
+        }
+        monitor.read(&mut self.client.borrow_mut(), &self.threads.free(), address, bytes)
+    }
+
+    fn is_mapped(&self, address: GuestAddr) -> bool {
+        monitor::is_memory(address)
     }
 
     fn refresh(&mut self) {
@@ -562,16 +461,31 @@ impl Target for Controller {
     }
 
     fn write(&mut self, address: GuestAddr, bytes: &[u8]) -> Result<(), HostError> {
-        let Some(elements) = self.elements(address, bytes.len()) else {
-            return Err(HostError::Link(
-                "no command of the controller writes memory besides persist.UserData and programs".to_owned(),
-            ));
-        };
-        let mut board = Commands(self.client.get_mut());
-        for (index, word) in elements.zip(bytes.as_chunks().0) {
-            board.set_user_data(index, u32::from_le_bytes(*word)).map_err(link)?;
+        self.monitor.get_mut().note_change();
+        if let Some(elements) = self.elements(address, bytes.len()) {
+            let mut board = Commands(self.client.get_mut());
+            for (index, word) in elements.zip(bytes.as_chunks().0) {
+                board.set_user_data(index, u32::from_le_bytes(*word)).map_err(link)?;
+            }
+            self.seen.note(address, bytes);
+        } else if monitor::is_memory(address) {
+            self.client.get_mut().store(address.get(), bytes).map_err(link)?;
+        } else {
+            return Err(HostError::Unmapped(address));
         }
-        self.seen.note(address, bytes);
+        Ok(())
+    }
+
+    fn pause(&mut self, thread: ThreadId) -> Result<(), HostError> {
+        self.set_paused(thread, true)?;
+        self.threads.note_paused(thread, true);
+        Ok(())
+    }
+
+    fn resume(&mut self, thread: ThreadId) -> Result<(), HostError> {
+        self.set_paused(thread, false)?;
+        self.threads.note_paused(thread, false);
+        self.refresh();
         Ok(())
     }
 
@@ -656,5 +570,38 @@ impl Target for Controller {
 impl Controller {
     fn unsupported(&self) -> Unsupported {
         Unsupported { target: self.name(), capability: Capability::Snapshots }
+    }
+
+    /// Starts threads without a pause between them.
+    fn start_together(&mut self, threads: &[ThreadId]) -> Result<(), HostError> {
+        self.client.get_mut().execute(threads).map_err(link)?;
+        threads.iter().for_each(|thread| self.threads.note_started(*thread));
+        self.time.next_status = now();
+        Ok(())
+    }
+
+    /// Pauses a thread or lets it continue.
+    fn set_paused(&mut self, thread: ThreadId, is_paused: bool) -> Result<(), HostError> {
+        let free = self.threads.free();
+        let monitor = self.monitor.get_mut();
+        monitor.note_change();
+        monitor.pause(self.client.get_mut(), &free, thread, is_paused)
+    }
+
+    /// Compares the memory of the board with what was loaded.
+    fn verify(&mut self, image: &LoadImage) -> Result<(), HostError> {
+        let free = self.threads.free();
+        for (address, bytes) in &image.parts {
+            let monitor = self.monitor.get_mut();
+            let place = GuestAddr::new(*address);
+            if !monitor.verify(self.client.get_mut(), &free, place, bytes)? {
+                return Err(HostError::Link(format!(
+                    "thread {}: the memory from {address:#010x} on ({} bytes) is not what was loaded",
+                    image.thread,
+                    bytes.len()
+                )));
+            }
+        }
+        Ok(())
     }
 }

@@ -5,12 +5,24 @@
 //! neither stops nor goes back, and no command of its firmware reads memory besides `persist.UserData`.
 //!
 //! ```text
+//! connection  a controller that answers, before it is given programs
 //! controller  the target: load, start, stop, status
+//! commands    what a PC does for the requests of programs
+//! monitor     a program in a free thread, for what no command does
 //! files       files of the PC, for programs on the controller
+//! terms       the terms on which programs are loaded
 //! image       from a program to what is downloaded
+//! threads     what is known of the board's threads
 //! seen        memory as the status record shows it
-//! clock       the present moment
+//! clock       the time of a board, which passes by itself
 //! ```
+//!
+//! # The monitor
+//!
+//! No command of the firmware reads memory. Where a view allows it ([`LoadTerms::has_monitor`]), a small program of cc67 is
+//! loaded into the highest thread that is free and runs for the time of a request: it copies memory to the end of the
+//! gather buffer, adds up the bytes of a program to verify a load, and pauses threads. So variables of programs have
+//! values by name. Words of a value may be of different moments, as the programs run on.
 //!
 //! Invariants:
 //!
@@ -24,13 +36,20 @@
 #![forbid(unsafe_code)]
 
 mod clock;
+mod commands;
+mod connection;
 mod controller;
 mod files;
 mod image;
+mod monitor;
 mod seen;
+mod terms;
+mod threads;
 
 pub use cc67_wire::{Address, AddressError, Client, FoundBoard, Progress, WireError, boards};
-pub use controller::{Controller, ControllerLink};
+pub use connection::ControllerLink;
+pub use controller::Controller;
+pub use terms::LoadTerms;
 
 /// The facts that a person should know before the first connection of a project.
 pub const FIRST_TIME: &str = "\

@@ -59,7 +59,7 @@ fn session() -> Session {
 }
 
 fn debugger(seconds: f64) -> Debugger {
-    let mut debugger = Debugger::new(session(), tick(1e6)).expect("it holds programs");
+    let mut debugger = Debugger::new(session(), tick(1e6));
     debugger.run_to(tick(seconds), &mut |_| ());
     debugger
 }
@@ -84,7 +84,7 @@ fn run(c: &mut Criterion) {
     });
     group.bench_function("debugged", |b| {
         b.iter_batched_ref(
-            || Debugger::new(session(), end).expect("it holds programs"),
+            || Debugger::new(session(), end),
             |debugger| debugger.go_on(&mut |_| ()),
             BatchSize::PerIteration,
         );

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use cc67_host::{Capability, Session, Target, UserProgram};
+use cc67_host::{Session, Target, UserProgram};
 use compiler::debug::{CodeScope, FunctionModel, Model, source_of};
 use compiler::files;
 use compiler::pp::Disk;
@@ -197,7 +197,7 @@ fn is_same_file(wanted: &str, file: &str, program: &Path) -> bool {
 
 fn model<T: Target>(program: &UserProgram, session: &Session<T>) -> Result<Model, String> {
     let options = session.options();
-    if options.target == CodeTarget::C67x && session.can(Capability::ProcessorCode) {
+    if options.target == CodeTarget::C67x {
         let path =
             if program.is_image { source_of(&program.path, &program.image)? } else { program.path.clone() };
         let text = files::read(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;

@@ -7,8 +7,10 @@ pub(crate) use assignment::Assignment;
 pub(crate) use show::{number_as, seconds, state};
 
 use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
-use cc67_host::{Target, remark};
+use cc67_host::{Capability, Target, remark};
 use kmotiondef::limits::TIMEBASE;
 use kmotiondef::{ThreadId, Ticks};
 use runtime::{Board, Event, EventKind};
@@ -70,6 +72,11 @@ impl<T: Target> Shell<T> {
     #[must_use]
     pub const fn debugger(&self) -> &Debugger<T> {
         &self.debugger
+    }
+
+    /// Ends a run whenever this is set.
+    pub fn interrupted_by(&mut self, flag: Arc<AtomicBool>) {
+        self.debugger.interrupted_by(flag);
     }
 
     /// The debugger, to use it.
@@ -159,8 +166,14 @@ impl<T: Target> Shell<T> {
     }
 
     fn execute(&mut self, name: &str, rest: &str, output: Output<'_>) -> Result<String, DebugError> {
+        if !self.debugger.session().can(Capability::StopTime) {
+            let Self { debugger, early, .. } = self;
+            let mut teller = Teller::new(debugger, early, output);
+            debugger.catch_up(&mut |event| teller.tell(event));
+        }
         match name {
             _ if is_move(name) => self.move_on(name, rest, output),
+            "kill" | "pause" | "resume" => self.control(name, rest),
             "commands" => self.read_commands(rest),
             "display" | "undisplay" => self.display(name, rest),
             "thread" if rest.starts_with("apply ") => self.apply(rest, output),
@@ -193,6 +206,16 @@ impl<T: Target> Shell<T> {
         }
         self.commands.insert(id, Vec::new());
         self.reading = Some(id);
+        Ok(String::new())
+    }
+
+    /// `kill|pause|resume [N]`: controls one thread, without a number the one that is looked at.
+    fn control(&mut self, name: &str, rest: &str) -> Result<String, DebugError> {
+        let thread = if rest.is_empty() { self.debugger.thread() } else { thread_of(rest)? };
+        match name {
+            "kill" => self.debugger.kill(thread),
+            _ => self.debugger.pause(thread, name == "pause")?,
+        }
         Ok(String::new())
     }
 
@@ -271,7 +294,7 @@ impl<T: Target> Shell<T> {
             return self.go_to(rest, output);
         }
         let (count, place) = match name {
-            "until" | "advance" => (1.0, rest),
+            "until" | "advance" | "run" => (1.0, rest),
             _ if rest.is_empty() => (1.0, rest),
             _ => (self.debugger.number(rest)?, ""),
         };
@@ -440,6 +463,14 @@ fn go<T: Target>(
     events: &mut dyn FnMut(&Event),
 ) -> Result<Stop, DebugError> {
     Ok(match name {
+        "run" if !place.is_empty() => {
+            debugger.start(thread_of(place)?)?;
+            debugger.go_on(events)
+        }
+        "run" if !debugger.session().can(Capability::StopTime) => {
+            debugger.start_all()?;
+            debugger.go_on(events)
+        }
         "run" => {
             if debugger.stop().reason != Reason::Begin {
                 debugger.restart()?;
@@ -452,14 +483,30 @@ fn go<T: Target>(
         "finish" => debugger.finish(events)?,
         "stepi" => debugger.step_instruction(events)?,
         "tick" => debugger.step_tick(events),
-        "slice" => debugger.step_slice(events),
+        "slice" => debugger.step_slice(events)?,
+        _ if name.starts_with("reverse") => {
+            debugger.session().require(Capability::Snapshots)?;
+            back(debugger, name)?
+        }
+        _ => debugger.go_on(events),
+    })
+}
+
+/// Moves back in time by a command.
+fn back<T: Target>(debugger: &mut Debugger<T>, name: &str) -> Result<Stop, DebugError> {
+    Ok(match name {
         "reverse-continue" => debugger.reverse_continue(),
         "reverse-step" => debugger.reverse_step()?,
         "reverse-next" => debugger.reverse_next()?,
         "reverse-stepi" => debugger.reverse_step_instruction(),
-        "reverse-finish" => debugger.reverse_finish()?,
-        _ => debugger.go_on(events),
+        _ => debugger.reverse_finish()?,
     })
+}
+
+/// The thread of a number.
+fn thread_of(number: &str) -> Result<ThreadId, DebugError> {
+    let thread = number.parse().ok().and_then(ThreadId::new);
+    Ok(thread.ok_or_else(|| format!("`{number}` is not the number of a thread"))?)
 }
 
 /// The breakpoints that a stop is about.

@@ -76,7 +76,7 @@ fn serve(name: &str, requests: &[Value]) -> Vec<Value> {
             UserProgram::compile(&launched, thread, &setup.options).map_err(|error| error.to_string())?;
         setup.programs.push(program.started());
         let session = setup.session().map_err(|error| error.to_string())?;
-        Debugger::new(session, Ticks::new(10_000)).map_err(|error| error.to_string())
+        Ok(Debugger::new(session, Ticks::new(10_000)))
     };
     dap::serve(BufReader::new(reader), &mut output, &mut launcher).expect("a buffer takes all");
     fs::remove_file(&path).expect("it is ours");

@@ -22,7 +22,7 @@ fn transcript(program: &Path, level: Level, session: &str) -> String {
     let program = UserProgram::compile(program, thread, &setup.options).expect("it compiles");
     setup.programs.push(program.started());
     let debugger = Debugger::new(setup.session().expect("a board"), Ticks::new(1_000_000));
-    let mut shell = Shell::new(debugger.expect("it holds programs"));
+    let mut shell = Shell::new(debugger);
     let mut out = String::new();
     for command in session.lines().filter_map(|line| line.strip_prefix("(cc67) ")) {
         let mut said = String::new();

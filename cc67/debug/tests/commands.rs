@@ -43,7 +43,7 @@ fn shell(folder: &Folder, level: Level, programs: &[&str]) -> Shell<Board> {
         setup.programs.push(program.started());
     }
     let debugger = Debugger::new(setup.session().expect("a board"), Ticks::new(1_000_000));
-    Shell::new(debugger.expect("it holds programs"))
+    Shell::new(debugger)
 }
 
 /// Returns the output of commands without board times; a refused command says why.

@@ -97,7 +97,7 @@ fn ratio(pairs: usize, seconds: f64) -> f64 {
     for _ in 0..pairs {
         let mut session = self::session();
         plain = plain.min(time(|| session.advance(end, &mut |_| ())));
-        let mut debugger = Debugger::new(self::session(), end).expect("it holds programs");
+        let mut debugger = Debugger::new(self::session(), end);
         debugged = debugged.min(time(|| _ = debugger.go_on(&mut |_| ())));
     }
     debugged.as_secs_f64() / plain.as_secs_f64()
@@ -110,7 +110,7 @@ fn hours_of_history_take_little_memory_and_time() {
     let (minutes, pairs, seconds, most) = if is_long { (60.0, 15, 100.0, 1.3) } else { (0.5, 7, 20.0, 1.6) };
 
     let before = resident();
-    let mut debugger = Debugger::new(session(), tick(1e6)).expect("it holds programs");
+    let mut debugger = Debugger::new(session(), tick(1e6));
     let length = time(|| _ = debugger.run_to(tick(60.0 * minutes), &mut |_| ()));
     let rounds = debugger.evaluate("rounds").expect("it is a variable").text;
     let (bytes, snapshots) = debugger.history();

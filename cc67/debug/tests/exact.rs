@@ -87,8 +87,7 @@ fn debugger(machine: &str, files: &[&str], interval: u64) -> Debugger {
         let program = UserProgram::compile(&folder.join(file), thread, &setup.options).expect("it compiles");
         setup.programs.push(program.started());
     }
-    let debugger = Debugger::new(setup.session().expect("a board"), Ticks::new(1_000_000));
-    let mut debugger = debugger.expect("it holds programs");
+    let mut debugger = Debugger::new(setup.session().expect("a board"), Ticks::new(1_000_000));
     debugger.catches.no_traps = true;
     debugger.keep_every(interval);
     debugger

@@ -17,6 +17,8 @@ pub enum Capability {
     ProcessorCode,
     /// A stimulus, a machine file and the serial port are connected to it, and it is recorded.
     Surroundings,
+    /// Threads are paused one by one while the others run.
+    Pauses,
     /// Boxes of programs are answered by calls, not by statements.
     Answers,
 }
@@ -29,6 +31,7 @@ impl fmt::Display for Capability {
             Self::Breakpoints => "stop at breakpoints",
             Self::Watchpoints => "stop where a variable changes",
             Self::ProcessorCode => "stop code of the controller's processor",
+            Self::Pauses => "pause one thread while the others run",
             Self::Answers => "be given answers by a call: a statement of a stimulus does",
             Self::Surroundings => "be connected to a stimulus, a machine file or a recorder",
         })

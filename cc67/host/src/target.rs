@@ -122,6 +122,24 @@ pub trait Target {
     /// Stops a thread where it is.
     fn stop(&mut self, thread: ThreadId);
 
+    /// Pauses a thread while the others run ([`Capability::Pauses`]).
+    ///
+    /// # Errors
+    /// [`Unsupported`], or a connected target does not answer.
+    fn pause(&mut self, thread: ThreadId) -> Result<(), HostError> {
+        let _ = thread;
+        Err(Unsupported { target: self.name(), capability: Capability::Pauses }.into())
+    }
+
+    /// Lets a paused thread continue ([`Capability::Pauses`]).
+    ///
+    /// # Errors
+    /// As [`pause`](Self::pause).
+    fn resume(&mut self, thread: ThreadId) -> Result<(), HostError> {
+        let _ = thread;
+        Err(Unsupported { target: self.name(), capability: Capability::Pauses }.into())
+    }
+
     /// The state of a thread.
     fn thread(&self, thread: ThreadId) -> &ThreadState;
 

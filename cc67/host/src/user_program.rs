@@ -40,8 +40,21 @@ impl UserProgram {
     /// # Errors
     /// The file cannot be read, or what the compiler says.
     pub fn compile(path: &Path, thread: ThreadId, options: &Options) -> Result<Self, HostError> {
+        Self::compile_text(path, read(path)?, thread, options)
+    }
+
+    /// Compiles a source that is in memory and links it for a thread; `path` is its name in messages.
+    ///
+    /// # Errors
+    /// What the compiler says.
+    pub fn compile_text(
+        path: &Path,
+        text: Vec<u8>,
+        thread: ThreadId,
+        options: &Options,
+    ) -> Result<Self, HostError> {
         let failed = |error| HostError::Compile(CompileError::new(format!("{}: {error}", path.display())));
-        Self::of_linked(path, &build(path, thread, options)?).map_err(failed)
+        Self::of_linked(path, &build(path, text, thread, options)?).map_err(failed)
     }
 
     /// A program that was compiled from `path` and linked.
@@ -115,9 +128,9 @@ fn read(path: &Path) -> Result<Vec<u8>, HostError> {
 }
 
 /// Compiles and links a source for a thread.
-fn build(path: &Path, thread: ThreadId, options: &Options) -> Result<Linked, HostError> {
+fn build(path: &Path, text: Vec<u8>, thread: ThreadId, options: &Options) -> Result<Linked, HostError> {
     let failed = |text: String| HostError::Compile(CompileError::new(text));
-    let mut compilation = compiler::compile(path, read(path)?, options, &Disk);
+    let mut compilation = compiler::compile(path, text, options, &Disk);
     let linked = compilation.link(thread, options);
     let levels = Levels::default();
     let found = compilation.diagnostics().into_iter().filter_map(|diagnostic| levels.apply(diagnostic));

@@ -18,7 +18,7 @@ use vm::interp::BytecodeEngine;
 use vm::native::{NativeEngine, SharedCode};
 
 use crate::control::{AxisField, Control, Fault, Portion, Rig, Said, Unwritten, fields};
-use crate::controller::Controller;
+use crate::controller::{Controller, ControllerTerms};
 use crate::errors::{Error, ExpectationError, LinkError, RangeError, ThreadError, TrapError, input};
 use crate::program::{LinkableProgram, thread};
 use crate::setup::{BoardArguments, refused};
@@ -189,12 +189,12 @@ impl Board {
         py: Python<'_>,
         controller: &Controller,
         request: BoardArguments<'_>,
-        is_forced: bool,
+        terms: ControllerTerms,
     ) -> PyResult<Self> {
         let arranged = request.arrange()?;
         let (link, mut setup) = (controller.take()?, arranged.setup);
         setup.options = connected_options(&link);
-        let control = py.detach(|| link.session(setup, is_forced, |_, _| ()).map(boxed));
+        let control = py.detach(|| link.session(setup, terms.into(), |_, _| ()).map(boxed));
         let used = Mutex::new(Used { control: Some(control.map_err(refused)?), owner: None });
         Ok(Self { used, axes: arranged.axes, number: NUMBERS.fetch_add(1, Ordering::Relaxed) })
     }

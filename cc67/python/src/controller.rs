@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use cc67_controller::{Address, ControllerLink, FIRST_TIME};
+use cc67_controller::{Address, ControllerLink, FIRST_TIME, LoadTerms};
 use pyo3::prelude::*;
 
 use crate::errors::{LinkError, input};
@@ -38,6 +38,22 @@ impl Controller {
     pub(crate) fn take(&self) -> PyResult<ControllerLink> {
         let link = self.link.lock().unwrap_or_else(PoisonError::into_inner).take();
         link.ok_or_else(|| LinkError::new_err("the link belongs to a board already"))
+    }
+}
+
+/// The terms on which programs are loaded, as `connect` passes them.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct ControllerTerms {
+    force: bool,
+    verify: bool,
+    monitor: bool,
+}
+
+impl From<ControllerTerms> for LoadTerms {
+    fn from(terms: ControllerTerms) -> Self {
+        let ControllerTerms { force, verify, monitor } = terms;
+        Self { is_forced: force, verifies: verify, has_monitor: monitor, ..Self::default() }
     }
 }
 

@@ -122,3 +122,18 @@ def test_a_controller_with_firmware_5_gets_programs_for_it(write: Write) -> None
             assert board.read("persist.UserData[5]") == 1.0
     finally:
         served.end()
+
+
+def test_the_monitor_reads_variables_of_programs(write: Write, served: Served) -> None:
+    program = write(
+        '#include "KMotionDef.h"\nint count = 5; double level = 2.5;\nmain() { count++; level *= 2; }\n', "names.c"
+    )
+    with cc67.connect(served.address, [program], monitor=True, verify=True, yes=True) as board:
+        assert board.run(timeout=10.0)
+        assert board.read("count") == 6.0
+        assert board.read("level") == 5.0
+        board.write("count", 40)
+        assert board.read("count + 2") == 42.0
+    with cc67.connect(served.address, [program], yes=True) as board:
+        with pytest.raises(cc67.LinkError, match="monitor"):
+            board.read("count")

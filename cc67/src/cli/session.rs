@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use cc67_controller::{Controller, ControllerLink};
+use cc67_controller::{Controller, ControllerLink, LoadTerms};
 use cc67_debug::dap::AttachPoint;
 use cc67_host::{
     AnyTarget, Attendant, BootedFirmware, BootedTarget, End, HostError, Idle, Schedule, Session, Target,
@@ -55,11 +55,11 @@ pub(crate) struct Setup {
     controller: Option<Connected>,
 }
 
-/// A controller that answers, and whether it takes programs that were linked for another firmware.
+/// A controller that answers, and the terms on which it takes programs.
 #[derive(Debug)]
 struct Connected {
     connection: ControllerLink,
-    is_forced: bool,
+    terms: LoadTerms,
 }
 
 /// The target that programs are compiled for: an engine of the modelled board, a firmware file, or a connected controller.
@@ -108,7 +108,7 @@ impl Setup {
             let connection = controller::connect(address, &board.controller)?;
             let firmware = controller::firmware(&connection, compiler.resolve()?.firmware, compiler)?;
             let setup = Self::compiled(started, board, compiler, CodeFor::Controller(firmware))?;
-            let connected = Connected { connection, is_forced: board.controller.force };
+            let connected = Connected { connection, terms: board.controller.terms() };
             return Ok(setup.map(|setup| Self { controller: Some(connected), ..setup }));
         }
         let Some(file) = &board.boot else { return Self::of_model(started, board, compiler) };
@@ -160,7 +160,6 @@ impl Setup {
     }
 
     /// Returns whether the board is a connected controller.
-    #[cfg(feature = "live")]
     pub(crate) const fn is_of_controller(&self) -> bool {
         self.controller.is_some()
     }
@@ -224,17 +223,17 @@ impl Setup {
 
     /// The connected controller, with the programs loaded and started.
     fn rig_of_controller(mut self) -> Result<Rig<Controller>> {
-        let Some(Connected { connection, is_forced }) = self.controller.take() else {
+        let Some(Connected { connection, terms }) = self.controller.take() else {
             bail!("no controller is connected");
         };
-        self.rig_with(|session, _| connection.session(session, is_forced, controller::progress()))
+        self.rig_with(|session, _| connection.session(session, terms, controller::progress()))
     }
 
     /// The target that was requested; the modelled board on the interpreter.
     pub(crate) fn rig_of_any(self) -> Result<Rig<AnyTarget>> {
         ensure!(
             self.controller.is_none(),
-            "this does not work with `--on` yet: `cc67 run`, `cc67 console` and `cc67 live` do"
+            "this does not work with `--on` yet: `cc67 run`, `cc67 console`, `cc67 live` and `cc67 debug` do"
         );
         self.rig_with(|session, code| match code {
             CodeFor::Engine(_) | CodeFor::Controller(_) => session.session_on_any(None),
@@ -267,6 +266,14 @@ impl Setup {
             );
         }
         Ok(self.rig_of_any()?.session)
+    }
+
+    /// The connected controller for a debugger, with the programs loaded and not started.
+    pub(crate) fn controller_for_debugger(mut self) -> Result<Session<Controller>> {
+        if let Some(Connected { terms, .. }) = &mut self.controller {
+            (terms.starts_later, terms.has_monitor) = (true, true);
+        }
+        Ok(self.rig_of_controller()?.session)
     }
 }
 

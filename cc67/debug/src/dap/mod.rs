@@ -449,6 +449,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
             Reason::Step | Reason::Time => ("step", String::new()),
             Reason::Trap(text) | Reason::Remark(text) => ("exception", text.clone()),
             Reason::Interrupted => ("pause", String::new()),
+            Reason::LinkLost(why) => ("exception", why.clone()),
             Reason::BeginOfHistory => ("step", "the beginning of the recorded past".to_owned()),
             Reason::AllEnded => ("pause", "all threads have ended".to_owned()),
             Reason::Started(thread) => ("pause", format!("thread {thread} begins")),

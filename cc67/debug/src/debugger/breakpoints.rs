@@ -1,6 +1,6 @@
 //! Breakpoints: code, watched expressions, expressions that become true; their conditions.
 
-use cc67_host::Target;
+use cc67_host::{Capability, Target};
 use compiler::firmware::FirmwareSymbols as _;
 use kmotiondef::{GuestAddr, ThreadId};
 
@@ -114,6 +114,7 @@ impl<T: Target> Debugger<T> {
         thread: Option<ThreadId>,
         condition: Option<&str>,
     ) -> Result<(u32, String), DebugError> {
+        self.must_hold()?;
         let (found, note) = self.resolve(place.trim(), thread)?;
         let first = &found[0];
         let where_ = if first.line == 0 {
@@ -146,6 +147,7 @@ impl<T: Target> Debugger<T> {
     /// # Errors
     /// The expression is wrong.
     pub fn watch(&mut self, expression: &str, condition: Option<&str>) -> Result<(u32, String), DebugError> {
+        self.session.require(Capability::Watchpoints)?;
         let watched = self.watched(expression)?;
         let kind = BreakpointKind::Watch(expression.to_owned());
         let conditions = self.conditions(&kind, condition)?;

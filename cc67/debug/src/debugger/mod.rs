@@ -18,7 +18,9 @@ use std::sync::atomic::AtomicBool;
 
 use cc67_host::{
     AnyTarget, Capability, History, HostError, Session, Setup, Snapshot, SnapshotError, Target, Timeline,
+    Unsupported,
 };
+use compiler::target::Target as CodeTarget;
 use kmotiondef::{CodeAddr, Cycles, ThreadId, Ticks};
 use runtime::{Board, Event};
 use vm::engine::{ContextId, FrameView};
@@ -33,6 +35,18 @@ pub struct DebugError(pub(crate) String);
 impl From<String> for DebugError {
     fn from(text: String) -> Self {
         Self(text)
+    }
+}
+
+impl From<Unsupported> for DebugError {
+    fn from(error: Unsupported) -> Self {
+        Self(error.to_string())
+    }
+}
+
+impl From<HostError> for DebugError {
+    fn from(error: HostError) -> Self {
+        Self(error.to_string())
     }
 }
 
@@ -118,6 +132,8 @@ pub enum Reason {
     AllEnded,
     /// Somebody interrupted it.
     Interrupted,
+    /// A connected target cannot be reached any more.
+    LinkLost(String),
     /// The beginning of the recorded past.
     BeginOfHistory,
 }
@@ -181,15 +197,12 @@ pub struct Debugger<T: Target = Board> {
 
 impl<T: Target> Debugger<T> {
     /// A debugger of a board in its present state.
-    ///
-    /// # Errors
-    /// The target cannot hold programs.
-    pub fn new(mut session: Session<T>, limit: Ticks) -> Result<Self, DebugError> {
-        session.require(Capability::Breakpoints).map_err(|error| error.to_string())?;
+    #[must_use]
+    pub fn new(mut session: Session<T>, limit: Ticks) -> Self {
         session.prepare_to_hold();
         // A target without snapshots does not go back.
         let timeline = Timeline::new(&mut session).ok();
-        Ok(Self::with(session, timeline, limit))
+        Self::with(session, timeline, limit)
     }
 
     fn with(session: Session<T>, timeline: Option<Timeline<T>>, limit: Ticks) -> Self {
@@ -212,6 +225,62 @@ impl<T: Target> Debugger<T> {
             messages: VecDeque::new(),
             interrupt: Arc::default(),
         }
+    }
+
+    /// Returns whether somebody else runs the board and keeps its past.
+    pub(crate) fn is_lent(&self) -> bool {
+        self.timeline.is_none() && self.session.can(Capability::Snapshots)
+    }
+
+    /// Returns nothing where programs of this target can be held, and otherwise the sentence that they cannot.
+    pub(crate) fn must_hold(&self) -> Result<(), DebugError> {
+        self.session.require(Capability::Breakpoints)?;
+        if self.session.options().target == CodeTarget::C67x {
+            self.session.require(Capability::ProcessorCode)?;
+        }
+        Ok(())
+    }
+
+    /// Starts a thread at the beginning of its program.
+    ///
+    /// # Errors
+    /// It has none, or the target does not answer.
+    pub fn start(&mut self, thread: ThreadId) -> Result<(), DebugError> {
+        self.session.start(thread)?;
+        self.changed();
+        Ok(())
+    }
+
+    /// Starts the programs that should start when they are loaded.
+    ///
+    /// # Errors
+    /// The target does not answer.
+    pub fn start_all(&mut self) -> Result<(), DebugError> {
+        let starting: Vec<_> = self.session.programs().iter().filter(|program| program.starts).collect();
+        let threads: Vec<_> = starting.into_iter().map(|program| program.thread).collect();
+        threads.into_iter().try_for_each(|thread| self.start(thread))
+    }
+
+    /// Stops a thread.
+    pub fn kill(&mut self, thread: ThreadId) {
+        self.session.stop(thread);
+        self.changed();
+    }
+
+    /// Pauses a thread while the others run, or lets it continue.
+    ///
+    /// # Errors
+    /// The target cannot, or does not answer.
+    pub fn pause(&mut self, thread: ThreadId, is_paused: bool) -> Result<(), DebugError> {
+        let done = if is_paused { self.session.pause(thread) } else { self.session.resume(thread) };
+        Ok(done?)
+    }
+
+    /// Takes up what a target whose time passes by itself has done since the last look.
+    pub(crate) fn catch_up(&mut self, events: Events<'_>) {
+        self.session.refresh();
+        let tick = self.session.tick();
+        self.session.step(tick, &mut |event| events(&event));
     }
 
     /// The board under control, to look at.

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::Ordering;
 
-use cc67_host::Target;
+use cc67_host::{Capability, Target};
 use kmotiondef::{Bit, CodeAddr, GuestAddr, ThreadId, Ticks};
 use runtime::{Event, EventKind};
 use vm::engine::{ContextId, Hold, HoldReason};
@@ -66,6 +66,7 @@ impl<T: Target> Debugger<T> {
             Way::Over => self.line_goal(false),
             Way::Out => self.outer_goal(),
             Way::Instruction => {
+                self.must_hold()?;
                 self.must_be_active()?;
                 Ok(Goal::Instruction(self.context()))
             }
@@ -112,6 +113,7 @@ impl<T: Target> Debugger<T> {
     }
 
     fn outer_goal(&self) -> Result<Goal, DebugError> {
+        self.must_hold()?;
         let context = self.context();
         let frames = self.frames(context);
         let caller = frames.get(self.frame + 1);
@@ -138,6 +140,7 @@ impl<T: Target> Debugger<T> {
     /// # Errors
     /// There is no code.
     pub fn until(&mut self, place: &str, events: Events<'_>) -> Result<Stop, DebugError> {
+        self.must_hold()?;
         let (found, note) = self.resolve(place, None)?;
         if !note.is_empty() {
             self.messages.push_back(note.trim_start_matches("; ").to_owned());
@@ -158,12 +161,16 @@ impl<T: Target> Debugger<T> {
     }
 
     /// Goes on to the end of the next tick in which the thread that is looked at has the processor.
-    pub fn step_slice(&mut self, events: Events<'_>) -> Stop {
+    ///
+    /// # Errors
+    /// The time of the target passes by itself.
+    pub fn step_slice(&mut self, events: Events<'_>) -> Result<Stop, DebugError> {
+        self.session.require(Capability::StopTime)?;
         loop {
             let stop = self.step_tick(events);
             let is_its = self.session.target().turn() == vm::scheduler::Turn::User(self.thread);
             if stop.reason != Reason::Time || is_its || self.session.tick() >= self.limit {
-                return stop;
+                return Ok(stop);
             }
         }
     }
@@ -175,6 +182,7 @@ impl<T: Target> Debugger<T> {
     }
 
     fn line_goal(&self, into: bool) -> Result<Goal, DebugError> {
+        self.must_hold()?;
         self.must_be_active()?;
         self.programs.of(self.thread)?;
         let context = self.context();
@@ -281,8 +289,11 @@ impl<T: Target> Debugger<T> {
             if self.session.tick() >= limit {
                 return self.stopped(Reason::Time, None);
             }
-            let is_own = self.timeline.is_some();
-            if active == 0 && is_own && self.session.has_ended() && !matches!(goal, Goal::Tick(_)) {
+            if let Some(reason) = self.session.target().lost() {
+                let reason = Reason::LinkLost(reason.to_owned());
+                return self.stopped(reason, None);
+            }
+            if active == 0 && !self.is_lent() && self.session.has_ended() && !matches!(goal, Goal::Tick(_)) {
                 self.session.finish(&mut |event| events(&event));
                 return self.stopped(Reason::AllEnded, None);
             }

@@ -6,7 +6,7 @@
 
 use std::sync::atomic::Ordering;
 
-use cc67_host::Target;
+use cc67_host::{Capability, Target};
 use kmotiondef::Ticks;
 use vm::engine::ContextId;
 
@@ -113,6 +113,7 @@ impl<T: Target> Debugger<T> {
     /// It lies before the beginning.
     pub fn go_to(&mut self, tick: Ticks) -> Result<Stop, DebugError> {
         self.disarm();
+        self.session.require(Capability::Snapshots)?;
         let timeline = self.timeline.as_mut().ok_or(ONLY_FORWARD)?;
         timeline.go_to(&mut self.session, tick).map_err(|error| error.to_string())?;
         Ok(self.stopped(Reason::Time, None))
@@ -124,6 +125,7 @@ impl<T: Target> Debugger<T> {
     /// The snapshots are of another board.
     pub fn restart(&mut self) -> Result<Stop, DebugError> {
         self.disarm();
+        self.session.require(Capability::Snapshots)?;
         let timeline = self.timeline.as_mut().ok_or(ONLY_FORWARD)?;
         timeline.restore(&mut self.session, 0).map_err(|error| error.to_string())?;
         Ok(self.stopped(Reason::Begin, None))

@@ -39,11 +39,19 @@ pub(crate) struct At<'a, T> {
     reads: Option<RefCell<Vec<GuestAddr>>>,
     /// True if registers were.
     has_registers: Cell<bool>,
+    /// The first error of a target that does not answer.
+    failed: RefCell<Option<DebugError>>,
 }
 
 impl<'a, T> At<'a, T> {
-    const fn new(session: &'a Session<T>, view: Option<&'a FrameView>, items: &'a [Item]) -> Self {
-        Self { session, view, items, reads: None, has_registers: Cell::new(false) }
+    fn new(session: &'a Session<T>, view: Option<&'a FrameView>, items: &'a [Item]) -> Self {
+        let (has_registers, failed) = (Cell::new(false), RefCell::new(None));
+        Self { session, view, items, reads: None, has_registers, failed }
+    }
+
+    /// Returns a value that was read, unless the target did not answer.
+    fn checked<R>(&self, value: R) -> Result<R, DebugError> {
+        self.failed.borrow_mut().take().map_or(Ok(value), Err)
     }
 }
 
@@ -62,8 +70,9 @@ impl<T: Target> DebugReader for At<'_, T> {
             reads.borrow_mut().push(address);
         }
         let mut bytes = [0; 8];
-        // What a target does not answer reads 0.
-        let _ = self.session.target().read(address, &mut bytes);
+        if let Err(error) = self.session.target().read(address, &mut bytes) {
+            self.failed.borrow_mut().get_or_insert_with(|| error.into());
+        }
         bytes
     }
 
@@ -196,7 +205,8 @@ impl<T: Target> Debugger<T> {
         let view = self.view();
         let at = At::new(&self.session, view.as_ref(), &items);
         let value = probe.value(&at)?;
-        Ok(work(&probe, &value, &probe.shown(&at)))
+        let worked = work(&probe, &value, &probe.shown(&at));
+        at.checked(worked)
     }
 
     /// The value of an expression where the call that is looked at stands.

@@ -297,6 +297,7 @@ pub(super) fn stop<T: Target>(debugger: &Debugger<T>, stop: &Stop) -> String {
             return format!("[All threads have ended, {at}]\n", at = who.rsplit(", ").next().unwrap_or(""));
         }
         Reason::Interrupted => "Interrupted\n".to_owned(),
+        Reason::LinkLost(why) => format!("{why}\n"),
         Reason::BeginOfHistory => "No more reverse-execution history.\n".to_owned(),
         Reason::Begin | Reason::Step | Reason::Time => String::new(),
     };

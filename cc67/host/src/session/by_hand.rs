@@ -241,6 +241,22 @@ impl<T: Target> Session<T> {
         Ok(())
     }
 
+    /// Pauses a thread while the others run ([`Capability::Pauses`](crate::Capability::Pauses)).
+    ///
+    /// # Errors
+    /// The target cannot, or does not answer.
+    pub fn pause(&mut self, thread: ThreadId) -> Result<(), HostError> {
+        self.target.pause(thread)
+    }
+
+    /// Lets a paused thread continue.
+    ///
+    /// # Errors
+    /// As [`pause`](Self::pause).
+    pub fn resume(&mut self, thread: ThreadId) -> Result<(), HostError> {
+        self.target.resume(thread)
+    }
+
     /// Stops a thread where it is.
     pub fn stop(&mut self, thread: ThreadId) {
         self.target.stop(thread);

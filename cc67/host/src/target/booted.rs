@@ -347,7 +347,7 @@ impl Target for BootedTarget {
             | Capability::Watchpoints
             | Capability::ProcessorCode => true,
             Capability::Surroundings => self.board.around().is_some(),
-            Capability::Answers => false,
+            Capability::Answers | Capability::Pauses => false,
         }
     }
 

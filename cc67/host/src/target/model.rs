@@ -60,7 +60,7 @@ impl<E: Engine> Target for Board<E> {
         match capability {
             Capability::StopTime | Capability::Snapshots | Capability::Surroundings => true,
             Capability::Breakpoints | Capability::Watchpoints => E::HOLDS,
-            Capability::ProcessorCode | Capability::Answers => false,
+            Capability::ProcessorCode | Capability::Answers | Capability::Pauses => false,
         }
     }
 

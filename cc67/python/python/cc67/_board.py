@@ -170,7 +170,7 @@ class Board(Fixed):
         set: Mapping[str, object] | Iterable[str],
         files: PathLike | None,
         answers: Mapping[str, object] | Iterable[str],
-        force: bool,
+        terms: dict[str, bool],
         on_fault: str,
     ) -> Board:
         """Make the board of a controller, for `connect`."""
@@ -189,7 +189,7 @@ class Board(Fixed):
             "uart_input": b"",
             "boot": None,
         }
-        board._begin(_native.Board.on(controller, request, force), assigned, on_fault)
+        board._begin(_native.Board.on(controller, request, terms), assigned, on_fault)
         return board
 
     def _begin(self, native: _native.Board, assigned: list[tuple[int, Program, bool]], on_fault: str) -> None:

@@ -21,6 +21,8 @@ def connect(
     files: PathLike | None = None,
     answers: Mapping[str, object] | Iterable[str] = (),
     force: bool = False,
+    verify: bool = False,
+    monitor: bool = False,
     yes: bool = False,
     on_fault: str = "raise",
 ) -> Board:
@@ -28,9 +30,9 @@ def connect(
 
     cc67 has never been tried on a controller, only on the released firmware in emulation: switch the drives off for the
     first trials. The result is a `Board` whose time passes by itself; calls such as `run` and `run_until` wait. It
-    cannot stop its time, has no snapshots, and takes no stimulus. Of its memory only `persist` and what the status
-    record has can be read: positions, modes and enables of axes, bits, analog channels, threads. Conditions are tested
-    about 20 times a second.
+    cannot stop its time, has no snapshots, and takes no stimulus. Without `monitor` only `persist` and what the status
+    record has can be read of its memory: positions, modes and enables of axes, bits, analog channels, threads.
+    Conditions are tested about 20 times a second.
 
     Args:
         address: `usb`, `usb:LOCATION`, `serial:/dev/ttyUSB0`, `serial:COM3`, `server`, `tcp:HOST:PORT`, as with `--on`.
@@ -39,6 +41,10 @@ def connect(
             stay open until they are answered; each of `answers` answers one.
         force: whether to load programs also if they were linked for another firmware; their calls may then jump
             anywhere.
+        verify: whether to compare the controller's memory with each program after its load, with the monitor.
+        monitor: whether cc67 may load a small program of its own into the highest free thread. It runs for the time of
+            a request, reads memory, so that variables of programs have values, and overwrites the last 258 words of
+            the gather buffer.
         yes: True confirms that the risks are known: real machines move.
 
     Raises:
@@ -57,6 +63,7 @@ def connect(
     if on_fault not in ("raise", "keep"):
         raise InputError(f'on_fault must be "raise" or "keep", not {on_fault!r}')
     controller = _native.Controller(address)
+    terms = {"force": force, "verify": verify, "monitor": monitor}
     return Board._on(
-        controller, programs, load, set=set, files=files, answers=answers, force=force, on_fault=on_fault
+        controller, programs, load, set=set, files=files, answers=answers, terms=terms, on_fault=on_fault
     )

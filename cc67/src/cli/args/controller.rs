@@ -1,7 +1,7 @@
 //! The options of a connected controller.
 
 use anyhow::{Result, ensure};
-use cc67_controller::Address;
+use cc67_controller::{Address, LoadTerms};
 use clap::Args;
 
 use super::heading;
@@ -10,7 +10,7 @@ use super::heading;
 #[derive(Debug, Args)]
 #[command(next_help_heading = heading::CONTROLLER)]
 pub(crate) struct ControllerArguments {
-    /// Use a connected controller in place of a simulated board (run, console, live): usb[:LOCATION], serial:PATH, server[:PATH|:HOST:PORT],
+    /// Use a connected controller in place of a simulated board (run, console, live, debug): usb[:LOCATION], serial:PATH, server[:PATH|:HOST:PORT],
     /// tcp:HOST:PORT; `cc67 boards` lists what is connected
     #[arg(long, value_name = "BOARD")]
     pub(crate) on: Option<Address>,
@@ -18,17 +18,25 @@ pub(crate) struct ControllerArguments {
     /// then jump anywhere
     #[arg(long, requires = "on")]
     pub(crate) force: bool,
+    /// With --on, compare the controller's memory with each program after its load; a small program in a free thread adds it up
+    #[arg(long, requires = "on")]
+    pub(crate) verify: bool,
     /// With --on, connect without the question of the first time; for scripts
     #[arg(long, requires = "on")]
     pub(crate) yes: bool,
 }
 
 impl ControllerArguments {
+    /// Returns the terms on which programs are loaded.
+    pub(crate) fn terms(&self) -> LoadTerms {
+        LoadTerms { is_forced: self.force, verifies: self.verify, ..LoadTerms::default() }
+    }
+
     /// Refuses a controller in a command that has only simulated boards.
     pub(crate) fn refuse_in(&self, command: &str) -> Result<()> {
         ensure!(
             self.on.is_none(),
-            "`cc67 {command}` does not work with `--on` yet: `cc67 run`, `cc67 console` and `cc67 live` do"
+            "`cc67 {command}` does not work with `--on` yet: `cc67 run`, `cc67 console`, `cc67 live` and `cc67 debug` do"
         );
         Ok(())
     }

@@ -2,12 +2,23 @@
 //! process.
 
 use std::process;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
 use cc67_host::Interrupter;
 
 use super::exit::Exit;
+
+/// Lets Ctrl-C set a flag, which whoever runs takes; again before it is taken, it ends the process.
+pub(crate) fn sets(flag: &Arc<AtomicBool>) -> Result<()> {
+    let flag = Arc::clone(flag);
+    set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            process::exit(Exit::Interrupted as i32);
+        }
+    })
+}
 
 /// Lets Ctrl-C, or a request to terminate, end a run.
 pub(crate) fn ends(run: Interrupter) -> Result<()> {
@@ -16,7 +27,11 @@ pub(crate) fn ends(run: Interrupter) -> Result<()> {
         true => process::exit(Exit::Interrupted as i32),
         false => run.interrupt(),
     };
-    match ctrlc::set_handler(end) {
+    set_handler(end)
+}
+
+fn set_handler(handler: impl FnMut() + Send + 'static) -> Result<()> {
+    match ctrlc::set_handler(handler) {
         // An earlier run of this process has set one.
         Ok(()) | Err(ctrlc::Error::MultipleHandlers) => Ok(()),
         Err(error) => Err(error).context("cannot take Ctrl-C"),

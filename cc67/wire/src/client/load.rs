@@ -140,6 +140,17 @@ impl Client {
         Ok(())
     }
 
+    /// Stores bytes in the memory of the board, byte by byte: a program that reads a word meanwhile may find half of it.
+    ///
+    /// # Errors
+    /// The board refuses it or does not answer.
+    pub fn store(&mut self, address: u32, bytes: &[u8]) -> Result<(), WireError> {
+        for (piece, at) in bytes.chunks(PIECE).zip((address..).step_by(PIECE)) {
+            self.send_piece(at, piece)?;
+        }
+        Ok(())
+    }
+
     /// Sends one block, and waits until the board has taken all of it.
     fn send_piece(&mut self, address: u32, bytes: &[u8]) -> Result<(), WireError> {
         let command = format!("LOADDATA {address:X} {:X}", bytes.len());

@@ -211,12 +211,13 @@ impl Client {
         Ok(())
     }
 
-    /// Starts the program of a thread.
+    /// Starts the programs of threads by one line, which the board executes without a break.
     ///
     /// # Errors
     /// The board does not answer.
-    pub fn execute(&mut self, thread: ThreadId) -> Result<(), WireError> {
-        self.command(&format!("Execute{thread}"))
+    pub fn execute(&mut self, threads: &[ThreadId]) -> Result<(), WireError> {
+        let commands: Vec<_> = threads.iter().map(|thread| format!("Execute{thread}")).collect();
+        if commands.is_empty() { Ok(()) } else { self.command(&commands.join(";")) }
     }
 
     /// Returns the present status of the board.

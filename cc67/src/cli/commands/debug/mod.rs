@@ -2,15 +2,17 @@
 
 mod terminal;
 
+use std::cell::RefCell;
 use std::ffi::OsString;
 use std::io::{self, BufReader, Write};
 use std::net::{Ipv4Addr, TcpListener};
 use std::path::PathBuf;
+use std::rc::Rc;
 
 use anyhow::{Context, Result};
 use cc67_debug::dap::{self, Launch};
 use cc67_debug::{Debugger, Said, Shell};
-use cc67_host::AnyTarget;
+use cc67_host::{AnyTarget, Capability, Target};
 use clap::{Args, Parser};
 use kmotiondef::Ticks;
 use kmotiondef::limits::TIMEBASE;
@@ -88,7 +90,10 @@ impl LaunchArguments {
 
 /// Debugs programs.
 pub(super) fn debug(arguments: &DebugArguments) -> Result<Exit> {
-    arguments.board.controller.refuse_in("debug")?;
+    anyhow::ensure!(
+        arguments.board.controller.on.is_none() || arguments.dap.is_none() && arguments.listen.is_none(),
+        "`--dap` and `--listen` do not work with `--on`: an editor has nothing to stop there"
+    );
     anyhow::ensure!(
         arguments.programs.is_empty() || arguments.dap.is_none() && arguments.listen.is_none(),
         "with `--dap` and `--listen` the editor names the programs: leave them out"
@@ -103,29 +108,61 @@ pub(super) fn debug(arguments: &DebugArguments) -> Result<Exit> {
         (None, Some(port)) => return listen(arguments, port, false),
         (None, None) => {}
     }
+    if arguments.board.controller.on.is_some() {
+        let Some(setup) = setup(arguments)? else { return Ok(Exit::Failure) };
+        return converse(Debugger::new(setup.controller_for_debugger()?, limit(arguments)), arguments);
+    }
     let Some(debugger) = debugger(arguments)? else { return Ok(Exit::Failure) };
-    let mut shell = Shell::new(debugger);
+    converse(debugger, arguments)
+}
+
+/// Takes commands from a file or a person.
+fn converse<T: Target + 'static>(debugger: Debugger<T>, arguments: &DebugArguments) -> Result<Exit> {
+    let shell = Shell::new(debugger);
     for why in shell.debugger().programs().unknown() {
         screen::note(&why);
     }
-    match &arguments.batch {
-        Some(path) => batch(&mut shell, path),
-        None => terminal::talk(shell),
+    let shell = Rc::new(RefCell::new(shell));
+    let exit = match &arguments.batch {
+        Some(path) => batch(&mut shell.borrow_mut(), path),
+        None => terminal::talk(&shell),
+    };
+    note_active(&shell.borrow());
+    exit
+}
+
+/// Notes what continues on a target whose time passes by itself.
+fn note_active<T: Target>(shell: &Shell<T>) {
+    let session = shell.debugger().session();
+    if session.can(Capability::StopTime) {
+        return;
     }
+    let programs = session.programs().iter().map(|program| program.thread);
+    let programs = programs.filter(|_| session.target().lost().is_none());
+    for thread in programs.filter(|thread| session.thread(*thread).is_active()) {
+        screen::note(&format!("thread {thread} continues on the controller; `kill {thread}` stops it"));
+    }
+}
+
+/// What the arguments ask for; `None` if a program has errors, which have been reported.
+fn setup(arguments: &DebugArguments) -> Result<Option<Setup>> {
+    let started = Started { programs: &arguments.programs, first: &arguments.beside.first };
+    Setup::new(started, &arguments.board, &arguments.compiler)
+}
+
+/// The tick at which a run ends at the latest.
+fn limit(arguments: &DebugArguments) -> Ticks {
+    Ticks::new((arguments.limit.unwrap_or(LIMIT) / TIMEBASE).round() as u64)
 }
 
 /// A debugger of the programs; `None` if one has errors, which have been reported.
 fn debugger(arguments: &DebugArguments) -> Result<Option<Debugger<AnyTarget>>> {
-    let started = Started { programs: &arguments.programs, first: &arguments.beside.first };
-    let setup = Setup::new(started, &arguments.board, &arguments.compiler)?;
-    let Some(setup) = setup else { return Ok(None) };
-    let session = setup.for_debugger()?;
-    let limit = Ticks::new((arguments.limit.unwrap_or(LIMIT) / TIMEBASE).round() as u64);
-    Ok(Some(Debugger::new(session, limit)?))
+    let Some(setup) = setup(arguments)? else { return Ok(None) };
+    Ok(Some(Debugger::new(setup.for_debugger()?, limit(arguments))))
 }
 
 /// Does the commands of a file.
-fn batch(shell: &mut Shell<AnyTarget>, path: &std::path::Path) -> Result<Exit> {
+fn batch<T: Target>(shell: &mut Shell<T>, path: &std::path::Path) -> Result<Exit> {
     let text =
         if path.as_os_str() == "-" { io::read_to_string(io::stdin())?.into_bytes() } else { read(path)? };
     for line in String::from_utf8_lossy(&text).lines() {

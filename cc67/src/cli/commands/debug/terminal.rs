@@ -4,10 +4,11 @@ use std::borrow::Cow;
 use std::cell::RefCell;
 use std::io::{self, IsTerminal};
 use std::rc::Rc;
+use std::sync::Arc;
 
 use anyhow::{Context as _, Result};
 use cc67_debug::{Said, Shell};
-use cc67_host::AnyTarget;
+use cc67_host::Target;
 use rustyline::completion::{Completer, Pair};
 use rustyline::error::ReadlineError;
 use rustyline::highlight::Highlighter;
@@ -18,24 +19,26 @@ use rustyline::{Context, Editor, Helper};
 
 use super::show;
 use crate::cli::io::exit::Exit;
-use crate::cli::io::output;
+use crate::cli::io::{interrupt, output};
 
 const PROMPT: &str = "(cc67) ";
 
 /// Takes commands until the end of the input.
-pub(super) fn talk(shell: Shell<AnyTarget>) -> Result<Exit> {
+pub(super) fn talk<T: Target + 'static>(shell: &Rc<RefCell<Shell<T>>>) -> Result<Exit> {
     if !io::stdin().is_terminal() {
-        let mut shell = shell;
         for line in io::stdin().lines() {
-            if !obey(&mut shell, &line?)? {
+            if !obey(&mut shell.borrow_mut(), &line?)? {
                 break;
             }
         }
         return Ok(Exit::Success);
     }
-    let shell = Rc::new(RefCell::new(shell));
-    let mut editor: Editor<Guide, DefaultHistory> = Editor::new().context("no terminal to edit lines on")?;
-    editor.set_helper(Some(Guide(Rc::clone(&shell))));
+    let flag = Arc::default();
+    interrupt::sets(&flag)?;
+    shell.borrow_mut().interrupted_by(flag);
+    let mut editor: Editor<Guide<T>, DefaultHistory> =
+        Editor::new().context("no terminal to edit lines on")?;
+    editor.set_helper(Some(Guide(Rc::clone(shell))));
     loop {
         match editor.readline(PROMPT) {
             Ok(line) => {
@@ -52,7 +55,7 @@ pub(super) fn talk(shell: Shell<AnyTarget>) -> Result<Exit> {
 }
 
 /// Does what a line says; whether there may be another one.
-fn obey(shell: &mut Shell<AnyTarget>, line: &str) -> Result<bool> {
+fn obey<T: Target>(shell: &mut Shell<T>, line: &str) -> Result<bool> {
     match shell.command(line, &mut |text| show(text)) {
         Ok(Said::Text(text)) => output::print(&text)?,
         Ok(Said::Quit) => return Ok(false),
@@ -62,9 +65,9 @@ fn obey(shell: &mut Shell<AnyTarget>, line: &str) -> Result<bool> {
 }
 
 /// Completes commands and what programs name.
-struct Guide(Rc<RefCell<Shell<AnyTarget>>>);
+struct Guide<T: Target>(Rc<RefCell<Shell<T>>>);
 
-impl Completer for Guide {
+impl<T: Target> Completer for Guide<T> {
     type Candidate = Pair;
 
     fn complete(&self, line: &str, at: usize, _: &Context<'_>) -> rustyline::Result<(usize, Vec<Pair>)> {
@@ -76,16 +79,16 @@ impl Completer for Guide {
     }
 }
 
-impl Hinter for Guide {
+impl<T: Target> Hinter for Guide<T> {
     type Hint = String;
 }
 
-impl Highlighter for Guide {
+impl<T: Target> Highlighter for Guide<T> {
     fn highlight_prompt<'b, 's: 'b, 'p: 'b>(&'s self, prompt: &'p str, _: bool) -> Cow<'b, str> {
         Cow::Borrowed(prompt)
     }
 }
 
-impl Validator for Guide {}
+impl<T: Target> Validator for Guide<T> {}
 
-impl Helper for Guide {}
+impl<T: Target> Helper for Guide<T> {}

@@ -1,0 +1,61 @@
+//! A controller that answers, before it is given programs.
+
+use cc67_host::{HostError, Session, Setup};
+use cc67_wire::{Address, Client, Progress, WireError};
+use kmotiondef::ThreadId;
+use kmotiondef::boards::TargetBoard;
+
+use crate::controller::Controller;
+use crate::terms::LoadTerms;
+
+/// A controller that answers, before it is given programs.
+#[derive(Debug)]
+pub struct ControllerLink(Client);
+
+impl ControllerLink {
+    /// Connects to the controller at an address.
+    ///
+    /// # Errors
+    /// There is none, it may not be opened, or it does not answer.
+    pub fn open(address: &Address) -> Result<Self, WireError> {
+        Client::connect(address).map(Self)
+    }
+
+    /// Returns the controller's own words for its firmware.
+    #[must_use]
+    pub fn version(&self) -> &str {
+        self.0.version()
+    }
+
+    /// Returns the place of the controller, for messages.
+    #[must_use]
+    pub fn place(&self) -> &str {
+        self.0.place()
+    }
+
+    /// Returns the board whose firmware this is; `None` for a version that is not known.
+    #[must_use]
+    pub fn board(&self) -> Option<&'static TargetBoard> {
+        TargetBoard::of_version(self.version().trim_end())
+    }
+
+    /// Loads the programs of a setup and starts those that should be started.
+    ///
+    /// Of the setup the controller takes the programs, the values of `persist.UserData`, and the PC's files. `progress` is
+    /// called after each piece of a download.
+    ///
+    /// # Errors
+    /// A program is refused, a value is not in `persist.UserData`, or the link fails.
+    pub fn session(
+        self,
+        setup: Setup,
+        terms: LoadTerms,
+        progress: impl FnMut(ThreadId, Progress) + Send + 'static,
+    ) -> Result<Session<Controller>, HostError> {
+        let Setup { config, options, programs, offered, values, .. } = setup;
+        let mut target = Controller::new(self.0, &options, terms, Box::new(progress));
+        target.serve(config.files, config.answers);
+        target.begin(&programs, &values)?;
+        Ok(Session::on_target(target, options, programs, offered))
+    }
+}

@@ -1,0 +1,97 @@
+//! The threads of the board, as far as they are known: their programs, and their states at the last status record.
+
+use std::sync::Arc;
+
+use kmotiondef::ThreadId;
+use runtime::debug::DebugInfo;
+use vm::thread::{Progress, ThreadState};
+
+/// A thread.
+#[derive(Debug)]
+struct BoardThread {
+    state: ThreadState,
+    /// Names and lines of the program that was loaded here.
+    program: Option<Arc<DebugInfo>>,
+    /// It was active before the connection, and has not ended since.
+    is_foreign: bool,
+    /// It was paused here.
+    is_paused: bool,
+}
+
+/// The threads of a board.
+#[derive(Debug)]
+pub(crate) struct BoardThreads([BoardThread; ThreadId::MAX as usize]);
+
+impl BoardThreads {
+    /// Knows nothing of any thread.
+    pub(crate) fn new() -> Self {
+        let empty =
+            |_| BoardThread { state: ThreadState::Empty, program: None, is_foreign: false, is_paused: false };
+        Self(std::array::from_fn(empty))
+    }
+
+    /// The state of a thread.
+    pub(crate) const fn state(&self, thread: ThreadId) -> &ThreadState {
+        &self.0[thread.index()].state
+    }
+
+    /// The program that was loaded into a thread.
+    pub(crate) fn program(&self, thread: ThreadId) -> Option<&DebugInfo> {
+        self.0[thread.index()].program.as_deref()
+    }
+
+    /// Returns whether a thread is active that was started here.
+    pub(crate) fn has_own_active(&self) -> bool {
+        self.0.iter().any(|thread| thread.state.is_active() && !thread.is_foreign)
+    }
+
+    /// The threads without a program of ours that are not active.
+    pub(crate) fn free(&self) -> Vec<ThreadId> {
+        let is_free = |thread: &ThreadId| self.program(*thread).is_none() && !self.state(*thread).is_active();
+        ThreadId::all().filter(is_free).collect()
+    }
+
+    /// Notes that the threads which are active now were started by somebody else.
+    pub(crate) fn note_foreign(&mut self) {
+        for thread in &mut self.0 {
+            thread.is_foreign = thread.state.is_active();
+        }
+    }
+
+    /// Notes whether a thread is active.
+    pub(crate) fn note(&mut self, thread: ThreadId, is_active: bool) {
+        let thread = &mut self.0[thread.index()];
+        thread.state = match is_active {
+            true => ThreadState::Active(Progress::Going),
+            false if thread.is_paused => ThreadState::Paused(Progress::Going),
+            false if thread.program.is_some() => ThreadState::Ready,
+            false => ThreadState::Empty,
+        };
+        thread.is_foreign = thread.is_foreign && is_active;
+    }
+
+    /// Notes that a program was loaded.
+    pub(crate) fn note_loaded(&mut self, thread: ThreadId, program: DebugInfo) {
+        self.0[thread.index()].program = Some(Arc::new(program));
+        self.note_stopped(thread);
+    }
+
+    /// Notes that a thread was started here.
+    pub(crate) fn note_started(&mut self, thread: ThreadId) {
+        let known = &mut self.0[thread.index()];
+        (known.is_foreign, known.is_paused) = (false, false);
+        self.note(thread, true);
+    }
+
+    /// Notes that a thread was stopped.
+    pub(crate) fn note_stopped(&mut self, thread: ThreadId) {
+        self.0[thread.index()].is_paused = false;
+        self.note(thread, false);
+    }
+
+    /// Notes that a thread was paused, or continues.
+    pub(crate) fn note_paused(&mut self, thread: ThreadId, is_paused: bool) {
+        self.0[thread.index()].is_paused = is_paused;
+        self.note(thread, !is_paused);
+    }
+}
