@@ -73,6 +73,18 @@ pub struct Probe {
     has_locals: bool,
 }
 
+/// The reason why there is no probe.
+enum ProbeError {
+    /// The text is not an expression.
+    Invalid(String),
+    /// It is one, but what it names cannot be read.
+    Unreadable(String),
+}
+
+fn not_an_expression() -> ProbeError {
+    ProbeError::Invalid("not an expression".to_owned())
+}
+
 /// The text inserted before and after an expression.
 const BEFORE: &str = "\n;{ ";
 const BEHIND: &str = "\n; }\n";
@@ -92,10 +104,16 @@ impl Model {
         let line = place.map_or(1, |place| place.line);
         let expression = &with_line(expression, line);
         on_large_stack(|| {
-            let whole = self.probe_as(place, &format!("&(\n{expression}\n)"), items, true);
-            whole.or_else(|_| self.probe_as(place, &format!("(\n{expression}\n)"), items, false))
+            match self.probe_as(place, &format!("&(\n{expression}\n)"), items, true) {
+                // It may be a value without an address.
+                Err(ProbeError::Invalid(_)) => {
+                    self.probe_as(place, &format!("(\n{expression}\n)"), items, false)
+                }
+                whole => whole,
+            }
         })
         .map_err(|error| error.message)?
+        .map_err(|(ProbeError::Invalid(text) | ProbeError::Unreadable(text))| text)
     }
 
     fn probe_as(
@@ -104,7 +122,7 @@ impl Model {
         expression: &str,
         items: &[&str],
         is_address: bool,
-    ) -> Result<Probe, String> {
+    ) -> Result<Probe, ProbeError> {
         let items_text: String = items.iter().map(|item| format!("extern double {item}; ")).collect();
         let inserted = format!("{BEFORE}{items_text}{expression}{BEHIND}");
         let mut text = self.text.clone();
@@ -141,19 +159,19 @@ impl Model {
         locals: &[LocalModel],
         items: &[&str],
         is_address: bool,
-    ) -> Result<Probe, String> {
+    ) -> Result<Probe, ProbeError> {
         let mut context = CompileContext::default();
         let request = CompileRequest { path: &self.path, options: &self.options, files: &Disk };
         let Front { main, mut unit } = request.front(text, &mut context);
         let CompileContext { sources, names, sink } = context;
         let error = sink.diagnostics().iter().find(|diagnostic| diagnostic.severity == Severity::Error);
         if let Some(error) = error {
-            return Err(watch::in_one_line(error));
+            return Err(ProbeError::Invalid(watch::in_one_line(error)));
         }
         let start = sources.file(main).start;
         let range = start + inserted.start..start + inserted.end;
         let index = unit.functions.iter().position(|function| unit.symbols[function.symbol].name == name);
-        let index = index.ok_or("not an expression")?;
+        let index = index.ok_or_else(not_an_expression)?;
         let function = &unit.functions[index];
         let mut found = None;
         function.each_stmt(&mut |stmt| {
@@ -163,7 +181,7 @@ impl Model {
                 found.get_or_insert(id);
             }
         });
-        let mut value = found.ok_or("not an expression")?;
+        let mut value = found.ok_or_else(not_an_expression)?;
         while let ExprKind::Convert(inner) = function.exprs[value].kind {
             if function.exprs[value].ty != Types::VOID {
                 break;
@@ -173,14 +191,15 @@ impl Model {
         let locals = locals_of(locals, function, &sources, start);
         let symbols = self.image.symbols.iter().filter(|entry| entry.kind == EntryKind::Object);
         let symbols = symbols.map(|entry| (entry.name.clone(), GuestAddr::new(entry.address))).collect();
-        let named = watch::meanings(&unit, index, value, &symbols, &self.options, items)?;
+        let named = watch::meanings(&unit, index, value, &symbols, &self.options, items)
+            .map_err(ProbeError::Unreadable)?;
         let function = &unit.functions[index];
         if is_address
             && let ExprKind::Address(place) = function.exprs[value].kind
             && let PlaceKind::Symbol(symbol, _) = function.places[place].kind
             && matches!(named.meanings.get(&symbol), Some(watch::Meaning::Item(_)))
         {
-            return Err("an item of the board has no address".to_owned());
+            return Err(ProbeError::Invalid("an item of the board has no address".to_owned()));
         }
         let function = unit.functions.swap_remove(index);
         let expression = Expression::new(function, value, named.meanings);
@@ -362,8 +381,18 @@ impl Probe {
     fn why(&self, reader: &dyn DebugReader) -> String {
         let missing =
             self.locals.values().find(|local| self.names_local(local) && reader.local(local).is_none());
-        missing
-            .map_or_else(|| "it has no value: it divides by 0".to_owned(), |local| optimised_out(&local.name))
+        if let Some(local) = missing {
+            return optimised_out(&local.name);
+        }
+        let function = self.expression.function();
+        let unknown = function.places.values().find_map(|place| match place.kind {
+            PlaceKind::Local(id, _) if !self.locals.contains_key(&id) => Some(&function.locals[id].name),
+            _ => None,
+        });
+        unknown.map_or_else(
+            || "it has no value: it divides by 0".to_owned(),
+            |name| format!("where the local `{name}` is in this code is not noted; variables outside of functions have values"),
+        )
     }
 
     /// Reports whether the expression mentions a local.
