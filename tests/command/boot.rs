@@ -69,6 +69,47 @@ fn a_program_prints_the_same_on_the_real_firmware_and_the_model() {
     assert!(compare.stdout.contains("equal"), "{compare:?}");
 }
 
+#[test]
+fn random_scenarios_need_a_firmware_file_and_no_program() {
+    let scratch = scratch("boot-random-none");
+    assert_refused(&cc67(&scratch, ["compare", "--random"]), "needs `--boot FILE`");
+    let both = cc67(&scratch, ["compare", "--boot", "x.out", "--random=moves", "hello.c"]);
+    assert_eq!(both.code, 2, "{both:?}");
+    assert!(both.stderr.contains("cannot be used with"), "{both:?}");
+    let unknown = cc67(&scratch, ["compare", "--boot", "x.out", "--random=weather"]);
+    assert!(unknown.stderr.contains("commands, moves, paths, servo, outputs, threads, text"), "{unknown:?}");
+}
+
+/// Two hundred an area where `CC67_LONG` is set. What differs is shown and kept; how much does is for a person to judge.
+#[test]
+fn random_scenarios_are_drawn_reduced_and_kept() {
+    let Some(file) = firmware() else { return };
+    let count = if harness::is_long() { "200" } else { "2" };
+    let scratch = Scratch::new("boot-random");
+    let compare =
+        cc67(&scratch, ["compare", "--boot", &file, "--random", "--count", count, "--keep", "found.jsonl"]);
+    print!("{}", compare.stdout);
+    let table = compare.stdout.split_once("area ").map(|(_, table)| table.lines().skip(1)).expect("a table");
+    let rows: Vec<Vec<&str>> = table.map(|row| row.split_whitespace().collect()).collect();
+    let areas: Vec<_> = rows.iter().map(|row| row[0]).collect();
+    assert_eq!(areas, ["commands", "moves", "paths", "servo", "outputs", "threads", "text"]);
+    assert!(rows.iter().all(|row| row[2] == count), "{rows:?}");
+    let different = rows.iter().map(|row| number(row[2]) - number(row[1])).sum::<usize>();
+    let kept = fs::read_to_string(scratch.path().join("found.jsonl")).unwrap_or_default();
+    assert_eq!(kept.lines().count(), different, "each that differs is kept");
+    assert!(kept.lines().all(|line| line.starts_with('{') && line.contains("\"note\":")), "{kept}");
+    assert_eq!(compare.code, if different == 0 { 0 } else { 5 }, "{compare:?}");
+    let again = cc67(&scratch, ["compare", "--boot", &file, "--random=moves", "--count", "2"]);
+    assert!(
+        compare.stdout.contains(again.stdout.split("area ").next().expect("text")),
+        "a seed is a scenario"
+    );
+}
+
+fn number(text: &str) -> usize {
+    text.parse().expect("a number")
+}
+
 /// A thousand where `CC67_LONG` is set. A motion whose planning ends about the end of a tick begins in another tick on the
 /// two boards, as they agree on what planning costs within a tenth: one in twenty programs may end a little elsewhere.
 #[test]

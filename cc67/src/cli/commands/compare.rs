@@ -2,9 +2,11 @@
 //!
 //! Each program runs on both boards from the same start, with the machine, the stimulus and the options that are beside
 //! it. Compared are console, replies and what the PC does line by line, expectations, the board time of each line within
-//! a tolerance, `persist.UserData`, where the axes end, and the pins that are outputs.
+//! a tolerance, `persist.UserData`, where the axes end, and the pins that are outputs. Instead of programs, random
+//! scenarios can be compared, see [`random`].
 
 mod outcome;
+mod random;
 
 use std::ffi::OsString;
 use std::fmt::Write as _;
@@ -25,12 +27,13 @@ use crate::cli::io::{output, terminal};
 use crate::cli::report::numbers::Tolerance;
 use crate::cli::session::{Rig, Setup, Started, Work, boot};
 use outcome::Outcome;
+use random::RandomArguments;
 
 /// Arguments of `cc67 compare`.
 #[derive(Debug, Args)]
 pub(super) struct CompareArguments {
     /// Programs, each run separately on both boards; `1:A+2:B` is one run of two programs
-    #[arg(required = true, value_name = "PROGRAM")]
+    #[arg(required_unless_present = "random", value_name = "PROGRAM", conflicts_with = "random")]
     programs: Vec<OsString>,
     /// Stop each run after SECONDS of board time
     #[arg(long = "for", alias = "until", value_name = "SECONDS", value_parser = seconds, default_value = "10")]
@@ -47,6 +50,8 @@ pub(super) struct CompareArguments {
     /// Also fail on board times beyond the tolerance
     #[arg(long)]
     strict_times: bool,
+    #[command(flatten)]
+    random: RandomArguments,
     #[command(flatten)]
     beside: BesideArguments,
     #[command(flatten)]
@@ -82,6 +87,9 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<Exit> {
     };
     arguments.refuse()?;
     let firmware = boot(file)?;
+    if arguments.random.is_requested() {
+        return arguments.random.compare(&firmware);
+    }
     let mut table = String::new();
     let mut verdicts = Vec::new();
     for program in &arguments.programs {

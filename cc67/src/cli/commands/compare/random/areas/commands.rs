@@ -1,0 +1,131 @@
+//! Script commands with arguments of all kinds, some misspelled.
+
+use runtime::commands::{Argument, COMMANDS};
+
+use super::Writer;
+use crate::cli::commands::compare::random::draw::Draw;
+
+/// Commands that are not drawn: they stop or restart the board, wait for data of the PC, need a program, or send what the boards
+/// hold from the time before.
+const LEFT_OUT: &[&str] = &[
+    "CheckDoneGather",
+    "ClearFlashImage",
+    "EntryPoint",
+    "Execute",
+    "Flash",
+    "GatherMove",
+    "GatherStep",
+    "GetGather",
+    "GetGatherDec",
+    "GetGatherHex",
+    "GetInject",
+    "GetStatus",
+    "Inject",
+    "LoadData",
+    "LoadFlash",
+    "ProgFlashImage",
+    "ReadDiskData",
+    "Reboot!",
+    "RS232",
+    "SetFROwRate",
+    "SetFROwRateTemp",
+    "SetGatherDec",
+    "SetGatherHex",
+    "SetRapidFROwRate",
+    "SetStartupThread",
+    "USB",
+    "FPGA",
+    "FPGAW",
+    "ADC",
+    "GetVirtualBits",
+    "Echo",
+];
+
+/// Draws a scenario.
+pub(super) fn draw(writer: &mut Writer) {
+    let axes = 1 + writer.draw.below(3);
+    for axis in 0..axes {
+        writer.line(format!("InputMode{axis}=0;OutputMode{axis}=0;EnableAxisDest{axis} 0"));
+    }
+    for _ in 0..6 + writer.draw.below(8) {
+        let line = command(&mut writer.draw);
+        writer.line(line);
+        if writer.draw.chance(20) {
+            let seconds = writer.draw.magnitude(0.002, 0.05);
+            writer.line(format!("(run {seconds:?})"));
+        }
+    }
+    for axis in 0..axes {
+        writer.line(format!("Dest{axis}"));
+        writer.line(format!("CheckDone{axis}"));
+    }
+    for line in ["GetStopState", "ExecTime", "CheckDoneBuf"] {
+        writer.line(line);
+    }
+}
+
+fn command(draw: &mut Draw) -> String {
+    let known: Vec<_> = COMMANDS.iter().filter(|command| !LEFT_OUT.contains(&command.name)).collect();
+    let command = draw.pick(&known);
+    let mut line = command.name.to_owned();
+    if draw.chance(15) {
+        line = if draw.chance(50) { line.to_ascii_uppercase() } else { line.to_ascii_lowercase() };
+    }
+    let mut is_first = true;
+    for argument in command.arguments {
+        if draw.chance(2) {
+            continue;
+        }
+        match argument {
+            Argument::Assign if draw.chance(30) => return ended(draw, line),
+            // `Enabled0=1` stops the board.
+            Argument::Assign if command.name == "Enabled" => return ended(draw, line),
+            Argument::Assign | Argument::Equals => line += draw.pick(&["=", "=", " = ", "= ", " ="]),
+            Argument::OptionalEquals => line += draw.pick(&["=", " ", " = "]),
+            Argument::Integer(..)
+            | Argument::Real
+            | Argument::Limited(..)
+            | Argument::Hex
+            | Argument::OptionalHex => {
+                if !is_first || draw.chance(40) {
+                    line += draw.pick(&[" ", " ", " ", "  "]);
+                }
+                line += &value(draw, *argument);
+            }
+        }
+        is_first = false;
+    }
+    ended(draw, line)
+}
+
+/// A line with what may be after its arguments.
+fn ended(draw: &mut Draw, mut line: String) -> String {
+    if draw.chance(10) {
+        line += draw.pick(&[" ", " 1", "x", "=", "  2 3", ";Dest0"]);
+    }
+    line
+}
+
+fn value(draw: &mut Draw, argument: Argument) -> String {
+    if draw.chance(4) {
+        return draw.pick(&["", "-", "+", "abc", "1e9", "-1", "99999", "0.5", "."]).to_owned();
+    }
+    match argument {
+        Argument::Integer(low, high) => {
+            let high = if low == 0 && high == 7 { 2 } else { high };
+            if draw.chance(5) { (high + 1).to_string() } else { draw.integer(low, high).to_string() }
+        }
+        Argument::Limited(low, high) => {
+            let high = f64::from(high).min(1e4);
+            format!("{}", draw.real(f64::from(low).max(-high), high))
+        }
+        Argument::Hex | Argument::OptionalHex => {
+            let number = draw.real(-10.0, 10.0) as f32;
+            format!("{:X}", if draw.chance(80) { number.to_bits() } else { draw.below(256) })
+        }
+        Argument::Real | Argument::Equals | Argument::OptionalEquals | Argument::Assign => {
+            let number = draw.signed(0.001, 100.0);
+            if draw.chance(30) { draw.integer(0, 9).to_string() } else { format!("{number}") }
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! A scenario: what is done on a board, in parts that can be left out one by one.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+
+/// Where a part is done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    /// A line that the PC sends; `(run S)`: S seconds pass.
+    Line,
+    /// A declaration outside of the functions of the program in thread 1.
+    Head,
+    /// A statement before anything is observed.
+    Start,
+    /// A statement in the servo interrupt, before it is observed.
+    Tick,
+    /// A statement in a slice of a thread's program.
+    Slice { thread: u8, slice: u32 },
+}
+
+/// A part of a scenario: a line or a statement.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Part {
+    pub(super) place: Place,
+    pub(super) text: String,
+}
+
+/// When a program looks at the columns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Observed {
+    /// Never; what it prints is all.
+    Printed,
+    /// In every so many slices.
+    Slices(u32),
+    /// In every servo interrupt from slice [`FIRST_TICK`] on.
+    Ticks,
+}
+
+/// The slice in which observation in the servo interrupt begins.
+const FIRST_TICK: u32 = 2;
+
+/// A scenario.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Scenario {
+    /// Its name: area and seed.
+    pub(super) name: String,
+    pub(super) parts: Vec<Part>,
+    /// Slices of the programs; none of lines that the PC sends.
+    pub(super) slices: u32,
+    pub(super) observed: Observed,
+    /// Expressions in C that are observed.
+    pub(super) columns: Vec<String>,
+}
+
+/// Words of the gather buffer before the samples: axes, variables of the path, states of the axes.
+pub(super) const SAMPLES: u32 = 2944;
+
+/// The declarations of every program that observes; the memory of a program is described in `tests/board/measured`.
+const HEAD: &str = "\
+int *g; double *r; int m; double *cs; double T0_; int dk_; int cbn; int k_;
+void *memcpy(void*,void*,int);
+void dcb_(void){ if(dk_==0){ memcpy(g,chan,3456); dk_=1; } }
+void dump(void){ int k; dk_=0; WaitNextTimeSlice(); UserCallBack=dcb_; while(dk_==0); UserCallBack=0;
+ for(k=0;k<8;k++) g[2900+k]=chan[k].pcoeff ? 1+(int)(chan[k].pcoeff-chan[k].c) : 0;
+ cs=(double*)(g+2784); cs[0]=CS0_t; cs[1]=CS0_TimeExecuted; cs[2]=CS0_TimeBase; cs[3]=CS0_TimeBaseDesired; cs[4]=CS0_TimeBaseDelta; cs[5]=CS0_TimeDownloaded; cs[6]=CS0_TimeLost; cs[7]=CS0_LastFRO; cs[8]=CS0_LastRapidFRO; cs[9]=CS0_DecelTime; cs[10]=CS0_NomDecel2TB2; cs[11]=CS0_StoppingState; cs[12]=CS0_Flushed; cs[13]=CS0_DoingRapid; cs[14]=(CoordSystem0!=0)?1+(CoordSystem0-ParametricCoeffs):0; cs[15]=(LastCoordSystem0!=0)?1+(LastCoordSystem0-ParametricCoeffs):0; cs[16]=ParametricIndex; cs[17]=ParametricIndexWrapped; cs[18]=KLP; cs[19]=TauKLP; cs[20]=VirtualBits; cs[21]=CheckDoneBuf(); cs[22]=CheckDoneXYZABC(); for(k=0;k<8;k++) cs[23+k]=CheckDone(k); cs[31]=VirtualBitsEx[0];
+}
+";
+
+impl Scenario {
+    /// Whether the PC sends lines to a board without programs.
+    pub(super) fn is_session(&self) -> bool {
+        self.slices == 0
+    }
+
+    fn at(&self, place: Place) -> impl Iterator<Item = &str> {
+        self.parts.iter().filter(move |part| part.place == place).map(|part| part.text.as_str())
+    }
+
+    /// The lines that the PC sends.
+    pub(super) fn lines(&self) -> impl Iterator<Item = &str> {
+        self.at(Place::Line)
+    }
+
+    /// The programs by their threads; that of thread 1 starts by itself.
+    pub(super) fn programs(&self) -> Vec<(u8, String)> {
+        if self.is_session() {
+            return Vec::new();
+        }
+        let threads: BTreeSet<u8> = self.parts.iter().filter_map(Part::thread).chain([1]).collect();
+        let text = |thread| if thread == 1 { self.main() } else { self.other(thread) };
+        threads.into_iter().map(|thread| (thread, text(thread))).collect()
+    }
+
+    /// Samples of a run.
+    pub(super) fn samples(&self) -> usize {
+        (match self.observed {
+            Observed::Printed => 0,
+            Observed::Slices(every) => self.slices.div_ceil(every),
+            // Two ticks a slice, and less than those that are there at the end.
+            Observed::Ticks => 2 * self.slices.saturating_sub(FIRST_TICK + 2),
+        }) as usize
+    }
+
+    /// Slices between two samples, or ticks.
+    pub(super) fn samples_every(&self) -> usize {
+        match self.observed {
+            Observed::Printed | Observed::Ticks => 1,
+            Observed::Slices(every) => every as usize,
+        }
+    }
+
+    /// Statements in the slices of a thread.
+    fn slices_of(&self, thread: u8) -> String {
+        let mut text = String::new();
+        let mut slices: Vec<(u32, &str)> = self
+            .parts
+            .iter()
+            .filter_map(|part| match part.place {
+                Place::Slice { thread: other, slice } if other == thread => Some((slice, &*part.text)),
+                _ => None,
+            })
+            .collect();
+        slices.sort_by_key(|(slice, _)| *slice);
+        for (slice, statement) in slices {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "   if(n=={slice}){{ {statement} }}");
+        }
+        text
+    }
+
+    fn main(&self) -> String {
+        let head: String = self.at(Place::Head).flat_map(|text| [text, "\n"]).collect();
+        let start: String = self.at(Place::Start).flat_map(|text| [" ", text, "\n"]).collect();
+        let slices = self.slices_of(1);
+        let count = self.slices;
+        if self.observed == Observed::Printed {
+            return format!(
+                "{head}int main(){{ int n;\n{start} for(n=0;n<{count};n++){{\n   WaitNextTimeSlice();\n{slices} }}\n persist.UserData[0]=1;\n return 0;\n}}\n"
+            );
+        }
+        let words = SAMPLES as usize + 2 * self.samples() * self.columns.len();
+        let (every, sample) = match self.observed {
+            Observed::Slices(every) => {
+                (every, self.columns.iter().map(|column| format!(" r[m++]={column};")).collect())
+            }
+            Observed::Ticks | Observed::Printed => (1, String::new()),
+        };
+        let (call_back, set, reset) = if self.observed == Observed::Ticks {
+            (self.call_back(), " UserCallBack=cb;\n", format!("   if(n=={FIRST_TICK}){{ cbn=0; }}\n"))
+        } else {
+            (String::new(), "", String::new())
+        };
+        format!(
+            "{HEAD}{head}{call_back}int main(){{ int n,i;\n g=(int*)gather_buffer; r=(double*)(g+{SAMPLES}); m=0; cbn=0; for(i=0;i<{words};i++) g[i]=0;\n{start}{set} Delay_sec(0.003); WaitNextTimeSlice(); T0_=ServoTick;\n for(n=0;n<{count};n++){{\n   WaitNextTimeSlice();\n{reset}{slices}   if(n%{every}==0){{{sample} }}\n }}\n dump(); persist.UserData[0]=1;\n return 0;\n}}\n"
+        )
+    }
+
+    /// The function that observes in the servo interrupt.
+    fn call_back(&self) -> String {
+        let (count, samples) = (self.columns.len(), self.samples());
+        let statements: String = self.at(Place::Tick).flat_map(|text| [" ", text, "\n"]).collect();
+        let columns: String =
+            (0..).zip(&self.columns).map(|(at, column)| format!(" r[k_+{at}]={column};")).collect();
+        format!(
+            "void cb(void){{\n{statements} if(cbn<{samples}){{ k_=cbn*{count};{columns} }}\n cbn=cbn+1;\n}}\n"
+        )
+    }
+
+    /// The program of a thread that the first one starts.
+    fn other(&self, thread: u8) -> String {
+        let slices = self.slices_of(thread);
+        format!(
+            "int main(){{ int n;\n for(n=0;n<{};n++){{\n{slices}   WaitNextTimeSlice();\n }}\n return 0;\n}}\n",
+            self.slices
+        )
+    }
+}
+
+impl Part {
+    /// The part in a line, with its place.
+    pub(super) fn shown(&self) -> String {
+        let text = self.text.lines().next().unwrap_or_default();
+        match self.place {
+            Place::Line | Place::Start => text.to_owned(),
+            // Functions of all scenarios of an area.
+            Place::Head => format!("{text:.60} …"),
+            Place::Tick => format!("every tick: {text}"),
+            Place::Slice { thread: 1, slice } => format!("slice {slice}: {text}"),
+            Place::Slice { thread, slice } => format!("thread {thread}, slice {slice}: {text}"),
+        }
+    }
+
+    /// The thread whose slices it is in.
+    fn thread(&self) -> Option<u8> {
+        match self.place {
+            Place::Slice { thread, .. } => Some(thread),
+            Place::Line | Place::Head | Place::Start | Place::Tick => None,
+        }
+    }
+}

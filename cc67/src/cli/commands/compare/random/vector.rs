@@ -1,0 +1,72 @@
+//! A scenario and what the firmware did as a line of JSON: what tests ask of the model afterwards, without the firmware.
+
+use serde_json::{Map, Value as Json, json};
+
+use super::outcome::{Difference, Outcome};
+use super::scenario::Scenario;
+
+/// Samples of a vector.
+const MOST_SAMPLES: usize = 24;
+
+/// The vector of a scenario: all that the firmware sent, some samples and those that differ from the model's, and what differs at the
+/// end.
+pub(super) fn vector(
+    scenario: &Scenario,
+    difference: &Difference,
+    model: &Outcome,
+    firmware: &Outcome,
+) -> Json {
+    let mut vector = Map::new();
+    let note = format!("{}: {} on the model of that day", difference.what, difference.model);
+    if scenario.is_session() {
+        let exchange = scenario.lines().zip(&firmware.texts).map(|(line, answer)| json!([line, answer]));
+        vector.insert("session".to_owned(), json!(scenario.name));
+        vector.insert("exchange".to_owned(), exchange.collect());
+        vector.insert("note".to_owned(), json!(note));
+        return Json::Object(vector);
+    }
+    vector.insert("name".to_owned(), json!(scenario.name));
+    let programs = scenario.programs();
+    let program = match programs.as_slice() {
+        [(_, only)] => json!(only),
+        several => {
+            Json::Object(several.iter().map(|(thread, text)| (thread.to_string(), json!(text))).collect())
+        }
+    };
+    vector.insert("program".to_owned(), program);
+    let console: String = firmware.texts.iter().flat_map(|line| [line, "\n"]).collect();
+    vector.insert("console".to_owned(), json!(console));
+    if !scenario.columns.is_empty() {
+        let columns = scenario.columns.iter().map(String::as_str);
+        vector.insert("columns".to_owned(), ["n (slice of the loop)"].into_iter().chain(columns).collect());
+        vector.insert("rows".to_owned(), rows(scenario, model, firmware));
+    }
+    let ends = model.different_ends(firmware).map(|end| end.what.trim_start_matches("end ").to_owned());
+    let ends: Vec<String> = ends.collect();
+    let values = firmware.end.iter().filter(|value| ends.contains(&value.name));
+    let at_end: Map<String, Json> = values.map(|value| (value.name.clone(), json!(value.value))).collect();
+    if !at_end.is_empty() {
+        vector.insert("at_end".to_owned(), Json::Object(at_end));
+    }
+    vector.insert("note".to_owned(), json!(note));
+    Json::Object(vector)
+}
+
+/// Samples all over the run, and the first that differ.
+fn rows(scenario: &Scenario, model: &Outcome, firmware: &Outcome) -> Json {
+    let every = firmware.rows.len().div_ceil(MOST_SAMPLES / 2).max(1);
+    let pairs = model.rows.iter().zip(&firmware.rows);
+    let different: Vec<usize> = pairs
+        .enumerate()
+        .filter(|(_, (one, two))| one != two)
+        .map(|(at, _)| at)
+        .take(MOST_SAMPLES / 2)
+        .collect();
+    let is_kept = |at: usize| at.is_multiple_of(every) || different.contains(&at);
+    let rows = firmware.rows.iter().enumerate().filter(|(at, _)| is_kept(*at));
+    rows.map(|(at, row)| {
+        let slice = [(at * scenario.samples_every()) as f64];
+        slice.iter().chain(row).map(|value| json!(value)).collect::<Json>()
+    })
+    .collect()
+}
