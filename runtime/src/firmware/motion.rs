@@ -503,7 +503,6 @@ fn begin_jog(
     }
     // At rest there is nothing to stop. What counts is whether a motion is executed, not its speed.
     if velocity == 0.0 && !has_motion(caller.memory, axis) {
-        caller.memory.set_axis(axis, Chan::LAST_MOTION_TYPE, LastMotion::Jog.get());
         return Outcome::Done(());
     }
     if velocity != 0.0 && caller.woken.is_none() {
@@ -555,7 +554,13 @@ pub(crate) fn move_exp(
         b: x,
         ..state(memory, axis, 0)
     };
+    // It has no time: that of a motion before stays.
+    let t = memory.axis(axis, Chan::T);
+    if !has_motion(memory, axis) {
+        memory.set_axis(axis, Chan::LAST_VEL, 0.0);
+    }
     run(memory, axis, &[first]);
+    memory.set_axis(axis, Chan::T, t);
     memory.set_axis(axis, Chan::LAST_MOTION_TYPE, LastMotion::Exp.get());
     memory.set_axis(axis, Chan::LAST_MOTION_DEST, x);
     Outcome::Done(())

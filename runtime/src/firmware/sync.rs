@@ -30,9 +30,11 @@ pub(crate) fn mutex_lock(
 
 /// The word of a lock after it is taken; `None` if another thread has it.
 ///
-/// The word is the owner's number plus one. Anything that is no other thread's identity counts as free.
+/// The word is the owner's number plus one. The board looks for the owner's bit by a shift, whose count has six bits: a word
+/// that shifts all out counts as free.
 fn owned(word: i32, own: i32) -> Option<i32> {
-    let is_taken = ThreadId::new(word - 1).is_some() && word != own + 1;
+    const COUNT: i32 = 63;
+    let is_taken = word.wrapping_sub(1) & COUNT < 32 && word != own + 1;
     (!is_taken).then_some(own + 1)
 }
 
@@ -146,9 +148,9 @@ mod tests {
     #[test]
     fn a_lock_waits_for_other_threads_only() {
         let address = PERSIST.address();
-        for (owner, taken) in
-            [(0, true), (2, true), (100, true), (-1, true), (3, false), (8, false), (9, true)]
-        {
+        let free = [0, 2, 33, 64, 100, -1].map(|owner| (owner, true));
+        let taken = [3, 8, 9, 32, 65, 855].map(|owner| (owner, false));
+        for (owner, taken) in free.into_iter().chain(taken) {
             let mut desk = Desk::new();
             desk.memory.poke(address, owner);
             assert_eq!(desk.is_done("MutexLock", &[address.get().into()]), taken, "{owner}");

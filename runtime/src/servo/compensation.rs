@@ -1,6 +1,7 @@
 //! The servo compensation: dead band, PID, feed forward and three filters.
 //!
-//! Source: axes-and-motion.md section 10. Memories are singles, as their fields are.
+//! Source: axes-and-motion.md section 10. The board computes in singles from the error on; the order of its operations is that of
+//! the expressions here, measured with random gains and filters.
 
 use kmotiondef::Field;
 use kmotiondef::limits::TIMEBASE;
@@ -12,17 +13,17 @@ use crate::views::AxisView;
 
 /// Limits `value` to ±`limit`, which is not below 0; what is not a number stays so.
 #[inline(always)]
-fn clamp(value: f64, limit: f64) -> f64 {
+fn clamp(value: f32, limit: f32) -> f32 {
     let value = if limit < value { limit } else { value };
     if -limit > value { -limit } else { value }
 }
 
 /// The error after the dead band.
-fn dead_band(error: f64, range: f64, gain: f64) -> f64 {
+fn dead_band(error: f32, range: f32, gain: f32) -> f32 {
     if error.abs() <= range {
         gain * error
     } else {
-        error - libm::copysign(1.0, error) * range * (1.0 - gain)
+        error - libm::copysignf(1.0, error) * (range * (1.0 - gain))
     }
 }
 
@@ -36,28 +37,28 @@ pub(crate) fn advance(
     is_exponential: bool,
 ) -> f32 {
     let position = chan.get(Chan::POSITION);
-    let mut error = command - position;
+    let mut error = (command - position) as f32;
     if let Some((range, slope)) = gains.dead_band {
         error = dead_band(error, range, slope);
     }
     let error = clamp(error, gains.max_err);
-    let sum = f64::from(chan.get(Chan::INTEGRATOR)) + gains.i * error;
-    let integrator = clamp(sum, gains.max_i) as f32;
+    let integrator = clamp(chan.get(Chan::INTEGRATOR) + gains.i * error, gains.max_i);
     chan.set(Chan::INTEGRATOR, integrator);
     let moved = position - chan.get(Chan::LAST_POSITION);
     chan.set(Chan::LAST_POSITION, position);
-    let moved = if gains.derives_error { moved - own.velocity * TIMEBASE } else { moved };
-    let pid = gains.p * error + f64::from(integrator) - gains.d * moved;
+    let moved = if gains.derives_error { moved - f64::from(own.velocity) * TIMEBASE } else { moved };
+    let pid = gains.p * error + integrator - gains.d * moved as f32;
     let [first, second, last] = &gains.filters;
     let filtered = filter(chan, Chan::IIR.element(0), first, pid);
     let filtered = filter(chan, Chan::IIR.element(1), second, filtered);
     // The feed forward sees the destination alone, without backlash and offset.
     let mut forward = gains.ff_vel * own.velocity;
     if gains.ff_accel != 0.0 && !is_exponential {
-        forward += gains.ff_accel * ((own.velocity - own.last_velocity) / TIMEBASE);
+        let change = f64::from(own.velocity - own.last_velocity);
+        forward += gains.ff_accel * (change / TIMEBASE) as f32;
     }
     let filtered = filter(chan, Chan::IIR.element(2), last, filtered + forward);
-    let output = clamp(filtered, gains.max_output) as f32;
+    let output = clamp(filtered, gains.max_output);
     let last = chan.get(Chan::OUTPUT);
     chan.set(Chan::PREV_OUTPUT, last);
     chan.set(Chan::OUTPUT, output);
@@ -66,19 +67,17 @@ pub(crate) fn advance(
 
 /// One tick of a second-order filter, direct form II.
 #[inline(always)]
-fn filter(chan: &mut AxisView<'_>, iir: Field<Iir>, filter: &Filter, input: f64) -> f64 {
+fn filter(chan: &mut AxisView<'_>, iir: Field<Iir>, filter: &Filter, input: f32) -> f32 {
     let (d0, d1) = (chan.get(iir.field(Iir::D0)), chan.get(iir.field(Iir::D1)));
     chan.set(iir.field(Iir::D1), d0);
     // What is no number, or infinite, comes through factors of 0 too.
     if filter.is_plain && (d0 + d1).is_finite() {
-        chan.set(iir.field(Iir::D0), input as f32);
+        chan.set(iir.field(Iir::D0), input);
         return input;
     }
-    let (d0, d1) = (f64::from(d0), f64::from(d1));
-    let inner = input + filter.a1 * d0 + filter.a2 * d1;
-    let output = filter.b0 * inner + filter.b1 * d0 + filter.b2 * d1;
-    chan.set(iir.field(Iir::D0), inner as f32);
-    output
+    let inner = input + (filter.a1 * d0 + filter.a2 * d1);
+    chan.set(iir.field(Iir::D0), inner);
+    filter.b0 * inner + (filter.b1 * d0 + filter.b2 * d1)
 }
 
 #[cfg(test)]

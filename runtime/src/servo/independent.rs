@@ -156,9 +156,9 @@ fn enter(memory: &mut GuestMemory, axis: AxisId) -> bool {
                 chan.set(Chan::PCOEFF, current.offset(TripCoeff::SIZE * next.index as u32));
             }
         }
-        Step::Ended => {
+        Step::Ended(t) => {
             chan.set(Chan::PCOEFF, GuestAddr::NULL);
-            chan.set(Chan::T, 0.0);
+            chan.set(Chan::T, t);
             return memory.block::<{ TripCoeff::SIZE as usize }>(current).is_some();
         }
     }

@@ -249,8 +249,6 @@ fn run_axis(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId) -> bool
     let moves = direction(own, &mut chan);
     if plan.has_backlash {
         backlash::advance(&mut chan);
-    } else {
-        chan.set(Chan::BACKLASH, 0.0);
     }
     let command = command(&chan);
     if limits::may_act(&chan, plan) || !plan.is_open_loop && limits::follows_badly(&mut chan, plan, command) {
@@ -285,6 +283,7 @@ fn put_out(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, command:
     } else {
         let moved = chan.get(Chan::POSITION) - chan.get(Chan::LAST_POSITION);
         own.response += f64::from(chan.get(Chan::OUTPUT)) * moved;
+        own.moved = moved;
         compensation::advance(own, &plan.gains, &mut chan, command, is_exponential)
     };
     chan.set(Chan::PREV_DEST, chan.get(Chan::DEST));
@@ -309,7 +308,7 @@ fn direction(own: &mut AxisMemory, chan: &mut AxisView<'_>) -> bool {
     if dest == last {
         own.velocity = 0.0;
     } else {
-        own.velocity = (dest - last) / TIMEBASE;
+        own.velocity = ((dest - last) / TIMEBASE) as f32;
         sign = i32::from(dest > last) - i32::from(dest < last);
         // The first tick of a direction counts as standing still.
         goes_on = sign != 0 && chan.get(Chan::LAST_NON_ZERO_DIR) == sign;
@@ -317,7 +316,7 @@ fn direction(own: &mut AxisMemory, chan: &mut AxisView<'_>) -> bool {
             chan.set(Chan::LAST_NON_ZERO_DIR, sign);
         }
     }
-    chan.set(Chan::LAST_VEL, own.velocity as f32);
+    chan.set(Chan::LAST_VEL, own.velocity);
     chan.set(Chan::DIRECTION_OF_MOTION, if goes_on { sign } else { 0 });
     own.velocity != 0.0 || own.last_velocity != 0.0
 }

@@ -9,7 +9,7 @@ use kmotiondef::variables::DAC_BUFFER;
 use kmotiondef::{AxisId, Field};
 use vm::memory::GuestMemory;
 
-use super::sine::{QUARTER, sine};
+use super::sine::{QUARTER, THIRD, sine};
 use super::state::Tick;
 use crate::io::amplifiers::{antiphase, current, store_pwm};
 use crate::machine::wiring::{DACS, channel_of};
@@ -23,6 +23,9 @@ const SNAP_AMP: i32 = 8;
 const VECTOR_STEPS: f32 = 360.0;
 /// Marks a word of a brushless vector; the magnitude is in the low half.
 const VECTOR: u32 = 0x8000_0000;
+
+/// Ticks of its motion by which a brushless motor of four phases is led.
+const FOUR_PHASE_LEAD: f64 = 1.33;
 
 /// Outputs one tick of an enabled axis.
 #[inline(always)]
@@ -58,13 +61,13 @@ fn drive_otherwise(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, 
         // The load of a closed loop is where the axis' command is; the correction is for real mechanics.
         Some(OutputMode::StepDir | OutputMode::ClosedLoopStepDir) => Drive::Steps(command),
         Some(OutputMode::Microstep) => {
-            let gain = f64::from(chan.get(Chan::OUTPUT_GAIN));
-            let angle = gain * stepped_to(&chan);
+            let angle = stepped_to(&chan);
             microstep(memory, axis, angle);
             Drive::Steps(command)
         }
         Some(OutputMode::ClosedLoopMicrostep) => {
-            let angle = stepped_to(&chan) + f64::from(output);
+            let gain = chan.get(Chan::OUTPUT_GAIN);
+            let angle = stepped_to(&chan) + f64::from(gain * output);
             microstep(memory, axis, angle);
             Drive::Steps(command)
         }
@@ -130,11 +133,13 @@ fn turn(
 ) -> Option<Applied> {
     let chan = AxisView::of(memory, axis);
     let (angle, channel) = (phase(&chan), chan.get(Chan::OUTPUT_CHAN0));
-    check_commutation(tick, axis, angle, chan.get(Chan::INV_DIST_PER_CYCLE));
+    let cycles = chan.get(Chan::INV_DIST_PER_CYCLE);
+    check_commutation(tick, axis, angle, cycles);
     if mode == OutputMode::Brushless3Ph {
         three_phase(memory, axis, output, angle);
     } else {
-        four_phase(memory, axis, output, angle);
+        let turned = tick.servo.axes[axis.index()].moved * cycles;
+        four_phase(memory, axis, output, angle + FOUR_PHASE_LEAD * turned);
     }
     let magnitude = f64::from(output.clamp(-MAXV, MAXV));
     (!is_faulted(tick, channel)).then_some(Applied::Vector(magnitude, angle))
@@ -190,40 +195,56 @@ fn note_overwritten(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId) {
     }
 }
 
-/// Sine and cosine currents with lead compensation.
+/// Sine and cosine currents, with lead compensation on the channels of the board.
 fn microstep(memory: &mut GuestMemory, axis: AxisId, position: f64) {
     let angle = position * memory.axis(axis, Chan::INV_DIST_PER_CYCLE);
     let amplitude = memory.axis(axis, Chan::STEPPER_AMPLITUDE);
     let lead = memory.axis(axis, Chan::LEAD);
+    let leads = memory.axis(axis, Chan::OUTPUT_CHAN0) < SNAP_AMP;
     let phases: [(f32, Field<f32>, Field<i32>); 2] = [
         (amplitude * sine(angle, 0), Chan::X1_LAST, Chan::OUTPUT_CHAN0),
         (amplitude * sine(angle, QUARTER), Chan::X2_LAST, Chan::OUTPUT_CHAN1),
     ];
     for (value, last, channel) in phases {
-        let led = value + (value - memory.axis(axis, last)) * lead;
-        memory.set_axis(axis, last, value);
+        let mut led = value;
+        if leads {
+            led += (value - memory.axis(axis, last)) * lead;
+            memory.set_axis(axis, last, value);
+        }
         let channel = memory.axis(axis, channel);
-        store_pwm(memory, channel, pwm(channel, libm::roundf(led) as i32));
+        store_pwm(memory, channel, pwm(channel, libm::rintf(led) as i32));
     }
 }
 
-/// Applies a three-phase vector, whose angle is in cycles: the phases are the amplifier's.
+/// Applies a three-phase vector, whose angle is in cycles: the phases are the amplifier's. On the board its magnitude is limited;
+/// the loops of a SnapAmp have limits of their own, and the phases are remembered.
 pub(crate) fn three_phase(memory: &mut GuestMemory, axis: AxisId, v: f32, angle: f64) {
-    let value = v.clamp(-MAXV, MAXV) as i16;
-    let word = VECTOR | u32::from(value.cast_unsigned());
     let channel = memory.axis(axis, Chan::OUTPUT_CHAN0);
+    let is_snap_amp = channel >= SNAP_AMP;
+    let value = libm::rintf(if is_snap_amp { v } else { v.clamp(-MAXV, MAXV) }) as i16;
+    let word = VECTOR | u32::from(value.cast_unsigned());
     store_pwm(memory, channel, word.cast_signed());
-    if channel >= SNAP_AMP {
-        let fraction = (angle - libm::floor(angle)) as f32;
-        store_pwm(memory, channel.wrapping_add(1), (fraction * VECTOR_STEPS) as i32);
+    let fraction = (angle - libm::floor(angle)) as f32;
+    store_pwm(memory, channel.wrapping_add(1), libm::rintf(fraction * VECTOR_STEPS) as i32);
+    if is_snap_amp {
+        memory.set_axis(axis, Chan::X1_LAST, v * sine(angle, 0));
+        memory.set_axis(axis, Chan::X2_LAST, v * sine(angle, THIRD));
     }
 }
 
-/// Applies a vector to two coils a quarter of a cycle apart; the angle is in cycles. Each coil has its own limit.
+/// Applies a vector to two coils a quarter of a cycle apart; the angle is in cycles. Each coil has its own limit. The phases of
+/// the board's own channels are remembered.
 pub(crate) fn four_phase(memory: &mut GuestMemory, axis: AxisId, v: f32, angle: f64) {
-    let phases = [(sine(angle, 0), Chan::OUTPUT_CHAN0), (sine(angle, QUARTER), Chan::OUTPUT_CHAN1)];
-    for (value, channel) in phases {
+    let remembers = memory.axis(axis, Chan::OUTPUT_CHAN0) < SNAP_AMP;
+    let phases = [
+        (sine(angle, 0), Chan::OUTPUT_CHAN0, Chan::X1_LAST),
+        (sine(angle, QUARTER), Chan::OUTPUT_CHAN1, Chan::X2_LAST),
+    ];
+    for (value, channel, last) in phases {
         let channel = memory.axis(axis, channel);
-        store_pwm(memory, channel, pwm(channel, libm::roundf(v * value) as i32));
+        store_pwm(memory, channel, pwm(channel, libm::rintf(v * value) as i32));
+        if remembers {
+            memory.set_axis(axis, last, v * value);
+        }
     }
 }

@@ -43,28 +43,28 @@ pub(crate) struct Encoder {
 pub(crate) struct Filter {
     /// Whether it passes its input on, as at power-up; most do.
     pub(crate) is_plain: bool,
-    pub(crate) a1: f64,
-    pub(crate) a2: f64,
-    pub(crate) b0: f64,
-    pub(crate) b1: f64,
-    pub(crate) b2: f64,
+    pub(crate) a1: f32,
+    pub(crate) a2: f32,
+    pub(crate) b0: f32,
+    pub(crate) b1: f32,
+    pub(crate) b2: f32,
 }
 
 /// The compensation's settings.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Gains {
-    pub(crate) p: f64,
-    pub(crate) i: f64,
-    pub(crate) d: f64,
+    pub(crate) p: f32,
+    pub(crate) i: f32,
+    pub(crate) d: f32,
     /// True if the derivative gain acts on the error, not on the position alone.
     pub(crate) derives_error: bool,
-    pub(crate) max_i: f64,
-    pub(crate) max_err: f64,
-    pub(crate) max_output: f64,
-    pub(crate) ff_vel: f64,
-    pub(crate) ff_accel: f64,
+    pub(crate) max_i: f32,
+    pub(crate) max_err: f32,
+    pub(crate) max_output: f32,
+    pub(crate) ff_vel: f32,
+    pub(crate) ff_accel: f32,
     /// Half width and gain of the dead band, if there is one.
-    pub(crate) dead_band: Option<(f64, f64)>,
+    pub(crate) dead_band: Option<(f32, f32)>,
     pub(crate) filters: [Filter; 3],
 }
 
@@ -153,7 +153,7 @@ fn encoder(memory: &mut GuestMemory, wiring: &Wiring, axis: AxisId) -> Option<En
 
 #[inline(always)]
 fn gains(chan: &AxisView<'_>) -> Gains {
-    let gain = |field: Field<f32>| f64::from(chan.get(field));
+    let gain = |field: Field<f32>| chan.get(field);
     // A limit below 0, or one that is no number, lets nothing through.
     let limit = |field| gain(field).max(0.0);
     let (range, slope) = (gain(Chan::DEAD_BAND_RANGE), gain(Chan::DEAD_BAND_GAIN));
@@ -182,5 +182,5 @@ fn filter(chan: &AxisView<'_>, iir: Field<Iir>) -> Filter {
     let (a1, a2, b0, b1, b2) = (get(Iir::A1), get(Iir::A2), get(Iir::B0), get(Iir::B1), get(Iir::B2));
     let others = a1.to_bits() | a2.to_bits() | b1.to_bits() | b2.to_bits();
     let is_plain = others == 0 && b0.to_bits() == 1.0_f32.to_bits();
-    Filter { is_plain, a1: a1.into(), a2: a2.into(), b0: b0.into(), b1: b1.into(), b2: b2.into() }
+    Filter { is_plain, a1, a2, b0, b1, b2 }
 }

@@ -35,7 +35,7 @@ impl Axis {
                     self.dest = dest;
                     self.cursor = Some(next);
                 }
-                Step::Ended => self.cursor = None,
+                Step::Ended(_) => self.cursor = None,
             }
         }
         self.last_vel = ((self.dest - before) / TIMEBASE) as f32;

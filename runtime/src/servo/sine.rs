@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 
 /// Lines of a turn; what is a third and a quarter of one.
 const TURN: usize = 120;
-const THIRD: usize = TURN / 3;
+pub(crate) const THIRD: usize = TURN / 3;
 pub(crate) const QUARTER: usize = TURN / 4;
 /// Lines of the table, which reaches beyond a turn for what is ahead.
 const LINES: usize = TURN + THIRD + 1;

@@ -20,14 +20,16 @@ pub(crate) struct AxisMemory {
     /// Destination at the end of the last tick.
     pub(crate) dest: f64,
     /// Its velocity in the last tick, for the feed forward.
-    pub(super) velocity: f64,
+    pub(super) velocity: f32,
     /// Sum of output times motion since the axis was enabled: above 0 if the output moves the position in its own
     /// direction.
     pub(super) response: f64,
+    /// Change of the position in this tick.
+    pub(super) moved: f64,
     /// Whether the servo has run the axis since it was enabled.
     pub(super) has_run: bool,
     /// The velocity in the tick before.
-    pub(super) last_velocity: f64,
+    pub(super) last_velocity: f32,
     /// The analog output that the axis wrote in the last tick, and the word.
     pub(super) analog: Option<(usize, i16)>,
     /// What kind of motion of the axis a feedhold interrupted.

@@ -25,8 +25,7 @@ pub(crate) fn enable(
         memory.set_axis(axis, field, dest);
     }
     clear_filters(memory, axis);
-    memory.set_axis(axis, Chan::BACKLASH, 0.0);
-    memory.set_axis(axis, Chan::PREV_BACKLASH_DEST, dest as f32);
+    clear_backlash(memory, axis, dest);
     memory.set_axis(axis, Chan::LAST_NON_ZERO_DIR, 0);
     memory.set_axis(axis, Chan::DIRECTION_OF_MOTION, 0);
     memory.set_axis(axis, Chan::LAST_VEL, 0.0);
@@ -44,26 +43,34 @@ pub(crate) fn zero(servo: &mut Servo, machine: &mut Machine, memory: &mut GuestM
         f64::from(memory.axis(axis, Chan::COMMUTATION_OFFSET)) + memory.axis(axis, Chan::POSITION);
     memory.set_axis(axis, Chan::COMMUTATION_OFFSET, commutation as f32);
     memory.set_axis(axis, Chan::POSITION, 0.0);
-    let zeroed =
-        [Chan::DEST, Chan::UNFILTERED_DEST, Chan::LAST_DEST, Chan::PREV_DEST, Chan::LAST_FOLLOWING_ERROR];
-    zeroed.into_iter().for_each(|field| memory.set_axis(axis, field, 0.0));
+    for field in [Chan::DEST, Chan::LAST_DEST, Chan::PREV_DEST] {
+        memory.set_axis(axis, field, 0.0);
+    }
     clear_filters(memory, axis);
-    memory.set_axis(axis, Chan::LAST_VEL, 0.0);
     memory.set_axis(axis, Chan::LAST_NON_ZERO_DIR, 0);
     memory.set_axis(axis, Chan::DIRECTION_OF_MOTION, 0);
-    memory.set_axis(axis, Chan::PREV_BACKLASH_DEST, 0.0);
+    // An axis that is on is switched on again.
+    if memory.axis(axis, Chan::ENABLE) != 0 {
+        memory.set_axis(axis, Chan::LAST_VEL, 0.0);
+        clear_backlash(memory, axis, 0.0);
+    }
     output_nothing(memory, axis);
     servo.cache.invalidate(Change::Motion);
     servo.axes[axis.index()] = AxisMemory::rest(0.0);
     machine.loads[axis].refer_to(0.0);
 }
 
-/// Clears the filters of an axis and what the servo remembers of its motion.
+/// Clears what the compensation of an axis remembers; its feed forward continues.
 pub(crate) fn reset_filters(servo: &mut Servo, memory: &mut GuestMemory, axis: AxisId) {
     clear_filters(memory, axis);
-    let dest = memory.axis(axis, Chan::DEST);
     servo.cache.invalidate(Change::Motion);
-    servo.axes[axis.index()] = AxisMemory::rest(dest);
+}
+
+/// Takes backlash as compensated at a destination.
+fn clear_backlash(memory: &mut GuestMemory, axis: AxisId, dest: f64) {
+    memory.set_axis(axis, Chan::BACKLASH, 0.0);
+    memory.set_axis(axis, Chan::BACKLASH_DIRECTION, 0);
+    memory.set_axis(axis, Chan::PREV_BACKLASH_DEST, dest as f32);
 }
 
 /// Clears what the compensation remembers.

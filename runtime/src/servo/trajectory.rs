@@ -39,8 +39,8 @@ pub(crate) struct Approach {
 pub(crate) enum Step {
     /// The destination of this tick, and the place in the list where the next one begins.
     Moving(f64, Cursor),
-    /// The list has ended; the destination stays.
-    Ended,
+    /// The list has ended, and so much of a tick after its end this was; the destination stays.
+    Ended(f64),
 }
 
 /// Advances a motion by one tick; `state` reads the list, `approach` what only an exponential state needs.
@@ -53,9 +53,10 @@ pub(crate) fn step(
     let mut cursor = entered(cursor, &state);
     let current = state(cursor.index);
     let dest = match current.mode {
-        Mode::Off => return Step::Ended,
+        Mode::Off => return Step::Ended(cursor.t),
         Mode::Independent => current.at(cursor.t).x,
-        Mode::Exponential => exponential(&current, &approach()),
+        // It has no time of its own.
+        Mode::Exponential => return Step::Moving(exponential(&current, &approach()), cursor),
     };
     cursor.t += TIMEBASE;
     Step::Moving(dest, cursor)

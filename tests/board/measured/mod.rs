@@ -49,7 +49,6 @@ const NOT_YET: &[Exception] = &[
     rows_of("the firmware does here what the model does", &[20, 29]),
     rows_of("a motion towards its target against its motion", &[23, 57]),
     rows_of("moves at random", &[59, 61]),
-    rows_of("the last bit of a feed forward", &[65]),
 ];
 
 /// Rows that the firmware itself does not reproduce here.

@@ -5,7 +5,7 @@
 
 mod areas;
 mod draw;
-mod outcome;
+mod observation;
 mod reduce;
 mod scenario;
 mod vector;
@@ -23,7 +23,7 @@ use clap::Args;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::output;
 use areas::Area;
-use outcome::{Difference, Outcome, Subject};
+use observation::{Difference, Observation, Subject};
 use scenario::Scenario;
 
 /// Arguments for random scenarios.
@@ -120,12 +120,15 @@ impl RandomArguments {
     }
 }
 
-/// Plays a scenario on both boards; the first difference, and the outcomes of the model and of the firmware.
-fn compared(scenario: &Scenario, firmware: &BootedFirmware) -> Result<(Option<Difference>, [Outcome; 2])> {
+/// Plays a scenario on both boards; the first difference, and the observations of the model and of the firmware.
+fn compared(
+    scenario: &Scenario,
+    firmware: &BootedFirmware,
+) -> Result<(Option<Difference>, [Observation; 2])> {
     let play = |subject: Subject<'_>| subject.play(scenario).with_context(|| scenario.name.clone());
-    let outcomes = [play(Subject::Model)?, play(Subject::Firmware(firmware))?];
-    let difference = outcomes[0].difference(&outcomes[1], scenario);
-    Ok((difference, outcomes))
+    let observations = [play(Subject::Model)?, play(Subject::Firmware(firmware))?];
+    let difference = observations[0].difference(&observations[1], scenario);
+    Ok((difference, observations))
 }
 
 /// The quantity of a difference, the same for all axes and elements.

@@ -11,7 +11,7 @@ mod threads;
 use clap::ValueEnum;
 
 use super::draw::Draw;
-use super::scenario::{Observed, Part, Place, Scenario};
+use super::scenario::{Observed, Part, PartKind, Scenario};
 
 /// A part of the board's behaviour in which scenarios are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -52,7 +52,7 @@ impl Area {
 
     /// The scenario of a seed.
     pub(in crate::cli::commands::compare) fn scenario(self, seed: u64) -> Scenario {
-        let mut writer = Writer::new(self.name(), seed);
+        let mut writer = ScenarioWriter::new(self.name(), seed);
         match self {
             Self::Commands => commands::draw(&mut writer),
             Self::Moves => moves::draw(&mut writer),
@@ -67,14 +67,14 @@ impl Area {
 }
 
 /// Writes a scenario part by part.
-struct Writer {
+struct ScenarioWriter {
     draw: Draw,
     scenario: Scenario,
     /// The slice in which the next statement is.
     slice: u32,
 }
 
-impl Writer {
+impl ScenarioWriter {
     fn new(area: &str, seed: u64) -> Self {
         let scenario = Scenario {
             name: format!("{area} {seed}"),
@@ -86,30 +86,30 @@ impl Writer {
         Self { draw: Draw::new(area, seed), scenario, slice: 0 }
     }
 
-    fn part(&mut self, place: Place, text: impl Into<String>) {
-        self.scenario.parts.push(Part { place, text: text.into() });
+    fn part(&mut self, kind: PartKind, text: impl Into<String>) {
+        self.scenario.parts.push(Part { kind, text: text.into() });
     }
 
     fn line(&mut self, text: impl Into<String>) {
-        self.part(Place::Line, text);
+        self.part(PartKind::Line, text);
     }
 
     fn head(&mut self, text: impl Into<String>) {
-        self.part(Place::Head, text);
+        self.part(PartKind::Head, text);
     }
 
     fn start(&mut self, text: impl Into<String>) {
-        self.part(Place::Start, text);
+        self.part(PartKind::Start, text);
     }
 
     /// A statement in a slice some slices after the one before.
     fn later(&mut self, low: u32, high: u32, text: impl Into<String>) {
         self.slice += low + self.draw.below(high - low + 1);
         let slice = self.slice;
-        self.part(Place::Slice { thread: 1, slice }, text);
+        self.part(PartKind::Slice { thread: 1, slice }, text);
     }
 
-    /// Ends the program some slices after its last statement; it looks at the columns in every so many slices.
+    /// Ends the program some slices after its last statement; it looks at the columns in about 60 slices.
     fn observe_slices(&mut self, more: u32, columns: impl IntoIterator<Item = String>) {
         self.scenario.slices = self.slice + more;
         self.scenario.observed = Observed::Slices((self.scenario.slices / 60).max(1));
@@ -126,7 +126,7 @@ impl Writer {
 
 #[cfg(test)]
 mod tests {
-    use super::super::outcome::Subject;
+    use super::super::observation::Subject;
     use super::*;
 
     #[test]
@@ -135,9 +135,9 @@ mod tests {
             for seed in 0..4 {
                 let scenario = area.scenario(seed);
                 let played = Subject::Model.play(&scenario);
-                let outcome = played.unwrap_or_else(|error| panic!("{}: {error}", scenario.name));
-                assert!(outcome.difference(&outcome, &scenario).is_none());
-                assert_eq!(outcome.rows.len(), scenario.samples(), "{}", scenario.name);
+                let observation = played.unwrap_or_else(|error| panic!("{}: {error}", scenario.name));
+                assert!(observation.difference(&observation, &scenario).is_none());
+                assert_eq!(observation.rows.len(), scenario.samples(), "{}", scenario.name);
                 assert_eq!(area.scenario(seed), scenario);
             }
         }

@@ -30,7 +30,7 @@ impl Draw {
         low + self.below((high - low) as u32 + 1) as i32
     }
 
-    /// True in so many cases of a hundred.
+    /// True with a probability in percent.
     pub(super) fn chance(&mut self, percent: u32) -> bool {
         self.below(100) < percent
     }

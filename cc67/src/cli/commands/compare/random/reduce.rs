@@ -1,7 +1,7 @@
 //! The smallest scenario that still shows a difference.
 
-use super::outcome::Difference;
-use super::scenario::{Observed, Part, Place, Scenario};
+use super::observation::Difference;
+use super::scenario::{Observed, Part, PartKind, Scenario};
 
 /// Scenarios that are tried for one reduction at most.
 const MOST_TRIALS: usize = 120;
@@ -56,7 +56,7 @@ impl Reduction<'_> {
             let mut scenario = self.smallest.clone();
             // Functions that others call stay.
             let removed: Vec<Part> = scenario.parts.drain(begin..end).collect();
-            let is_needed = removed.iter().any(|part| part.place == Place::Head);
+            let is_needed = removed.iter().any(|part| part.kind == PartKind::Head);
             has_changed |= !is_needed && self.accept(scenario);
             end = begin;
         }
@@ -77,9 +77,9 @@ impl Reduction<'_> {
         if let Some(slices) = slice.map(|slice| slice + 2).filter(|slices| *slices < self.smallest.slices) {
             self.accept(Scenario { slices, ..self.smallest.clone() });
         }
-        let first = self.smallest.parts.iter().filter_map(|part| match part.place {
-            Place::Slice { slice, .. } => Some(slice),
-            Place::Line | Place::Head | Place::Start | Place::Tick => None,
+        let first = self.smallest.parts.iter().filter_map(|part| match part.kind {
+            PartKind::Slice { slice, .. } => Some(slice),
+            PartKind::Line | PartKind::Head | PartKind::Start | PartKind::Tick => None,
         });
         let Some(early) = first.min().map(|first| first.saturating_sub(4)).filter(|early| *early > 0) else {
             return;
@@ -87,7 +87,7 @@ impl Reduction<'_> {
         let mut scenario = self.smallest.clone();
         scenario.slices -= early.min(scenario.slices - 1);
         for part in &mut scenario.parts {
-            if let Place::Slice { slice, .. } = &mut part.place {
+            if let PartKind::Slice { slice, .. } = &mut part.kind {
                 *slice -= early;
             }
         }
@@ -105,7 +105,7 @@ mod tests {
 
     fn scenario(texts: &[&str]) -> Scenario {
         let part = |(slice, text): (u32, &&str)| Part {
-            place: Place::Slice { thread: 1, slice: 10 + slice },
+            kind: PartKind::Slice { thread: 1, slice: 10 + slice },
             text: (*text).to_owned(),
         };
         Scenario {
@@ -128,7 +128,7 @@ mod tests {
         let texts: Vec<_> = small.parts.iter().map(|part| part.text.as_str()).collect();
         assert_eq!(texts, ["b", "f"]);
         assert_eq!(small.slices, 8 * 5 + 2 - 7, "it ends soon, and begins early");
-        assert_eq!(small.parts[0].place, Place::Slice { thread: 1, slice: 4 });
+        assert_eq!(small.parts[0].kind, PartKind::Slice { thread: 1, slice: 4 });
     }
 
     #[test]

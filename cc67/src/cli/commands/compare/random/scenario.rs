@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-/// Where a part is done.
+/// The kind of a part: where it is done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum PartKind {
     /// A line that the PC sends; `(run S)`: S seconds pass.
     Line,
     /// A declaration outside of the functions of the program in thread 1.
@@ -21,7 +21,7 @@ pub(super) enum Place {
 /// A part of a scenario: a line or a statement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Part {
-    pub(super) place: Place,
+    pub(super) kind: PartKind,
     pub(super) text: String,
 }
 
@@ -30,7 +30,7 @@ pub(super) struct Part {
 pub(super) enum Observed {
     /// Never; what it prints is all.
     Printed,
-    /// In every so many slices.
+    /// In every nth slice.
     Slices(u32),
     /// In every servo interrupt from slice [`FIRST_TICK`] on.
     Ticks,
@@ -72,13 +72,13 @@ impl Scenario {
         self.slices == 0
     }
 
-    fn at(&self, place: Place) -> impl Iterator<Item = &str> {
-        self.parts.iter().filter(move |part| part.place == place).map(|part| part.text.as_str())
+    fn at(&self, kind: PartKind) -> impl Iterator<Item = &str> {
+        self.parts.iter().filter(move |part| part.kind == kind).map(|part| part.text.as_str())
     }
 
     /// The lines that the PC sends.
     pub(super) fn lines(&self) -> impl Iterator<Item = &str> {
-        self.at(Place::Line)
+        self.at(PartKind::Line)
     }
 
     /// The programs by their threads; that of thread 1 starts by itself.
@@ -115,8 +115,8 @@ impl Scenario {
         let mut slices: Vec<(u32, &str)> = self
             .parts
             .iter()
-            .filter_map(|part| match part.place {
-                Place::Slice { thread: other, slice } if other == thread => Some((slice, &*part.text)),
+            .filter_map(|part| match part.kind {
+                PartKind::Slice { thread: other, slice } if other == thread => Some((slice, &*part.text)),
                 _ => None,
             })
             .collect();
@@ -129,8 +129,8 @@ impl Scenario {
     }
 
     fn main(&self) -> String {
-        let head: String = self.at(Place::Head).flat_map(|text| [text, "\n"]).collect();
-        let start: String = self.at(Place::Start).flat_map(|text| [" ", text, "\n"]).collect();
+        let head: String = self.at(PartKind::Head).flat_map(|text| [text, "\n"]).collect();
+        let start: String = self.at(PartKind::Start).flat_map(|text| [" ", text, "\n"]).collect();
         let slices = self.slices_of(1);
         let count = self.slices;
         if self.observed == Observed::Printed {
@@ -158,7 +158,7 @@ impl Scenario {
     /// The function that observes in the servo interrupt.
     fn call_back(&self) -> String {
         let (count, samples) = (self.columns.len(), self.samples());
-        let statements: String = self.at(Place::Tick).flat_map(|text| [" ", text, "\n"]).collect();
+        let statements: String = self.at(PartKind::Tick).flat_map(|text| [" ", text, "\n"]).collect();
         let columns: String =
             (0..).zip(&self.columns).map(|(at, column)| format!(" r[k_+{at}]={column};")).collect();
         format!(
@@ -177,24 +177,24 @@ impl Scenario {
 }
 
 impl Part {
-    /// The part in a line, with its place.
+    /// The part in a line, with its slice.
     pub(super) fn shown(&self) -> String {
         let text = self.text.lines().next().unwrap_or_default();
-        match self.place {
-            Place::Line | Place::Start => text.to_owned(),
+        match self.kind {
+            PartKind::Line | PartKind::Start => text.to_owned(),
             // Functions of all scenarios of an area.
-            Place::Head => format!("{text:.60} …"),
-            Place::Tick => format!("every tick: {text}"),
-            Place::Slice { thread: 1, slice } => format!("slice {slice}: {text}"),
-            Place::Slice { thread, slice } => format!("thread {thread}, slice {slice}: {text}"),
+            PartKind::Head => format!("{text:.60} …"),
+            PartKind::Tick => format!("every tick: {text}"),
+            PartKind::Slice { thread: 1, slice } => format!("slice {slice}: {text}"),
+            PartKind::Slice { thread, slice } => format!("thread {thread}, slice {slice}: {text}"),
         }
     }
 
     /// The thread whose slices it is in.
     fn thread(&self) -> Option<u8> {
-        match self.place {
-            Place::Slice { thread, .. } => Some(thread),
-            Place::Line | Place::Head | Place::Start | Place::Tick => None,
+        match self.kind {
+            PartKind::Slice { thread, .. } => Some(thread),
+            PartKind::Line | PartKind::Head | PartKind::Start | PartKind::Tick => None,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value as Json, json};
 
-use super::outcome::{Difference, Outcome};
+use super::observation::{Difference, Observation};
 use super::scenario::Scenario;
 
 /// Samples of a vector.
@@ -13,8 +13,8 @@ const MOST_SAMPLES: usize = 24;
 pub(super) fn vector(
     scenario: &Scenario,
     difference: &Difference,
-    model: &Outcome,
-    firmware: &Outcome,
+    model: &Observation,
+    firmware: &Observation,
 ) -> Json {
     let mut vector = Map::new();
     let note = format!("{}: {} on the model of that day", difference.what, difference.model);
@@ -53,7 +53,7 @@ pub(super) fn vector(
 }
 
 /// Samples all over the run, and the first that differ.
-fn rows(scenario: &Scenario, model: &Outcome, firmware: &Outcome) -> Json {
+fn rows(scenario: &Scenario, model: &Observation, firmware: &Observation) -> Json {
     let every = firmware.rows.len().div_ceil(MOST_SAMPLES / 2).max(1);
     let pairs = model.rows.iter().zip(&firmware.rows);
     let different: Vec<usize> = pairs

@@ -2,7 +2,7 @@
 
 use runtime::commands::{Argument, COMMANDS};
 
-use super::Writer;
+use super::ScenarioWriter;
 use crate::cli::commands::compare::random::draw::Draw;
 
 /// Commands that are not drawn: they stop or restart the board, wait for data of the PC, need a program, or send what the boards
@@ -42,7 +42,7 @@ const LEFT_OUT: &[&str] = &[
 ];
 
 /// Draws a scenario.
-pub(super) fn draw(writer: &mut Writer) {
+pub(super) fn draw(writer: &mut ScenarioWriter) {
     let axes = 1 + writer.draw.below(3);
     for axis in 0..axes {
         writer.line(format!("InputMode{axis}=0;OutputMode{axis}=0;EnableAxisDest{axis} 0"));

@@ -1,9 +1,9 @@
 //! Moves and jogs of one to three axes, each in the midst of what was before.
 
-use super::Writer;
+use super::ScenarioWriter;
 
 /// Draws a scenario.
-pub(super) fn draw(writer: &mut Writer) {
+pub(super) fn draw(writer: &mut ScenarioWriter) {
     let count = 1 + writer.draw.below(3);
     let speeds: Vec<f64> = (0..count).map(|axis| set_up(writer, axis)).collect();
     if count > 1 && writer.draw.chance(20) {
@@ -29,7 +29,7 @@ pub(super) fn draw(writer: &mut Writer) {
 }
 
 /// Sets up an axis; its speed.
-fn set_up(writer: &mut Writer, axis: u32) -> f64 {
+fn set_up(writer: &mut ScenarioWriter, axis: u32) -> f64 {
     let speed = writer.draw.magnitude(5.0, 2000.0);
     let acceleration = speed * writer.draw.magnitude(8.0, 300.0);
     let jerk = acceleration * writer.draw.magnitude(10.0, 3000.0);
@@ -54,7 +54,7 @@ fn set_up(writer: &mut Writer, axis: u32) -> f64 {
     speed
 }
 
-fn statement(writer: &mut Writer, axis: u32, speed: f64) -> String {
+fn statement(writer: &mut ScenarioWriter, axis: u32, speed: f64) -> String {
     let draw = &mut writer.draw;
     let distance = speed * draw.signed(0.0002, 0.03);
     let speed = speed * draw.magnitude(0.05, 1.5);

@@ -1,10 +1,10 @@
 //! Outputs of an axis in all modes, writes to amplifiers and to bits.
 
-use super::Writer;
-use crate::cli::commands::compare::random::scenario::Place;
+use super::ScenarioWriter;
+use crate::cli::commands::compare::random::scenario::PartKind;
 
 /// Draws a scenario.
-pub(super) fn draw(writer: &mut Writer) {
+pub(super) fn draw(writer: &mut ScenarioWriter) {
     let mode = writer.draw.below(9);
     let input = writer.draw.pick(&["USER_INPUT_MODE", "USER_INPUT_MODE", "NO_INPUT_MODE"]);
     let channel = writer.draw.below(14);
@@ -17,7 +17,8 @@ pub(super) fn draw(writer: &mut Writer) {
     writer.start(format!("ch0->Position={position:?}; EnableAxisDest(0,{place:?});"));
     if writer.draw.chance(60) {
         let gain = writer.draw.magnitude(1e-5, 0.5);
-        writer.part(Place::Tick, format!("ch0->Position=ch0->Position+(ch0->Dest-ch0->Position)*{gain:?};"));
+        writer
+            .part(PartKind::Tick, format!("ch0->Position=ch0->Position+(ch0->Dest-ch0->Position)*{gain:?};"));
     }
     for _ in 0..1 + writer.draw.below(6) {
         let text = statement(writer, channel);
@@ -41,7 +42,7 @@ pub(super) fn draw(writer: &mut Writer) {
     writer.observe_ticks(more, columns.map(str::to_owned).into_iter().chain(outputs).collect::<Vec<_>>());
 }
 
-fn settings(writer: &mut Writer) {
+fn settings(writer: &mut ScenarioWriter) {
     let limits = [
         ("invDistPerCycle", 0.001, 1.0, 80),
         ("CommutationOffset", 0.1, 2000.0, 40),
@@ -68,7 +69,7 @@ fn settings(writer: &mut Writer) {
     }
 }
 
-fn statement(writer: &mut Writer, channel: u32) -> String {
+fn statement(writer: &mut ScenarioWriter, channel: u32) -> String {
     let draw = &mut writer.draw;
     let place = draw.signed(0.01, 60.0);
     let other = draw.below(16);

@@ -1,6 +1,6 @@
 //! Paths that a program builds in the buffer of segments, with overrides, feedhold and moves of their axes.
 
-use super::Writer;
+use super::ScenarioWriter;
 
 /// Functions that add a line, an arc, and a command to the buffer.
 const SEGMENTS: &str = "\
@@ -14,7 +14,7 @@ void begin(void){ CoordSystem0=0; ParametricIndex=0; ParametricIndexWrapped=0; C
 void iOpenBuf(void); void iExecBuf(void);";
 
 /// Draws a scenario.
-pub(super) fn draw(writer: &mut Writer) {
+pub(super) fn draw(writer: &mut ScenarioWriter) {
     writer.head(SEGMENTS);
     let count = 1 + writer.draw.below(3);
     for axis in 0..count {
@@ -56,7 +56,7 @@ pub(super) fn draw(writer: &mut Writer) {
 }
 
 /// Adds segments, each from the end of the one before; their duration in seconds.
-fn segments(writer: &mut Writer) -> f64 {
+fn segments(writer: &mut ScenarioWriter) -> f64 {
     let mut duration = 0.0;
     let mut place = [0.0; 3];
     for _ in 0..1 + writer.draw.below(7) {
@@ -85,7 +85,7 @@ fn segments(writer: &mut Writer) -> f64 {
     duration
 }
 
-fn statement(writer: &mut Writer, count: u32) -> String {
+fn statement(writer: &mut ScenarioWriter, count: u32) -> String {
     let draw = &mut writer.draw;
     let axis = draw.below(count);
     let factor = draw.pick(&[0.0, 0.1, 0.5, 0.73, 1.0, 1.4, 2.0, -0.5, -1.0]);

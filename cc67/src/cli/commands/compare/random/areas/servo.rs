@@ -1,10 +1,10 @@
 //! A servo with a motor that a call-back moves: gains, filters, feed forward, limits.
 
-use super::Writer;
-use crate::cli::commands::compare::random::scenario::Place;
+use super::ScenarioWriter;
+use crate::cli::commands::compare::random::scenario::PartKind;
 
 /// Draws a scenario.
-pub(super) fn draw(writer: &mut Writer) {
+pub(super) fn draw(writer: &mut ScenarioWriter) {
     let output = writer.draw.pick(&["NO_OUTPUT_MODE", "DC_SERVO_MODE", "DAC_SERVO_MODE", "DAC_SERVO_MODE"]);
     let channel = writer.draw.below(8);
     writer.head("double pl_v;");
@@ -35,7 +35,7 @@ pub(super) fn draw(writer: &mut Writer) {
     let (gain, friction) = (writer.draw.magnitude(1e-6, 0.05), writer.draw.real(0.0, 0.999));
     if writer.draw.chance(80) {
         let text = format!("pl_v=pl_v*{friction:?}+ch0->Output*{gain:?}; ch0->Position=ch0->Position+pl_v;");
-        writer.part(Place::Tick, text);
+        writer.part(PartKind::Tick, text);
     }
     for _ in 0..writer.draw.below(5) {
         let text = statement(writer);
@@ -49,7 +49,7 @@ pub(super) fn draw(writer: &mut Writer) {
 }
 
 /// Sets the gains, some of them, in single precision as programs do.
-fn gains(writer: &mut Writer) {
+fn gains(writer: &mut ScenarioWriter) {
     let limits = [
         ("P", 0.01, 100.0, 80),
         ("I", 1e-4, 1.0, 50),
@@ -75,7 +75,7 @@ fn gains(writer: &mut Writer) {
 }
 
 /// Sets a filter that is stable.
-fn set_filter(writer: &mut Writer, filter: u32) {
+fn set_filter(writer: &mut ScenarioWriter, filter: u32) {
     let draw = &mut writer.draw;
     let a2 = draw.real(-0.9, 0.9);
     let a1 = (1.0 - a2) * draw.real(-0.95, 0.95);
@@ -85,7 +85,7 @@ fn set_filter(writer: &mut Writer, filter: u32) {
     ));
 }
 
-fn statement(writer: &mut Writer) -> String {
+fn statement(writer: &mut ScenarioWriter) -> String {
     let draw = &mut writer.draw;
     let place = draw.signed(0.01, 60.0);
     match draw.below(12) {

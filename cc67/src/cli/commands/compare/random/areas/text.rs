@@ -1,13 +1,13 @@
 //! Formatted output and input, and conversions of numbers and texts.
 
-use super::Writer;
+use super::ScenarioWriter;
 use crate::cli::commands::compare::random::draw::Draw;
 
 /// Conversions that programs declare themselves.
 const HEAD: &str = "int sprintf(char*,char*,...); int sscanf(const char*,const char*,...); double strtod(const char*,char**); int strtol(const char*,char**,int); int atoi(const char*); int ltoa(int,char*); char *ecvt(double,int,int*,int*); char *fcvt(double,int,int*,int*); char b[400]; int i0,i1,i2; double d0,d1; float f0; char *e; void clear(void){ i0=-99; i1=-99; i2=-99; d0=-99; d1=-99; f0=-99; b[0]=0; }";
 
 /// Draws a scenario.
-pub(super) fn draw(writer: &mut Writer) {
+pub(super) fn draw(writer: &mut ScenarioWriter) {
     writer.head(HEAD);
     for _ in 0..8 {
         let text = match writer.draw.below(10) {

@@ -1,24 +1,24 @@
 //! Threads that start, pause and resume one another, that wait, count and lock.
 
-use super::Writer;
-use crate::cli::commands::compare::random::scenario::Place;
+use super::ScenarioWriter;
+use crate::cli::commands::compare::random::scenario::PartKind;
 
 /// A slice in which a thread has a lock, which nothing else stores to.
 const LOCKED: &str =
     "MutexLock(&persist.UserData[18]); WaitNextTimeSlice(); MutexUnlock(&persist.UserData[18]);";
 
 /// Draws a scenario.
-pub(super) fn draw(writer: &mut Writer) {
+pub(super) fn draw(writer: &mut ScenarioWriter) {
     let count = 1 + writer.draw.below(3);
     for thread in 2..2 + count as u8 {
         let mut slice = 0;
         for _ in 0..1 + writer.draw.below(5) {
             slice += writer.draw.below(12);
             let text = statement(writer, u32::from(thread), count);
-            writer.part(Place::Slice { thread, slice }, text);
+            writer.part(PartKind::Slice { thread, slice }, text);
         }
         let counts = format!("persist.UserData[{}]++;", 10 + thread);
-        writer.part(Place::Slice { thread, slice: 1 + slice }, counts);
+        writer.part(PartKind::Slice { thread, slice: 1 + slice }, counts);
         writer.later(1, 8, format!("StartThread({thread});"));
     }
     for _ in 0..1 + writer.draw.below(6) {
@@ -30,7 +30,7 @@ pub(super) fn draw(writer: &mut Writer) {
     writer.observe_slices(more, ["ServoTick-T0_".to_owned()].into_iter().chain(data).collect::<Vec<_>>());
 }
 
-fn statement(writer: &mut Writer, own: u32, count: u32) -> String {
+fn statement(writer: &mut ScenarioWriter, own: u32, count: u32) -> String {
     let draw = &mut writer.draw;
     let other = 2 + draw.below(count);
     let cell = 10 + draw.below(8);

@@ -1,4 +1,4 @@
-//! The outcome of a scenario on a board, and the first difference of two.
+//! The observation of a scenario on a board, and the first difference of two.
 
 use cc67_host::{BootedFirmware, HostError, Session, Setup, Target, UserProgram};
 use kmotiondef::structs::Chan;
@@ -63,9 +63,9 @@ pub(super) struct EndValue {
     is_single: bool,
 }
 
-/// The outcome of a scenario on a board.
+/// The observation of a scenario on a board.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Outcome {
+pub(super) struct Observation {
     /// Lines on the console, or the answer to each line.
     pub(super) texts: Vec<String>,
     /// The columns of each sample.
@@ -75,7 +75,7 @@ pub(super) struct Outcome {
     halted: Option<String>,
 }
 
-/// The first difference of two outcomes.
+/// The first difference of two observations.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Difference {
     /// The quantity: a column, a value at the end, a text.
@@ -95,7 +95,7 @@ pub(super) enum Subject<'f> {
 
 impl Subject<'_> {
     /// Plays a scenario on this board, from power-up.
-    pub(super) fn play(self, scenario: &Scenario) -> Result<Outcome, HostError> {
+    pub(super) fn play(self, scenario: &Scenario) -> Result<Observation, HostError> {
         let mut setup = Setup::default();
         setup.options.timing = Timing::VENDOR;
         if let Self::Firmware(firmware) = self {
@@ -117,19 +117,19 @@ impl Subject<'_> {
 }
 
 /// Plays a scenario on a board that has its programs.
-fn played<T: Target>(session: &mut Session<T>, scenario: &Scenario) -> Outcome {
-    let mut outcome = Outcome::default();
+fn played<T: Target>(session: &mut Session<T>, scenario: &Scenario) -> Observation {
+    let mut observation = Observation::default();
     if scenario.is_session() {
         session.tap_wire();
         for line in scenario.lines() {
-            outcome.texts.push(answer(session, line));
+            observation.texts.push(answer(session, line));
         }
-        return outcome;
+        return observation;
     }
     let mut hear = |event: Event| match event.kind {
-        EventKind::ConsoleLine(line) => outcome.texts.push(String::from_utf8_lossy(&line).into_owned()),
-        EventKind::Halted(text) => outcome.halted = Some(text),
-        EventKind::Trap(trap) => outcome.halted = Some(trap.to_string()),
+        EventKind::ConsoleLine(line) => observation.texts.push(String::from_utf8_lossy(&line).into_owned()),
+        EventKind::Halted(text) => observation.halted = Some(text),
+        EventKind::Trap(trap) => observation.halted = Some(trap.to_string()),
         _ => {}
     };
     let limit = Ticks::new(LONGEST);
@@ -138,13 +138,13 @@ fn played<T: Target>(session: &mut Session<T>, scenario: &Scenario) -> Outcome {
     }
     session.advance(Ticks::new(session.tick().get() + TO_THE_END), &mut hear);
     if session.user_data(0) != Some(1) {
-        let reason = outcome.halted.take().unwrap_or_default();
-        outcome.halted = Some(format!("did not end {reason}").trim_end().to_owned());
-        return outcome;
+        let reason = observation.halted.take().unwrap_or_default();
+        observation.halted = Some(format!("did not end {reason}").trim_end().to_owned());
+        return observation;
     }
-    outcome.halted = None;
-    outcome.look_at(session, scenario);
-    outcome
+    observation.halted = None;
+    observation.look_at(session, scenario);
+    observation
 }
 
 /// Sends a line, or lets time pass; what came back.
@@ -158,7 +158,7 @@ fn answer<T: Target>(session: &mut Session<T>, line: &str) -> String {
     String::from_utf8_lossy(&session.take_wire()).into_owned()
 }
 
-impl Outcome {
+impl Observation {
     /// Takes up what a program has left in memory.
     fn look_at<T: Target>(&mut self, session: &Session<T>, scenario: &Scenario) {
         let data = (1..USER_DATA).filter_map(|index| Some((index, session.user_data(index)?)));
