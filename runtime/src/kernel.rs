@@ -136,18 +136,19 @@ impl Kernel {
         if caller.now() >= self.parts.calls.notices.due {
             self.settle_notices(caller.now());
         }
-        let Attributes { polls, drives_axis, .. } = &FIRMWARE_FUNCTIONS[number].attributes;
+        let Attributes { polls, drives_axis, is_pure, .. } = &FIRMWARE_FUNCTIONS[number].attributes;
         let calls = &mut self.parts.calls.waits;
         match (caller.thread, *polls) {
             (Some(thread), Some(state)) => calls.look(thread, state, caller),
-            (Some(thread), None) => calls.act(thread, caller.now()),
-            (None, _) => {}
+            // An engine may compute the pure ones without asking the firmware.
+            (Some(thread), None) if !is_pure => calls.act(thread, caller.now()),
+            (Some(_) | None, _) => {}
         }
         if *drives_axis && let Some(axis) = AxisId::new(caller.arguments.get(0)) {
             calls.touch(axis);
         }
         if let Some(assist) = &mut self.parts.world.assist {
-            assist.called(polls.is_some(), caller.now());
+            assist.called(polls.is_some() || *is_pure, caller.now());
         }
     }
 
@@ -346,6 +347,19 @@ impl Firmware for Kernel {
 
     fn pure(&self, address: GuestAddr) -> Option<Pure> {
         pure(self.row(address)?)
+    }
+
+    fn reads(&self, address: GuestAddr) -> bool {
+        let reads = |attributes: &Attributes| match attributes.polls {
+            Some(Polled::Bit | Polled::Motion | Polled::Path | Polled::Recording) => true,
+            Some(Polled::Time | Polled::Lock) => false,
+            None => attributes.is_pure,
+        };
+        self.row(address).is_some_and(|row| reads(&row.attributes))
+    }
+
+    fn steady_until(&self) -> Option<Cycles> {
+        Some(self.parts.calls.notices.due)
     }
 
     fn is_variadic(&self, address: GuestAddr) -> bool {

@@ -12,6 +12,7 @@ mod firmware_5;
 mod host;
 mod injection;
 mod measured;
+mod polling;
 mod released;
 mod session;
 mod snapshots;

@@ -7,6 +7,7 @@ pub mod generate;
 mod measure;
 pub mod motions;
 pub mod oracles;
+pub mod polling;
 pub mod stages;
 pub mod usage;
 pub mod vendor;

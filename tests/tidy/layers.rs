@@ -51,6 +51,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
             ("access", &["access"]),
             ("engine", &["engine"]),
             ("loaded", &["loaded"]),
+            ("loops that wait", &["polling"]),
             ("verify", &["verify"]),
             ("translations", &["translations"]),
             ("shared memory", &["shared"]),

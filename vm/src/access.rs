@@ -111,6 +111,7 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
             let value = self.firmware.read(addr, size_of_part(T::SIZE), self.now());
             part.copy_from_slice(&value.to_le_bytes());
         }
+        self.note_access();
         T::get(&bytes, 0).ok_or(kind)
     }
 

@@ -111,6 +111,39 @@ impl Stack {
     }
 }
 
+/// The iterations of waiting loops that a slice passes over.
+#[derive(Clone, Copy, Debug)]
+pub struct Polling {
+    is_on: bool,
+    /// The cycles that were passed over so far.
+    passed: Cycles,
+    /// The budget after the last access to a register of a device; more than any budget if there was none.
+    accessed: Cycles,
+}
+
+impl Polling {
+    /// Every iteration is executed.
+    pub const OFF: Self = Self::new(false);
+
+    /// Passes over iterations if `is_on`.
+    #[must_use]
+    pub const fn new(is_on: bool) -> Self {
+        Self { is_on, passed: Cycles::new(0), accessed: Cycles::new(i64::MAX) }
+    }
+
+    /// Reports whether iterations are passed over.
+    #[must_use]
+    pub(crate) const fn is_on(self) -> bool {
+        self.is_on
+    }
+
+    /// The cycles of the iterations that were passed over.
+    #[must_use]
+    pub(crate) const fn passed(self) -> Cycles {
+        self.passed
+    }
+}
+
 /// The context of one slice: memory, threads, firmware and budget.
 #[derive(Debug)]
 pub struct Slice<'a, F: ?Sized> {
@@ -135,6 +168,8 @@ pub struct Slice<'a, F: ?Sized> {
     /// The context then computes with registers and SDRAM alone. Before anything else it stops with
     /// [`Stop::NeedsBoard`].
     pub is_long: bool,
+    /// The iterations of waiting loops that are passed over.
+    pub polling: Polling,
 }
 
 impl<F: Firmware + ?Sized> Slice<'_, F> {
@@ -142,6 +177,31 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
     #[must_use]
     pub fn now(&self) -> Cycles {
         self.start + (self.length - self.budget)
+    }
+
+    /// Notes an access to a register of a device: what it yields may be different each time.
+    pub(crate) const fn note_access(&mut self) {
+        self.polling.accessed = self.budget;
+    }
+
+    /// Passes over iterations of a [waiting loop](crate::polling) that are like the one that has just ended.
+    ///
+    /// It began in this slice, with `start` cycles left. The last one that the slice covers is executed again: so
+    /// the firmware remembers the same last calls, at the same instants, as without this.
+    pub(crate) fn pass_iterations(&mut self, start: Cycles) {
+        let each = start - self.budget;
+        if !self.polling.is_on || self.polling.accessed <= start || each <= Cycles::default() {
+            return;
+        }
+        let mut left = self.budget;
+        if !self.is_long
+            && let Some(until) = self.firmware.steady_until()
+        {
+            left = left.min(until - self.now() - Cycles::new(1));
+        }
+        let passed = Cycles::new((left.get() / each.get() - 1).max(0) * each.get());
+        self.budget -= passed;
+        self.polling.passed += passed;
     }
 
     /// Makes the firmware call of `address` for the context `id`, which is at the instruction `at`.

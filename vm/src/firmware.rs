@@ -304,6 +304,20 @@ pub trait Firmware: Bus {
         None
     }
 
+    /// Reports whether a call of the function at `address` does nothing but yield a state of the board.
+    ///
+    /// Called again in the same slice, while nothing is stored and nothing else is called, it takes as long, yields the
+    /// same, and leaves the firmware as the call before has left it, up to the instant [`steady_until`](Self::steady_until).
+    fn reads(&self, address: GuestAddr) -> bool {
+        let _ = address;
+        false
+    }
+
+    /// The instant at which a call that only [reads](Self::reads) may do more than before; `None` if there is none.
+    fn steady_until(&self) -> Option<Cycles> {
+        None
+    }
+
     /// Reports whether the function at `address` takes a variable number of arguments.
     fn is_variadic(&self, address: GuestAddr) -> bool {
         let _ = address;

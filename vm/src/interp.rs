@@ -19,6 +19,7 @@ mod parts;
 mod sequences;
 mod split;
 mod steps;
+mod waits;
 
 use std::sync::Arc;
 
@@ -69,7 +70,8 @@ impl BytecodeEngine {
     fn refresh(&mut self) {
         for Running { code, .. } in self.contexts.iter_mut().flatten() {
             let observed = self.steps.observer.is_some();
-            let plain = self.words.get(&code.program, |program| Arc::new(Encoded::new(program, observed)));
+            let encode = |program: &Program| Encoded::new(program, observed, &|_| false);
+            let plain = self.words.get(&code.program, |program| Arc::new(encode(program)));
             code.words = self.holds.words(&code.program, plain);
         }
     }
@@ -100,14 +102,15 @@ impl Executor for BytecodeEngine {
         program: &Arc<Program>,
         entry: GuestAddr,
         stack: Stack,
-        _firmware: &F,
+        firmware: &F,
     ) -> Result<(), TrapKind> {
         let function = program.function_at(entry).ok_or(TrapKind::BadCallTarget { addr: entry })?;
         let observed = self.steps.observer.is_some();
         if let Some(observer) = &mut self.steps.observer {
             observer.forget();
         }
-        let words = self.words.get(program, |program| Arc::new(Encoded::new(program, observed)));
+        let encode = |program: &Program| Encoded::new(program, observed, &|address| firmware.reads(address));
+        let words = self.words.get(program, |program| Arc::new(encode(program)));
         let words = self.holds.words(program, words);
         self.holds.passes[id.index()] = false;
         let code = Code { program: Arc::clone(program), words };
@@ -122,6 +125,7 @@ impl Executor for BytecodeEngine {
         let Some(Running { code, context }) = &mut self.contexts[id.index()] else {
             return Stop::Ended;
         };
+        self.steps.loops = code.words.loops();
         let stop = if self.holds.is_active() {
             self.holds.resume(id, code, context, slice, &mut self.steps)
         } else {
@@ -288,6 +292,11 @@ fn run<F: Firmware + ?Sized>(
             Exit::Trap(kind) => return Err(kind),
             Exit::Held | Exit::Shared => return Ok(Stop::Held),
             Exit::Call(function) => context.call(program, function)?,
+            Exit::EndsIteration => {
+                if let Some(stop) = waits::wait(id, program, words, context, slice, steps)? {
+                    return Ok(stop);
+                }
+            }
             Exit::Ended => return Ok(Stop::Ended),
             Exit::CallFirmware(address, signature) => {
                 let missing = TrapKind::UnknownFirmwareFunction { addr: address };

@@ -17,6 +17,7 @@
 //! - `interp/`: the bytecode engine; `native/`: bytecode translated to machine code of the host; `dsp/`: the real
 //!   processor
 //! - `engine`, `access`, `translations`: the interface of every engine, and code shared by engines
+//! - `polling`: the loops of a program that may only wait
 //! - `loaded`, `verify/`, `program`: the program of a thread, and how bytes become a program
 //! - `firmware`, `call`, `varargs`, `wake`: how a program leaves the machine, and what it waits for
 //! - `thread`, `scheduler`: the states of the seven threads, and their rotation
@@ -55,6 +56,7 @@ pub mod native;
 pub mod op;
 pub mod operand;
 pub mod patch;
+mod polling;
 pub mod profile;
 pub mod program;
 mod protection;

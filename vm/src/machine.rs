@@ -18,7 +18,7 @@ use self::engines::Engines;
 use self::held::Held;
 pub use self::snapshot::Snapshot;
 use crate::dsp::{DspEngine, HotCode};
-use crate::engine::{ContextId, Engine, Preemption, Slice, Stop};
+use crate::engine::{ContextId, Engine, Polling, Preemption, Slice, Stop};
 use crate::firmware::{Firmware, TickContext};
 use crate::interp::BytecodeEngine;
 use crate::loaded::Loaded;
@@ -358,10 +358,11 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             budget,
             woken: None,
             is_long: false,
+            polling: Polling::new(self.config.shortcuts),
         };
         let stop = self.engines.resume(id, loaded, &mut slice);
         let (left, spent) = (slice.budget, slice.length - slice.budget);
-        self.work += (budget - left).get().unsigned_abs();
+        self.work += (budget - left - slice.polling.passed()).get().unsigned_abs();
         let kind = match stop {
             Stop::Ended => {
                 self.with_context(begin, |firmware, context| firmware.callback_returned(context, spent));
@@ -443,6 +444,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             budget,
             woken,
             is_long: false,
+            polling: Polling::new(self.config.shortcuts),
         };
         let stop = loop {
             let stop = self.engines.resume(id, loaded, &mut slice);
@@ -457,7 +459,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             slice.woken = Some(wake);
         };
         let (left, woken) = (slice.budget, slice.woken);
-        self.work += (budget - left).get().unsigned_abs();
+        self.work += (budget - left - slice.polling.passed()).get().unsigned_abs();
         self.threads.set_running(None);
         if stop == Stop::Held {
             self.held = Some(Held::Slice { thread, window, left, woken });

@@ -38,7 +38,7 @@ use self::code::MachineCode;
 use self::context::{Context, Saved};
 use self::fiber::Fiber;
 use self::protected::ProtectedBlocks;
-use self::translate::PureFunctions;
+use self::translate::FirmwareFacts;
 use crate::engine::{ContextId, Executor, ForeignSnapshot, Preemption, Slice, Stack, Stop};
 use crate::firmware::Firmware;
 use crate::interp::{BytecodeEngine, BytecodeSnapshot};
@@ -80,12 +80,12 @@ impl NativeEngine {
     }
 
     /// The machine code of `program`.
-    fn code(&mut self, program: &Arc<Program>, pure: PureFunctions<'_>) -> Option<Arc<MachineCode>> {
+    fn code(&mut self, program: &Arc<Program>, facts: FirmwareFacts<'_>) -> Option<Arc<MachineCode>> {
         if self.observed {
             return None;
         }
         let (shared, preemption) = (&self.shared, self.preemption);
-        let compile = |program: &Program| MachineCode::compile(program, pure, preemption).ok().map(Arc::new);
+        let compile = |program: &Program| MachineCode::compile(program, facts, preemption).ok().map(Arc::new);
         self.code.get(program, |program| match shared {
             Some(shared) => shared.get(program, preemption, compile),
             None => compile(program),
@@ -123,7 +123,11 @@ impl Executor for NativeEngine {
         let missing = TrapKind::BadCallTarget { addr: entry };
         let function = program.function_at(entry).ok_or_else(|| missing.clone())?;
         let old = self.contexts[id.index()].take().map(Context::into_fiber);
-        let Some(code) = self.code(program, &|address| firmware.pure(address)) else {
+        let facts = FirmwareFacts {
+            pure: &|address| firmware.pure(address),
+            readers: &|address| firmware.reads(address),
+        };
+        let Some(code) = self.code(program, facts) else {
             return self.bytecode.start(id, program, entry, stack, firmware);
         };
         let index = program.index_of(function).ok_or(missing)?;

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 
 use crate::bus::Bus;
-use crate::engine::{ContextId, Executor, ForeignSnapshot, Preemption, Slice, Stack, Stop};
+use crate::engine::{ContextId, Executor, ForeignSnapshot, Polling, Preemption, Slice, Stack, Stop};
 use crate::firmware::{
     Caller, Firmware, NextAccess, Outcome, SharedAccess, Signature, SwitchPoint, TickContext, Value,
 };
@@ -109,6 +109,7 @@ impl ProfilingEngine {
             budget: NOTHING,
             woken: slice.woken.take(),
             is_long: false,
+            polling: Polling::OFF,
         };
         let stop = self.inner.resume(id, &mut part);
         let spent = NOTHING - part.budget;

@@ -103,12 +103,12 @@ pub(crate) fn jogs(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, speed: 
     let Some(thread) = caller.thread else { return };
     let dest = caller.memory.axis(axis, Chan::DEST);
     let wait = parts.calls.waits.of(thread);
-    let (looks, last_bit) = (wait.looks, wait.last_bit);
-    let now = (speed != 0.0).then_some(Jogged { thread, dest, speed, looks });
+    let (looked, last_bit) = (wait.looked, wait.last_bit);
+    let now = (speed != 0.0).then_some(Jogged { thread, dest, speed, looked });
     let before =
         parts.calls.motions.jogs(axis, now).filter(|before| now.is_none() && before.thread == thread);
     let Some(Jogged { speed, .. }) =
-        before.filter(|before| (dest - before.dest).abs() < MOVED && looks > before.looks)
+        before.filter(|before| (dest - before.dest).abs() < MOVED && looked > before.looked)
     else {
         return;
     };

@@ -218,8 +218,8 @@ fn notice_hurry(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: 
 /// Tells a program that calls a move of an axis right after another that the earlier one never happens.
 fn notice_replaced(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Function, target: f64) {
     let Some(thread) = caller.thread else { return };
-    let looks = parts.calls.waits.of(thread).looks;
-    let earlier = parts.calls.notices.replaced(axis, thread, looks, target);
+    let looked = parts.calls.waits.of(thread).looked;
+    let earlier = parts.calls.notices.replaced(axis, thread, looked, target);
     if let Some(earlier) = earlier.filter(|_| has_motion(caller.memory, axis)) {
         parts.out.diagnose(caller, Message::MoveReplaced { function, axis, earlier, target });
     }

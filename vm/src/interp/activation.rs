@@ -44,6 +44,8 @@ pub(super) enum Exit {
     Held,
     /// An access to memory that threads can share, which is reported.
     Shared,
+    /// A branch that ends an iteration of a loop that may only wait.
+    EndsIteration,
 }
 
 /// The continuation after an instruction.

@@ -4,17 +4,22 @@
 //! facts that a call of it needs, and the operands of commutative instructions are swapped where the first is then the
 //! register assigned last.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
 
 use super::context::Head;
-use super::dispatch::{Handler, OBSERVED, SHARED, handler_of};
+use super::dispatch::{
+    ENDS_ITERATION, ENDS_ITERATION_IF, ENDS_ITERATION_UNLESS, Handler, OBSERVED, SHARED, handler_of,
+};
 use super::observe::{self, AccessPlace};
 use super::parts::{A, B, DST, Parts, is_commutative, parts_of};
 use super::sequences::{AHEAD, BREAK, Text};
+use crate::kind::OpKind;
 use crate::meter::branch_target;
 use crate::op::{Op, WORD};
 use crate::operand::{FuncRef, Label};
+use crate::polling::{PollingLoop, Readers, polling_loops};
 use crate::program::Program;
 
 /// An instruction.
@@ -58,6 +63,17 @@ impl Word {
         }
     }
 
+    /// The word of a branch with which an iteration of a waiting loop may end.
+    fn ending_iteration(op: &Op) -> Self {
+        let is_conditional = op.kind() == OpKind::Branch;
+        let handler = match (is_conditional, matches!(op, Op::BrIf { .. })) {
+            (false, _) => ENDS_ITERATION,
+            (true, true) => ENDS_ITERATION_IF,
+            (true, false) => ENDS_ITERATION_UNLESS,
+        };
+        Self { handler, ..Self::plain(op) }
+    }
+
     /// Reports whether a context is held at it.
     pub(super) const fn is_held(&self) -> bool {
         self.parts[0] == BREAK
@@ -89,28 +105,49 @@ pub(super) struct Encoded {
     words: Box<Words>,
     /// True if accesses to shared memory are reported.
     observed: bool,
+    /// The loops that may only wait; none where accesses are reported.
+    loops: Arc<[PollingLoop]>,
 }
 
 impl Encoded {
-    /// Encodes `program`, with accesses to shared memory reported or not.
-    pub(super) fn new(program: &Program, observed: bool) -> Self {
-        Self::with(program, observed, &|_, _| false)
+    /// Encodes `program`, with accesses to shared memory reported or not, for a firmware with these `readers`.
+    pub(super) fn new(program: &Program, observed: bool, readers: Readers<'_>) -> Self {
+        let loops = if observed { Vec::new() } else { polling_loops(program, readers) };
+        Self::with(program, observed, loops.into(), &|_, _| false)
     }
 
     /// Encodes a program with holds at some words.
     pub(super) fn held(&self, program: &Program, is_held: &dyn Fn(usize, &Op) -> bool) -> Self {
-        Self::with(program, self.observed, is_held)
+        Self::with(program, self.observed, Arc::clone(&self.loops), is_held)
     }
 
-    fn with(program: &Program, observed: bool, is_held: &dyn Fn(usize, &Op) -> bool) -> Self {
+    fn with(
+        program: &Program,
+        observed: bool,
+        loops: Arc<[PollingLoop]>,
+        is_held: &dyn Fn(usize, &Op) -> bool,
+    ) -> Self {
         let is_observed =
             |pc: usize, op: &Op| observed && !is_held(pc, op) && observe::place_of(op).is_some();
-        let mut words = encode(program, &|pc, op| is_held(pc, op) || is_observed(pc, op));
+        let branches: BTreeSet<usize> = loops.iter().flat_map(|polling| polling.branches.clone()).collect();
+        let is_alone = |pc: usize, op: &Op| is_held(pc, op) || is_observed(pc, op) || branches.contains(&pc);
+        let mut words = encode(program, &is_alone);
         let has_call_back = observed && program.has_call_back();
         for (pc, op) in program.ops().iter().enumerate().filter(|(pc, op)| is_observed(*pc, op)) {
             words[pc] = Word::observed(op, has_call_back);
         }
-        Self { words, observed }
+        for pc in branches {
+            let op = &program.ops()[pc];
+            if !is_held(pc, op) {
+                words[pc] = Word::ending_iteration(op);
+            }
+        }
+        Self { words, observed, loops }
+    }
+
+    /// The loops that may only wait.
+    pub(super) fn loops(&self) -> Arc<[PollingLoop]> {
+        Arc::clone(&self.loops)
     }
 
     /// The words.

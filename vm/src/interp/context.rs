@@ -147,6 +147,11 @@ impl Calls {
         registers.get(self.current.base..)?.first_chunk()
     }
 
+    /// The number of calls around the current one.
+    pub(super) const fn depth(&self) -> usize {
+        self.frames.len()
+    }
+
     /// The index in the window at which the arguments of the next call begin.
     #[inline(always)]
     pub(super) const fn arguments_at(&self) -> u16 {

@@ -24,7 +24,7 @@ use super::activation::{Activation, Exit, Flow, State};
 use super::code::Words;
 use super::context::Window;
 use super::observe::is_shared;
-use super::parts::Assigned;
+use super::parts::{Assigned, COND};
 use super::sequences::{BREAK, for_each_sequence};
 use crate::for_each_op;
 use crate::memory::Sdram;
@@ -190,6 +190,38 @@ fn shared<'m>(
     single: f32,
 ) {
     leave(Activation { state, window, sdram, code, double, single }, Exit::Shared);
+}
+
+/// A jump, and the two conditional branches, with which an iteration of a waiting loop may end.
+pub(super) const ENDS_ITERATION: Handler = ends_iteration;
+pub(super) const ENDS_ITERATION_IF: Handler = ends_iteration_if::<true>;
+pub(super) const ENDS_ITERATION_UNLESS: Handler = ends_iteration_if::<false>;
+
+fn ends_iteration<'m>(
+    state: &mut State<'m>,
+    window: &'m Window,
+    code: &Words,
+    sdram: &mut Sdram,
+    double: f64,
+    single: f32,
+) {
+    leave(Activation { state, window, sdram, code, double, single }, Exit::EndsIteration);
+}
+
+fn ends_iteration_if<'m, const IS_SET: bool>(
+    state: &mut State<'m>,
+    window: &'m Window,
+    code: &Words,
+    sdram: &mut Sdram,
+    double: f64,
+    single: f32,
+) {
+    let Some(word) = code.first() else { return };
+    let is_set = window[usize::from(word.register(COND))].get() as u32 != 0;
+    if is_set == IS_SET {
+        return ends_iteration(state, window, code, sdram, double, single);
+    }
+    go_on(Activation { state, window, sdram, code, double, single }, 1);
 }
 
 /// Handles a word at which a debugger holds the context.

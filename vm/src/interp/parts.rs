@@ -12,6 +12,9 @@ pub(super) type Parts = [u16; WORD / 2];
 /// Position of the destination register in a word.
 pub(super) const DST: usize = 1;
 
+/// Position of the condition of a branch.
+pub(super) const COND: usize = 1;
+
 /// Positions of the operands of an instruction with two.
 pub(super) const A: usize = 2;
 pub(super) const B: usize = 3;

@@ -2,6 +2,8 @@
 //!
 //! To execute one instruction alone, it is the only one in a text of words at which contexts are held.
 
+use std::sync::Arc;
+
 use kmotiondef::{Cycles, GuestAddr};
 
 use super::code::{Word, Words};
@@ -13,6 +15,7 @@ use crate::firmware::Firmware;
 use crate::kind::{Name, OpKind, Width};
 use crate::op::Op;
 use crate::operand::{Addr, FuncRef, Off, RegF64, RegI32, RegI64};
+use crate::polling::PollingLoop;
 use crate::program::Program;
 use crate::trap::TrapKind;
 
@@ -53,6 +56,9 @@ impl SingleText {
 pub(super) struct Stepping {
     pub(super) preemption: Preemption,
     pub(super) single: SingleText,
+    /// The loops of the present program that may only wait, and the text for an iteration of one.
+    pub(super) loops: Arc<[PollingLoop]>,
+    pub(super) waiting: SingleText,
     /// The observer of accesses to shared memory, if they are reported.
     pub(super) observer: Option<Observer>,
 }

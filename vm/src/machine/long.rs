@@ -8,7 +8,7 @@
 use kmotiondef::{Cycles, ThreadId, Ticks};
 
 use super::{Machine, Window, end_of, start_of};
-use crate::engine::{ContextId, Engine, Preemption, Slice, Stop};
+use crate::engine::{ContextId, Engine, Polling, Preemption, Slice, Stop};
 use crate::firmware::Firmware;
 use crate::scheduler::Turn;
 use crate::thread::{Progress, ThreadState};
@@ -86,10 +86,11 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             budget: all - plan.debt,
             woken: None,
             is_long: true,
+            polling: Polling::new(self.config.shortcuts),
         };
         let stop = self.engines.resume(ContextId::of(plan.thread), loaded, &mut slice);
         let spent = all - slice.budget;
-        self.work += spent.get().unsigned_abs();
+        self.work += (spent - slice.polling.passed()).get().unsigned_abs();
         (stop, spent)
     }
 }

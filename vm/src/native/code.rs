@@ -12,9 +12,10 @@ use cranelift_module::{FuncId, Module, default_libcall_names};
 use super::compile::{CompileError, StackUse, compile, host_isa};
 use super::entry::{Begin, RunPiece};
 use super::piece::{Handover, Marks, Places};
-use super::translate::PureFunctions;
+use super::translate::FirmwareFacts;
 use crate::engine::Preemption;
 use crate::memory::GuestMemory;
+use crate::polling::{PollingLoop, polling_loops};
 use crate::program::Program;
 
 /// Bytes of address space for a piece.
@@ -65,12 +66,14 @@ struct CodeMemory(ManuallyDrop<JITModule>);
 
 impl CodeMemory {
     /// Room for the code of `program`.
-    fn new(program: &Program, preemption: Preemption) -> Result<Self, CompileError> {
+    fn new(program: &Program, loops: &[PollingLoop], preemption: Preemption) -> Result<Self, CompileError> {
         // A segment that may be split is there a second time.
         let copies = if preemption == Preemption::Instructions { 3 } else { 1 };
+        // So is an iteration of a loop that may only wait.
+        let repeated: usize = loops.iter().map(|polling| polling.words.len()).sum();
         Self::with_room(
             program.functions().len() * 2 * RESERVE_PER_FUNCTION
-                + program.ops().len() * RESERVE_PER_WORD * copies,
+                + (program.ops().len() + repeated) * RESERVE_PER_WORD * copies,
         )
     }
 
@@ -96,18 +99,19 @@ impl Drop for CodeMemory {
 }
 
 impl MachineCode {
-    /// Compiles `program`, for a firmware that has the functions `pure`.
+    /// Compiles `program`, for a firmware with these `facts`.
     pub(super) fn compile(
         program: &Program,
-        pure: PureFunctions<'_>,
+        facts: FirmwareFacts<'_>,
         preemption: Preemption,
     ) -> Result<Self, CompileError> {
         let mut lengths = program.functions().iter().map(|function| function.body.len());
         if let Some(length) = lengths.find(|length| *length > MAX_WORDS) {
             return Err(CompileError::TooLong(length));
         }
-        let mut memory = CodeMemory::new(program, preemption)?;
-        let functions = compile(&mut *memory.0, program, pure, preemption)?;
+        let loops = polling_loops(program, facts.readers);
+        let mut memory = CodeMemory::new(program, &loops, preemption)?;
+        let functions = compile(&mut *memory.0, program, facts.pure, &loops, preemption)?;
         memory.0.finalize_definitions()?;
         let at = |id: FuncId| memory.0.get_finalized_function(id);
         let entries = functions.entries.into_iter();

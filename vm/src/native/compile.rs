@@ -19,6 +19,7 @@ use super::translate::{
 use crate::engine::Preemption;
 use crate::op::Op;
 use crate::operand::Class;
+use crate::polling::PollingLoop;
 use crate::program::{Function, Program};
 
 /// Bytes of native stack that a call takes besides what Cranelift counts: return address, frame
@@ -102,6 +103,7 @@ pub(super) fn compile(
     module: &mut dyn Module,
     program: &Program,
     pure: PureFunctions<'_>,
+    loops: &[PollingLoop],
     preemption: Preemption,
 ) -> Result<Functions, CompileError> {
     let jumps =
@@ -119,7 +121,8 @@ pub(super) fn compile(
         if function.classes.len() > MAX_REGISTERS {
             return Err(CompileError::TooManyRegisters(function.classes.len()));
         }
-        let translation = Translation { program, function, functions: &functions, request, pure, preemption };
+        let translation =
+            Translation { program, function, functions: &functions, request, pure, loops, preemption };
         let frame = compiler.function(*id, translation)? + thunk_frame;
         let guest = function.frame + BYTES_PER_CALL;
         stack.native_per_guest = stack.native_per_guest.max(frame.div_ceil(guest));

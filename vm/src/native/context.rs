@@ -237,6 +237,7 @@ impl Context {
         let state = self.fiber.state();
         state.budget.set(slice.budget.get());
         state.signs.is_long.set(slice.is_long.into());
+        state.signs.tick.set(slice.tick.get());
         protected.follow(slice.memory.protected_texts());
         if self.protected != Some(protected.version()) {
             self.protected = Some(protected.version());
@@ -294,6 +295,12 @@ impl Context {
             Reason::CallFirmware => return self.begin_firmware(id, slice, address, SigRef(request.b as u16)),
             Reason::CallPointer => {
                 return resolve(&self.program, slice, address, SigRef(request.b as u16)).map(NextStep::Go);
+            }
+            Reason::PassIterations => {
+                if request.b == slice.tick.get() {
+                    slice.pass_iterations(Cycles::new(request.a.cast_signed()));
+                }
+                0
             }
             Reason::NeedsBoard => 0,
             Reason::StackOverflow => return Err(self.overflow(request)),

@@ -69,6 +69,8 @@ codes! {
         /// Resolve the function pointer `a` for a call with signature `b`; the answer is the function, none
         /// for one of the firmware.
         CallPointer,
+        /// Pass over iterations of a waiting loop like the one that has ended: it began with `a` cycles left in slice `b`.
+        PassIterations,
         /// End the slice if it is a long one.
         NeedsBoard,
         /// The stack has no room for the `a` bytes of a call; `stack_pointer` is that of the caller.
@@ -116,6 +118,7 @@ impl Request {
             Some(Reason::Clear) => !is_in_sdram(self.a),
             Some(
                 Reason::Preempted
+                | Reason::PassIterations
                 | Reason::CallPointer
                 | Reason::StackOverflow
                 | Reason::DivisionByZero

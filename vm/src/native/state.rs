@@ -100,6 +100,8 @@ shared! {
         touched: Cell<u32>,
         /// Not 0 in a long slice.
         is_long: Cell<u32>,
+        /// The tick of the slice.
+        tick: Cell<u64>,
     }
 
     /// The guest stack.
@@ -168,7 +170,7 @@ impl State {
                 windows: [window(), window()],
             },
             ways_out,
-            signs: Signs { touched: Cell::new(0), is_long: Cell::new(0) },
+            signs: Signs { touched: Cell::new(0), is_long: Cell::new(0), tick: Cell::new(0) },
             yielder: Cell::new(std::ptr::null()),
             stack: Bounds {
                 limit: Cell::new(stack.limit),

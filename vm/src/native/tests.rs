@@ -13,7 +13,7 @@ use kmotiondef::{CodeAddr, Cycles, GuestAddr, Ticks};
 use proptest::prelude::*;
 
 use super::NativeEngine;
-use crate::engine::{ContextId, Engine, Executor, Preemption, Slice, Stop};
+use crate::engine::{ContextId, Engine, Executor, Polling, Preemption, Slice, Stop};
 use crate::firmware::Wake;
 use crate::interp::BytecodeEngine;
 use crate::machine::{Config, Machine};
@@ -91,6 +91,7 @@ impl<E: Engine> World<E> {
             budget: Cycles::new(budget),
             woken,
             is_long: false,
+            polling: Polling::OFF,
         };
         let stop = self.engine.resume(id(), &mut slice);
         Seen {

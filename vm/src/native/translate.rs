@@ -25,6 +25,7 @@ mod shortcut;
 mod split;
 mod strides;
 mod turns;
+mod waits;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::mem::offset_of;
@@ -40,7 +41,7 @@ use cranelift_module::{FuncId, Module};
 
 use kmotiondef::GuestAddr;
 
-use self::parts::{CallParts, Flags, FrameParts, Registers, Twice};
+use self::parts::{CallParts, Flags, FrameParts, Registers, Twice, WaitParts};
 use self::turns::Plan;
 use super::request::{Reason, Request};
 use super::state::{BYTES_PER_CALL, State};
@@ -51,6 +52,7 @@ use crate::kind::{Name, OpKind};
 use crate::meter::branch_target;
 use crate::op::Op;
 use crate::operand::{Class, RegF32, RegF64, RegI32, RegI64};
+use crate::polling::{PollingLoop, Readers};
 use crate::program::{Function, Program};
 
 /// Reached only if the engine resumed a context that a trap has stopped.
@@ -75,12 +77,23 @@ pub(super) struct Translation<'a> {
     pub(super) request: FuncId,
     /// The firmware's functions that only compute.
     pub(super) pure: PureFunctions<'a>,
+    /// The loops of the program that may only wait.
+    pub(super) loops: &'a [PollingLoop],
     /// The points at which the function loses the processor.
     pub(super) preemption: Preemption,
 }
 
 /// The lookup of firmware functions that only compute.
 pub(super) type PureFunctions<'a> = &'a dyn Fn(GuestAddr) -> Option<Pure>;
+
+/// The facts about functions of the firmware that a translation relies on.
+#[derive(Clone, Copy)]
+pub(super) struct FirmwareFacts<'a> {
+    /// Those that only compute.
+    pub(super) pure: PureFunctions<'a>,
+    /// Those that only yield a state.
+    pub(super) readers: Readers<'a>,
+}
 
 /// The machine signature of a function with `parameters`.
 pub(super) fn function_signature(parameters: &[Class]) -> Signature {
@@ -287,6 +300,7 @@ struct Translator<'a, 'b> {
     twice: Twice,
     flags: Flags,
     frame: FrameParts,
+    waits: WaitParts,
     /// The word being translated, and whether execution can reach it.
     at: usize,
     reachable: bool,
@@ -335,6 +349,7 @@ impl<'a, 'b> Translator<'a, 'b> {
                 stack_pointer: parameters[1],
                 call_entry: parameters[0],
             },
+            waits: WaitParts::default(),
             at: translation.function.at.0 as usize,
             reachable: true,
             builder,
@@ -426,6 +441,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         if self.reachable {
             self.unreachable();
         }
+        self.waiting_loops();
     }
 
     /// Translates the word `at` if it can be reached.
@@ -457,8 +473,11 @@ impl<'a, 'b> Translator<'a, 'b> {
             }
             begins.extend(self.after_steps(at));
         }
-        let Translation { program, function, .. } = self.translation;
-        self.twice.plans = turns::plans(program, function, &begins, &|op| self.cost_in_turns(op));
+        let Translation { program, function, loops, .. } = self.translation;
+        let is_here = |polling: &&PollingLoop| function.body.contains(&polling.first);
+        self.waits.loops = loops.iter().filter(is_here).cloned().collect();
+        let waits = |at: usize| self.waits.loops.iter().any(|polling| polling.words.contains(&at));
+        self.twice.plans = turns::plans(program, function, &begins, &waits, &|op| self.cost_in_turns(op));
         self.blocks = begins.into_iter().map(|at| (at, self.builder.create_block())).collect();
     }
 

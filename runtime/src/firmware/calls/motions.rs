@@ -4,7 +4,7 @@
 //! disabled while a thread waits for it are mistakes that only several calls together show.
 
 use kmotiondef::limits::N_CHANNELS;
-use kmotiondef::{AxisId, CodeAddr, ThreadId};
+use kmotiondef::{AxisId, CodeAddr, Cycles, ThreadId};
 
 /// A thread that asked about one axis while another one, which it moves itself, still moved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,8 +38,8 @@ pub(crate) struct Jogged {
     pub(crate) dest: f64,
     /// Units per second.
     pub(crate) speed: f64,
-    /// The number of times that the thread had looked at anything.
-    pub(crate) looks: u64,
+    /// When the thread had last looked at anything.
+    pub(crate) looked: Cycles,
 }
 
 /// What one thread has done.

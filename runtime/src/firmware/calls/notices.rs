@@ -44,8 +44,8 @@ struct Latch {
 struct Called {
     thread: ThreadId,
     target: f64,
-    /// How often the thread had waited or looked at anything.
-    looks: u64,
+    /// When the thread had last waited or looked at anything.
+    looked: Cycles,
 }
 
 /// What is followed.
@@ -92,17 +92,17 @@ impl Notices {
         }
     }
 
-    /// A thread that has waited `looks` times calls a move; the target of the one it replaces before that has moved.
+    /// A thread that last looked at something at `looked` calls a move; the target of the one it replaces before that has moved.
     pub(crate) fn replaced(
         &mut self,
         axis: AxisId,
         thread: ThreadId,
-        looks: u64,
+        looked: Cycles,
         target: f64,
     ) -> Option<f64> {
-        let called = Called { thread, target, looks };
+        let called = Called { thread, target, looked };
         let before = self.moves[axis.index()].replace(called)?;
-        let is_at_once = before.thread == thread && before.looks == looks && before.target != target;
+        let is_at_once = before.thread == thread && before.looked == looked && before.target != target;
         is_at_once.then_some(before.target)
     }
 

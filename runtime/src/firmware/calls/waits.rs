@@ -25,8 +25,8 @@ pub(crate) struct Repeated {
 pub(crate) struct Wait {
     /// When the thread last did anything else.
     pub(crate) since: Cycles,
-    /// How often it has looked at anything.
-    pub(crate) looks: u64,
+    /// When it last looked at anything.
+    pub(crate) looked: Cycles,
     /// The bit that it has read last.
     pub(crate) last_bit: Option<Bit>,
     /// What it has called since.
@@ -45,7 +45,7 @@ impl Waits {
     /// A thread looks at something or lets time pass.
     pub(crate) fn look(&mut self, thread: ThreadId, polls: Polled, caller: &Caller<'_>) {
         let wait = &mut self.threads[thread.index()];
-        wait.looks += 1;
+        wait.looked = caller.now();
         let call = Repeated { polls, argument: caller.arguments.get(0), at: caller.at };
         if polls == Polled::Bit {
             wait.last_bit = Bit::new(call.argument);

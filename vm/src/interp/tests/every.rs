@@ -5,7 +5,7 @@ use std::sync::Arc;
 use kmotiondef::map::program_base;
 use kmotiondef::{Cycles, Ticks};
 
-use crate::engine::{ContextId, Executor, Slice, Stop};
+use crate::engine::{ContextId, Executor, Polling, Slice, Stop};
 use crate::interp::BytecodeEngine;
 use crate::interp::parts::DST;
 use crate::interp::sequences::{LinkedOp, SEQUENCES};
@@ -170,6 +170,7 @@ fn run_everything() -> Stop {
         budget: length,
         woken: None,
         is_long: false,
+        polling: Polling::OFF,
     };
     engine.resume(id, &mut slice)
 }

@@ -154,7 +154,7 @@ impl Translator<'_, '_> {
 
     /// The block to branch to in order to get to the word `to`; [`finish_edges`](Self::finish_edges) must follow.
     pub(super) fn edge(&mut self, to: usize) -> Block {
-        let Some(fast) = &mut self.twice.fast else { return self.blocks[&to] };
+        let Some(fast) = &mut self.twice.fast else { return self.block_of(to) };
         let (block, kept, is_rare) = match fast.plan.target(fast.turn, to) {
             Some(place) => {
                 let checked = &fast.checked;

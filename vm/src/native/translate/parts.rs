@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use cranelift_codegen::ir::{FuncRef, MemFlagsData, SigRef, Value};
+use cranelift_codegen::ir::{Block, FuncRef, MemFlagsData, SigRef, Value};
 use cranelift_frontend::Variable;
 
 use super::fast::{Fast, Way};
 use super::shortcut::{Attempt, ShortcutWords};
 use super::turns::Plan;
+use crate::polling::PollingLoop;
 
 /// The variables that hold the registers of the program.
 pub(super) struct Registers {
@@ -45,6 +46,16 @@ pub(super) struct Twice {
     pub(super) is_rare: bool,
     /// The targets of branches that are still to be translated.
     pub(super) ways: Vec<Way>,
+}
+
+/// The loops that may only wait.
+#[derive(Default)]
+pub(super) struct WaitParts {
+    pub(super) loops: Vec<PollingLoop>,
+    /// The block at the first word of each loop that is entered by its branches, by that word.
+    pub(super) entries: BTreeMap<usize, Block>,
+    /// The block in which the iterations of the loop that is being translated end, by its first word.
+    pub(super) end: Option<(usize, Block)>,
 }
 
 /// Flags of accesses to the state and to guest memory, which never overlap.

@@ -98,17 +98,21 @@ pub(super) fn plans(
     program: &Program,
     function: &Function,
     begins: &BTreeSet<usize>,
+    waits: &dyn Fn(usize) -> bool,
     cost: &dyn Fn(&Op) -> Option<u32>,
 ) -> BTreeMap<usize, Plan> {
     let planner =
         |words, entry, is_loop| Planner::new(program, function, begins, words, cost)?.plan(entry, is_loop);
     let mut plans = BTreeMap::new();
     for (words, entry) in innermost_loops(program, function) {
+        if words.clone().any(waits) {
+            continue;
+        }
         if let Some(plan) = planner(words.clone(), entry, true) {
             plans.insert(*words.start(), plan);
         }
     }
-    for words in regions(program, function, &|at| is_planned(&plans, at), cost) {
+    for words in regions(program, function, &|at| waits(at) || is_planned(&plans, at), cost) {
         if let Some(plan) = planner(words.clone(), *words.start(), false) {
             plans.insert(*words.start(), plan);
         }

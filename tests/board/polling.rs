@@ -1,0 +1,147 @@
+//! Programs that wait by polling do the same with and without shortcuts: what they print and when, remarks, traces,
+//! memory and threads, on both engines, in both modes of preemption, and from a snapshot on.
+//!
+//! An ordinary run takes a few programs. `CC67_PROGRAMS=1000` takes this many, `CC67_SEED=n` begins at another seed.
+
+use std::path::Path;
+use std::thread;
+
+use compiler::target::Target;
+use compiler::{Options, image};
+use harness::polling;
+use kmotiondef::timing::Timing;
+use kmotiondef::{CodeAddr, ThreadId, Ticks};
+use runtime::trace::TraceRequest;
+use runtime::{Board, Config, Event, MachineFile};
+use vm::engine::{Engine, Preemption};
+use vm::interp::BytecodeEngine;
+use vm::machine::Config as MachineConfig;
+use vm::thread::ThreadState;
+
+/// Programs of an ordinary run, and the most of a long one.
+const FEW: u64 = 8;
+const MOST: u64 = 1000;
+
+/// Programs that have shown a difference: a function of mathematics ended a wait on one engine and not on the other.
+const FOUND: &[u64] = &[205];
+
+/// Board time of a run: 90 ms.
+const LIMIT: Ticks = Ticks::new(1000);
+/// The instant of the snapshot.
+const HALF: Ticks = Ticks::new(450);
+
+fn number(variable: &str, default: u64) -> u64 {
+    std::env::var(variable).ok().and_then(|text| text.parse().ok()).unwrap_or(default)
+}
+
+/// What can be seen of a run.
+#[derive(Debug, PartialEq)]
+struct Seen {
+    events: Vec<Event>,
+    threads: Vec<(ThreadState, Vec<CodeAddr>)>,
+    memory: u64,
+}
+
+fn compile(source: &str, thread: ThreadId) -> Vec<u8> {
+    let options = Options { target: Target::Sim, ..Options::default() };
+    let mut compilation =
+        compiler::compile(Path::new("polls.c"), source.into(), &options, &compiler::pp::Disk);
+    let linked = compilation.link(thread, &options);
+    let linked = linked.unwrap_or_else(|| panic!("{:?}\n{source}", compilation.diagnostics()));
+    image::write(&linked).expect("an image of a small program can be written")
+}
+
+/// A board that runs `images` in threads 1, 2 and so on.
+fn board<E: Engine>(images: &[Vec<u8>], shortcuts: bool, preemption: Preemption) -> Board<E> {
+    let machine = MachineConfig { shortcuts, preemption, ..MachineConfig::default() };
+    let machine_file = MachineFile::parse(polling::MACHINE).expect("the machine file is correct");
+    let mut board =
+        Board::<E>::new(Config { machine, machine_file, timing: Timing::Fast, ..Config::default() });
+    board.record(TraceRequest { quantities: Vec::new(), every: 1, changes: true, packets: None });
+    for (thread, image) in ThreadId::all().zip(images) {
+        board.load(thread, image).expect("what the compiler makes can be loaded");
+        board.start(thread).expect("it was loaded");
+    }
+    board
+}
+
+fn finish<E: Engine>(mut events: Vec<Event>, board: &mut Board<E>) -> Seen {
+    board.run(LIMIT, &mut |event| events.push(event));
+    let threads =
+        ThreadId::all().map(|thread| (board.thread(thread).clone(), board.machine().backtrace(thread)));
+    Seen { threads: threads.collect(), memory: checksum(board), events }
+}
+
+/// A checksum of on-chip RAM and of the SDRAM that programs use (FNV-1a by words).
+fn checksum<E: Engine>(board: &Board<E>) -> u64 {
+    let words = (0x1000_0000..0x1004_0000_u32).chain(0x8000_0000..0x8010_0000).step_by(4);
+    words.fold(0xcbf2_9ce4_8422_2325, |sum, address| {
+        let word: u32 = board.memory().peek(kmotiondef::GuestAddr::new(address));
+        (sum ^ u64::from(word)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+/// Runs the programs on one engine with and without shortcuts; returns what was seen, and the cycles that were executed
+/// with them and without.
+fn run<E: Engine>(seed: u64, images: &[Vec<u8>], preemption: Preemption) -> (Seen, [u64; 2]) {
+    let mut plain = board::<E>(images, false, preemption);
+    let expected = finish(Vec::new(), &mut plain);
+    let mut quick = board::<E>(images, true, preemption);
+    let mut events = Vec::new();
+    quick.run_part(HALF, &mut |event| events.push(event));
+    let snapshot = quick.snapshot();
+    let seen = finish(events.clone(), &mut quick);
+    assert_same(seed, &expected, &seen, preemption, "shortcuts");
+    let work = [quick.machine().work(), plain.machine().work()];
+    quick.restore(&snapshot).expect("it is of the same board");
+    assert_same(seed, &expected, &finish(events, &mut quick), preemption, "snapshot");
+    (expected, work)
+}
+
+fn assert_same(seed: u64, expected: &Seen, seen: &Seen, preemption: Preemption, what: &str) {
+    for (index, (expected, seen)) in expected.events.iter().zip(&seen.events).enumerate() {
+        assert_eq!(expected, seen, "seed {seed}, event {index}, {preemption:?}, {what}");
+    }
+    let more = |few: &[Event], many: &[Event]| many.get(few.len()).cloned();
+    assert_eq!(more(&seen.events, &expected.events), None, "seed {seed}, {preemption:?}, {what}");
+    assert_eq!(more(&expected.events, &seen.events), None, "seed {seed}, {preemption:?}, {what}");
+    assert_eq!(expected.threads, seen.threads, "seed {seed}, {preemption:?}, {what}");
+    assert!(expected.memory == seen.memory, "seed {seed}, {preemption:?}, {what}: memory differs");
+}
+
+/// Compares the programs `seeds`; returns the cycles that were executed with shortcuts and without.
+fn compare(seeds: &[u64]) -> [u64; 2] {
+    let mut all = [0; 2];
+    for seed in seeds {
+        let sources = polling::programs(*seed);
+        let images: Vec<_> =
+            ThreadId::all().zip(&sources).map(|(thread, source)| compile(source, thread)).collect();
+        for preemption in [Preemption::Segments, Preemption::Instructions] {
+            let (bytecode, work) = run::<BytecodeEngine>(*seed, &images, preemption);
+            all = [all[0] + work[0], all[1] + work[1]];
+            #[cfg(feature = "native")]
+            {
+                let (native, _) = run::<vm::native::NativeEngine>(*seed, &images, preemption);
+                assert_same(*seed, &bytecode, &native, preemption, "engines");
+            }
+            #[cfg(not(feature = "native"))]
+            drop(bytecode);
+        }
+    }
+    all
+}
+
+#[test]
+fn polling_programs_do_the_same_without_shortcuts() {
+    let (first, count) = (number("CC67_SEED", 1), number("CC67_PROGRAMS", FEW).min(MOST));
+    let seeds: Vec<u64> = FOUND.iter().copied().chain(first..first + count).collect();
+    let workers = thread::available_parallelism().map_or(1, |workers| workers.get());
+    let share = seeds.len().div_ceil(workers).max(1);
+    let works: Vec<[u64; 2]> = thread::scope(|scope| {
+        let handles: Vec<_> = seeds.chunks(share).map(|seeds| scope.spawn(move || compare(seeds))).collect();
+        handles.into_iter().map(|handle| handle.join().expect("the programs do the same")).collect()
+    });
+    let [with, without] = [0, 1].map(|index| works.iter().map(|work| work[index]).sum::<u64>());
+    println!("seeds {first} to {}: {with} cycles executed of {without}", first + count - 1);
+    assert!(10 * with < 9 * without, "the loops are not passed over: {with} cycles of {without}");
+}

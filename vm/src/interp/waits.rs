@@ -1,0 +1,91 @@
+//! Loops that may only wait: one iteration is executed instruction by instruction, then those like it are passed over.
+
+use std::sync::Arc;
+
+use super::code::{Word, Words};
+use super::context::Context;
+use super::steps::{SingleText, Stepping};
+use crate::engine::{ContextId, Slice, Stop};
+use crate::firmware::Firmware;
+use crate::polling::PollingLoop;
+use crate::program::Program;
+use crate::trap::TrapKind;
+
+/// The most instructions of an iteration that is executed one by one, which takes ten times as long.
+const MOST: usize = 2000;
+
+/// The loop that ends an iteration with the branch `at`.
+fn ended_by(loops: &[PollingLoop], at: usize) -> Option<&PollingLoop> {
+    loops.iter().find(|polling| polling.branches.contains(&at))
+}
+
+/// Goes back to the beginning of the waiting loop whose branch the context is at; executes an iteration and passes over
+/// those that follow. Returns how the context has stopped, if it has.
+pub(super) fn wait<F: Firmware + ?Sized>(
+    id: ContextId,
+    program: &Program,
+    words: &Words,
+    context: &mut Context,
+    slice: &mut Slice<'_, F>,
+    steps: &mut Stepping,
+) -> Result<Option<Stop>, TrapKind> {
+    let loops = Arc::clone(&steps.loops);
+    let Some(polling) = ended_by(&loops, context.calls.pc) else { return Err(TrapKind::Unreachable) };
+    context.calls.pc = polling.first;
+    if !slice.polling.is_on() {
+        return Ok(None);
+    }
+    let mut text = std::mem::take(&mut steps.waiting);
+    let stop = Iteration { id, program, words, loops: &loops }.execute(context, slice, steps, &mut text);
+    steps.waiting = text;
+    stop
+}
+
+/// The execution of an iteration.
+struct Iteration<'a> {
+    id: ContextId,
+    program: &'a Program,
+    words: &'a Words,
+    loops: &'a [PollingLoop],
+}
+
+impl<'a> Iteration<'a> {
+    fn execute<F: Firmware + ?Sized>(
+        &self,
+        context: &mut Context,
+        slice: &mut Slice<'_, F>,
+        steps: &mut Stepping,
+        text: &mut SingleText,
+    ) -> Result<Option<Stop>, TrapKind> {
+        let depth = context.calls.depth();
+        let at_first = |pc| self.loops.iter().find(|polling| polling.first == pc);
+        let Some(mut polling) = at_first(context.calls.pc) else { return Ok(None) };
+        let mut start = slice.budget;
+        for _ in 0..MOST {
+            let at = context.calls.pc;
+            if self.words.get(at).is_none_or(Word::is_held) {
+                return Ok(None);
+            }
+            let run = |word: &Words| super::run(self.id, self.program, word, context, slice, steps);
+            let stop = text.with(self.program, self.words, at, run).unwrap_or(Err(TrapKind::Unreachable))?;
+            if stop != Stop::Held {
+                return Ok(Some(stop));
+            }
+            let next = context.calls.pc;
+            if context.calls.depth() != depth {
+                continue;
+            }
+            match ended_by(self.loops, at).filter(|ended| ended.first == next) {
+                Some(ended) if ended == polling => {
+                    slice.pass_iterations(start);
+                    return Ok(None);
+                }
+                // A loop within this one, or the one around it.
+                Some(ended) => (polling, start) = (ended, slice.budget),
+                None if !polling.words.contains(&next) => return Ok(None),
+                None => {}
+            }
+        }
+        Ok(None)
+    }
+}

@@ -1,0 +1,270 @@
+//! Loops that may only wait.
+//!
+//! An iteration of such a loop stores nothing and calls nothing but what yields a state of the board, and it begins with
+//! the same registers each time: no register that it reads before it assigns it is one that it assigns. So an iteration
+//! that comes back to its first word is followed by others like it, until something happens outside of the thread: at
+//! the earliest when its slice is over. An engine that has executed one passes over those that follow
+//! ([`Slice::pass_iterations`](crate::engine::Slice::pass_iterations)).
+//!
+//! A loop is found by its backward branches. It need not have a single entry, and it may contain other loops: an engine
+//! counts an iteration only if all of it was in the words found here.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use kmotiondef::GuestAddr;
+
+use crate::kind::{Name, OpKind};
+use crate::meter::branch_target;
+use crate::op::Op;
+use crate::operand::{Addr, Count, FuncRef};
+use crate::program::{Function, Program};
+use crate::shared::registers;
+
+/// The most words that are searched for one loop, and the most of an iteration.
+const MAX_SEARCHED: usize = 400;
+const MAX_WORDS: usize = 150;
+
+/// A loop that may only wait.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct PollingLoop {
+    /// The word with which an iteration begins.
+    pub(crate) first: usize,
+    /// The branches with which an iteration ends: back to the first word.
+    pub(crate) branches: Vec<usize>,
+    /// The words of an iteration.
+    pub(crate) words: BTreeSet<usize>,
+}
+
+/// Tells the functions of the firmware that only yield a state ([`Firmware::reads`](crate::firmware::Firmware::reads)).
+pub(crate) type Readers<'a> = &'a dyn Fn(GuestAddr) -> bool;
+
+/// The loops of all functions of `program` that may only wait.
+pub(crate) fn polling_loops(program: &Program, readers: Readers<'_>) -> Vec<PollingLoop> {
+    let mut search = LoopSearch { program, readers, quiet: BTreeMap::new() };
+    program.functions().iter().flat_map(|function| search.loops(function)).collect()
+}
+
+struct LoopSearch<'a> {
+    program: &'a Program,
+    readers: Readers<'a>,
+    /// The functions that have no effect but their result; false for one that is still being searched.
+    quiet: BTreeMap<FuncRef, bool>,
+}
+
+impl LoopSearch<'_> {
+    fn loops(&mut self, function: &Function) -> Vec<PollingLoop> {
+        let mut branches: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for at in function.body.clone() {
+            let target = branch_target(&self.program.ops()[at]).map(|to| to.0 as usize);
+            if let Some(first) = target.filter(|to| *to <= at) {
+                branches.entry(first).or_default().push(at);
+            }
+        }
+        let found = branches.into_iter().filter_map(|(first, branches)| {
+            self.polling_loop(first, branches).filter(|polling| !self.carries_registers(function, polling))
+        });
+        found.collect()
+    }
+
+    /// The loop of quiet words from `first` back to it by some of `branches`, if there is one.
+    fn polling_loop(&mut self, first: usize, mut branches: Vec<usize>) -> Option<PollingLoop> {
+        let mut before: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        let mut reached = BTreeSet::from([first]);
+        let mut open = vec![first];
+        while let Some(at) = open.pop() {
+            if !self.is_quiet(at) {
+                reached.remove(&at);
+                continue;
+            }
+            for next in successors(self.program, at) {
+                before.entry(next).or_default().push(at);
+                if reached.insert(next) {
+                    open.push(next);
+                }
+            }
+            if before.len() > MAX_SEARCHED {
+                return None;
+            }
+        }
+        branches.retain(|branch| reached.contains(branch));
+        if branches.is_empty() {
+            return None;
+        }
+        let mut words: BTreeSet<usize> = branches.iter().copied().collect();
+        let mut open = branches.clone();
+        while let Some(at) = open.pop() {
+            if at == first {
+                continue;
+            }
+            for previous in before.get(&at).into_iter().flatten() {
+                if words.insert(*previous) {
+                    open.push(*previous);
+                }
+            }
+        }
+        (words.len() <= MAX_WORDS).then_some(PollingLoop { first, branches, words })
+    }
+
+    /// Reports whether an instruction has no effect but on registers of its call, and depends on nothing that changes
+    /// within a slice.
+    fn is_quiet(&mut self, at: usize) -> bool {
+        let op = self.program.ops()[at];
+        match op.kind() {
+            OpKind::Charge
+            | OpKind::Constant
+            | OpKind::Move
+            | OpKind::Address
+            | OpKind::Arithmetic
+            | OpKind::Negation
+            | OpKind::Conversion
+            | OpKind::Load(_)
+            | OpKind::Jump
+            | OpKind::Branch
+            | OpKind::Argument(_)
+            | OpKind::Result(_) => true,
+            OpKind::Call => match (op.operand(Name::Addr), op.operand(Name::Func)) {
+                (Some(Addr(address)), _) => (self.readers)(GuestAddr::new(address)),
+                (None, Some(function)) => self.is_quiet_function(function),
+                (None, None) => false,
+            },
+            OpKind::Structure
+            | OpKind::Store(_)
+            | OpKind::Block
+            | OpKind::Table
+            | OpKind::Return(_)
+            | OpKind::Stop => false,
+        }
+    }
+
+    /// Reports whether a call of a function has no effect but its result. One that calls itself does not count.
+    fn is_quiet_function(&mut self, function: FuncRef) -> bool {
+        if let Some(quiet) = self.quiet.get(&function) {
+            return *quiet;
+        }
+        self.quiet.insert(function, false);
+        let Some(index) = self.program.index_of(function) else { return false };
+        let body = self.program.functions()[index].body.clone();
+        let program = self.program;
+        let is_return = |at: usize| matches!(program.ops()[at].kind(), OpKind::Return(_));
+        let quiet =
+            body.len() <= MAX_SEARCHED && body.into_iter().all(|at| is_return(at) || self.is_quiet(at));
+        self.quiet.insert(function, quiet);
+        quiet
+    }
+
+    /// Reports whether an iteration reads a register as the one before has assigned it.
+    fn carries_registers(&self, function: &Function, polling: &PollingLoop) -> bool {
+        let assigned = |at: &usize| registers(&self.program.ops()[*at]).assigned;
+        let assigned: BTreeSet<u16> = polling.words.iter().filter_map(assigned).collect();
+        assigned.into_iter().any(|register| self.is_live(function, polling.first, register))
+    }
+
+    /// Reports whether a register may be read from the word `first` on before it is assigned.
+    fn is_live(&self, function: &Function, first: usize, register: u16) -> bool {
+        let mut seen = BTreeSet::from([first]);
+        let mut open = vec![first];
+        while let Some(at) = open.pop() {
+            if !function.body.contains(&at) {
+                continue;
+            }
+            let used = registers(&self.program.ops()[at]);
+            if used.sources.contains(&register) {
+                return true;
+            }
+            if used.assigned != Some(register) {
+                open.extend(successors(self.program, at).into_iter().filter(|next| seen.insert(*next)));
+            }
+        }
+        false
+    }
+}
+
+/// The words at which execution may continue after the word `at`, in its function.
+fn successors(program: &Program, at: usize) -> Vec<usize> {
+    let op = program.ops()[at];
+    let target = branch_target(&op).map(|to| to.0 as usize);
+    let last = if let Op::BrTable { n: Count(n), .. } = op { at + 1 + usize::from(n) } else { at + 1 };
+    let next = (at + 1..=last).filter(|_| !op.kind().ends_path());
+    next.chain(target).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{HEAD_WORDS, program};
+
+    /// Where the iterations of the loops of `body` begin, as instructions counted from the first; `0x10008000` only
+    /// reads.
+    fn check(body: &str, expected: &[usize]) {
+        let program = program(1, &format!("@main: func sig0, 6, 0\ntypes 0x300\n{body}"));
+        let found = polling_loops(&program, &|address| address.get() == 0x1000_8000);
+        let firsts: Vec<usize> = found.iter().map(|polling| polling.first - HEAD_WORDS - 2).collect();
+        assert_eq!(firsts, expected, "{body}");
+    }
+
+    #[test]
+    fn a_loop_that_reads_and_compares_may_only_wait() {
+        check("@a: charge 9\nload_i32_at r0, 0x10000000\nbr_if r0, @a\nret", &[0]);
+        check("@a: charge 9\narg_i32 r1, 0\ncall_fw sig1, 0x10008000\ncharge 9\nbr_if r0, @a\nret", &[0]);
+        // Entered at its condition.
+        check(
+            "charge 9\nbr @b\n@a: charge 9\n@b: charge 9\nload_i32_at r0, 0x10000000\nbr_if r0, @a\nret",
+            &[2],
+        );
+        // Two conditions.
+        check(
+            "@a: charge 9\nload_i32_at r0, 0x10000000\nbr_if r0, @a\ncharge 9\nload_i32_at r1, 0x10000004\n\
+             br_if r1, @a\nret",
+            &[0],
+        );
+    }
+
+    #[test]
+    fn a_loop_with_an_effect_does_not() {
+        check(
+            "@a: charge 9\nload_i32_at r0, 0x10000000\nstore_i32_at r0, 0x10000008\nbr_if r0, @a\nret",
+            &[],
+        );
+        check("@a: charge 9\narg_i32 r1, 0\ncall_fw sig1, 0x10008008\ncharge 9\nbr_if r0, @a\nret", &[]);
+        check("@a: charge 9\nadd_i32_imm r1, r1, 1\nload_i32_at r0, 0x10000000\nbr_if r0, @a\nret", &[]);
+        // The new value is the old one of the next iteration.
+        check(
+            "@a: charge 9\nmov_i32 r1, r0\nload_i32_at r0, 0x10000000\neq_i32 r2, r0, r1\nbr_if r2, @a\nret",
+            &[],
+        );
+        // Read after the loop, and assigned on one of two ways only.
+        check(
+            "@a: charge 9\nload_i32_at r0, 0x10000000\nbr_if r0, @b\ncharge 9\nconst_i32 r1, 3\n@b: charge 9\n\
+             load_i32_at r0, 0x10000004\nbr_if r0, @a\nstore_i32_at r1, 0x10000008\nret",
+            &[],
+        );
+    }
+
+    #[test]
+    fn the_loop_around_one_that_counts_may_only_wait() {
+        check(
+            "@a: charge 9\nconst_i32 r1, 0\n@b: charge 9\nadd_i32_imm r1, r1, 1\nload_i32 r0, r1, +0\nbr_if r0, @b\n\
+             charge 9\nbr_if r1, @a\nret",
+            &[0],
+        );
+        // Iterations that store, of a loop around one that waits.
+        check(
+            "@a: charge 9\nstore_i32_at r1, 0x10000008\n@b: charge 9\nload_i32_at r0, 0x10000000\nbr_if r0, @b\n\
+             charge 9\nbr @a\nret",
+            &[2],
+        );
+    }
+
+    #[test]
+    fn functions_of_the_program_may_be_called_that_only_read() {
+        let calls = |body: &str| {
+            let main = "@main: func sig0, 6, 0\ntypes 0x300\n@a: charge 9\ncall fn@f\nresult_i32 r0\ncharge 9\n\
+                        br_if r0, @a\nret";
+            let program = program(1, &format!("{main}\n@f: func sig2, 1, 0\ntypes 0\n{body}"));
+            polling_loops(&program, &|_| false).len()
+        };
+        assert_eq!(calls("charge 9\nload_i32_at r0, 0x10000000\nret_i32 r0"), 1);
+        assert_eq!(calls("charge 9\nstore_i32_at r0, 0x10000000\nret_i32 r0"), 0);
+        assert_eq!(calls("charge 9\ncall fn@f\nresult_i32 r0\nret_i32 r0"), 0);
+    }
+}
