@@ -365,7 +365,7 @@ impl Board {
         if is_connected && value.is_nan() {
             return Err(Error::new_err(format!(
                 "{expression:?} cannot be read: no command of a controller reads memory besides persist.UserData and what \
-                 its status record has"
+                 its status record has; a board of `connect(…, monitor=True)` does"
             )));
         }
         Ok(value)

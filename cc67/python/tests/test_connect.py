@@ -135,5 +135,5 @@ def test_the_monitor_reads_variables_of_programs(write: Write, served: Served) -
         board.write("count", 40)
         assert board.read("count + 2") == 42.0
     with cc67.connect(served.address, [program], yes=True) as board:
-        with pytest.raises(cc67.LinkError, match="monitor"):
+        with pytest.raises(cc67.Error, match="monitor=True"):
             board.read("count")
