@@ -307,6 +307,93 @@ fn a_load_is_compared_with_the_memory_of_the_controller() {
     assert_eq!(output.stdout, "", "it was not started");
 }
 
+/// Moves an axis, and counts as long as it moves.
+const MOVES: &str = "\
+#include \"KMotionDef.h\"
+int phase;
+double level;
+main()
+{
+    ch0->InputMode = NO_INPUT_MODE;
+    ch0->OutputMode = STEP_DIR_MODE;
+    ch0->OutputChan0 = 8;
+    ch0->Vel = 5000; ch0->Accel = 100000; ch0->Jerk = 1e6;
+    EnableAxisDest(0, 0);
+    phase = 1;
+    MoveAtVel(0, 500, 4000);
+    while (!CheckDone(0)) level += 0.5;
+    phase = 2;
+}
+";
+
+/// The values of a column from the first that is not 0 on, each once as long as it stays.
+fn course(table: &str, column: &str) -> Vec<String> {
+    let mut lines = table.lines();
+    let at = lines.next().expect("a heading").split(',').position(|name| name == column).expect("the column");
+    let values = lines.map(|line| line.split(',').nth(at).expect("a value").to_owned());
+    let mut course: Vec<_> = values.skip_while(|value| value == "0").collect();
+    course.dedup();
+    course
+}
+
+#[test]
+fn the_recorder_of_the_board_traces_every_tick() {
+    let scratch = Scratch::new("controller-trace");
+    scratch.write("a.c", MOVES);
+    let (_server, place) = served("controller-trace-board", &[]);
+    let trace = [
+        "--trace",
+        "board.csv",
+        "--trace",
+        "board.vcd",
+        "--plot",
+        "board.svg",
+        "--watch",
+        "axis0,phase,level",
+    ];
+    let output = on(&scratch, &["run"], &place, &[&trace[..], &["a.c"]].concat());
+    assert_eq!(output.code, 0, "{output:?}");
+    let own = cc67(&scratch, ["run", "--trace", "model.csv", "--watch", "axis0,phase,level", "a.c"]);
+    assert_eq!(own.code, 0, "{own:?}");
+    let table = |name: &str| fs::read_to_string(scratch.path().join(name)).expect("it was written");
+    let (board, model) = (table("board.csv"), table("model.csv"));
+    // The same board at the other end of the link: the same course, tick by tick.
+    assert_eq!(course(&board, "dest0"), course(&model, "dest0"));
+    assert_eq!(course(&board, "phase"), ["1", "2"]);
+    assert!(course(&board, "level").len() > 1000, "it counts while the axis moves");
+    let times: Vec<f64> = board
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').next().expect("a time").parse().expect("it"))
+        .collect();
+    assert!(times.windows(2).all(|pair| (pair[1] - pair[0] - 0.00009).abs() < 1e-9), "a tick is missing");
+    assert!(table("board.vcd").contains("$enddefinitions") && table("board.svg").contains("</svg>"));
+    for (watch, words) in [("bit46", "a controller records"), ("phase + 1", "computes nothing")] {
+        let output = on(&scratch, &["run"], &place, &["--trace", "a.csv", "--watch", watch, "a.c"]);
+        assert!(output.code == 2 && output.stderr.contains(words), "{output:?}");
+    }
+    let output = on(&scratch, &["run"], &place, &["--plot", "a.svg", "a.c"]);
+    assert!(output.code == 2 && output.stderr.contains("`--watch` names what is recorded"), "{output:?}");
+    let own = MOVES.replace("phase = 1;", "SetupGatherAllOnAxis(0, 100); TriggerGather();");
+    scratch.write("own.c", own);
+    let output = on(&scratch, &["run"], &place, &["--trace", "a.csv", "--watch", "dest0", "own.c"]);
+    assert!(output.stderr.contains("a program has used the board's data recorder"), "{output:?}");
+}
+
+#[test]
+fn a_recording_ends_where_the_buffer_is_full() {
+    let scratch = Scratch::new("controller-full");
+    scratch.write("a.c", "#include \"KMotionDef.h\"\nmain() { Delay_sec(3.2); }\n");
+    let (_server, place) = served("controller-full-board", &["--pace", "20"]);
+    let all: Vec<_> = (0..26).map(|index| format!("persist.{index}")).collect();
+    let trace = ["--trace", "a.csv", "--trace-every", "100", "--watch", &all.join(",")];
+    let output = on(&scratch, &["run"], &place, &[&trace[..], &["a.c"]].concat());
+    assert!(output.stderr.contains("the recording ends after 2.596 s"), "{output:?}");
+    let table = fs::read_to_string(scratch.path().join("a.csv")).expect("it was written");
+    assert_eq!(table.lines().nth(1).map(|line| line.starts_with("0.009000,")), Some(true), "{output:?}");
+    assert_eq!(table.lines().count(), 288);
+}
+
 #[test]
 fn the_monitor_needs_a_free_thread() {
     let scratch = Scratch::new("controller-monitor");

@@ -148,6 +148,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
         &[
             ("connections", &["connection"]),
             ("target", &["controller"]),
+            ("recordings", &["recording"]),
             ("the monitor", &["monitor"]),
             ("files, images, memory", &["files", "image", "seen"]),
             ("commands and threads", &["commands", "threads"]),

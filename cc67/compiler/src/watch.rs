@@ -4,10 +4,12 @@
 //! the program has its meaning there. The board does not execute it; it is computed from the board's memory, so a run
 //! is the same with and without it. For the same reason it only reads.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use kmotiondef::GuestAddr;
+use kmotiondef::modes::GatherType;
 
 use crate::diag::{Diagnostic, Lint, Severity};
 use crate::driver::{CompileContext, CompileRequest, Front, Options, on_large_stack};
@@ -271,6 +273,24 @@ impl Check<'_> {
     }
 }
 
+/// A memory that cannot be read.
+#[derive(Default)]
+struct NoMemory {
+    was_read: Cell<bool>,
+}
+
+impl ItemReader for NoMemory {
+    fn bytes(&self, _: GuestAddr) -> [u8; 8] {
+        self.was_read.set(true);
+        [0; 8]
+    }
+
+    fn item(&self, _: usize) -> f64 {
+        self.was_read.set(true);
+        0.0
+    }
+}
+
 impl Expression {
     /// The value of a function's expression; its names stand for these.
     pub(crate) const fn new(
@@ -316,6 +336,22 @@ impl Expression {
         let word = word & !mask | (value as i64).cast_unsigned() << range.shift & mask;
         let size = size_of(self.function.places[unit].ty);
         Some((address, word.to_le_bytes().into_iter().take(size).collect()))
+    }
+
+    /// The variable that it is, an `int`, `float` or `double` whose address does not depend on memory, as the board's data
+    /// recorder knows it; `None` of anything else.
+    #[must_use]
+    pub fn recorded(&self) -> Option<(GuestAddr, GatherType)> {
+        let place = self.stored_place()?;
+        let kind = match self.function.places[place].ty {
+            Types::DOUBLE => GatherType::Double,
+            Types::FLOAT => GatherType::Float,
+            Types::INT => GatherType::Int,
+            _ => return None,
+        };
+        let memory = NoMemory::default();
+        let address = self.address(place, &memory)?;
+        (!memory.was_read.get()).then_some((address, kind))
     }
 
     /// Reports whether a value can be stored in it, as far as its form says.

@@ -11,12 +11,12 @@ use cc67_wire::{Client, LoadImage, Progress, Status, WireError};
 use compiler::Options;
 use compiler::firmware::FirmwareNames;
 use kmotiondef::boards::TargetBoard;
-use kmotiondef::limits::{N_CHANNELS, N_USER_DATA_VARS};
+use kmotiondef::limits::{N_CHANNELS, N_USER_DATA_VARS, TIMEBASE};
 use kmotiondef::structs::{Chan, Persist};
-use kmotiondef::variables::{CHAN, PERSIST};
+use kmotiondef::variables::{CHAN, GATHER_BUFFER, PERSIST};
 use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
-use runtime::trace::Item;
+use runtime::trace::{Item, Record, TraceRequest};
 use runtime::{Answers, Event, EventKind, HostFiles, OpenBox, RemoteBoard as _, RequestServer};
 use vm::scheduler::Turn;
 use vm::thread::ThreadState;
@@ -26,8 +26,9 @@ use crate::commands::Commands;
 use crate::files::{FileRemarks, Files};
 use crate::image;
 use crate::monitor::{self, Monitor};
+use crate::recording::{BoardRecording, BoardSample, Unrecordable};
 use crate::seen::SeenMemory;
-use crate::terms::LoadTerms;
+use crate::terms::{LoadTerms, ProgramStart};
 use crate::threads::BoardThreads;
 
 /// The pause between two readings of the status record: 20 a second.
@@ -65,6 +66,9 @@ pub struct Controller {
     /// Events that wait for the next step.
     pending: Vec<EventKind>,
     remarks: FileRemarks,
+    /// Programs that start with the first call that lets time pass.
+    waiting: Vec<ThreadId>,
+    recording: Option<BoardRecording>,
     /// The reason why the controller cannot be reached any more.
     lost: Option<String>,
 }
@@ -100,6 +104,8 @@ impl Controller {
             requests: RequestServer::new(None),
             pending: Vec::new(),
             remarks: FileRemarks::default(),
+            waiting: Vec::new(),
+            recording: None,
             lost: None,
         }
     }
@@ -143,10 +149,14 @@ impl Controller {
             self.load(program)?;
         }
         self.time.origin = now();
-        let starts_now = !self.loading.terms.starts_later;
-        let starting = programs.iter().filter(|program| program.starts && starts_now);
+        let starting = programs.iter().filter(|program| program.starts);
         let starting: Vec<_> = starting.map(|program| program.thread).collect();
-        self.start_together(&starting)
+        match self.loading.terms.start {
+            ProgramStart::AtOnce => self.start_together(&starting)?,
+            ProgramStart::WithTime => self.waiting = starting,
+            ProgramStart::ByCall => {}
+        }
+        Ok(())
     }
 
     /// Takes up a status record.
@@ -319,7 +329,7 @@ impl Target for Controller {
     }
 
     fn can(&self, capability: Capability) -> bool {
-        matches!(capability, Capability::Answers | Capability::Pauses)
+        matches!(capability, Capability::Answers | Capability::Pauses | Capability::Recordings)
     }
 
     fn open_box(&self) -> Option<OpenBox> {
@@ -346,6 +356,7 @@ impl Target for Controller {
     }
 
     fn step(&mut self, limit: Ticks, events: EventSink<'_>) {
+        self.start_waiting();
         let end = self.time.moment_of(limit).unwrap_or_else(|| now() + LONGEST_WAIT);
         if now() < end {
             self.wait(end.min(now() + LONGEST_WAIT));
@@ -363,11 +374,19 @@ impl Target for Controller {
         }
         self.time.note();
         self.deliver(events);
+        self.end_recording(events);
+    }
+
+    fn record(&mut self, request: TraceRequest) {
+        if let Err(error) = self.begin_recording(&request) {
+            self.pending.push(EventKind::Host(format!("nothing is recorded: {error}")));
+        }
     }
 
     fn has_ended(&self) -> bool {
         self.lost.is_some()
-            || !self.threads.has_own_active()
+            || self.waiting.is_empty()
+                && !self.threads.has_own_active()
                 && self.pending.is_empty()
                 && now().duration_since(self.time.heard) >= SILENCE
     }
@@ -570,6 +589,61 @@ impl Target for Controller {
 impl Controller {
     fn unsupported(&self) -> Unsupported {
         Unsupported { target: self.name(), capability: Capability::Snapshots }
+    }
+
+    /// Starts the programs that wait for time to pass.
+    fn start_waiting(&mut self) {
+        let waiting = std::mem::take(&mut self.waiting);
+        if !waiting.is_empty() {
+            self.time.origin = now();
+            if let Err(error) = self.start_together(&waiting) {
+                self.pending.push(EventKind::Host(error.to_string()));
+            }
+        }
+    }
+
+    fn begin_recording(&mut self, request: &TraceRequest) -> Result<(), HostError> {
+        let mut pointer = [0; 4];
+        self.read(self.place_of(GATHER_BUFFER.address()), &mut pointer)?;
+        let buffer = GuestAddr::new(u32::from_le_bytes(pointer));
+        let recording = BoardRecording::new(request, |address| self.seen.place_of(address), buffer);
+        let recording = recording.map_err(|Unrecordable(what)| HostError::Link(what))?;
+        recording.begin(self.client.get_mut()).map_err(link)?;
+        self.recording = Some(recording);
+        Ok(())
+    }
+
+    /// Ends the recording, and hands over its samples.
+    fn end_recording(&mut self, events: EventSink<'_>) {
+        let Some(recording) = self.recording.take().filter(|_| self.lost.is_none()) else { return };
+        if let Err(error) = self.read_recording(&recording, events) {
+            let at = self.now();
+            events(Event { at, kind: EventKind::Host(format!("the recording cannot be read: {error}")) });
+        }
+    }
+
+    fn read_recording(&mut self, recording: &BoardRecording, events: EventSink<'_>) -> Result<(), HostError> {
+        let at = self.now();
+        let (descriptor, length) = recording.head();
+        let mut head = vec![0; length];
+        self.monitor.get_mut().note_change();
+        self.read(descriptor, &mut head)?;
+        let board = self.client.get_mut();
+        let mut say = |text: String| events(Event { at, kind: EventKind::Host(text) });
+        let Some(end) = recording.end_of(board, &head).map_err(link)? else {
+            say("a program has used the board's data recorder: nothing is recorded".to_owned());
+            return Ok(());
+        };
+        let seconds = f64::from(end.samples) * TIMEBASE;
+        if end.is_full {
+            say(format!("the recording ends after {seconds:.3} s: the board's buffer is full"));
+        }
+        let read = recording.read(board, end.samples, &mut |sample| {
+            let at = Cycles::new((sample.tick as i64 + 1) * Cycles::PER_TICK.get());
+            let BoardSample { values, enabled, .. } = sample;
+            events(Event { at, kind: EventKind::Trace(Record::Sample { values, enabled }) });
+        });
+        read.map_err(link)
     }
 
     /// Starts threads without a pause between them.

@@ -12,6 +12,7 @@
 //! files       files of the PC, for programs on the controller
 //! terms       the terms on which programs are loaded
 //! image       from a program to what is downloaded
+//! recording   variables in each servo tick, by the board's data recorder
 //! threads     what is known of the board's threads
 //! seen        memory as the status record shows it
 //! clock       the time of a board, which passes by itself
@@ -42,6 +43,7 @@ mod controller;
 mod files;
 mod image;
 mod monitor;
+mod recording;
 mod seen;
 mod terms;
 mod threads;
@@ -49,7 +51,7 @@ mod threads;
 pub use cc67_wire::{Address, AddressError, Client, FoundBoard, Progress, WireError, boards};
 pub use connection::ControllerLink;
 pub use controller::Controller;
-pub use terms::LoadTerms;
+pub use terms::{LoadTerms, ProgramStart};
 
 /// The facts that a person should know before the first connection of a project.
 pub const FIRST_TIME: &str = "\

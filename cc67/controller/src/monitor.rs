@@ -24,7 +24,7 @@ const NAME: &str = "cc67-monitor.c";
 /// Words of memory for which one answer has room.
 const ROOM: u32 = 256;
 /// The answer in the gather buffer: the number of the request, a sum, the words.
-const REPLY: u32 = 2 * MAX_GATHER_DATA as u32 - ROOM - 2;
+pub(crate) const REPLY: u32 = 2 * MAX_GATHER_DATA as u32 - ROOM - 2;
 /// Bytes of memory that are read at once, and their alignment.
 const BLOCK: u32 = 256;
 /// The age up to which bytes that were read are shown again.

@@ -15,8 +15,10 @@ pub enum Capability {
     Watchpoints,
     /// Programs stop that are code of the controller's processor.
     ProcessorCode,
-    /// A stimulus, a machine file and the serial port are connected to it, and it is recorded.
+    /// A stimulus, a machine file and the serial port are connected to it, and all that happens is recorded.
     Surroundings,
+    /// Variables are recorded.
+    Recordings,
     /// Threads are paused one by one while the others run.
     Pauses,
     /// Boxes of programs are answered by calls, not by statements.
@@ -33,6 +35,7 @@ impl fmt::Display for Capability {
             Self::ProcessorCode => "stop code of the controller's processor",
             Self::Pauses => "pause one thread while the others run",
             Self::Answers => "be given answers by a call: a statement of a stimulus does",
+            Self::Recordings => "be recorded",
             Self::Surroundings => "be connected to a stimulus, a machine file or a recorder",
         })
     }

@@ -292,7 +292,8 @@ pub trait Target {
         0
     }
 
-    /// Records from now on what is requested; the records come as events ([`Capability::Surroundings`]).
+    /// Records from now on what is requested; the records come as events ([`Capability::Recordings`]), those of a connected
+    /// target at the end of the run.
     fn record(&mut self, request: TraceRequest) {
         let _ = request;
     }

@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use cc67_controller::{Controller, ControllerLink, LoadTerms};
+use cc67_controller::{Controller, ControllerLink, LoadTerms, ProgramStart};
 use cc67_debug::dap::AttachPoint;
 use cc67_host::{
     AnyTarget, Attendant, BootedFirmware, BootedTarget, End, HostError, Idle, Schedule, Session, Target,
@@ -268,10 +268,18 @@ impl Setup {
         Ok(self.rig_of_any()?.session)
     }
 
+    /// The same with a recording: on a connected controller programs start when it has begun.
+    pub(crate) fn recorded(mut self) -> Self {
+        if let Some(Connected { terms, .. }) = &mut self.controller {
+            (terms.start, terms.has_monitor) = (ProgramStart::WithTime, true);
+        }
+        self
+    }
+
     /// The connected controller for a debugger, with the programs loaded and not started.
     pub(crate) fn controller_for_debugger(mut self) -> Result<Session<Controller>> {
         if let Some(Connected { terms, .. }) = &mut self.controller {
-            (terms.starts_later, terms.has_monitor) = (true, true);
+            (terms.start, terms.has_monitor) = (ProgramStart::ByCall, true);
         }
         Ok(self.rig_of_controller()?.session)
     }

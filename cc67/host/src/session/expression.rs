@@ -21,7 +21,7 @@ use kmotiondef::limits::N_USER_DATA_VARS;
 use kmotiondef::structs::Persist;
 use kmotiondef::variables::PERSIST;
 use kmotiondef::{AxisId, GuestAddr, ThreadId};
-use runtime::trace::{Formula, Item, Quantity, UnknownItem, View};
+use runtime::trace::{Formula, Item, Quantity, RecordedCell, UnknownItem, View};
 
 use super::{Input, Session, UserProgram};
 
@@ -185,7 +185,7 @@ impl<T: Target> Session<T> {
     }
 
     /// Records from now on what is requested; the records come as events. Only a target with
-    /// [surroundings](crate::Capability::Surroundings) records.
+    /// [recordings](crate::Capability::Recordings) records.
     pub fn record(&mut self, request: runtime::trace::TraceRequest) {
         self.target.record(request);
     }
@@ -412,6 +412,10 @@ impl Formula for Compiled {
 
     fn items(&self) -> &[Item] {
         &self.items
+    }
+
+    fn cell(&self) -> Option<RecordedCell> {
+        self.expression.recorded().map(|(address, kind)| RecordedCell::new(address, kind))
     }
 }
 

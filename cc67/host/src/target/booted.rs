@@ -346,7 +346,7 @@ impl Target for BootedTarget {
             | Capability::Breakpoints
             | Capability::Watchpoints
             | Capability::ProcessorCode => true,
-            Capability::Surroundings => self.board.around().is_some(),
+            Capability::Surroundings | Capability::Recordings => self.board.around().is_some(),
             Capability::Answers | Capability::Pauses => false,
         }
     }

@@ -58,7 +58,10 @@ impl<E: Engine> Target for Board<E> {
 
     fn can(&self, capability: Capability) -> bool {
         match capability {
-            Capability::StopTime | Capability::Snapshots | Capability::Surroundings => true,
+            Capability::StopTime
+            | Capability::Snapshots
+            | Capability::Surroundings
+            | Capability::Recordings => true,
             Capability::Breakpoints | Capability::Watchpoints => E::HOLDS,
             Capability::ProcessorCode | Capability::Answers | Capability::Pauses => false,
         }

@@ -58,7 +58,6 @@ fn is_number(text: &str) -> bool {
 
 impl TraceArguments {
     /// Whether nothing should be written.
-    #[cfg(feature = "live")]
     pub(crate) const fn is_unwritten(&self) -> bool {
         self.trace.is_empty() && self.trace_bits.is_none() && self.plot.is_empty()
     }

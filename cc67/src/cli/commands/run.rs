@@ -92,7 +92,8 @@ fn run_setup(arguments: &RunArguments, setup: Setup) -> Result<Exit> {
     }
     match &arguments.profile {
         Some(target) => run_profiled(arguments, setup, target),
-        None => setup.on_its_target(arguments),
+        None if arguments.trace.is_unwritten() => setup.on_its_target(arguments),
+        None => setup.recorded().on_its_target(arguments),
     }
 }
 
@@ -151,10 +152,11 @@ impl RunArguments {
         if let Some(request) = &request {
             rig.session.record(request.clone());
         }
-        let mut trace = request.as_ref().map(|request| Trace::begin(&self.trace, request)).transpose()?;
+        let is_connected = self.board.controller.on.is_some();
+        let begin = |request| Trace::begin(&self.trace, request, is_connected);
+        let mut trace = request.as_ref().map(begin).transpose()?;
         rig.connect()?;
         let mut seen = Seen::default();
-        let is_connected = self.board.controller.on.is_some();
         let limit = self.ticks();
         let pace = self.realtime.then(|| Pace::new(rig.session.tick()));
         let mut sink = |event| {

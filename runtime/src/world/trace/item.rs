@@ -3,11 +3,12 @@
 use std::fmt;
 
 use kmotiondef::bits::{BitKind, range_of};
+use kmotiondef::modes::GatherType;
 use kmotiondef::structs::{Chan, Persist};
-use kmotiondef::variables::{ADC_BUFFER_IN, DAC_BUFFER, LAST_PWM, PERSIST};
-use kmotiondef::{AxisId, Bit};
+use kmotiondef::variables::{ADC_BUFFER_IN, CHAN, DAC_BUFFER, LAST_PWM, PERSIST};
+use kmotiondef::{AxisId, Bit, Place};
 
-use super::{Formula, View};
+use super::{Formula, RecordedCell, View};
 use crate::io::bits::bit_state;
 use crate::io::konnect::{KonnectBoard, Port};
 use crate::views::Typed;
@@ -22,10 +23,13 @@ struct ItemKind {
     /// Whether it is a part of what `axisN` names.
     is_of_axes: bool,
     read: fn(&View<'_>, usize) -> f64,
+    /// The variable of the board that it is; `None` of what is only in registers, or of the model.
+    cell: Option<fn(usize) -> RecordedCell>,
 }
 
 /// A kind that is numbered by axis and not a part of what `axisN` names.
-const OTHER: ItemKind = ItemKind { name: "", count: 8, unit: "", is_of_axes: false, read: |_, _| 0.0 };
+const OTHER: ItemKind =
+    ItemKind { name: "", count: 8, unit: "", is_of_axes: false, read: |_, _| 0.0, cell: None };
 
 /// All kinds.
 const KINDS: &[ItemKind] = &[
@@ -35,6 +39,7 @@ const KINDS: &[ItemKind] = &[
         unit: "units",
         is_of_axes: true,
         read: |view, index| view.memory.axis(axis(index), Chan::DEST),
+        cell: Some(|index| RecordedCell::new(chan(index).field(Chan::DEST).address(), GatherType::Double)),
         ..OTHER
     },
     // Where it is.
@@ -43,6 +48,9 @@ const KINDS: &[ItemKind] = &[
         unit: "units",
         is_of_axes: true,
         read: |view, index| view.memory.axis(axis(index), Chan::POSITION),
+        cell: Some(|index| {
+            RecordedCell::new(chan(index).field(Chan::POSITION).address(), GatherType::Double)
+        }),
         ..OTHER
     },
     // What drives it.
@@ -50,6 +58,7 @@ const KINDS: &[ItemKind] = &[
         name: "out",
         is_of_axes: true,
         read: |view, index| view.memory.axis(axis(index), Chan::OUTPUT).into(),
+        cell: Some(|index| RecordedCell::new(chan(index).field(Chan::OUTPUT).address(), GatherType::Float)),
         ..OTHER
     },
     // How fast it is sent there.
@@ -57,6 +66,7 @@ const KINDS: &[ItemKind] = &[
         name: "vel",
         unit: "units/s",
         read: |view, index| view.memory.axis(axis(index), Chan::LAST_VEL).into(),
+        cell: Some(|index| RecordedCell::new(chan(index).field(Chan::LAST_VEL).address(), GatherType::Float)),
         ..OTHER
     },
     // Where its load is, in machine coordinates.
@@ -68,6 +78,10 @@ const KINDS: &[ItemKind] = &[
         name: "adc",
         unit: "counts",
         read: |view, index| f64::from(view.memory.get(ADC_BUFFER_IN.element(index)) - 2048),
+        cell: Some(|index| RecordedCell {
+            offset: -2048.0,
+            ..RecordedCell::new(ADC_BUFFER_IN.element(index).address(), GatherType::Int)
+        }),
         ..OTHER
     },
     // An analog output, -2048 to 2047.
@@ -103,8 +117,22 @@ const KINDS: &[ItemKind] = &[
         ..OTHER
     },
     // An element of `persist.UserData`.
-    ItemKind { name: "persist", count: 200, read: user_data, ..OTHER },
+    ItemKind {
+        name: "persist",
+        count: 200,
+        read: user_data,
+        cell: Some(|index| {
+            let element = PERSIST.field(Persist::USER_DATA).element(index);
+            RecordedCell::new(element.address(), GatherType::Int)
+        }),
+        ..OTHER
+    },
 ];
+
+/// The variables of an axis.
+fn chan(index: usize) -> Place<Chan> {
+    CHAN.element(index)
+}
 
 /// Indexes are checked when a name is read.
 fn axis(index: usize) -> AxisId {
@@ -259,6 +287,10 @@ impl Formula for Item {
 
     fn items(&self) -> &[Item] {
         std::slice::from_ref(self)
+    }
+
+    fn cell(&self) -> Option<RecordedCell> {
+        KINDS[self.kind].cell.map(|cell| cell(self.index))
     }
 }
 

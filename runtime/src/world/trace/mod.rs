@@ -9,7 +9,7 @@ mod quantity;
 mod recorder;
 
 pub use item::{Item, UnknownItem};
-pub use quantity::{Formula, Quantity, View};
+pub use quantity::{Formula, Quantity, RecordedCell, View};
 pub(crate) use recorder::Recorder;
 
 pub use crate::out::Record;

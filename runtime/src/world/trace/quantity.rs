@@ -3,7 +3,8 @@
 use std::fmt;
 use std::sync::Arc;
 
-use kmotiondef::Cycles;
+use kmotiondef::modes::GatherType;
+use kmotiondef::{Cycles, GuestAddr};
 use vm::memory::GuestMemory;
 
 use super::Item;
@@ -26,6 +27,30 @@ pub trait Formula: fmt::Debug + Send + Sync {
 
     /// The items that it is computed from.
     fn items(&self) -> &[Item];
+
+    /// The variable that it is, for a recorder on the board; `None` if it is computed.
+    fn cell(&self) -> Option<RecordedCell> {
+        None
+    }
+}
+
+/// A variable as the board's data recorder reads it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RecordedCell {
+    /// Its address in the board's tables, or in a program.
+    pub address: GuestAddr,
+    /// Its type.
+    pub kind: GatherType,
+    /// What is added to the value that was recorded.
+    pub offset: f64,
+}
+
+impl RecordedCell {
+    /// A variable whose value is the one that was recorded.
+    #[must_use]
+    pub const fn new(address: GuestAddr, kind: GatherType) -> Self {
+        Self { address, kind, offset: 0.0 }
+    }
 }
 
 /// The board as somebody sees it who only looks.
@@ -73,6 +98,15 @@ impl Quantity {
         match self {
             Self::Item(item) => item.items(),
             Self::Formula(_, formula) => formula.items(),
+        }
+    }
+
+    /// The variable that it is, for a recorder on the board; `None` if it is computed.
+    #[must_use]
+    pub fn cell(&self) -> Option<RecordedCell> {
+        match self {
+            Self::Item(item) => item.cell(),
+            Self::Formula(_, formula) => formula.cell(),
         }
     }
 

@@ -88,7 +88,8 @@ pub(super) fn console(arguments: &ConsoleArguments) -> Result<Exit> {
             let debugger = AttachArguments { debug: arguments.debug }.open()?;
             arguments.terms(address).serve(setup, debugger)
         }
-        None => setup.on_its_target(arguments),
+        None if arguments.trace.is_unwritten() => setup.on_its_target(arguments),
+        None => setup.recorded().on_its_target(arguments),
     }
 }
 
@@ -141,7 +142,9 @@ impl<'a, T: Target> Console<'a, T> {
         if let Some(request) = &request {
             rig.session.record(request.clone());
         }
-        let trace = request.as_ref().map(|request| Trace::begin(&arguments.trace, request)).transpose()?;
+        let is_late = arguments.board.controller.on.is_some();
+        let begin = |request| Trace::begin(&arguments.trace, request, is_late);
+        let trace = request.as_ref().map(begin).transpose()?;
         let is_script = !(io::stdin().is_terminal() && io::stdout().is_terminal());
         let screen = Screen::new(arguments.time, is_script && !arguments.realtime);
         let shown = Shown { screen, seen: Seen::default(), trace, arguments };

@@ -55,7 +55,7 @@ impl<T: Target> Served<T> {
         if let Some(request) = &request {
             rig.session.record(request.clone());
         }
-        let trace = request.as_ref().map(|request| Trace::begin(terms.trace, request)).transpose()?;
+        let trace = request.as_ref().map(|request| Trace::begin(terms.trace, request, false)).transpose()?;
         rig.session.stop_recording();
         rig.session.listen(true);
         rig.is_paced();

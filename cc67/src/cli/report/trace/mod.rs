@@ -46,10 +46,16 @@ pub(crate) fn request<T: Target>(
 ) -> Result<Option<TraceRequest>> {
     let packets = arguments.trace_packets.as_ref().map(|file| packets::wanted(file, session)).transpose()?;
     let request = requested(arguments, packets, |list| session.quantities(list))?;
-    if request.is_some() {
+    let Some(request) = request else { return Ok(None) };
+    session.require(Capability::Recordings)?;
+    if arguments.trace_bits.is_some() || arguments.trace_packets.is_some() {
         session.require(Capability::Surroundings)?;
     }
-    for quantity in request.iter().flat_map(|request| &request.quantities) {
+    if !session.can(Capability::StopTime) {
+        recorded_by_the_board(arguments, &request)?;
+        return Ok(Some(request));
+    }
+    for quantity in &request.quantities {
         if let Some(item) = quantity.items().iter().find(|item| !session.target().knows(**item)) {
             bail!(
                 "`--watch {quantity}`: `{item}` belongs to an option board that {} does not have",
@@ -57,7 +63,23 @@ pub(crate) fn request<T: Target>(
             );
         }
     }
-    Ok(request)
+    Ok(Some(request))
+}
+
+/// Refuses what the data recorder of a controller does not record.
+fn recorded_by_the_board(arguments: &TraceArguments, request: &TraceRequest) -> Result<()> {
+    if arguments.trace_items.is_none() {
+        bail!(
+            "with `--on`, `--watch` names what is recorded, such as axis0,persist.5: the fewer, the longer"
+        );
+    }
+    if let Some(quantity) = request.quantities.iter().find(|quantity| quantity.cell().is_none()) {
+        bail!(
+            "`--watch {quantity}`: a controller records axes (dest0, pos0, out0, vel0), adc0, persist.5, and variables of \
+             the types int, float and double; it computes nothing"
+        );
+    }
+    Ok(())
 }
 
 fn requested(
@@ -154,6 +176,8 @@ trait Sink {
 
 /// All files of a run.
 pub(crate) struct Trace {
+    /// Nothing is written before the end.
+    is_late: bool,
     order: Order,
     sinks: Vec<Box<dyn Sink>>,
     log: Option<Log>,
@@ -176,8 +200,8 @@ fn refused(error: WatchError) -> anyhow::Error {
 }
 
 impl Trace {
-    /// Begins all files.
-    pub(crate) fn begin(arguments: &TraceArguments, request: &TraceRequest) -> Result<Self> {
+    /// Begins all files; `is_late` says that samples come at the end, when all else has come.
+    pub(crate) fn begin(arguments: &TraceArguments, request: &TraceRequest, is_late: bool) -> Result<Self> {
         let mut sinks: Vec<Box<dyn Sink>> = Vec::new();
         for path in &arguments.trace {
             let columns = Columns::new(request);
@@ -194,7 +218,7 @@ impl Trace {
             sinks.push(Box::new(packets::PacketTable::new(&file.path)?));
         }
         let log = (!arguments.plot.is_empty()).then(|| Log::new(request));
-        Ok(Self { order: Order::default(), sinks, log, axes: BTreeMap::new(), failed: None })
+        Ok(Self { is_late, order: Order::default(), sinks, log, axes: BTreeMap::new(), failed: None })
     }
 
     /// Pictures call axes as the machine file does, and show the loads of those that are not measured.
@@ -238,7 +262,9 @@ impl Trace {
     pub(crate) fn note(&mut self, event: &Event) {
         if let Some(entry) = TraceEntry::of(event) {
             self.order.add(event.at, entry);
-            self.pass_on(false);
+            if !self.is_late {
+                self.pass_on(false);
+            }
         }
     }
 
@@ -308,7 +334,7 @@ mod testing {
             trace_items: None,
             trace_every: 2,
         };
-        let mut trace = Trace::begin(&arguments, &request()).expect("it can be written");
+        let mut trace = Trace::begin(&arguments, &request(), false).expect("it can be written");
         events().iter().for_each(|event| trace.note(event));
         assert!(!path.exists(), "it has its name before it is complete");
         trace.finish(&arguments, Ticks::new(7), "").expect("it can be written");

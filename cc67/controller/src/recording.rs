@@ -1,0 +1,234 @@
+//! Recordings by the board's own data recorder: variables, once in each servo tick, read when the run is over.
+//!
+//! The recorder stores doubles from an address on. Recordings use the gather buffer behind its first 2 MB, which are left
+//! to programs, and before the answers of the [monitor](crate::monitor). Source: gather-persist-console.md section 1.
+
+use cc67_wire::{Client, WireError};
+use kmotiondef::limits::{MAX_GATHER_DATA, MAX_GATHER_VALUES};
+use kmotiondef::modes::GatherType;
+use kmotiondef::structs::{Chan, Gather};
+use kmotiondef::variables::{CHAN, GATHER};
+use kmotiondef::{AxisId, GuestAddr};
+use runtime::trace::{Quantity, RecordedCell, TraceRequest};
+
+use crate::monitor;
+
+/// The first double of a recording in the gather buffer.
+const FIRST: u32 = MAX_GATHER_DATA as u32 / 4;
+/// The end of the doubles that a recording may take.
+const END: u32 = monitor::REPLY / 2;
+/// A pointer of the recorder at which it is idle, above the end of any recording.
+const IDLE: u32 = 0xffff_fffc;
+/// Samples of a recording that are read at once.
+const AT_ONCE: u32 = 64;
+
+/// The reason why something is not recorded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Unrecordable(pub(crate) String);
+
+/// A recording.
+#[derive(Debug)]
+pub(crate) struct BoardRecording {
+    cells: Vec<RecordedCell>,
+    /// Cells that were requested; those behind them are the enables of `axes`.
+    requested: usize,
+    axes: Vec<AxisId>,
+    /// Ticks from one sample to the next.
+    every: u64,
+    /// The descriptor of the recorder.
+    descriptor: GuestAddr,
+    /// The address of the gather buffer.
+    buffer: GuestAddr,
+}
+
+/// The variables at an instant.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct BoardSample {
+    /// Servo ticks since the start.
+    pub(crate) tick: u64,
+    /// The values that were requested.
+    pub(crate) values: Vec<f64>,
+    /// The axes that are enabled, a bit for each.
+    pub(crate) enabled: u8,
+}
+
+/// The end of a recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct RecordingEnd {
+    /// Samples that were taken.
+    pub(crate) samples: u32,
+    /// The buffer was full before the run was over.
+    pub(crate) is_full: bool,
+}
+
+impl BoardRecording {
+    /// A recording of what is requested, on a board that has a variable of the tables at `place`, and its gather buffer at
+    /// `buffer`.
+    ///
+    /// # Errors
+    /// A quantity is computed, or there are too many.
+    pub(crate) fn new(
+        request: &TraceRequest,
+        place: impl Fn(GuestAddr) -> GuestAddr,
+        buffer: GuestAddr,
+    ) -> Result<Self, Unrecordable> {
+        let cell = |quantity: &Quantity| {
+            let cell = quantity.cell().ok_or_else(|| Unrecordable(format!("`{quantity}`")))?;
+            // Expressions name variables where they are; items name them in the tables.
+            let address = if quantity.item().is_some() { place(cell.address) } else { cell.address };
+            Ok(RecordedCell { address, ..cell })
+        };
+        let mut cells = request.quantities.iter().map(cell).collect::<Result<Vec<_>, _>>()?;
+        let requested = cells.len();
+        let mut axes: Vec<_> = request.quantities.iter().filter_map(axis_of).collect();
+        axes.sort_unstable();
+        axes.dedup();
+        cells.extend(axes.iter().map(|axis| {
+            let enable = CHAN.element(axis.index()).field(Chan::ENABLE);
+            RecordedCell::new(place(enable.address()), GatherType::Int)
+        }));
+        if cells.len() >= MAX_GATHER_VALUES {
+            let most = MAX_GATHER_VALUES - 1;
+            return Err(Unrecordable(format!("{} values: the recorder takes {most}", cells.len())));
+        }
+        Ok(Self { cells, requested, axes, every: request.every, descriptor: place(GATHER.address()), buffer })
+    }
+
+    /// Samples for which there is room.
+    pub(crate) fn capacity(&self) -> u32 {
+        (END - FIRST) / self.cells.len().max(1) as u32
+    }
+
+    fn start(&self) -> GuestAddr {
+        self.buffer.offset(FIRST * 8)
+    }
+
+    fn end(&self) -> u32 {
+        self.start().get() + self.capacity() * self.cells.len() as u32 * 8
+    }
+
+    /// The descriptor of the recorder from its field `endptr` on, as a recording needs it.
+    fn descriptor(&self) -> Vec<u8> {
+        let mut bytes = self.end().to_le_bytes().to_vec();
+        bytes.resize(Gather::LIST.offset() as usize - Gather::ENDPTR.offset() as usize, 0);
+        for cell in &self.cells {
+            bytes.extend(cell.kind.get().to_le_bytes());
+            bytes.extend(cell.address.get().to_le_bytes());
+        }
+        bytes.extend(GatherType::End.get().to_le_bytes());
+        bytes
+    }
+
+    /// Begins to record with the next tick. A pointer is stored byte by byte from its lowest on; until its last byte is
+    /// there it is above the end, so the recorder is idle.
+    ///
+    /// # Errors
+    /// The board does not answer.
+    pub(crate) fn begin(&self, board: &mut Client) -> Result<(), WireError> {
+        self.stop(board)?;
+        board.store(self.descriptor.offset(Gather::ENDPTR.offset()).get(), &self.descriptor())?;
+        board.store(self.descriptor.get(), &self.start().get().to_le_bytes())
+    }
+
+    /// Stops the recorder.
+    fn stop(&self, board: &mut Client) -> Result<(), WireError> {
+        board.store(self.descriptor.get(), &IDLE.to_le_bytes())
+    }
+
+    /// Stops the recorder, and returns how far it has come; `head` is its descriptor as it is now. `None` if a program has
+    /// used it meanwhile.
+    ///
+    /// # Errors
+    /// The board does not answer.
+    pub(crate) fn end_of(&self, board: &mut Client, head: &[u8]) -> Result<Option<RecordingEnd>, WireError> {
+        let (pointer, rest) = head.split_at_checked(4).unwrap_or_default();
+        let pointer = u32::from_le_bytes(pointer.try_into().unwrap_or_default());
+        let Some(bytes) = pointer.checked_sub(self.start().get()) else { return Ok(None) };
+        if pointer > self.end() || !self.descriptor().starts_with(rest) {
+            return Ok(None);
+        }
+        self.stop(board)?;
+        let samples = bytes / (self.cells.len().max(1) as u32 * 8);
+        Ok(Some(RecordingEnd { samples, is_full: samples == self.capacity() }))
+    }
+
+    /// The descriptor's address, and how many bytes of it a recording uses.
+    pub(crate) fn head(&self) -> (GuestAddr, usize) {
+        (self.descriptor, Gather::ENDPTR.offset() as usize + self.descriptor().len())
+    }
+
+    /// Reads samples, and hands over those that were requested.
+    ///
+    /// # Errors
+    /// The board does not answer.
+    pub(crate) fn read(
+        &self,
+        board: &mut Client,
+        samples: u32,
+        sink: &mut dyn FnMut(BoardSample),
+    ) -> Result<(), WireError> {
+        let words = self.cells.len() as u32 * 2;
+        let mut done = 0;
+        while done < samples {
+            let count = AT_ONCE.min(samples - done);
+            let read = board.gather(FIRST * 2 + done * words, count * words)?;
+            for (index, sample) in (u64::from(done)..).zip(read.chunks(words as usize)) {
+                // The first sample is that of the first tick, whose number is 0.
+                if (index + 1).is_multiple_of(self.every) {
+                    sink(self.sample(index, sample));
+                }
+            }
+            done += count;
+        }
+        Ok(())
+    }
+
+    /// The sample of words of the gather buffer.
+    fn sample(&self, tick: u64, words: &[u32]) -> BoardSample {
+        let double = |words: &[u32; 2]| f64::from_bits(u64::from(words[1]) << 32 | u64::from(words[0]));
+        let values: Vec<_> = words.as_chunks().0.iter().map(double).collect();
+        let (requested, enables) = values.split_at_checked(self.requested).unwrap_or((&values, &[]));
+        let values = requested.iter().zip(&self.cells).map(|(value, cell)| value + cell.offset).collect();
+        let bits = self.axes.iter().zip(enables).filter(|(_, enable)| **enable != 0.0);
+        let enabled = bits.fold(0, |bits, (axis, _)| bits | 1 << axis.index());
+        BoardSample { tick, values, enabled }
+    }
+}
+
+/// The axis that a quantity belongs to.
+fn axis_of(quantity: &Quantity) -> Option<AxisId> {
+    AxisId::new(i32::try_from(quantity.item()?.axis()?).ok()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use runtime::trace::Item;
+
+    use super::*;
+
+    fn recording(names: &[&str]) -> Result<BoardRecording, Unrecordable> {
+        let item = |name: &&str| Quantity::from(Item::new(name).expect("an item"));
+        let quantities = names.iter().map(item).collect();
+        let request = TraceRequest { quantities, every: 2, changes: false, packets: None };
+        BoardRecording::new(&request, |address| address, GuestAddr::new(0x8010_2010))
+    }
+
+    #[test]
+    fn samples_have_the_values_and_the_axes_that_are_enabled() {
+        let recording = recording(&["dest1", "adc0"]).expect("variables");
+        let words = |value: f64| [value.to_bits() as u32, (value.to_bits() >> 32) as u32];
+        let sample = [words(2.5), words(2048.0), words(1.0)].concat();
+        let expected = BoardSample { tick: 7, values: vec![2.5, 0.0], enabled: 0b10 };
+        assert_eq!(recording.sample(7, &sample), expected);
+        // Three doubles a sample, in three quarters of a buffer of 1,000,000.
+        assert_eq!(recording.capacity(), 249_956);
+    }
+
+    #[test]
+    fn what_is_no_variable_is_refused() {
+        assert_eq!(recording(&["bit46"]).map(drop), Err(Unrecordable("`bit46`".to_owned())));
+        let many: Vec<_> = (0..32).map(|index| format!("persist{index}")).collect();
+        let many: Vec<_> = many.iter().map(String::as_str).collect();
+        assert!(recording(&many).is_err_and(|error| error.0.contains("takes 31")));
+    }
+}
