@@ -66,8 +66,6 @@ pub struct Controller {
     /// Events that wait for the next step.
     pending: Vec<EventKind>,
     remarks: FileRemarks,
-    /// Programs that start with the first call that lets time pass.
-    waiting: Vec<ThreadId>,
     recording: Option<BoardRecording>,
     /// The reason why the controller cannot be reached any more.
     lost: Option<String>,
@@ -104,7 +102,6 @@ impl Controller {
             requests: RequestServer::new(None),
             pending: Vec::new(),
             remarks: FileRemarks::default(),
-            waiting: Vec::new(),
             recording: None,
             lost: None,
         }
@@ -153,7 +150,7 @@ impl Controller {
         let starting: Vec<_> = starting.map(|program| program.thread).collect();
         match self.loading.terms.start {
             ProgramStart::AtOnce => self.start_together(&starting)?,
-            ProgramStart::WithTime => self.waiting = starting,
+            ProgramStart::WithTime => self.threads.keep_waiting(starting),
             ProgramStart::ByCall => {}
         }
         Ok(())
@@ -385,8 +382,7 @@ impl Target for Controller {
 
     fn has_ended(&self) -> bool {
         self.lost.is_some()
-            || self.waiting.is_empty()
-                && !self.threads.has_own_active()
+            || !self.threads.has_own_active()
                 && self.pending.is_empty()
                 && now().duration_since(self.time.heard) >= SILENCE
     }
@@ -593,7 +589,7 @@ impl Controller {
 
     /// Starts the programs that wait for time to pass.
     fn start_waiting(&mut self) {
-        let waiting = std::mem::take(&mut self.waiting);
+        let waiting = self.threads.take_waiting();
         if !waiting.is_empty() {
             self.time.origin = now();
             if let Err(error) = self.start_together(&waiting) {

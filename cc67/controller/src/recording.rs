@@ -1,6 +1,6 @@
 //! Recordings by the board's own data recorder: variables, once in each servo tick, read when the run is over.
 //!
-//! The recorder stores doubles from an address on. Recordings use the gather buffer behind its first 2 MB, which are left
+//! The recorder stores doubles from an address on. Recordings use the gather buffer from its third megabyte on; what is before is left
 //! to programs, and before the answers of the [monitor](crate::monitor). Source: gather-persist-console.md section 1.
 
 use cc67_wire::{Client, WireError};
@@ -30,7 +30,7 @@ pub(crate) struct Unrecordable(pub(crate) String);
 #[derive(Debug)]
 pub(crate) struct BoardRecording {
     cells: Vec<RecordedCell>,
-    /// Cells that were requested; those behind them are the enables of `axes`.
+    /// Cells that were requested; those after them are the enables of `axes`.
     requested: usize,
     axes: Vec<AxisId>,
     /// Ticks from one sample to the next.

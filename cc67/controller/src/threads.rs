@@ -20,29 +20,44 @@ struct BoardThread {
 
 /// The threads of a board.
 #[derive(Debug)]
-pub(crate) struct BoardThreads([BoardThread; ThreadId::MAX as usize]);
+pub(crate) struct BoardThreads {
+    all: [BoardThread; ThreadId::MAX as usize],
+    /// Threads that start with the first call that lets time pass.
+    waiting: Vec<ThreadId>,
+}
 
 impl BoardThreads {
     /// Knows nothing of any thread.
     pub(crate) fn new() -> Self {
         let empty =
             |_| BoardThread { state: ThreadState::Empty, program: None, is_foreign: false, is_paused: false };
-        Self(std::array::from_fn(empty))
+        Self { all: std::array::from_fn(empty), waiting: Vec::new() }
     }
 
     /// The state of a thread.
     pub(crate) const fn state(&self, thread: ThreadId) -> &ThreadState {
-        &self.0[thread.index()].state
+        &self.all[thread.index()].state
     }
 
     /// The program that was loaded into a thread.
     pub(crate) fn program(&self, thread: ThreadId) -> Option<&DebugInfo> {
-        self.0[thread.index()].program.as_deref()
+        self.all[thread.index()].program.as_deref()
     }
 
-    /// Returns whether a thread is active that was started here.
+    /// Keeps threads that are to start when time passes.
+    pub(crate) fn keep_waiting(&mut self, threads: Vec<ThreadId>) {
+        self.waiting = threads;
+    }
+
+    /// Takes them.
+    pub(crate) fn take_waiting(&mut self) -> Vec<ThreadId> {
+        std::mem::take(&mut self.waiting)
+    }
+
+    /// Returns whether a thread is active that was started here, or waits to be started.
     pub(crate) fn has_own_active(&self) -> bool {
-        self.0.iter().any(|thread| thread.state.is_active() && !thread.is_foreign)
+        !self.waiting.is_empty()
+            || self.all.iter().any(|thread| thread.state.is_active() && !thread.is_foreign)
     }
 
     /// The threads without a program of ours that are not active.
@@ -53,14 +68,14 @@ impl BoardThreads {
 
     /// Notes that the threads which are active now were started by somebody else.
     pub(crate) fn note_foreign(&mut self) {
-        for thread in &mut self.0 {
+        for thread in &mut self.all {
             thread.is_foreign = thread.state.is_active();
         }
     }
 
     /// Notes whether a thread is active.
     pub(crate) fn note(&mut self, thread: ThreadId, is_active: bool) {
-        let thread = &mut self.0[thread.index()];
+        let thread = &mut self.all[thread.index()];
         thread.state = match is_active {
             true => ThreadState::Active(Progress::Going),
             false if thread.is_paused => ThreadState::Paused(Progress::Going),
@@ -72,26 +87,26 @@ impl BoardThreads {
 
     /// Notes that a program was loaded.
     pub(crate) fn note_loaded(&mut self, thread: ThreadId, program: DebugInfo) {
-        self.0[thread.index()].program = Some(Arc::new(program));
+        self.all[thread.index()].program = Some(Arc::new(program));
         self.note_stopped(thread);
     }
 
     /// Notes that a thread was started here.
     pub(crate) fn note_started(&mut self, thread: ThreadId) {
-        let known = &mut self.0[thread.index()];
+        let known = &mut self.all[thread.index()];
         (known.is_foreign, known.is_paused) = (false, false);
         self.note(thread, true);
     }
 
     /// Notes that a thread was stopped.
     pub(crate) fn note_stopped(&mut self, thread: ThreadId) {
-        self.0[thread.index()].is_paused = false;
+        self.all[thread.index()].is_paused = false;
         self.note(thread, false);
     }
 
     /// Notes that a thread was paused, or continues.
     pub(crate) fn note_paused(&mut self, thread: ThreadId, is_paused: bool) {
-        self.0[thread.index()].is_paused = is_paused;
+        self.all[thread.index()].is_paused = is_paused;
         self.note(thread, !is_paused);
     }
 }
