@@ -122,6 +122,7 @@ fn line() -> impl Strategy<Value = Vec<u8>> {
                     format!(" {}", (*lo).max(0) + number % (hi.min(&300) - (*lo).max(0) + 1))
                 }
                 Argument::Equals | Argument::OptionalEquals | Argument::Assign => "=".to_owned(),
+                Argument::End => String::new(),
                 _ => format!(" {number}"),
             };
         }

@@ -27,6 +27,8 @@ pub enum Argument {
     OptionalEquals,
     /// An equals sign; when the command ends before it, the present value is requested.
     Assign,
+    /// Nothing: the present value is requested, and the board stops if anything follows.
+    End,
 }
 
 /// A mistake in a line: the message, and where reading stopped.
@@ -206,10 +208,11 @@ impl Values {
                 Argument::Limited(lo, hi) => ArgumentValue::Real(reader.limited(lo, hi)?),
                 Argument::OptionalHex if reader.is_at_end() => break,
                 Argument::Hex | Argument::OptionalHex => ArgumentValue::Word(reader.hex()?),
-                Argument::Assign if reader.is_at_end() => {
+                Argument::Assign | Argument::End if reader.is_at_end() => {
                     read.is_question = true;
                     break;
                 }
+                Argument::End => break,
                 Argument::Equals | Argument::Assign => {
                     reader.equals()?;
                     continue;

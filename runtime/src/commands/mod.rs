@@ -107,6 +107,7 @@ impl Command {
                     open += 1;
                 }
                 Argument::OptionalHex => text.push_str(" [<hex>]"),
+                Argument::End => {}
                 argument => {
                     let spaced = !text.ends_with('=');
                     text.push_str(if spaced { " " } else { "" });
@@ -135,6 +136,7 @@ impl Argument {
             Self::Limited(lo, hi) => format!("<{lo:e}..{hi:e}>"),
             Self::Hex | Self::OptionalHex => "<hex>".to_owned(),
             Self::Equals | Self::OptionalEquals | Self::Assign => "=".to_owned(),
+            Self::End => String::new(),
         }
     }
 }

@@ -5,7 +5,7 @@
 
 use kmotiondef::structs::Chan;
 
-use super::Argument::{Assign, Equals, Hex, Integer, Limited, OptionalEquals, OptionalHex, Real};
+use super::Argument::{Assign, End, Equals, Hex, Integer, Limited, OptionalEquals, OptionalHex, Real};
 use super::data::GATHER_WORDS;
 use super::{Argument, Command, axes, board, gather, io, motion, path, persist, programs, status};
 use crate::servo::coordinated::download::Plane;
@@ -98,7 +98,7 @@ commands! {
     "EnableAxisDest" &[AXIS, Real] => axes::enable_dest, "enables an axis at a destination";
     "DisableAxis" &[AXIS] => axes::disable, "disables an axis";
     "Zero" &[AXIS] => axes::zero, "makes the present position of an axis zero";
-    "Enabled" &[AXIS, Assign] => axes::enabled, "reports whether an axis is enabled: 1 or 0";
+    "Enabled" &[AXIS, End] => axes::enabled, "reports whether an axis is enabled: 1 or 0";
     "Dest" REAL => |s, v| axes::double(s, v, Chan::DEST), "destination of an axis";
     "Pos" REAL => |s, v| axes::double(s, v, Chan::POSITION), "position of an axis";
     "Vel" POSITIVE_REAL => |s, v| axes::single(s, v, Chan::VEL), "highest speed of moves, per second";

@@ -278,8 +278,7 @@ fn put_out(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, command:
     let is_exponential = plan.gains.ff_accel != 0.0 && independent::is_exponential(memory, axis);
     let mut chan = AxisView::of(memory, axis);
     let output = if plan.is_open_loop {
-        chan.set(Chan::OUTPUT, 0.0);
-        0.0
+        chan.get(Chan::OUTPUT)
     } else {
         let moved = chan.get(Chan::POSITION) - chan.get(Chan::LAST_POSITION);
         own.response += f64::from(chan.get(Chan::OUTPUT)) * moved;

@@ -195,25 +195,11 @@ fn note_overwritten(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId) {
     }
 }
 
-/// Sine and cosine currents, with lead compensation on the channels of the board.
+/// Sine and cosine currents.
 fn microstep(memory: &mut GuestMemory, axis: AxisId, position: f64) {
     let angle = position * memory.axis(axis, Chan::INV_DIST_PER_CYCLE);
     let amplitude = memory.axis(axis, Chan::STEPPER_AMPLITUDE);
-    let lead = memory.axis(axis, Chan::LEAD);
-    let leads = memory.axis(axis, Chan::OUTPUT_CHAN0) < SNAP_AMP;
-    let phases: [(f32, Field<f32>, Field<i32>); 2] = [
-        (amplitude * sine(angle, 0), Chan::X1_LAST, Chan::OUTPUT_CHAN0),
-        (amplitude * sine(angle, QUARTER), Chan::X2_LAST, Chan::OUTPUT_CHAN1),
-    ];
-    for (value, last, channel) in phases {
-        let mut led = value;
-        if leads {
-            led += (value - memory.axis(axis, last)) * lead;
-            memory.set_axis(axis, last, value);
-        }
-        let channel = memory.axis(axis, channel);
-        store_pwm(memory, channel, pwm(channel, libm::rintf(led) as i32));
-    }
+    four_phase(memory, axis, amplitude, angle);
 }
 
 /// Applies a three-phase vector, whose angle is in cycles: the phases are the amplifier's. On the board its magnitude is limited;
@@ -232,19 +218,23 @@ pub(crate) fn three_phase(memory: &mut GuestMemory, axis: AxisId, v: f32, angle:
     }
 }
 
-/// Applies a vector to two coils a quarter of a cycle apart; the angle is in cycles. Each coil has its own limit. The phases of
-/// the board's own channels are remembered.
+/// Applies a vector to two coils a quarter of a cycle apart; the angle is in cycles. Each coil has its own limit. On the board's own
+/// channels there is lead compensation.
 pub(crate) fn four_phase(memory: &mut GuestMemory, axis: AxisId, v: f32, angle: f64) {
-    let remembers = memory.axis(axis, Chan::OUTPUT_CHAN0) < SNAP_AMP;
-    let phases = [
-        (sine(angle, 0), Chan::OUTPUT_CHAN0, Chan::X1_LAST),
-        (sine(angle, QUARTER), Chan::OUTPUT_CHAN1, Chan::X2_LAST),
+    let leads = memory.axis(axis, Chan::OUTPUT_CHAN0) < SNAP_AMP;
+    let lead = memory.axis(axis, Chan::LEAD);
+    let phases: [(f32, Field<f32>, Field<i32>); 2] = [
+        (v * sine(angle, 0), Chan::X1_LAST, Chan::OUTPUT_CHAN0),
+        (v * sine(angle, QUARTER), Chan::X2_LAST, Chan::OUTPUT_CHAN1),
     ];
-    for (value, channel, last) in phases {
-        let channel = memory.axis(axis, channel);
-        store_pwm(memory, channel, pwm(channel, libm::rintf(v * value) as i32));
-        if remembers {
-            memory.set_axis(axis, last, v * value);
+    for (value, last, channel) in phases {
+        let mut led = value;
+        if leads {
+            led += (value - memory.axis(axis, last)) * lead;
+            memory.set_axis(axis, last, value);
         }
+        let channel = memory.axis(axis, channel);
+        let value = libm::rintf(led) as i32;
+        store_pwm(memory, channel, if leads { antiphase(value) } else { current(value) });
     }
 }

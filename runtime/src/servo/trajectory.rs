@@ -86,23 +86,24 @@ pub(crate) fn point(cursor: Cursor, dest: f64, velocity: f64, state: impl Fn(usi
 
 /// The destination after one tick of an exponential approach.
 ///
-/// Far away the acceleration limits speeding up only, since the velocity follows a root that brakes by itself. The
-/// board takes that root in singles.
+/// Far away the velocity follows a root that brakes by itself: the acceleration limits speeding up only. The board takes that root in singles. A motion away from the target is never faster than one towards
+/// it would be.
 fn exponential(state: &MotionState, approach: &Approach) -> f64 {
     let Approach { dest, velocity, vc, xc, v, a } = *approach;
     let sign = if state.b >= dest { 1.0 } else { -1.0 };
     let (present, step) = (sign * velocity, a * TIMEBASE);
     let rest = (state.b as f32 - dest as f32).abs();
-    let wanted = if f64::from(rest) <= xc {
-        let next = state.a * dest + (1.0 - state.a) * state.b;
-        let wanted = sign * divide(next - dest, TIMEBASE);
-        if (present - step..=present + step).contains(&wanted) && wanted <= v {
-            return next;
-        }
-        wanted.max(present - step)
-    } else {
+    let next = state.a * dest + (1.0 - state.a) * state.b;
+    let approach = sign * divide(next - dest, TIMEBASE);
+    let braking = (f64::from(rest) > xc).then(|| {
         let (vc, xc, a) = (vc as f32, xc as f32, a as f32);
         root(f64::from(vc * vc + 2.0 * a * (rest - xc)))
-    };
-    dest + sign * wanted.min(present + step).clamp(-v, v) * TIMEBASE
+    });
+    let is_near = braking.is_none_or(|braking| approach <= braking);
+    if is_near && (present - step..=present + step).contains(&approach) && approach <= v {
+        return next;
+    }
+    let wanted = braking.unwrap_or_else(|| approach.max(present - step));
+    let most = wanted.min(v).max(0.0);
+    dest + sign * (present + step).clamp(-most, most) * TIMEBASE
 }

@@ -78,8 +78,8 @@ fn command(draw: &mut Draw) -> String {
         }
         match argument {
             Argument::Assign if draw.chance(30) => return ended(draw, line),
-            // `Enabled0=1` stops the board.
-            Argument::Assign if command.name == "Enabled" => return ended(draw, line),
+            // Anything else stops the board.
+            Argument::End => return line,
             Argument::Assign | Argument::Equals => line += draw.pick(&["=", "=", " = ", "= ", " ="]),
             Argument::OptionalEquals => line += draw.pick(&["=", " ", " = "]),
             Argument::Integer(..)
@@ -123,7 +123,7 @@ fn value(draw: &mut Draw, argument: Argument) -> String {
             let number = draw.real(-10.0, 10.0) as f32;
             format!("{:X}", if draw.chance(80) { number.to_bits() } else { draw.below(256) })
         }
-        Argument::Real | Argument::Equals | Argument::OptionalEquals | Argument::Assign => {
+        Argument::Real | Argument::Equals | Argument::OptionalEquals | Argument::Assign | Argument::End => {
             let number = draw.signed(0.001, 100.0);
             if draw.chance(30) { draw.integer(0, 9).to_string() } else { format!("{number}") }
         }
