@@ -86,8 +86,8 @@ pub(crate) fn point(cursor: Cursor, dest: f64, velocity: f64, state: impl Fn(usi
 
 /// The destination after one tick of an exponential approach.
 ///
-/// Far away the velocity follows a root that brakes by itself: the acceleration limits speeding up only. The board takes that root in singles. A motion away from the target is never faster than one towards
-/// it would be.
+/// The acceleration limits how the axis slows down to the velocity of the approach; far away the velocity is also below a root
+/// that brakes by itself, which the board takes in singles.
 fn exponential(state: &MotionState, approach: &Approach) -> f64 {
     let Approach { dest, velocity, vc, xc, v, a } = *approach;
     let sign = if state.b >= dest { 1.0 } else { -1.0 };
@@ -99,11 +99,10 @@ fn exponential(state: &MotionState, approach: &Approach) -> f64 {
         let (vc, xc, a) = (vc as f32, xc as f32, a as f32);
         root(f64::from(vc * vc + 2.0 * a * (rest - xc)))
     });
-    let is_near = braking.is_none_or(|braking| approach <= braking);
-    if is_near && (present - step..=present + step).contains(&approach) && approach <= v {
+    let slowest = approach.max(present - step);
+    let wanted = braking.map_or(slowest, |braking| braking.min(slowest));
+    if wanted == approach && approach <= present + step && approach <= v {
         return next;
     }
-    let wanted = braking.unwrap_or_else(|| approach.max(present - step));
-    let most = wanted.min(v).max(0.0);
-    dest + sign * (present + step).clamp(-most, most) * TIMEBASE
+    dest + sign * wanted.min(present + step).clamp(-v, v) * TIMEBASE
 }
