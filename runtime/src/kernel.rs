@@ -14,8 +14,8 @@ use kmotiondef::variables::{
 use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId};
 use vm::bus::Bus;
 use vm::firmware::{
-    Caller, ExecutedPacket, Firmware, NextAccess, Outcome, Pure, SharedAccess, Signature, SwitchPoint,
-    TickContext, Value,
+    Caller, ExecutedPacket, Firmware, NextAccess, Outcome, Pure, ReadState, SharedAccess, Signature,
+    SwitchPoint, TickContext, Value,
 };
 use vm::memory::GuestMemory;
 use vm::scheduler::Turn;
@@ -28,7 +28,7 @@ use crate::firmware::later::{self, Callee, Callees, LATER_FUNCTIONS};
 use crate::firmware::level::ModelledBoard;
 use crate::firmware::parts::Parts;
 use crate::firmware::races::shared;
-use crate::firmware::{math, serial, waits};
+use crate::firmware::{math, serial, time, waits};
 use crate::io::Io;
 use crate::io::bits::bit_state;
 use crate::io::kanalog;
@@ -349,13 +349,18 @@ impl Firmware for Kernel {
         pure(self.row(address)?)
     }
 
-    fn reads(&self, address: GuestAddr) -> bool {
-        let reads = |attributes: &Attributes| match attributes.polls {
-            Some(Polled::Bit | Polled::Motion | Polled::Path | Polled::Recording) => true,
-            Some(Polled::Time | Polled::Lock) => false,
-            None => attributes.is_pure,
-        };
-        self.row(address).is_some_and(|row| reads(&row.attributes))
+    fn reads(&self, address: GuestAddr) -> Option<ReadState> {
+        let row = self.row(address)?;
+        match row.attributes.polls {
+            Some(Polled::Bit | Polled::Motion | Polled::Path | Polled::Recording) => Some(ReadState::Steady),
+            Some(Polled::Time) => row.attributes.waits.is_none().then_some(ReadState::Time),
+            Some(Polled::Lock) => None,
+            None => row.attributes.is_pure.then_some(ReadState::Steady),
+        }
+    }
+
+    fn time(&self, memory: &GuestMemory, now: Cycles) -> f64 {
+        time::seconds(memory, now)
     }
 
     fn steady_until(&self) -> Option<Cycles> {

@@ -19,7 +19,7 @@ use vm::machine::Config as MachineConfig;
 use vm::thread::ThreadState;
 
 /// Programs of an ordinary run, and the most of a long one.
-const FEW: u64 = 8;
+const FEW: u64 = 5;
 const MOST: u64 = 1000;
 
 /// Programs that have shown a difference: a function of mathematics ended a wait on one engine and not on the other.
@@ -143,5 +143,5 @@ fn polling_programs_do_the_same_without_shortcuts() {
     });
     let [with, without] = [0, 1].map(|index| works.iter().map(|work| work[index]).sum::<u64>());
     println!("seeds {first} to {}: {with} cycles executed of {without}", first + count - 1);
-    assert!(10 * with < 9 * without, "the loops are not passed over: {with} cycles of {without}");
+    assert!(4 * with < 3 * without, "the loops are not passed over: {with} cycles of {without}");
 }

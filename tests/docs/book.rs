@@ -328,6 +328,7 @@ fn the_chapter_of_limits_lists_every_limit() {
         }
     }
     text.push_str("\nNames, string constants and lines are as long as their file allows.\n");
+    text.push_str("Loops that wait are passed over within limits that [Threads and time](threads.md#loops-that-wait) states.\n");
     check_list("limits.md", &text);
 }
 

@@ -15,6 +15,7 @@ use crate::firmware::{Caller, Firmware, Outcome, Value};
 use crate::memory::GuestMemory;
 #[cfg(doc)]
 use crate::meter;
+use crate::polling::TimeTests;
 use crate::program::Program;
 use crate::thread::Threads;
 use crate::trap::{Trap, TrapKind};
@@ -144,6 +145,18 @@ impl Polling {
     }
 }
 
+/// An iteration of a loop that may only wait, as an engine has executed it.
+pub(crate) struct Iteration<'a> {
+    /// The budget at its start.
+    pub(crate) start: Cycles,
+    /// The use that it makes of the time, if it does.
+    pub(crate) clock: Option<&'a TimeTests>,
+    /// The budget after the call that has yielded the time; that at its start if there was none.
+    pub(crate) called: Cycles,
+    /// The doubles in registers.
+    pub(crate) register: &'a dyn Fn(u16) -> f64,
+}
+
 /// The context of one slice: memory, threads, firmware and budget.
 #[derive(Debug)]
 pub struct Slice<'a, F: ?Sized> {
@@ -186,11 +199,11 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
 
     /// Passes over iterations of a [waiting loop](crate::polling) that are like the one that has just ended.
     ///
-    /// It began in this slice, with `start` cycles left. The last one that the slice covers is executed again: so
-    /// the firmware remembers the same last calls, at the same instants, as without this.
-    pub(crate) fn pass_iterations(&mut self, start: Cycles) {
-        let each = start - self.budget;
-        if !self.polling.is_on || self.polling.accessed <= start || each <= Cycles::default() {
+    /// It began in this slice. The last one like it that the slice covers is executed again: so the firmware remembers
+    /// the same last calls, at the same instants, as without this.
+    pub(crate) fn pass_iterations(&mut self, iteration: &Iteration<'_>) {
+        let each = iteration.start - self.budget;
+        if !self.polling.is_on || self.polling.accessed <= iteration.start || each <= Cycles::default() {
             return;
         }
         let mut left = self.budget;
@@ -199,9 +212,33 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
         {
             left = left.min(until - self.now() - Cycles::new(1));
         }
-        let passed = Cycles::new((left.get() / each.get() - 1).max(0) * each.get());
+        let mut count = (left.get() / each.get()).max(0);
+        if let Some(clock) = iteration.clock {
+            count = self.count_until(clock, iteration, each, count);
+        }
+        let passed = Cycles::new((count - 1).max(0) * each.get());
         self.budget -= passed;
         self.polling.passed += passed;
+    }
+
+    /// The number of iterations of `each` cycles before one of the comparisons with the time has another result; at
+    /// most `most`.
+    fn count_until(&self, clock: &TimeTests, iteration: &Iteration<'_>, each: Cycles, most: i64) -> i64 {
+        let called = self.start + (self.length - iteration.called);
+        let time = |count: i64| self.firmware.time(self.memory, called + Cycles::new(count * each.get()));
+        let first = time(0);
+        // Not so for numbers that are none, and where a program has changed the variables of the time.
+        let grows = first <= time(most);
+        let is_same = |count: i64| clock.is_same([first, time(count)], iteration.register);
+        if grows && is_same(most) {
+            return most;
+        }
+        let (mut same, mut other) = (0, if grows { most } else { 1 });
+        while same + 1 < other {
+            let middle = same.midpoint(other);
+            if is_same(middle) { same = middle } else { other = middle }
+        }
+        same
     }
 
     /// Makes the firmware call of `address` for the context `id`, which is at the instruction `at`.

@@ -283,6 +283,15 @@ pub struct NextAccess {
     pub now: Cycles,
 }
 
+/// The kind of state that a firmware function yields which does nothing else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReadState {
+    /// One that changes with ticks only, or by what a program does.
+    Steady,
+    /// The time as a double, which grows from cycle to cycle.
+    Time,
+}
+
 /// The firmware as the machine sees it.
 ///
 /// In each tick the machine calls, in this order: [`callback`](Self::callback) (and runs what it
@@ -304,13 +313,20 @@ pub trait Firmware: Bus {
         None
     }
 
-    /// Reports whether a call of the function at `address` does nothing but yield a state of the board.
+    /// The state of the board that a call of the function at `address` yields, if it does nothing else.
     ///
     /// Called again in the same slice, while nothing is stored and nothing else is called, it takes as long, yields the
-    /// same, and leaves the firmware as the call before has left it, up to the instant [`steady_until`](Self::steady_until).
-    fn reads(&self, address: GuestAddr) -> bool {
+    /// same or another [time](Self::time), and leaves the firmware as the call before has left it, up to the instant
+    /// [`steady_until`](Self::steady_until).
+    fn reads(&self, address: GuestAddr) -> Option<ReadState> {
         let _ = address;
-        false
+        None
+    }
+
+    /// The number that functions which yield the time yield at `now`.
+    fn time(&self, memory: &GuestMemory, now: Cycles) -> f64 {
+        let _ = (memory, now);
+        f64::NAN
     }
 
     /// The instant at which a call that only [reads](Self::reads) may do more than before; `None` if there is none.

@@ -70,7 +70,7 @@ impl BytecodeEngine {
     fn refresh(&mut self) {
         for Running { code, .. } in self.contexts.iter_mut().flatten() {
             let observed = self.steps.observer.is_some();
-            let encode = |program: &Program| Encoded::new(program, observed, &|_| false);
+            let encode = |program: &Program| Encoded::new(program, observed, &|_| None);
             let plain = self.words.get(&code.program, |program| Arc::new(encode(program)));
             code.words = self.holds.words(&code.program, plain);
         }

@@ -6,13 +6,20 @@
 //! the earliest when its slice is over. An engine that has executed one passes over those that follow
 //! ([`Slice::pass_iterations`](crate::engine::Slice::pass_iterations)).
 //!
+//! The time is a state that changes within a slice. It may be read once in an iteration, to be compared
+//! ([`clock`]): those iterations are like the last one that come before a comparison has another result.
+//!
 //! A loop is found by its backward branches. It need not have a single entry, and it may contain other loops: an engine
 //! counts an iteration only if all of it was in the words found here.
+
+mod clock;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use kmotiondef::GuestAddr;
 
+pub(crate) use self::clock::TimeTests;
+use crate::firmware::ReadState;
 use crate::kind::{Name, OpKind};
 use crate::meter::branch_target;
 use crate::op::Op;
@@ -33,10 +40,12 @@ pub(crate) struct PollingLoop {
     pub(crate) branches: Vec<usize>,
     /// The words of an iteration.
     pub(crate) words: BTreeSet<usize>,
+    /// The use that an iteration makes of the time, if it does.
+    pub(crate) clock: Option<TimeTests>,
 }
 
 /// Tells the functions of the firmware that only yield a state ([`Firmware::reads`](crate::firmware::Firmware::reads)).
-pub(crate) type Readers<'a> = &'a dyn Fn(GuestAddr) -> bool;
+pub(crate) type Readers<'a> = &'a dyn Fn(GuestAddr) -> Option<ReadState>;
 
 /// The loops of all functions of `program` that may only wait.
 pub(crate) fn polling_loops(program: &Program, readers: Readers<'_>) -> Vec<PollingLoop> {
@@ -102,11 +111,30 @@ impl LoopSearch<'_> {
                 }
             }
         }
-        (words.len() <= MAX_WORDS).then_some(PollingLoop { first, branches, words })
+        if words.len() > MAX_WORDS {
+            return None;
+        }
+        let mut calls = words.iter().filter(|at| self.reading(**at) == Some(ReadState::Time));
+        let clock = match (calls.next(), calls.next()) {
+            (None, _) => None,
+            (Some(call), None) => Some(TimeTests::of(self.program, &words, *call)?),
+            (Some(_), Some(_)) => return None,
+        };
+        Some(PollingLoop { first, branches, words, clock })
     }
 
-    /// Reports whether an instruction has no effect but on registers of its call, and depends on nothing that changes
-    /// within a slice.
+    /// The state that an instruction yields by a call of the firmware, if it only does that.
+    fn reading(&self, at: usize) -> Option<ReadState> {
+        let address = self.program.ops()[at].operand(Name::Addr).filter(|_| self.is_call(at));
+        address.and_then(|Addr(address)| (self.readers)(GuestAddr::new(address)))
+    }
+
+    fn is_call(&self, at: usize) -> bool {
+        matches!(self.program.ops()[at].kind(), OpKind::Call)
+    }
+
+    /// Reports whether an instruction has no effect but on registers of its call, and depends on nothing but the time
+    /// that changes within a slice.
     fn is_quiet(&mut self, at: usize) -> bool {
         let op = self.program.ops()[at];
         match op.kind() {
@@ -122,10 +150,9 @@ impl LoopSearch<'_> {
             | OpKind::Branch
             | OpKind::Argument(_)
             | OpKind::Result(_) => true,
-            OpKind::Call => match (op.operand(Name::Addr), op.operand(Name::Func)) {
-                (Some(Addr(address)), _) => (self.readers)(GuestAddr::new(address)),
-                (None, Some(function)) => self.is_quiet_function(function),
-                (None, None) => false,
+            OpKind::Call => match op.operand(Name::Func) {
+                Some(function) => self.is_quiet_function(function),
+                None => self.reading(at).is_some(),
             },
             OpKind::Structure
             | OpKind::Store(_)
@@ -136,7 +163,8 @@ impl LoopSearch<'_> {
         }
     }
 
-    /// Reports whether a call of a function has no effect but its result. One that calls itself does not count.
+    /// Reports whether a call of a function has no effect but its result, which does not depend on the time. One that
+    /// calls itself does not count.
     fn is_quiet_function(&mut self, function: FuncRef) -> bool {
         if let Some(quiet) = self.quiet.get(&function) {
             return *quiet;
@@ -146,8 +174,9 @@ impl LoopSearch<'_> {
         let body = self.program.functions()[index].body.clone();
         let program = self.program;
         let is_return = |at: usize| matches!(program.ops()[at].kind(), OpKind::Return(_));
-        let quiet =
-            body.len() <= MAX_SEARCHED && body.into_iter().all(|at| is_return(at) || self.is_quiet(at));
+        let is_quiet =
+            |at: usize| is_return(at) || self.is_quiet(at) && self.reading(at) != Some(ReadState::Time);
+        let quiet = body.len() <= MAX_SEARCHED && body.into_iter().all(is_quiet);
         self.quiet.insert(function, quiet);
         quiet
     }
@@ -156,27 +185,32 @@ impl LoopSearch<'_> {
     fn carries_registers(&self, function: &Function, polling: &PollingLoop) -> bool {
         let assigned = |at: &usize| registers(&self.program.ops()[*at]).assigned;
         let assigned: BTreeSet<u16> = polling.words.iter().filter_map(assigned).collect();
-        assigned.into_iter().any(|register| self.is_live(function, polling.first, register))
+        let is_here = |at| function.body.contains(&at);
+        assigned.into_iter().any(|register| is_live(self.program, vec![polling.first], register, &is_here))
     }
+}
 
-    /// Reports whether a register may be read from the word `first` on before it is assigned.
-    fn is_live(&self, function: &Function, first: usize, register: u16) -> bool {
-        let mut seen = BTreeSet::from([first]);
-        let mut open = vec![first];
-        while let Some(at) = open.pop() {
-            if !function.body.contains(&at) {
-                continue;
-            }
-            let used = registers(&self.program.ops()[at]);
-            if used.sources.contains(&register) {
-                return true;
-            }
-            if used.assigned != Some(register) {
-                open.extend(successors(self.program, at).into_iter().filter(|next| seen.insert(*next)));
-            }
+/// Reports whether a register may be read from the words `open` on before it is assigned, in words that `are_meant`.
+fn is_live(
+    program: &Program,
+    mut open: Vec<usize>,
+    register: u16,
+    are_meant: &dyn Fn(usize) -> bool,
+) -> bool {
+    let mut seen: BTreeSet<usize> = open.iter().copied().collect();
+    while let Some(at) = open.pop() {
+        if !are_meant(at) {
+            continue;
         }
-        false
+        let used = registers(&program.ops()[at]);
+        if used.sources.contains(&register) {
+            return true;
+        }
+        if used.assigned != Some(register) {
+            open.extend(successors(program, at).into_iter().filter(|next| seen.insert(*next)));
+        }
     }
+    false
 }
 
 /// The words at which execution may continue after the word `at`, in its function.
@@ -196,8 +230,12 @@ mod tests {
     /// Where the iterations of the loops of `body` begin, as instructions counted from the first; `0x10008000` only
     /// reads.
     fn check(body: &str, expected: &[usize]) {
-        let program = program(1, &format!("@main: func sig0, 6, 0\ntypes 0x300\n{body}"));
-        let found = polling_loops(&program, &|address| address.get() == 0x1000_8000);
+        let program = program(1, &format!("@main: func sig0, 7, 0\ntypes 0x3f00\n{body}"));
+        let found = polling_loops(&program, &|address| match address.get() {
+            0x1000_8000 => Some(ReadState::Steady),
+            0x1000_8020 => Some(ReadState::Time),
+            _ => None,
+        });
         let firsts: Vec<usize> = found.iter().map(|polling| polling.first - HEAD_WORDS - 2).collect();
         assert_eq!(firsts, expected, "{body}");
     }
@@ -256,12 +294,34 @@ mod tests {
     }
 
     #[test]
+    fn the_time_may_be_compared_with_what_stays_the_same() {
+        let timed = |uses: &str, expected: &[usize]| {
+            let call = "arg_i32 r1, 0\narg_f64 d6, 1\ncall_fw sig4, 0x10008020";
+            let head = format!("@a: charge 9\n{call}\nresult_f64 d4\ncharge 9");
+            check(&format!("{head}\n{uses}\nbr_if r0, @a\nret"), expected);
+        };
+        timed("lt_f64 r0, d4, d5", &[0]);
+        timed("load_f64_at d5, 0x10000008\nle_f64 r0, d5, d4", &[0]);
+        timed("sub_f64 d4, d4, d5\nlt_f64 r0, d4, d5", &[0]);
+        timed("lt_f64 r0, d4, d5\nbr_if r0, @b\ncharge 9\nload_i32_at r0, 0x10000000\n@b: charge 9", &[]);
+        timed("lt_f64 r0, d4, d5\nbr_if r0, @a\ncharge 9\nload_i32_at r0, 0x10000000", &[0]);
+        timed("eq_f64 r0, d4, d5", &[]);
+        timed("add_f64 d4, d4, d4\nlt_f64 r0, d4, d5", &[]);
+        timed("i32_from_f64_s r0, d4", &[]);
+        timed("lt_f64 r1, d4, d5\nadd_i32_imm r0, r1, 1", &[]);
+        timed(
+            "arg_i32 r1, 0\narg_f64 d6, 1\ncall_fw sig4, 0x10008020\nresult_f64 d5\ncharge 9\nlt_f64 r0, d4, d5",
+            &[],
+        );
+    }
+
+    #[test]
     fn functions_of_the_program_may_be_called_that_only_read() {
         let calls = |body: &str| {
             let main = "@main: func sig0, 6, 0\ntypes 0x300\n@a: charge 9\ncall fn@f\nresult_i32 r0\ncharge 9\n\
                         br_if r0, @a\nret";
             let program = program(1, &format!("{main}\n@f: func sig2, 1, 0\ntypes 0\n{body}"));
-            polling_loops(&program, &|_| false).len()
+            polling_loops(&program, &|_| None).len()
         };
         assert_eq!(calls("charge 9\nload_i32_at r0, 0x10000000\nret_i32 r0"), 1);
         assert_eq!(calls("charge 9\nstore_i32_at r0, 0x10000000\nret_i32 r0"), 0);

@@ -4,6 +4,7 @@ use kmotiondef::Cycles;
 use kmotiondef::limits::{CLOCKFREQ, TIMEBASE};
 use kmotiondef::variables::{LAST_TIMER0, SERVO_TICK};
 use vm::firmware::{Caller, Outcome, Wake};
+use vm::memory::GuestMemory;
 
 use super::parts::Parts;
 use crate::io::timer;
@@ -17,18 +18,18 @@ const WITHIN: Cycles = Cycles::new(124);
 
 /// Seconds since power-up, to 20 ns.
 pub(crate) fn time_sec(_: &mut Parts, caller: &mut Caller<'_>) -> f64 {
-    seconds(caller)
+    seconds(caller.memory, caller.now())
 }
 
-/// What `Time_sec` computes from the variables that programs see.
-fn seconds(caller: &Caller<'_>) -> f64 {
-    let since = timer::count(caller.now()).wrapping_sub(caller.memory.get(LAST_TIMER0));
-    caller.memory.get(SERVO_TICK) * TIMEBASE + f64::from(since) / CLOCKFREQ
+/// The time that `Time_sec` computes from the variables that programs see, in seconds.
+pub(crate) fn seconds(memory: &GuestMemory, now: Cycles) -> f64 {
+    let since = timer::count(now).wrapping_sub(memory.get(LAST_TIMER0));
+    memory.get(SERVO_TICK) * TIMEBASE + f64::from(since) / CLOCKFREQ
 }
 
 /// Waits until a time.
 pub(crate) fn wait_until(parts: &mut Parts, caller: &mut Caller<'_>, time: f64) -> Outcome<()> {
-    let remaining = time - seconds(caller);
+    let remaining = time - seconds(caller.memory, caller.now());
     delay_sec(parts, caller, remaining)
 }
 
@@ -50,7 +51,7 @@ pub(crate) fn delay_sec(parts: &mut Parts, caller: &mut Caller<'_>, seconds: f64
 /// Waits for the caller's next slice and returns its time.
 pub(crate) fn wait_next_time_slice(_: &mut Parts, caller: &mut Caller<'_>) -> Outcome<f64> {
     match caller.woken {
-        Some(_) => Outcome::Done(seconds(caller)),
+        Some(_) => Outcome::Done(seconds(caller.memory, caller.now())),
         None => Outcome::Wait(Wake::NextSlice),
     }
 }

@@ -5,10 +5,11 @@ use std::sync::Arc;
 use super::code::{Word, Words};
 use super::context::Context;
 use super::steps::{SingleText, Stepping};
-use crate::engine::{ContextId, Slice, Stop};
+use crate::engine::{ContextId, Iteration, Slice, Stop};
 use crate::firmware::Firmware;
 use crate::polling::PollingLoop;
 use crate::program::Program;
+use crate::slot::Slot;
 use crate::trap::TrapKind;
 
 /// The most instructions of an iteration that is executed one by one, which takes ten times as long.
@@ -36,20 +37,20 @@ pub(super) fn wait<F: Firmware + ?Sized>(
         return Ok(None);
     }
     let mut text = std::mem::take(&mut steps.waiting);
-    let stop = Iteration { id, program, words, loops: &loops }.execute(context, slice, steps, &mut text);
+    let stop = WaitingContext { id, program, words, loops: &loops }.execute(context, slice, steps, &mut text);
     steps.waiting = text;
     stop
 }
 
-/// The execution of an iteration.
-struct Iteration<'a> {
+/// A context that executes iterations of waiting loops one by one.
+struct WaitingContext<'a> {
     id: ContextId,
     program: &'a Program,
     words: &'a Words,
     loops: &'a [PollingLoop],
 }
 
-impl<'a> Iteration<'a> {
+impl WaitingContext<'_> {
     fn execute<F: Firmware + ?Sized>(
         &self,
         context: &mut Context,
@@ -60,7 +61,7 @@ impl<'a> Iteration<'a> {
         let depth = context.calls.depth();
         let at_first = |pc| self.loops.iter().find(|polling| polling.first == pc);
         let Some(mut polling) = at_first(context.calls.pc) else { return Ok(None) };
-        let mut start = slice.budget;
+        let (mut start, mut called) = (slice.budget, slice.budget);
         for _ in 0..MOST {
             let at = context.calls.pc;
             if self.words.get(at).is_none_or(Word::is_held) {
@@ -75,13 +76,18 @@ impl<'a> Iteration<'a> {
             if context.calls.depth() != depth {
                 continue;
             }
+            if polling.clock.as_ref().is_some_and(|clock| clock.call == at) {
+                called = slice.budget;
+            }
             match ended_by(self.loops, at).filter(|ended| ended.first == next) {
                 Some(ended) if ended == polling => {
-                    slice.pass_iterations(start);
+                    let register = |number| f64::from_slot(context.get(number));
+                    let clock = polling.clock.as_ref();
+                    slice.pass_iterations(&Iteration { start, clock, called, register: &register });
                     return Ok(None);
                 }
                 // A loop within this one, or the one around it.
-                Some(ended) => (polling, start) = (ended, slice.budget),
+                Some(ended) => (polling, start, called) = (ended, slice.budget, slice.budget),
                 None if !polling.words.contains(&next) => return Ok(None),
                 None => {}
             }

@@ -47,6 +47,7 @@ pub(super) struct MachineCode {
     _memory: CodeMemory,
     begin: Begin,
     entries: Vec<Entry>,
+    loops: Vec<PollingLoop>,
     stack: StackUse,
 }
 
@@ -117,7 +118,12 @@ impl MachineCode {
         let entries = functions.entries.into_iter();
         let entries = entries.map(|(thunk, id)| Entry { thunk: at(thunk), pointer: at(id) }).collect();
         let begin = begin_at(at(functions.begin));
-        Ok(Self { begin, entries, _memory: memory, stack: functions.stack })
+        Ok(Self { begin, entries, loops, _memory: memory, stack: functions.stack })
+    }
+
+    /// The loops of the program that may only wait.
+    pub(super) fn loops(&self) -> &[PollingLoop] {
+        &self.loops
     }
 
     /// The function that begins the outermost call.

@@ -10,9 +10,10 @@ use super::request::{Reason, Request};
 use super::state::BYTES_PER_CALL;
 use crate::access::HighWord;
 use crate::call::ArgumentList;
-use crate::engine::{ContextId, Slice, Stack, Stop};
+use crate::engine::{ContextId, Iteration, Slice, Stack, Stop};
 use crate::firmware::{Firmware, Outcome};
 use crate::operand::{FuncRef, SigRef};
+use crate::polling::TimeTests;
 use crate::program::Program;
 use crate::slot::Slot;
 use crate::trap::TrapKind;
@@ -298,7 +299,7 @@ impl Context {
             }
             Reason::PassIterations => {
                 if request.b == slice.tick.get() {
-                    slice.pass_iterations(Cycles::new(request.a.cast_signed()));
+                    self.pass_iterations(slice, request);
                 }
                 0
             }
@@ -311,6 +312,21 @@ impl Context {
             Reason::Unreachable => return Err(TrapKind::Unreachable),
         };
         Ok(NextStep::Go(Answer::Slot(slot)))
+    }
+
+    /// Passes over iterations of the waiting loop that has requested it.
+    fn pass_iterations<F: Firmware + ?Sized>(&self, slice: &mut Slice<'_, F>, request: Request) {
+        let polling = self.fiber.loops().iter().find(|polling| polling.branches.contains(&self.at));
+        let clock = polling.and_then(|polling| polling.clock.as_ref());
+        let registers = clock.map(TimeTests::registers).unwrap_or_default();
+        let given = &self.fiber.state().exchange.arguments;
+        let place = |register| 1 + registers.iter().take_while(|other| **other != register).count();
+        slice.pass_iterations(&Iteration {
+            start: Cycles::new(request.a.cast_signed()),
+            clock,
+            called: Cycles::new(given[0].get().cast_signed()),
+            register: &|register| f64::from_slot(given[place(register)].get()),
+        });
     }
 
     /// A call that the stack has no room for: it is its caller that is shown.

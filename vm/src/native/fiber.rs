@@ -21,6 +21,7 @@ use super::request::{Reason, Request, Yielder};
 use super::state::{PutBack, State};
 use crate::engine::Stack;
 use crate::memory::GuestMemory;
+use crate::polling::PollingLoop;
 
 /// The answer to a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -227,6 +228,11 @@ impl Fiber {
             }
             (true, _) | (false, Answer::Function(_)) => 0,
         }
+    }
+
+    /// The loops of the program that may only wait.
+    pub(super) fn loops(&self) -> &[PollingLoop] {
+        self.rest.code.loops()
     }
 
     /// The state that the engine and compiled code share.

@@ -69,7 +69,8 @@ codes! {
         /// Resolve the function pointer `a` for a call with signature `b`; the answer is the function, none
         /// for one of the firmware.
         CallPointer,
-        /// Pass over iterations of a waiting loop like the one that has ended: it began with `a` cycles left in slice `b`.
+        /// Pass over iterations of a waiting loop like the one that has ended: it began with `a` cycles left in the slice of
+        /// tick `b`. The state holds what it has done with the time.
         PassIterations,
         /// End the slice if it is a long one.
         NeedsBoard,

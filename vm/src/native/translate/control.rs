@@ -173,6 +173,7 @@ impl Translator<'_, '_> {
         let address = self.builder.ins().iconst(types::I64, i64::from(addr.0));
         let signature = self.builder.ins().iconst(types::I64, i64::from(sig.0));
         let slot = self.usual_request(Reason::CallFirmware.code(), self.at, address, signature);
+        self.note_time();
         self.calls.result = Some(slot);
     }
 

@@ -56,6 +56,8 @@ pub(super) struct WaitParts {
     pub(super) entries: BTreeMap<usize, Block>,
     /// The block in which the iterations of the loop that is being translated end, by its first word.
     pub(super) end: Option<(usize, Block)>,
+    /// The call of that loop that yields the time, and the budget after it.
+    pub(super) clock: Option<(usize, Variable)>,
 }
 
 /// Flags of accesses to the state and to guest memory, which never overlap.

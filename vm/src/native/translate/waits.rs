@@ -10,7 +10,8 @@ use cranelift_codegen::ir::{Block, InstBuilder, types};
 use super::super::request::Reason;
 use super::super::state::State;
 use super::Translator;
-use crate::polling::PollingLoop;
+use crate::operand::Class;
+use crate::polling::{PollingLoop, TimeTests};
 
 impl Translator<'_, '_> {
     /// The block at the word `to` for the branch that is being translated.
@@ -50,16 +51,43 @@ impl Translator<'_, '_> {
         self.builder.def_var(budget, left);
         let present = self.load_state(types::I64, offset_of!(State, signs.tick));
         self.builder.def_var(tick, present);
+        let called = self.builder.declare_var(types::I64);
+        self.builder.def_var(called, left);
+        self.waits.clock = polling.clock.as_ref().map(|clock| (clock.call, called));
         self.iteration(polling);
 
         self.at = polling.branches[0];
         self.builder.set_cold_block(end);
         self.begin(end);
+        if let Some(clock) = &polling.clock {
+            self.pass_clock(clock);
+        }
         let (start, tick) = (self.builder.use_var(budget), self.builder.use_var(tick));
         self.usual_request(Reason::PassIterations.code(), self.at, start, tick);
         self.builder.ins().jump(entry, &[]);
         self.reachable = false;
-        self.waits.end = None;
+        (self.waits.end, self.waits.clock) = (None, None);
+    }
+
+    /// Notes the instant at which a call has yielded the time.
+    pub(super) fn note_time(&mut self) {
+        if let Some((_, called)) = self.waits.clock.filter(|(call, _)| *call == self.at) {
+            let budget = self.builder.use_var(self.registers.budget);
+            self.builder.def_var(called, budget);
+        }
+    }
+
+    /// Puts the instant of the time, and the registers that it is compared with, into the state.
+    fn pass_clock(&mut self, clock: &TimeTests) {
+        let Some((_, called)) = self.waits.clock else { return };
+        let called = self.builder.use_var(called);
+        let arguments = offset_of!(State, exchange.arguments);
+        self.store_state(called, arguments);
+        for (place, register) in (1..).zip(clock.registers()) {
+            let value = self.builder.use_var(self.registers.variables[usize::from(register)]);
+            let slot = self.slot(Class::F64, value);
+            self.store_state(slot, arguments + place * size_of::<u64>());
+        }
     }
 
     /// Translates the words of an iteration; the block at the first one has been entered.
