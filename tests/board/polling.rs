@@ -12,7 +12,7 @@ use harness::polling;
 use kmotiondef::timing::Timing;
 use kmotiondef::{CodeAddr, ThreadId, Ticks};
 use runtime::trace::TraceRequest;
-use runtime::{Board, Config, Event, MachineFile};
+use runtime::{Board, Config, Event, EventKind, MachineFile};
 use vm::engine::{Engine, Preemption};
 use vm::interp::BytecodeEngine;
 use vm::machine::Config as MachineConfig;
@@ -144,4 +144,46 @@ fn polling_programs_do_the_same_without_shortcuts() {
     let [with, without] = [0, 1].map(|index| works.iter().map(|work| work[index]).sum::<u64>());
     println!("seeds {first} to {}: {with} cycles executed of {without}", first + count - 1);
     assert!(4 * with < 3 * without, "the loops are not passed over: {with} cycles of {without}");
+}
+
+/// A move of two seconds.
+const MOVE: &str = "\
+#include \"KMotionDef.h\"
+main()
+{
+    ch0->InputMode = NO_INPUT_MODE; ch0->OutputMode = STEP_DIR_MODE;
+    ch0->Vel = 10000; ch0->Accel = 100000; ch0->Jerk = 1e6;
+    EnableAxisDest(0, 0);
+    Move(0, 18000);
+    while (CONDITION) ;
+    printf(\"done\\n\");
+}
+";
+
+fn waits_in_few_cycles<E: Engine>(condition: &str) {
+    let image = compile(&MOVE.replace("CONDITION", condition), ThreadId::all().next().expect("thread 1"));
+    let mut board = board::<E>(&[image], true, Preemption::Segments);
+    let mut events = Vec::new();
+    board.run(Ticks::new(30_000), &mut |event| events.push(event));
+    let done = EventKind::ConsoleLine(b"done".to_vec());
+    assert!(events.iter().any(|event| event.kind == done), "{condition}: the wait does not end");
+    // All that passes is 400 million cycles; 22,000 ticks count as 500 each.
+    let work = board.machine().work();
+    assert!(work < 25_000_000, "{condition}: {work} cycles");
+}
+
+#[test]
+fn a_wait_takes_little_work() {
+    for condition in [
+        "!CheckDone(0)",
+        "!CheckDoneXYZABC()",
+        "ch0->Dest < 17990",
+        "!ReadBit(1030) && !CheckDone(0)",
+        "Time_sec() < 2.0",
+        "Time_sec() - 1.0 < 1.0 && !ReadBit(1030)",
+    ] {
+        waits_in_few_cycles::<BytecodeEngine>(condition);
+        #[cfg(feature = "native")]
+        waits_in_few_cycles::<vm::native::NativeEngine>(condition);
+    }
 }
