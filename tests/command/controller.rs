@@ -381,6 +381,28 @@ fn the_recorder_of_the_board_traces_every_tick() {
 }
 
 #[test]
+fn programs_on_the_model_and_on_a_controller_are_compared() {
+    let scratch = Scratch::new("controller-compare");
+    scratch.write("moves.c", MOVES);
+    scratch.write("prints.c", PROGRAM);
+    scratch.write(
+        "keeps.c",
+        "#include \"KMotionDef.h\"\nmain() { printf(\"%d\\n\", persist.UserData[90]++); }\n",
+    );
+    let (_server, place) = served("controller-compare-board", &[]);
+    let output = on(&scratch, &["compare"], &place, &["moves.c", "prints.c", "keeps.c"]);
+    assert_eq!((output.code, output.stdout.matches(" equal ").count()), (0, 3), "{output:?}");
+    // The board was not reset: it has counted already.
+    let output = on(&scratch, &["compare"], &place, &["keeps.c", "prints.c"]);
+    assert_eq!(output.code, 5, "{output:?}");
+    for text in ["keeps.c: line 1", "  board:    ", "1 of 2 programs differ"] {
+        assert!(output.stdout.contains(text) || output.stderr.contains(text), "{text}: {output:?}");
+    }
+    let output = on(&scratch, &["compare"], &place, &["--random"]);
+    assert!(output.code == 2 && output.stderr.contains("does not work with `--on`"), "{output:?}");
+}
+
+#[test]
 fn a_recording_ends_where_the_buffer_is_full() {
     let scratch = Scratch::new("controller-full");
     scratch.write("a.c", "#include \"KMotionDef.h\"\nmain() { Delay_sec(3.2); }\n");

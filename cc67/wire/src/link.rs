@@ -19,6 +19,8 @@ const READ_SIZE: usize = 4096;
 const WRITE_SIZE: usize = 4096;
 /// The interval at which a thread without work checks whether it should end.
 const IDLE: Duration = Duration::from_millis(100);
+/// The longest time that a link waits for its threads when it is closed.
+const CLOSED_WITHIN: Duration = Duration::from_millis(300);
 /// The interval at which a user of the link checks whether its bytes were written.
 const DRAIN: Duration = Duration::from_millis(1);
 
@@ -163,9 +165,21 @@ impl BoardLink {
     }
 }
 
+impl BoardLink {
+    /// Ends its threads: the port is free for the next user when they have let go of it.
+    pub(crate) fn close(&self) {
+        self.is_closed.store(true, Ordering::Relaxed);
+        let end = now() + CLOSED_WITHIN;
+        // Each thread has a reference of its own.
+        while Arc::strong_count(&self.is_closed) > 1 && now() < end {
+            thread::sleep(DRAIN);
+        }
+    }
+}
+
 impl Drop for BoardLink {
     fn drop(&mut self) {
-        self.is_closed.store(true, Ordering::Relaxed);
+        self.close();
     }
 }
 

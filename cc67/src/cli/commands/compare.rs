@@ -1,4 +1,4 @@
-//! `cc67 compare`: the modelled firmware and the user's own firmware file side by side.
+//! `cc67 compare`: the modelled firmware and the user's own firmware file, or a connected controller, side by side.
 //!
 //! Each program runs on both boards from the same start, with the machine, the stimulus and the options that are beside
 //! it. Compared are console, replies and what the PC does line by line, expectations, the board time of each line within
@@ -25,7 +25,7 @@ use crate::cli::args::time::{DEFAULT_LIMIT, seconds};
 use crate::cli::io::exit::Exit;
 use crate::cli::io::{output, terminal};
 use crate::cli::report::numbers::Tolerance;
-use crate::cli::session::{Rig, Setup, Started, Work, boot};
+use crate::cli::session::{Rig, Setup, Started, Work, boot, run_with_boxes};
 use outcome::Outcome;
 use random::RandomArguments;
 
@@ -82,18 +82,24 @@ enum Verdict {
 
 /// Compares all programs; exit code 1 if one does not compile, 5 if any differs.
 pub(super) fn compare(arguments: &CompareArguments) -> Result<Exit> {
-    let Some(file) = &arguments.board.boot else {
-        bail!("`cc67 compare` needs `--boot FILE`, your firmware file")
+    let other = match (&arguments.board.boot, &arguments.board.controller.on) {
+        (Some(file), None) => Some(boot(file)?),
+        (None, Some(_)) => None,
+        _ => bail!("`cc67 compare` needs `--boot FILE`, your firmware file, or `--on BOARD`, a controller"),
     };
     arguments.refuse()?;
-    let firmware = boot(file)?;
     if arguments.random.is_requested() {
+        let Some(firmware) = other else {
+            bail!(
+                "`--random` does not work with `--on`: it needs a board that can be reset between two scenarios"
+            );
+        };
         return arguments.random.compare(&firmware);
     }
     let mut table = String::new();
     let mut verdicts = Vec::new();
     for program in &arguments.programs {
-        let verdict = arguments.one(program, &firmware, &mut table)?;
+        let verdict = arguments.one(program, other.as_ref(), &mut table)?;
         if verdict == Verdict::Broken {
             writeln!(table, "{:40} {:>6} does not compile", program.to_string_lossy(), "-")?;
         }
@@ -137,7 +143,7 @@ impl CompareArguments {
         if self.board.pc.has_flash() {
             bail!("`--flash` does not work with `cc67 compare`: a flash file belongs to one board");
         }
-        self.board.refuse_with_boot()
+        if self.board.controller.on.is_some() { Ok(()) } else { self.board.refuse_with_boot() }
     }
 
     fn ticks(&self) -> Ticks {
@@ -174,19 +180,31 @@ impl CompareArguments {
     }
 
     /// Compares one of the programs, and adds its row to the table if it compiles.
-    fn one(&self, program: &OsString, booted: &BootedFirmware, table: &mut String) -> Result<Verdict> {
+    fn one(
+        &self,
+        program: &OsString,
+        booted: Option<&BootedFirmware>,
+        table: &mut String,
+    ) -> Result<Verdict> {
         let (own, programs) = self.of(program)?;
-        let Some(model) = own.model(&programs)? else { return Ok(Verdict::Broken) };
-        let Some(firmware) = own.firmware(&programs, booted, model.ticks)? else {
-            return Ok(Verdict::Broken);
+        let Some(mut model) = own.model(&programs)? else { return Ok(Verdict::Broken) };
+        let other = match booted {
+            Some(firmware) => own.firmware(&programs, firmware, model.ticks)?,
+            None => own.controller(&programs)?,
         };
+        let Some(firmware) = other else { return Ok(Verdict::Broken) };
+        if booted.is_none() {
+            model.without_the_pc();
+        }
         let (differences, near) = model.differences(&firmware, own.allowed());
-        let late = model.latest(&firmware);
+        // Lines of a controller bear the time at which they came.
+        let late = if booted.is_some() { model.latest(&firmware) } else { 0.0 };
         let is_late = self.strict_times && late > self.tolerance;
+        let board = if booted.is_some() { "firmware:" } else { "board:   " };
         let name = program.to_string_lossy();
         if let Some(first) = differences.first() {
             output::print(&format!(
-                "{name}: {}\n  model:    {}\n  firmware: {}\n  see {}\n",
+                "{name}: {}\n  model:    {}\n  {board} {}\n  see {}\n",
                 first.what, first.model, first.firmware, first.page
             ))?;
         }
@@ -221,6 +239,15 @@ impl CompareArguments {
         let Some(setup) = setup else { return Ok(None) };
         let mut outcome = Outcome::default();
         setup.on_its_target(Model { limit: self.ticks(), outcome: &mut outcome })?;
+        Ok(Some(outcome))
+    }
+
+    /// The run on the connected controller; `None` if a source has errors.
+    fn controller(&self, programs: &[OsString]) -> Result<Option<Outcome>> {
+        let setup = Setup::new(self.started(programs), &self.board, &self.compiler)?;
+        let Some(setup) = setup else { return Ok(None) };
+        let mut outcome = Outcome::default();
+        setup.recorded().on_its_target(OnController { limit: self.ticks(), outcome: &mut outcome })?;
         Ok(Some(outcome))
     }
 
@@ -273,6 +300,33 @@ fn ended<T: Target>(session: &Session<T>, end: End) -> &'static str {
     match end {
         End::Limit if ThreadId::all().any(is_active) => STILL_RUNNING,
         End::Limit | End::AllEnded | End::Interrupted => "ended",
+    }
+}
+
+/// Runs the connected controller and notes what it came to.
+struct OnController<'a> {
+    limit: Ticks,
+    outcome: &'a mut Outcome,
+}
+
+impl Work for OnController<'_> {
+    fn on<T: Target>(self, mut rig: Rig<T>) -> Result<Exit> {
+        let outcome = self.outcome;
+        outcome.look_before(&rig.session);
+        let mut sink = |event: Event| {
+            // What cc67 says of its own work is not of the program.
+            if !matches!(event.kind, EventKind::Host(_)) {
+                outcome.note(&event);
+            }
+        };
+        let end = run_with_boxes(&mut rig, self.limit, &mut sink)?;
+        rig.finish(&mut sink)?;
+        outcome.end = ended(&rig.session, end).to_owned();
+        outcome.look_at_model(&rig);
+        if let Some(why) = rig.session.target().lost() {
+            bail!("{why}");
+        }
+        Ok(Exit::Success)
     }
 }
 

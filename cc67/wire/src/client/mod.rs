@@ -104,6 +104,7 @@ impl Client {
     /// As for [`connect`](Self::connect).
     pub fn reconnect(&mut self) -> Result<(), WireError> {
         if let Some(address) = &self.address {
+            self.link.close();
             let fresh = crate::transport::open(address)?;
             self.link = fresh;
         }

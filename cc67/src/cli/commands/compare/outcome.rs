@@ -43,6 +43,10 @@ pub(super) struct Outcome {
     /// What the serial port has sent, if somebody listens.
     serial: Vec<u8>,
     user_data: Vec<u32>,
+    /// `persist.UserData`, the axes and the pins before the run, of a board that was not reset.
+    user_data_before: Vec<u32>,
+    axes_before: Vec<(f64, f64)>,
+    pins_before: Vec<Pin>,
     /// Commanded and measured position of each axis.
     pub(super) axes: Vec<(f64, f64)>,
     /// How far each axis is commanded within the tolerance of time, where it is still moving.
@@ -81,28 +85,25 @@ impl Outcome {
         self.lines.push((seconds, kind, text.into_owned()));
     }
 
-    /// What the modelled board is left with.
+    /// Notes what a board that was not reset holds before the run.
+    pub(super) fn look_before<T: Target>(&mut self, session: &Session<T>) {
+        self.user_data_before = user_data(session);
+        self.axes_before = axes(session);
+        self.pins_before = pins(session);
+    }
+
+    /// Drops what only a simulated PC reports.
+    pub(super) fn without_the_pc(&mut self) {
+        self.lines.retain(|line| line.1 != LineKind::Host);
+    }
+
+    /// What the modelled board, or a controller, is left with.
     pub(super) fn look_at_model<T: Target>(&mut self, rig: &Rig<T>) {
         let session = &rig.session;
         self.ticks = session.tick();
-        let data = PERSIST.field(Persist::USER_DATA).address();
-        self.user_data = (0..200).map(|index| session.peek_object(data.offset(4 * index))).collect();
-        self.axes = AxisId::all()
-            .map(|axis| {
-                let base = CHAN.address().offset(Chan::STRUCTURE.size * axis.index() as u32);
-                (
-                    session.peek_object(base.offset(Chan::DEST.offset())),
-                    session.peek_object(base.offset(Chan::POSITION.offset())),
-                )
-            })
-            .collect();
-        let directions =
-            [0, 1].map(|word| session.peek_object::<u32>(BIT_DIR_SHADOW.element(word).address()));
-        let pins = (0..PINS).map(|pin| Pin {
-            is_output: directions[usize::from(pin >= 32)] >> (pin % 32) & 1 != 0,
-            is_high: Bit::new(pin).is_some_and(|bit| session.bit(bit)),
-        });
-        self.pins = pins.collect();
+        self.user_data = user_data(session);
+        self.axes = axes(session);
+        self.pins = pins(session);
     }
 
     /// What the board with the firmware file is left with.
@@ -138,7 +139,9 @@ impl Outcome {
             found.push(Difference::new("serial port", one, two, "devices.md"));
         }
         for (index, (one, two)) in self.user_data.iter().zip(&firmware.user_data).enumerate() {
-            if one != two {
+            // What neither run has changed says nothing.
+            let is_untouched = *one == 0 && firmware.user_data_before.get(index) == Some(two);
+            if one != two && !is_untouched {
                 let hex = |word: &u32| format!("0x{word:08X}");
                 let what = format!("persist.UserData[{index}]");
                 found.push(Difference::new(what, hex(one), hex(two), "gather-persist-console.md"));
@@ -181,6 +184,9 @@ impl Outcome {
     fn axes_that_differ(&self, firmware: &Self) -> Vec<Difference> {
         let mut found = Vec::new();
         for (axis, (one, two)) in self.axes.iter().zip(&firmware.axes).enumerate() {
+            if one.0 == 0.0 && firmware.axes_before.get(axis).is_some_and(|before| before.0 == two.0) {
+                continue;
+            }
             let last = firmware.last_axes.get(axis).map_or(two.0, |last| last.0);
             let reach = POSITION + firmware.reach.get(axis).copied().unwrap_or(0.0);
             if (one.0 - two.0).abs() > reach && (one.0 - last).abs() > POSITION {
@@ -198,7 +204,9 @@ impl Outcome {
             let is_pulsed = STEP_PINS.iter().any(|pins| pins.contains(&pin))
                 || firmware.has_kstep && KSTEP_PINS.contains(&pin);
             // What drives an input is the same on both, and a generator's output is high for a part of the time.
-            let matters = (one.is_output || two.is_output) && !is_pulsed;
+            // What only an earlier program has made an output says nothing.
+            let is_untouched = !one.is_output && firmware.pins_before.get(pin) == Some(two);
+            let matters = (one.is_output || two.is_output) && !is_pulsed && !is_untouched;
             if matters && one.is_high != two.is_high {
                 let shown = |pin: &Pin| u8::from(pin.is_high).to_string();
                 found.push(Difference::new(format!("bit {pin}"), shown(one), shown(two), "io.md"));
@@ -206,6 +214,32 @@ impl Outcome {
         }
         found
     }
+}
+
+/// The pins of a board as its memory and its bits show them.
+fn pins<T: Target>(session: &Session<T>) -> Vec<Pin> {
+    let directions = [0, 1].map(|word| session.peek_object::<u32>(BIT_DIR_SHADOW.element(word).address()));
+    let pins = (0..PINS).map(|pin| Pin {
+        is_output: directions[usize::from(pin >= 32)] >> (pin % 32) & 1 != 0,
+        is_high: Bit::new(pin).is_some_and(|bit| session.bit(bit)),
+    });
+    pins.collect()
+}
+
+/// Commanded and measured position of each axis.
+fn axes<T: Target>(session: &Session<T>) -> Vec<(f64, f64)> {
+    let axes = AxisId::all().map(|axis| {
+        let base = CHAN.address().offset(Chan::STRUCTURE.size * axis.index() as u32);
+        let position = |field: u32| session.peek_object(base.offset(field));
+        (position(Chan::DEST.offset()), position(Chan::POSITION.offset()))
+    });
+    axes.collect()
+}
+
+/// The elements of `persist.UserData`.
+fn user_data<T: Target>(session: &Session<T>) -> Vec<u32> {
+    let data = PERSIST.field(Persist::USER_DATA).address();
+    (0..200).map(|index| session.peek_object(data.offset(4 * index))).collect()
 }
 
 /// A pin of the board.
