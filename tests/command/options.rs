@@ -160,6 +160,7 @@ const THE_SAME: &[(&str, &str)] = &[
     ("--explore", "a test starts runs with it; `command/schedules.rs` tests it"),
     ("--golden", "a test starts runs with it; `command/schedules.rs` tests it"),
     ("--yes", "it matters to a controller; `command/controller.rs` tests it"),
+    ("--verify", "it matters to a controller; `command/controller.rs` tests it"),
     ("run --force", "it matters to a controller; `command/controller.rs` tests it"),
     ("debug --force", "it matters to a controller; `command/controller.rs` tests it"),
     ("console --force", "it matters to a controller; `command/controller.rs` tests it"),

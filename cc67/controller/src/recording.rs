@@ -221,7 +221,7 @@ mod tests {
         let expected = BoardSample { tick: 7, values: vec![2.5, 0.0], enabled: 0b10 };
         assert_eq!(recording.sample(7, &sample), expected);
         // Three doubles a sample, in three quarters of a buffer of 1,000,000.
-        assert_eq!(recording.capacity(), 249_956);
+        assert_eq!(recording.capacity(), 249_957);
     }
 
     #[test]

@@ -43,10 +43,8 @@ pub(super) struct Outcome {
     /// What the serial port has sent, if somebody listens.
     serial: Vec<u8>,
     user_data: Vec<u32>,
-    /// `persist.UserData`, the axes and the pins before the run, of a board that was not reset.
-    user_data_before: Vec<u32>,
-    axes_before: Vec<(f64, f64)>,
-    pins_before: Vec<Pin>,
+    /// What a board that was not reset held before the run.
+    before: Before,
     /// Commanded and measured position of each axis.
     pub(super) axes: Vec<(f64, f64)>,
     /// How far each axis is commanded within the tolerance of time, where it is still moving.
@@ -57,6 +55,14 @@ pub(super) struct Outcome {
     pins: Vec<Pin>,
     /// Whether a KStep is there.
     has_kstep: bool,
+}
+
+/// What a board that was not reset held before a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Before {
+    user_data: Vec<u32>,
+    axes: Vec<(f64, f64)>,
+    pins: Vec<Pin>,
 }
 
 /// A difference: what, on the model, on the firmware, and the page that says how it is meant.
@@ -87,9 +93,8 @@ impl Outcome {
 
     /// Notes what a board that was not reset holds before the run.
     pub(super) fn look_before<T: Target>(&mut self, session: &Session<T>) {
-        self.user_data_before = user_data(session);
-        self.axes_before = axes(session);
-        self.pins_before = pins(session);
+        let (user_data, axes, pins) = (user_data(session), axes(session), pins(session));
+        self.before = Before { user_data, axes, pins };
     }
 
     /// Drops what only a simulated PC reports.
@@ -140,7 +145,7 @@ impl Outcome {
         }
         for (index, (one, two)) in self.user_data.iter().zip(&firmware.user_data).enumerate() {
             // What neither run has changed says nothing.
-            let is_untouched = *one == 0 && firmware.user_data_before.get(index) == Some(two);
+            let is_untouched = *one == 0 && firmware.before.user_data.get(index) == Some(two);
             if one != two && !is_untouched {
                 let hex = |word: &u32| format!("0x{word:08X}");
                 let what = format!("persist.UserData[{index}]");
@@ -184,7 +189,7 @@ impl Outcome {
     fn axes_that_differ(&self, firmware: &Self) -> Vec<Difference> {
         let mut found = Vec::new();
         for (axis, (one, two)) in self.axes.iter().zip(&firmware.axes).enumerate() {
-            if one.0 == 0.0 && firmware.axes_before.get(axis).is_some_and(|before| before.0 == two.0) {
+            if one.0 == 0.0 && firmware.before.axes.get(axis).is_some_and(|before| before.0 == two.0) {
                 continue;
             }
             let last = firmware.last_axes.get(axis).map_or(two.0, |last| last.0);
@@ -205,7 +210,7 @@ impl Outcome {
                 || firmware.has_kstep && KSTEP_PINS.contains(&pin);
             // What drives an input is the same on both, and a generator's output is high for a part of the time.
             // What only an earlier program has made an output says nothing.
-            let is_untouched = !one.is_output && firmware.pins_before.get(pin) == Some(two);
+            let is_untouched = !one.is_output && firmware.before.pins.get(pin) == Some(two);
             let matters = (one.is_output || two.is_output) && !is_pulsed && !is_untouched;
             if matters && one.is_high != two.is_high {
                 let shown = |pin: &Pin| u8::from(pin.is_high).to_string();
