@@ -82,12 +82,11 @@ enum Verdict {
 
 /// Compares all programs; exit code 1 if one does not compile, 5 if any differs.
 pub(super) fn compare(arguments: &CompareArguments) -> Result<Exit> {
-    let other = match (&arguments.board.boot, &arguments.board.controller.on) {
-        (Some(file), None) => Some(boot(file)?),
-        (None, Some(_)) => None,
-        _ => bail!("`cc67 compare` needs `--boot FILE`, your firmware file, or `--on BOARD`, a controller"),
-    };
+    if arguments.board.boot.is_some() == arguments.board.controller.on.is_some() {
+        bail!("`cc67 compare` needs `--boot FILE`, your firmware file, or `--on BOARD`, a controller");
+    }
     arguments.refuse()?;
+    let other = arguments.board.boot.as_deref().map(boot).transpose()?;
     if arguments.random.is_requested() {
         let Some(firmware) = other else {
             bail!(
