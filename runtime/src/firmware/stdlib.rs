@@ -10,7 +10,7 @@ use super::not_modelled;
 use super::parts::Parts;
 use super::string::LONGEST;
 use crate::out::Message;
-use crate::text::{float_prefix, integer_prefix};
+use crate::text::{Digits, Keep, digits, float_prefix, integer_prefix, magnitude, place_of_point};
 
 pub(crate) fn malloc(parts: &mut Parts, _: &mut Caller<'_>, size: u32) -> GuestAddr {
     parts.calls.heap.take(size).unwrap_or_default()
@@ -143,7 +143,25 @@ fn in_base(
     reading: IntegerReading,
 ) -> Result<i64, TrapKind> {
     let base = u32::try_from(base).ok().filter(|&base| base == 0 || (2..=36).contains(&base));
-    let (value, stopped) = integer(caller, string, base.unwrap_or(10), reading)?;
+    let Some(base) = base else {
+        store_end(caller, end, string)?;
+        return Ok(0);
+    };
+    let (value, stopped) = integer(caller, string, base, reading)?;
+    let text = caller.memory.read_c_string(string, LONGEST)?;
+    let (is_negative, magnitude) = magnitude(&text[blanks(&text)..], base);
+    // A `long` of the board's library has 40 bits, of which a program gets the lower 32.
+    let most = match reading {
+        IntegerReading::Unsigned => (1 << 40) - 1,
+        IntegerReading::Plain | IntegerReading::Signed => (1 << 39) - 1,
+    };
+    if magnitude > most {
+        store_end(caller, end, string)?;
+        return Ok(match reading {
+            IntegerReading::Plain | IntegerReading::Signed if is_negative => 0,
+            _ => -1,
+        });
+    }
     store_end(caller, end, stopped)?;
     Ok(value)
 }
@@ -190,26 +208,81 @@ pub(crate) fn ltoa(
     Ok(text.len() as i32 - 1)
 }
 
+/// The buffers of `ecvt` and `fcvt`; a text begins at the second byte, at the first where rounding has made it longer.
+const ECVT: GuestAddr = GuestAddr::new(0x1001_AAAC);
+const FCVT: GuestAddr = GuestAddr::new(0x1001_A430);
+/// Digits that fit there: what the board stores beyond is lost here.
+const MOST_DIGITS: usize = 380;
+
+/// A number as digits, and where its point is.
+struct Converted {
+    text: Vec<u8>,
+    point: i32,
+    /// Whether it has become longer by rounding.
+    has_grown: bool,
+}
+
 pub(crate) fn ecvt(
     _: &mut Parts,
-    _: &mut Caller<'_>,
-    _: f64,
-    _: i32,
-    _: GuestAddr,
-    _: GuestAddr,
+    caller: &mut Caller<'_>,
+    value: f64,
+    count: i32,
+    point: GuestAddr,
+    sign: GuestAddr,
 ) -> Result<GuestAddr, TrapKind> {
-    not_modelled(Function::ecvt)
+    let magnitude = value.abs();
+    let converted = if magnitude < f64::MIN_POSITIVE {
+        Converted { text: vec![0; count.max(0) as usize], point: 1, has_grown: false }
+    } else {
+        let place = place_of_point(magnitude);
+        // Without a count the digits before the point are left, as they are.
+        let rounded = usize::try_from(count).map(|count| digits(magnitude, Keep::Significant(count)));
+        let Digits { digits: mut text, point } = rounded.unwrap_or_else(|_| {
+            let all = digits(magnitude, Keep::Significant(MOST_DIGITS));
+            Digits { digits: all.digits[..(place.max(0) as usize).min(all.digits.len())].to_vec(), ..all }
+        });
+        text.truncate(usize::try_from(count).unwrap_or(MOST_DIGITS));
+        Converted { text, point, has_grown: point > place }
+    };
+    store_digits(caller, ECVT, value, &converted, [point, sign])
 }
 
 pub(crate) fn fcvt(
     _: &mut Parts,
-    _: &mut Caller<'_>,
-    _: f64,
-    _: i32,
-    _: GuestAddr,
-    _: GuestAddr,
+    caller: &mut Caller<'_>,
+    value: f64,
+    decimals: i32,
+    point: GuestAddr,
+    sign: GuestAddr,
 ) -> Result<GuestAddr, TrapKind> {
-    not_modelled(Function::fcvt)
+    let magnitude = value.abs();
+    let converted = if magnitude < f64::MIN_POSITIVE {
+        Converted { text: vec![0; decimals.max(0) as usize + 1], point: 1, has_grown: false }
+    } else {
+        let place = place_of_point(magnitude);
+        // Odd and kept: a number that is too small is rounded by its first digit, and one digit at most is left out.
+        let wanted = i64::from(place) + i64::from(decimals.max(-1));
+        let Digits { digits: text, point } = digits(magnitude, Keep::Significant(wanted.max(0) as usize));
+        Converted { has_grown: point > place, text, point }
+    };
+    store_digits(caller, FCVT, value, &converted, [point, sign])
+}
+
+/// Stores digits in their buffer, their point and the sign; returns the place of the text.
+fn store_digits(
+    caller: &mut Caller<'_>,
+    buffer: GuestAddr,
+    value: f64,
+    converted: &Converted,
+    [point, sign]: [GuestAddr; 2],
+) -> Result<GuestAddr, TrapKind> {
+    let kept = converted.text.iter().take(MOST_DIGITS).map(|digit| b'0' + digit);
+    let text: Vec<u8> = kept.chain([0]).collect();
+    let place = caller.memory.place_of(buffer).offset(u32::from(!converted.has_grown));
+    caller.memory.write_bytes(place, &text)?;
+    caller.memory.store(point, converted.point)?;
+    caller.memory.store(sign, i32::from(value < 0.0))?;
+    Ok(place)
 }
 
 pub(crate) fn atexit(_: &mut Parts, _: &mut Caller<'_>, _: GuestAddr) -> Result<i32, TrapKind> {

@@ -56,6 +56,11 @@ pub(crate) fn digits(magnitude: f64, keep: Keep) -> Digits {
     round_at(digits, point, wanted)
 }
 
+/// Digits of a normal magnitude before its decimal point, without rounding; negative for zeros after it.
+pub(crate) fn place_of_point(magnitude: f64) -> i32 {
+    split(magnitude).2
+}
+
 /// The value after the first steps of scaling down, with the places it was moved by.
 fn finite(magnitude: f64) -> (f64, i32) {
     // 2^1024 is no double, but a tenth of it is: 2^1023 times twice 0.1.

@@ -7,6 +7,34 @@ use super::scanned::float_value;
 /// Returns the value modulo 2^64 and how many bytes it took; 0 bytes when there is no number. `base` 0 takes the
 /// base from the prefix.
 pub(crate) fn integer_prefix(text: &[u8], base: u32) -> (i64, usize) {
+    let IntegerText { negative, base, digits, used } = digits_of(text, base);
+    let value = digits.iter().fold(0_i64, |sum, &byte| {
+        let digit = char::from(byte).to_digit(base).unwrap_or(0);
+        sum.wrapping_mul(i64::from(base)).wrapping_add(i64::from(digit))
+    });
+    (if negative { value.wrapping_neg() } else { value }, used)
+}
+
+/// Returns whether an integer is negative, and its magnitude; the greatest there is for all above.
+pub(crate) fn magnitude(text: &[u8], base: u32) -> (bool, u64) {
+    let IntegerText { negative, base, digits, .. } = digits_of(text, base);
+    let value = digits.iter().fold(0_u64, |sum, &byte| {
+        let digit = char::from(byte).to_digit(base).unwrap_or(0);
+        sum.saturating_mul(u64::from(base)).saturating_add(u64::from(digit))
+    });
+    (negative, value)
+}
+
+/// The parts of an integer in text.
+struct IntegerText<'t> {
+    negative: bool,
+    base: u32,
+    digits: &'t [u8],
+    /// Bytes of sign, prefix and digits; 0 without digits.
+    used: usize,
+}
+
+fn digits_of(text: &[u8], base: u32) -> IntegerText<'_> {
     let (negative, signed) = sign(text);
     let mut digits = &text[signed..];
     let mut base = base;
@@ -18,12 +46,8 @@ pub(crate) fn integer_prefix(text: &[u8], base: u32) -> (i64, usize) {
         base = if digits.first() == Some(&b'0') { 8 } else { 10 };
     }
     let count = digits.iter().take_while(|&&byte| char::from(byte).is_digit(base)).count();
-    let value = digits[..count].iter().fold(0_i64, |sum, &byte| {
-        let digit = char::from(byte).to_digit(base).unwrap_or(0);
-        sum.wrapping_mul(i64::from(base)).wrapping_add(i64::from(digit))
-    });
     let used = if count == 0 { 0 } else { text.len() - digits.len() + count };
-    (if negative { value.wrapping_neg() } else { value }, used)
+    IntegerText { negative, base, digits: &digits[..count], used }
 }
 
 /// Reads a decimal floating-point number as the board does; 0 bytes where none begins.

@@ -5,8 +5,8 @@ use runtime::commands::{Argument, COMMANDS};
 use super::ScenarioWriter;
 use crate::cli::commands::compare::random::draw::Draw;
 
-/// Commands that are not drawn: they stop or restart the board, wait for data of the PC, need a program, or send what the boards
-/// hold from the time before.
+/// Commands that are not drawn: they stop or restart the board, wait for data of the PC, need a program, send what the boards
+/// hold from the time before, or move for so long that the ticks between two lines count.
 const LEFT_OUT: &[&str] = &[
     "CheckDoneGather",
     "ClearFlashImage",
@@ -21,6 +21,10 @@ const LEFT_OUT: &[&str] = &[
     "GetInject",
     "GetStatus",
     "Inject",
+    "Jog",
+    "MoveAtVel",
+    "MoveExp",
+    "MoveRelAtVel",
     "LoadData",
     "LoadFlash",
     "ProgFlashImage",
@@ -49,8 +53,11 @@ pub(super) fn draw(writer: &mut ScenarioWriter) {
     }
     for _ in 0..6 + writer.draw.below(8) {
         let line = command(&mut writer.draw);
+        let moves = line.to_ascii_lowercase().starts_with("move");
         writer.line(line);
-        if writer.draw.chance(20) {
+        if moves {
+            writer.line("(run 0.4)");
+        } else if writer.draw.chance(20) {
             let seconds = writer.draw.magnitude(0.002, 0.05);
             writer.line(format!("(run {seconds:?})"));
         }

@@ -3,8 +3,8 @@
 use super::ScenarioWriter;
 use crate::cli::commands::compare::random::draw::Draw;
 
-/// Conversions that programs declare themselves.
-const HEAD: &str = "int sprintf(char*,char*,...); int sscanf(const char*,const char*,...); double strtod(const char*,char**); int strtol(const char*,char**,int); int atoi(const char*); int ltoa(int,char*); char *ecvt(double,int,int*,int*); char *fcvt(double,int,int*,int*); char b[400]; int i0,i1,i2; double d0,d1; float f0; char *e; void clear(void){ i0=-99; i1=-99; i2=-99; d0=-99; d1=-99; f0=-99; b[0]=0; }";
+/// Conversions that programs declare themselves; `ltoa` reads a register that nobody sets.
+const HEAD: &str = "int sprintf(char*,char*,...); int sscanf(const char*,const char*,...); double strtod(const char*,char**); int strtol(const char*,char**,int); int atoi(const char*); char *ecvt(double,int,int*,int*); char *fcvt(double,int,int*,int*); char b[400]; int i0,i1,i2; double d0,d1; float f0; char *e; void clear(void){ i0=-99; i1=-99; i2=-99; d0=-99; d1=-99; f0=-99; b[0]=0; }";
 
 /// Draws a scenario.
 pub(super) fn draw(writer: &mut ScenarioWriter) {
@@ -127,11 +127,10 @@ fn convert(draw: &mut Draw) -> String {
         "123456789012345678",
         "0.000001234",
     ]);
-    match draw.below(6) {
+    match draw.below(5) {
         0 | 1 => format!("d0=strtod(\"{text}\",&e); printf(\"%.15g %s\\n\",d0,e);"),
         2 => format!("i0=strtol(\"{text}\",&e,{}); printf(\"%d %s\\n\",i0,e);", draw.pick(&[0, 8, 10, 16])),
         3 => format!("printf(\"%d\\n\",atoi(\"{text}\"));"),
-        4 => format!("i0=ltoa({},b); printf(\"%d %s\\n\",i0,b);", integer(draw)),
         _ => {
             let (function, digits) = (draw.pick(&["ecvt", "fcvt"]), draw.below(12));
             format!("e={function}({},{digits},&i0,&i1); printf(\"%s %d %d\\n\",e,i0,i1);", number(draw))
