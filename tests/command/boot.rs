@@ -69,6 +69,20 @@ fn a_program_prints_the_same_on_the_real_firmware_and_the_model() {
     assert!(compare.stdout.contains("equal"), "{compare:?}");
 }
 
+/// `ThreadDone` takes the thread's number from a register that functions keep other values in.
+#[test]
+fn a_thread_that_keeps_values_in_registers_ends_itself() {
+    let Some(file) = firmware() else { return };
+    let scratch = Scratch::new("boot-thread-done");
+    let main = "#include \"KMotionDef.h\"\nmain()\n{\n  double begin;\n  StartThread(2);\n  Delay_sec(0.01);\n  WaitNextTimeSlice();\n  begin = ServoTick;\n  WaitNextTimeSlice();\n  printf(\"%g ticks\\n\", ServoTick - begin);\n}\n";
+    // Its loop has values for all registers that functions keep.
+    let other = "#include \"KMotionDef.h\"\nmain()\n{\n  int n;\n  for (n = 0; n < 65; n++) {\n    if (n == 5) ThreadDone();\n    if (n == 16) persist.UserData[12] += -9;\n    if (n == 19) persist.UserData[10] += -4;\n    if (n == 22) persist.UserData[13] += 7;\n    WaitNextTimeSlice();\n  }\n}\n";
+    scratch.write("main.c", main);
+    scratch.write("other.c", other);
+    let run = cc67(&scratch, ["run", "--boot", &file, "main.c", "--load", "2:other.c"]);
+    assert_eq!((run.code, run.stdout.as_str()), (0, "2 ticks\n"), "a thread that is alone: {run:?}");
+}
+
 #[test]
 fn random_scenarios_need_a_firmware_file_and_no_program() {
     let scratch = scratch("boot-random-none");

@@ -228,8 +228,7 @@ fn a_wild_pointer_stops_its_thread_only() {
 
 #[test]
 fn an_unimplemented_function_names_itself() {
-    let source =
-        "#include \"KMotionDef.h\"\nvoid last(void) {}\nmain()\n{\n  atexit(last);\n}\n";
+    let source = "#include \"KMotionDef.h\"\nvoid last(void) {}\nmain()\n{\n  atexit(last);\n}\n";
     let output = run_source("tocome", source, &[]);
     assert_eq!(output.code, 3, "{output:?}");
     assert!(output.stderr.contains("atexit"), "{}", output.stderr);

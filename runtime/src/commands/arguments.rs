@@ -208,7 +208,8 @@ impl Values {
                 Argument::Limited(lo, hi) => ArgumentValue::Real(reader.limited(lo, hi)?),
                 Argument::OptionalHex if reader.is_at_end() => break,
                 Argument::Hex | Argument::OptionalHex => ArgumentValue::Word(reader.hex()?),
-                Argument::Assign | Argument::End if reader.is_at_end() => {
+                // A blank at the end is already too much.
+                Argument::Assign | Argument::End if reader.rest().is_empty() => {
                     read.is_question = true;
                     break;
                 }

@@ -95,6 +95,11 @@ impl<'s, T: Target> Record<'s, T> {
         if let Some(index) = (0..).zip(PATH_VARIABLES).find(|(_, known)| *known == name) {
             return Value { value: self.word(PATH + 2 * index.0), is_single: false };
         }
+        if let Some(index) = name.strip_prefix("persist.UserData[") {
+            let index = index.trim_end_matches(']').parse().expect(name);
+            let value = self.session.user_data(index).expect("an element");
+            return Value { value: f64::from(value), is_single: false };
+        }
         let (axis, field) = name.strip_prefix("chan[").and_then(|rest| rest.split_once("].")).expect(name);
         let axis: u32 = axis.parse().expect(name);
         if field == "pcoeff-c" {

@@ -6,6 +6,9 @@ use c67x::{Reg, Side};
 /// The register for the address of an indirect call: no argument is passed in it.
 pub(super) const TARGET: Reg = Reg::b(0);
 
+/// The register that a thread begins with its number in, and that `ThreadDone` takes it from.
+pub(super) const THREAD: Reg = Reg::a(14);
+
 /// The register for the address of further arguments when there are more than registers; a convention of ours.
 pub(super) const REST: Reg = Reg::a(3);
 

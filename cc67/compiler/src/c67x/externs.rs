@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use cranelift_entity::{PrimaryMap, SecondaryMap};
-use kmotiondef::firmware::{FirmwareFunction, Origin, row_named};
+use kmotiondef::firmware::{FirmwareFunction, Function as FirmwareCall, Origin, row_named};
 
 use crate::typed::SymbolId;
 
@@ -30,6 +30,8 @@ pub(crate) struct Externs {
     stack_alone: SecondaryMap<SymbolId, bool>,
     /// Functions of the firmware whose last result lands in the cycle after their return.
     late: SecondaryMap<SymbolId, bool>,
+    /// Functions of the firmware that end the thread whose number is in [`super::abi::THREAD`].
+    ends_thread: SecondaryMap<SymbolId, bool>,
     named: BTreeMap<String, SymbolId>,
     /// Names that were requested and are new, in the order of their numbers.
     added: Vec<&'static str>,
@@ -44,6 +46,7 @@ impl Externs {
         let firmware = in_firmware(name).filter(|_| is_external && !is_defined);
         self.stack_alone[id] = is_variadic && firmware.is_some();
         self.late[id] = firmware.is_some_and(|row| row.attributes.returns_early);
+        self.ends_thread[id] = firmware.is_some_and(|row| row.name == FirmwareCall::ThreadDone.name());
         if is_external {
             self.named.insert(name.to_owned(), id);
         }
@@ -78,6 +81,11 @@ impl Externs {
     /// Reports whether a function may still write [`super::abi::LATE`] in the cycle after its return.
     pub(super) fn is_late(&self, symbol: SymbolId) -> bool {
         self.late[symbol]
+    }
+
+    /// Reports whether a function ends the thread whose number is in [`super::abi::THREAD`].
+    pub(super) fn ends_thread(&self, symbol: SymbolId) -> bool {
+        self.ends_thread[symbol]
     }
 
     /// The names that the unit did not have.

@@ -1,6 +1,6 @@
 //! Calls.
 
-use super::{Selector, is_pair};
+use super::{Selector, Value, is_pair};
 use crate::c67x::Externs;
 use crate::c67x::abi;
 use crate::c67x::code::{Arg, Base, Call, CallTarget, Inst, MemoryPlace, VReg};
@@ -40,6 +40,10 @@ impl Selector<'_> {
             arguments.push((area, abi::REST));
         }
         let target = match callee {
+            Callee::Symbol(symbol) if self.externs.ends_thread(symbol) => {
+                arguments.push((self.thread(), abi::THREAD));
+                CallTarget::Symbol(symbol)
+            }
             Callee::Symbol(symbol) => CallTarget::Symbol(symbol),
             Callee::Pointer(pointer) => {
                 arguments.push((self.operand(pointer), abi::TARGET));
@@ -61,6 +65,15 @@ impl Selector<'_> {
             inst.place = Some(MemoryPlace::new(Base::Stack, 4));
             self.out.push(inst);
         }
+    }
+
+    /// The number of the thread, as the firmware has it: functions keep other values in its register.
+    fn thread(&mut self) -> VReg {
+        let symbol = self.externs.symbol("CurrentThread");
+        let base = self.known(Value::Symbol(symbol, 0));
+        let number = self.word();
+        self.access(Kind::LoadWord, number.into(), Arg::None, MemoryPlace::new(Base::Reg(base), 0));
+        number
     }
 
     /// Stores the arguments that have no register; returns their address.

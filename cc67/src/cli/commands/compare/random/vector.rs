@@ -65,8 +65,8 @@ fn rows(scenario: &Scenario, model: &Observation, firmware: &Observation) -> Jso
     let is_kept = |at: usize| at.is_multiple_of(every) || different.contains(&at);
     let rows = firmware.rows.iter().enumerate().filter(|(at, _)| is_kept(*at));
     rows.map(|(at, row)| {
-        let slice = [(at * scenario.samples_every()) as f64];
-        slice.iter().chain(row).map(|value| json!(value)).collect::<Json>()
+        let slice = json!(at * scenario.samples_every());
+        [slice].into_iter().chain(row.iter().map(|value| json!(value))).collect::<Json>()
     })
     .collect()
 }

@@ -6,7 +6,7 @@ use super::ScenarioWriter;
 use crate::cli::commands::compare::random::draw::Draw;
 
 /// Commands that are not drawn: they stop or restart the board, wait for data of the PC, need a program, send what the boards
-/// hold from the time before, or move for so long that the ticks between two lines count.
+/// hold from the time before, or have motions that last until the next line.
 const LEFT_OUT: &[&str] = &[
     "CheckDoneGather",
     "ClearFlashImage",
