@@ -98,16 +98,53 @@ pub enum SnapshotError {
 
 /// What the compiler says of a source with errors: lines of `file:line: message`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct CompileError(String);
+pub struct CompileError {
+    text: String,
+    messages: Vec<CompileMessage>,
+}
+
+/// An error of a source, with its place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CompileMessage {
+    /// The file, as messages name it.
+    pub file: Option<String>,
+    /// The line in it, from 1.
+    pub line: Option<u32>,
+    /// The column in it, from 1.
+    pub column: Option<u32>,
+    /// The message alone.
+    pub message: String,
+    /// The message as a terminal shows it: with the source line, the range in it, notes and help.
+    pub report: String,
+}
+
+impl CompileMessage {
+    /// A message without a place.
+    #[must_use]
+    pub fn new(message: String) -> Self {
+        Self { file: None, line: None, column: None, report: message.clone(), message }
+    }
+}
 
 impl CompileError {
-    pub(crate) const fn new(text: String) -> Self {
-        Self(text)
+    pub(crate) fn new(text: String) -> Self {
+        let messages = vec![CompileMessage::new(text.clone())];
+        Self { text, messages }
+    }
+
+    pub(crate) const fn of_messages(text: String, messages: Vec<CompileMessage>) -> Self {
+        Self { text, messages }
+    }
+
+    /// The errors, in the order of the program.
+    #[must_use]
+    pub fn messages(&self) -> &[CompileMessage] {
+        &self.messages
     }
 }
 
 impl fmt::Display for CompileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.0.trim_end())
+        f.write_str(self.text.trim_end())
     }
 }

@@ -56,13 +56,13 @@ mod user_program;
 pub use capability::{Capability, Unsupported};
 pub use client::{Board, Lock, Readiness};
 pub use compiler::Options;
-pub use error::{CompileError, HostError, SnapshotError};
+pub use error::{CompileError, CompileMessage, HostError, SnapshotError};
 pub use message::fill;
 pub use remark::SourceCall;
 pub use schedule::Schedule;
 pub use session::{
-    Attendant, End, Ending, EndingAxis, EndingThread, History, Idle, Input, Interrupter, Session, Setup,
-    Snapshot, Timeline, TimelineError, Until, Watch, WatchError,
+    Attendant, Branch, BranchId, End, Ending, EndingAxis, EndingThread, History, Idle, Input, Interrupter,
+    Session, Setup, Snapshot, Timeline, TimelineError, Until, Watch, WatchError,
 };
 pub use state::{REPLY_BYTES, Status};
 pub use target::{

@@ -4,18 +4,20 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use compiler::diag::Severity;
 use compiler::diag::levels::Levels;
+use compiler::diag::{Diagnostic, Severity};
 use compiler::inspect::{EntryKind, Inspection};
 use compiler::link::{Linked, LinkedLine};
 use compiler::pp::Disk;
+use compiler::render::human::{Color, Renderer};
 use compiler::render::vendor;
+use compiler::source::SourceMap;
 use compiler::{Options, files, image};
 use kmotiondef::ThreadId;
 use runtime::debug::{CodeDetail, DebugInfo};
 use runtime::loader::{LoadError, board_of, prepare};
 
-use crate::error::{CompileError, HostError};
+use crate::error::{CompileError, CompileMessage, HostError};
 
 /// A program for a thread.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -136,7 +138,25 @@ fn build(path: &Path, text: Vec<u8>, thread: ThreadId, options: &Options) -> Res
     let found = compilation.diagnostics().into_iter().filter_map(|diagnostic| levels.apply(diagnostic));
     let errors: Vec<_> = found.filter(|diagnostic| diagnostic.severity == Severity::Error).collect();
     if !errors.is_empty() {
-        return Err(failed(vendor::render(&errors, &compilation.sources)));
+        let text = vendor::render(&errors, &compilation.sources);
+        let messages = messages(&errors, &compilation.sources);
+        return Err(HostError::Compile(CompileError::of_messages(text, messages)));
     }
     linked.ok_or_else(|| failed(format!("{} cannot be linked", path.display())))
+}
+
+/// Diagnostics with their places, as a terminal shows them.
+fn messages(errors: &[Diagnostic], sources: &SourceMap) -> Vec<CompileMessage> {
+    let mut renderer = Renderer::new(sources, Color::Never);
+    let mut message = |error: &Diagnostic| {
+        let place = error.span.and_then(|span| sources.place(span));
+        CompileMessage {
+            file: place.as_ref().map(|place| sources.file(place.file).name.to_string()),
+            line: place.as_ref().map(|place| place.line),
+            column: place.map(|place| place.column),
+            message: error.message.to_string(),
+            report: renderer.render(error).trim_end().to_owned(),
+        }
+    };
+    errors.iter().map(&mut message).collect()
 }

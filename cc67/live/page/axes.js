@@ -54,9 +54,9 @@ class Row {
     this.speed = speed;
     this.cells = ["Dest", "Position", "Error", "Velocity", "Limits"].map((name) => el("td", { className: "mono", "data-label": name }));
     const key = (text, name, more) => el("button", { type: "button", "aria-label": `${name} ${axis.name}`, title: `${name} ${axis.name}`, ...more }, text);
-    this.enable = key("Enable", "Enable", { "aria-pressed": "false", onclick: () => this.#command(this.#enabled ? "DisableAxis" : "EnableAxis") });
+    this.enable = key("Enable", "Enable", { className: "enable", onclick: () => this.#command(this.#enabled ? "DisableAxis" : "EnableAxis") });
     this.element = el("tr", {},
-      el("td", { className: "name-cell" }, el("span", { className: "name" }, axis.name), " ", el("small", { className: "quiet" }, axis.units)),
+      el("td", { className: "name-cell" }, this.lamp = el("span", { className: "lamp-dot", role: "img" }), el("span", { className: "name" }, axis.name), " ", el("small", { className: "quiet" }, axis.units)),
       ...this.cells,
       el("td", { className: "keys" },
         this.#jog("−", "Jog −", -1), " ", this.#jog("+", "Jog +", 1), " ",
@@ -114,7 +114,12 @@ class Row {
     say(limits, reached || range);
     mark(limits, "reached", reached !== "");
     mark(this.element, "off", !enabled);
-    attribute(this.enable, "aria-pressed", enabled);
+    const word = enabled ? "Disable" : "Enable";
+    say(this.enable, word);
+    attribute(this.enable, "aria-label", `${word} ${this.axis.name}`);
+    attribute(this.enable, "title", `${word} ${this.axis.name}`);
+    attribute(this.lamp, "aria-label", enabled ? "enabled" : "disabled");
+    attribute(this.lamp, "title", enabled ? "enabled" : "disabled");
   }
 
   /** The velocity between frames at least 20 ms of board time apart, or of one tick where the board is stepped. */

@@ -29,7 +29,7 @@ export function mountClock(bar, link) {
 
   const tick = step("Tick", "tick", "One servo tick of 90 µs"), slice = step("Slice", "slice", "To the end of the next slice");
   bar.append(
-    title, run, tick, slice, choose, time, speed, el("span", { className: "grow" }), controls, stop, reload, themeButton(),
+    stop, title, run, tick, slice, choose, time, speed, el("span", { className: "grow" }), controls, reload, themeButton(),
   );
   addEventListener("keydown", (event) => {
     if (!event.altKey || event.ctrlKey || event.metaKey) return;

@@ -7,6 +7,7 @@ export class Link {
   #socket = null;
   #token;
   #pause = 250;
+  #version = null;
 
   constructor(token) {
     this.#token = token;
@@ -25,24 +26,41 @@ export class Link {
   }
 
   connect() {
+    let isOpen = false;
     const socket = new WebSocket(`ws://${location.host}/socket?token=${encodeURIComponent(this.#token)}`);
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
       this.#pause = 250;
+      isOpen = true;
       this.#tell("state", true);
       this.#rate();
     };
     socket.onmessage = ({ data }) => {
       if (typeof data !== "string") return this.#tell("frame", decode(data));
       const message = JSON.parse(data);
+      if (message.kind === "hello" && this.#isOther(message.version)) return location.reload();
       this.#tell(message.kind, message);
     };
     socket.onclose = () => {
       this.#tell("state", false);
+      if (!isOpen) this.#look();
       setTimeout(() => this.connect(), this.#pause);
       this.#pause = Math.min(this.#pause * 2, 4000);
     };
     this.#socket = socket;
+  }
+
+  /** Another cc67 may answer here by now: its page is another one. */
+  #isOther(version) {
+    const isOther = this.#version !== null && this.#version !== version;
+    this.#version = version;
+    return isOther;
+  }
+
+  /** Whether a server is here that does not let this page in. */
+  async #look() {
+    const answer = await fetch(location.href).catch(() => null);
+    if (answer?.status === 403) this.#tell("refused", true);
   }
 
   /** A page that nobody sees needs no frames. */

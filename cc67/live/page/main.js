@@ -5,6 +5,7 @@ import { mountAxes } from "./axes.js";
 import { mountClock } from "./clock.js";
 import { mountConsole } from "./console.js";
 import { mountIo } from "./io.js";
+import { mountLayout } from "./layout.js";
 import { Link } from "./link.js";
 import { mountPath } from "./path.js";
 import { mountScope } from "./scope.js";
@@ -28,6 +29,7 @@ const open = mountSource(at("source"), link, sources);
 mountThreads(at("threads"), link, sources, open);
 mountConsole(at("console"), link, open);
 mountTimeline(at("timeline"), link);
+mountLayout(at("panels"));
 
 const notice = at("notice");
 let hides = 0, access = null;
@@ -38,6 +40,7 @@ function tell(text, seconds) {
   notice.hidden = !text;
   if (seconds) hides = setTimeout(() => tell(""), seconds * 1000);
 }
+link.on("refused", () => tell("Another cc67 answers at this address and does not know this page: open the address that it printed when it started."));
 link.on("state", (isThere) => {
   tell(isThere ? "" : "Disconnected from the board. Reconnecting …");
   for (const part of [at("bar"), at("panels"), at("asks")]) part.inert = !isThere;
@@ -57,6 +60,7 @@ link.on("access", (message) => {
   if (access.lost) tell(`The controller cannot be reached, and what this page shows is old: ${access.lost}`);
 });
 link.on("threads", lock);
+link.on("machine", ({ text }) => { if (text) tell(text, 12); });
 link.on("saved", ({ text }) => tell(text, 12));
 link.on("problem", ({ text }) => tell(text, 8));
 

@@ -8,8 +8,8 @@ const VIEWS = { XY: [0, 1], XZ: [0, 2], YZ: [1, 2], "3D": null };
 
 export function mountPath(section, link) {
   const view = el("select", { "aria-label": "View", onchange: request }, ...Object.keys(VIEWS).map((name) => el("option", {}, name)));
-  const choices = ["X", "Y", "Z"].map((letter) => el("select", { "aria-label": `${letter} is axis`, onchange: clear }));
-  head(section, view, el("span", { className: "grow" }), ...choices, el("button", { type: "button", "aria-label": "Clear path", onclick: clear }, "Clear"));
+  const choices = ["X", "Y", "Z"].map((letter) => el("select", { "aria-label": `${letter} is axis`, title: `The axis that is drawn as ${letter}`, onchange: clear }));
+  head(section, view, el("span", { className: "grow" }), ...choices.map((choice, index) => el("label", { className: "quiet" }, "XYZ"[index], choice)), el("button", { type: "button", "aria-label": "Clear path", onclick: clear }, "Clear"));
   const canvas = el("canvas", { className: "plot", role: "img", "aria-label": "Tool path", tabIndex: 0 });
   const where = el("p", { className: "readout mono" });
   section.append(el("div", { className: "canvas" }, canvas), where);
@@ -183,10 +183,12 @@ export function mountPath(section, link) {
     [axes, switches] = [hello.axes, hello.switches];
     if (!isNew) return;
     choices.forEach((choice, index) => {
-      choice.replaceChildren(...axes.map((axis) => el("option", { value: String(axis.axis), selected: axis.axis === index }, axis.name)));
+      choice.replaceChildren(...axes.map((axis) => el("option", { value: String(axis.axis), selected: axis.axis === index, title: axis.name }, axis.name.replace(/^Axis (\d)$/, "$1"))));
     });
     clear();
   });
+  // A board that was switched on again begins at tick 0.
+  link.on("state", (isThere) => { if (isThere) clear(); });
   link.on("cut", ({ tick }) => trail.cut(tick));
   link.on("frame", (frame) => {
     const before = latest?.tick;

@@ -16,11 +16,19 @@ export function color(index) {
   return colors[index % colors.length];
 }
 
-/** Signals of one kind share a lane: `dest0` and `dest1`. */
-export function lanesOf(names) {
+/** What signals of one lane have in common. `dest0` and `pos0` are of one axis; what drives it has another unit. */
+export const LANES = {
+  "by kind": (name) => name.replace(/\d+$/, ""),
+  "by axis": (name) => name.replace(/^(?:dest|pos|load|enc)(\d)$/, "axis $1"),
+  "one each": (name) => name,
+  "one lane": () => "",
+};
+
+/** The lanes of some signals; those for which `kindOf` says the same share one. */
+export function lanesOf(names, kindOf = LANES["by kind"]) {
   const lanes = [];
   names.forEach((name, signal) => {
-    const kind = name.replace(/\d+$/, "");
+    const kind = kindOf(name);
     const lane = isDigital(name) ? undefined : lanes.find((lane) => !lane.digital && lane.kind === kind);
     if (lane) lane.signals.push(signal);
     else lanes.push({ kind, digital: isDigital(name), signals: [signal] });
@@ -41,11 +49,11 @@ export function fit(canvas) {
 
 /** Where things are: times and values to pixels. */
 export class Layout {
-  constructor(history, from, to, width, height) {
+  constructor(history, from, to, width, height, kindOf) {
     Object.assign(this, { history, from, to, width, height, left: LEFT, right: width - RIGHT });
     this.first = Math.max(0, history.find(from) - 1);
     this.last = Math.min(history.count - 1, history.find(to));
-    this.lanes = lanesOf(history.names);
+    this.lanes = lanesOf(history.names, kindOf);
     const digital = this.lanes.filter((lane) => lane.digital).length;
     const analog = this.lanes.length - digital;
     const free = height - BOTTOM - digital * DIGITAL - GAP * this.lanes.length;

@@ -3,7 +3,7 @@
 import { attribute, el, head, say, short } from "./dom.js";
 import { asCsv, asVcd, save } from "./export.js";
 import { History } from "./history.js";
-import { color, draw, fit, Layout } from "./plot.js";
+import { color, draw, fit, LANES, Layout } from "./plot.js";
 
 const SECOND = 1 / 90e-6;
 
@@ -25,6 +25,8 @@ class Scope {
     link.on("signals", (message) => {
       this.history.reset(message.names, message.generation);
       if (document.activeElement !== this.list) this.list.value = message.list;
+      this.wrong.hidden = !message.wrong.length;
+      this.wrong.replaceChildren(...message.wrong.map(({ name, text }) => el("span", {}, el("code", {}, name), `: ${text}`)));
       this.trigger.replaceChildren(...["none", ...message.names].map((name) => el("option", { value: name }, name)));
       this.#cursors = [];
       this.#request();
@@ -51,7 +53,10 @@ class Scope {
     this.pause = el("button", { type: "button", "aria-pressed": "false", onclick: () => this.#hold() }, "Hold");
     const files = (name, make) => el("button", { type: "button", "aria-label": `Save ${name}`, onclick: () => make() }, name);
     this.list.classList.add("grow");
-    head(section, this.list, this.span, this.pause);
+    this.lanes = el("select", { "aria-label": "Lanes", title: "Signals that share a lane and its scale", onchange: () => this.#request() },
+      ...Object.keys(LANES).map((name) => el("option", {}, name)));
+    this.wrong = el("p", { className: "wrong", role: "status", hidden: true });
+    head(section, this.list, this.span, this.lanes, this.pause);
     const more = el("div", { className: "tools" },
       el("label", { className: "quiet" }, "Trigger ", this.trigger), this.edge, this.level, el("span", { className: "grow" }),
       files("CSV", () => save("scope.csv", "text/csv", asCsv(this.history, ...this.#rows()))),
@@ -59,7 +64,7 @@ class Scope {
       files("PNG", () => this.canvas.toBlob((blob) => save("scope.png", "image/png", blob))));
     this.canvas = el("canvas", { className: "plot", role: "img", "aria-label": "Signals over time", tabIndex: 0 });
     this.readout = el("p", { className: "readout mono" });
-    section.append(el("div", { className: "canvas" }, this.canvas), this.readout, more);
+    section.append(this.wrong, el("div", { className: "canvas" }, this.canvas), this.readout, more);
     this.canvas.addEventListener("pointerdown", (event) => this.#place(event));
     this.canvas.addEventListener("dblclick", () => {
       this.#cursors = [];
@@ -109,7 +114,7 @@ class Scope {
     const style = { line: css.getPropertyValue("--line"), quiet: css.getPropertyValue("--quiet"), ink: css.getPropertyValue("--ink") };
     const span = Number(this.span.value) * SECOND;
     const end = this.#end(span);
-    this.layout = new Layout(this.history, end - span, end, width, height);
+    this.layout = new Layout(this.history, end - span, end, width, height, LANES[this.lanes.value]);
     draw(context, this.layout, style);
     this.#drawCursors(context, style);
     this.#say();

@@ -67,14 +67,14 @@ export function mountSource(section, link, sources) {
     for (const old of code.querySelectorAll(".message")) old.remove();
     for (const row of rows) row.element.classList.remove("wrong");
     const mine = (where) => where.file && sources.find(where.file) === file;
-    for (const error of errors.filter(mine)) at(error.line, error.text, "message");
+    for (const error of errors.filter(mine)) at(error.line, error.report, "message report");
     for (const remark of [...remarks.values()].filter(mine)) at(remark.line, remark.text, "message remark");
   }
 
   function at(number, text, className) {
     const row = rows[number - 1];
     if (!row) return;
-    if (className === "message") row.element.classList.add("wrong");
+    if (!className.endsWith("remark")) row.element.classList.add("wrong");
     row.element.append(el("div", { className }, text));
   }
 
@@ -133,7 +133,9 @@ export function mountSource(section, link, sources) {
   link.on("programs", (message) => {
     errors = message.errors;
     const [error] = errors;
-    state.textContent = error ? `${error.file ?? ""}:${error.line ?? ""}: ${error.text}` : message.waiting.length ? `compiled; ${isReal ? "Load" : "Reload"} loads it` : quiet();
+    const place = (error) => (error.file ? `${error.file}:${error.line}:${error.column}: ` : "");
+    state.classList.toggle("bad", Boolean(error));
+    state.textContent = error ? `${place(error)}${error.text}${errors.length > 1 ? ` (and ${errors.length - 1} more)` : ""}` : message.waiting.length ? `compiled; ${isReal ? "Load" : "Reload"} loads it` : quiet();
     annotate();
     if (error?.file && error.line) open(error.file, error.line);
   });

@@ -29,24 +29,33 @@ export function mountThreads(section, link, sources, openSource) {
     if (!used.length) body.append(el("p", { className: "quiet" }, "No program is loaded."));
   }
 
+  /** A thread is one line; a trap has another one for its reason. */
   function thread({ thread, state, waits, stack, stack_used: used, stack_size: size }) {
     const place = stack[0];
-    const isActive = state === "running" || state === "waiting";
+    const isActive = state === "running" || state === "waiting", isTrapped = state === "trapped";
     const act = (what) => el("button", { type: "button", "aria-label": `${what} thread ${thread}`, onclick: () => link.ask(what.toLowerCase(), { thread }) }, what);
-    const row = el("div", { className: "thread" },
-      el("strong", { style: `color: ${color(thread - 1)}` }, String(thread)),
-      el("span", {}, el("span", { className: "mono" }, programs.get(thread) ?? ""), " ", el("span", { className: `badge ${state}` }, label(state, waits))),
-      el("span", { className: "acts" }, act("Start"), " ", isActive ? act("Stop") : ""));
-    if (used) {
-      row.append(el("span", { className: "where quiet", title: "Peak use of the stack so far, and the stack of a real board" },
-        el("span", { className: used > size ? "bad" : "" }, `worst stack ${used} of ${size} bytes`)));
-    }
+    const where = el("span", { className: "where" });
     if (place?.line) {
       const text = sources.line(place.file, place.line).trim();
-      row.append(el("span", { className: "where" },
-        el("button", { type: "button", className: "link", onclick: () => openSource(place.file, place.line) }, `${place.file.split("/").pop()}:${place.line}`),
-        ` in ${place.function} `, el("code", {}, text)));
+      const name = place.file.split("/").pop();
+      where.title = `${name}:${place.line} in ${place.function}: ${text}`;
+      where.append(
+        el("button", { type: "button", className: "link", onclick: () => openSource(place.file, place.line) }, `${name}:${place.line}`),
+        ` ${place.function} `, el("code", {}, text));
     }
+    const stackUse = el("span", { className: used > size ? "stack bad" : "stack quiet" });
+    if (used) {
+      stackUse.title = `worst stack ${used} of ${size} bytes: the peak so far, and the stack of a real board`;
+      stackUse.textContent = `${used} B`;
+    }
+    const word = isTrapped ? "trap" : label(state, waits);
+    const row = el("div", { className: isTrapped ? "thread trap" : "thread" },
+      el("strong", { style: `color: ${color(thread - 1)}` }, String(thread)),
+      el("span", { className: "mono file", title: programs.get(thread) ?? "" }, programs.get(thread) ?? ""),
+      el("span", { className: `badge ${state}`, title: word }, word),
+      where, stackUse,
+      el("span", { className: "acts" }, act("Start"), isActive ? act("Stop") : ""));
+    if (isTrapped) row.append(el("p", { className: "reason", role: "alert" }, waits));
     return row;
   }
 

@@ -37,7 +37,10 @@ impl TimeControl {
                 Self::Foreign => Some("the time of this board passes as its clients need it"),
                 Self::Real => Some("the time of a connected controller cannot be stopped"),
             },
-            PageRequest::Goto { .. } | PageRequest::Restart {} => match self {
+            PageRequest::Goto { .. }
+            | PageRequest::Branch { .. }
+            | PageRequest::Forget { .. }
+            | PageRequest::Restart {} => match self {
                 Self::Full => None,
                 Self::Forward | Self::Foreign => {
                     Some("this board is used by clients, and does not go back in time")
@@ -82,6 +85,8 @@ pub(crate) const fn is_harmless(request: &PageRequest) -> bool {
         | PageRequest::Tick {}
         | PageRequest::Slice {}
         | PageRequest::Goto { .. }
+        | PageRequest::Branch { .. }
+        | PageRequest::Forget { .. }
         | PageRequest::Restart {}
         | PageRequest::Save { .. }
         | PageRequest::Act { .. }

@@ -7,7 +7,7 @@ use std::collections::{BTreeSet, VecDeque};
 use std::sync::mpsc::{self, Receiver, SyncSender};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use cc67_host::UserProgram;
+use cc67_host::{CompileMessage, UserProgram};
 
 use crate::Program;
 use crate::request::PageRequest;
@@ -31,6 +31,8 @@ pub(crate) enum Incoming {
     Ask(PageId, PageRequest),
     /// A file of a program was saved.
     Saved(Box<Compiled>),
+    /// The machine file was saved; the reason if it is wrong.
+    Machine(Result<(), String>),
 }
 
 /// What the compiler says of a program that was saved.
@@ -39,7 +41,7 @@ pub(crate) struct Compiled {
     /// The program.
     pub(crate) program: Program,
     /// The image, or what is wrong.
-    pub(crate) result: Result<UserProgram, String>,
+    pub(crate) result: Result<UserProgram, Vec<CompileMessage>>,
 }
 
 /// The desk between connections and the board.

@@ -29,7 +29,7 @@ mod names;
 mod request;
 mod server;
 
-pub use board::{LiveView, Wishes};
+pub use board::{LiveView, ShowEnd, Wishes};
 pub use control::TimeControl;
 pub use server::{ListenError, Server};
 
@@ -67,13 +67,24 @@ pub trait Keeper<T: Target>: std::fmt::Debug {
     fn keep(&mut self, session: &Session<T>, events: Vec<Event>) -> Vec<Event>;
 }
 
+/// The machine around a board that is shown.
+#[derive(Debug)]
+pub struct ShownMachine {
+    /// The description.
+    pub file: MachineFile,
+    /// The path of its file, to be looked at while the board is shown.
+    pub path: Option<PathBuf>,
+    /// Whether there can be another board when that file is saved.
+    pub can_rebuild: bool,
+}
+
 /// What a board is shown with.
 #[derive(Debug)]
 pub struct Show {
     /// What the page is called: the names of the programs.
     pub title: String,
     /// What is connected to the board: names and units of axes, switches.
-    pub machine: MachineFile,
+    pub machine: ShownMachine,
     /// The programs.
     pub programs: Vec<Program>,
     /// Folders in which included files are looked for.

@@ -2,7 +2,8 @@
 //!
 //! `#define ESTOP 136` with `ReadBit(ESTOP)` somewhere makes bit 136 the input `ESTOP`. A number without a macro is a
 //! bit, too, where it is an argument of such a function. In a sum the first macro names the bit: with
-//! `#define HOME_X 136`, `ReadBit(HOME_X + axis)` makes bit 136 `HOME_X`, and `ReadBit(HOME_X + 1)` bit 137 `HOME_X + 1`.
+//! `#define HOME_X 136`, `ReadBit(HOME_X + 1)` makes bit 137 `HOME_X + 1`. `ReadBit(HOME_X + axis)` makes bit 136 `HOME_X`,
+//! and names the bits after it, as far as something else uses them.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -14,6 +15,8 @@ use kmotiondef::function::BitAccess;
 
 /// Terms and macros of one bit's number at most.
 const TERMS: u32 = 100;
+/// Bits of a group at most: one for each axis.
+const GROUP: i32 = 8;
 /// Files that are read for a program at most.
 const FILES: usize = 100;
 
@@ -26,6 +29,24 @@ pub(crate) struct Used {
     pub(crate) is_read: bool,
     /// Whether a program writes it.
     pub(crate) is_written: bool,
+    /// Whether it is the first of a group: a program adds a variable to its name.
+    pub(crate) is_base: bool,
+}
+
+/// Names the bits after the first of a group that have no name, at most as many as there are axes.
+pub(crate) fn name_groups(bits: &mut BTreeMap<Bit, Used>) {
+    let bases = bits.iter().filter(|(_, used)| used.is_base);
+    let bases: Vec<_> = bases.filter_map(|(bit, used)| Some((*bit, used.name.clone()?))).collect();
+    for (first, name) in bases {
+        for offset in 1..GROUP {
+            let bit = Bit::new(i32::from(first.get()) + offset);
+            let Some(used) = bit.and_then(|bit| bits.get_mut(&bit)) else { continue };
+            if used.name.is_some() {
+                break;
+            }
+            used.name = Some(format!("{name} + {offset}"));
+        }
+    }
 }
 
 /// A source and the files it includes between quotation marks, as far as they are found.
@@ -35,7 +56,7 @@ pub(crate) fn files_of(source: &Path, include_dirs: &[PathBuf]) -> Vec<PathBuf> 
     while let Some(path) = found.get(next).cloned() {
         next += 1;
         let Ok(bytes) = fs::read(&path) else { continue };
-        let text = String::from_utf8_lossy(&bytes);
+        let text = decoded(&bytes);
         let folder = path.parent().unwrap_or(Path::new(""));
         for name in text.lines().filter_map(included) {
             let folders = std::iter::once(folder).chain(include_dirs.iter().map(PathBuf::as_path));
@@ -57,6 +78,14 @@ fn included(line: &str) -> Option<&str> {
     rest.trim_start().strip_prefix('"')?.split('"').next()
 }
 
+/// The text in some bytes: UTF-8, or else Latin-1.
+pub(crate) fn decoded(bytes: &[u8]) -> String {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) => bytes.iter().copied().map(char::from).collect(),
+    }
+}
+
 /// The bits that some texts use.
 pub(crate) fn bits_of(texts: &[String]) -> BTreeMap<Bit, Used> {
     let texts: Vec<String> = texts.iter().map(|text| without_comments(text)).collect();
@@ -72,9 +101,11 @@ pub(crate) fn bits_of(texts: &[String]) -> BTreeMap<Bit, Used> {
         for argument in texts.iter().flat_map(|text| arguments(text, function)) {
             // Of a sum with a variable, the base is shown: it is where the bits begin.
             let whole = number(argument, &macros).map(|bit| (argument, bit));
+            let is_base = whole.is_none();
             let Some((named, bit)) = whole.or_else(|| base(argument, &macros)) else { continue };
             let Some(bit) = Bit::new(bit) else { continue };
             let used = bits.entry(bit).or_default();
+            used.is_base |= is_base;
             used.is_read |= access == BitAccess::Read;
             used.is_written |= access == BitAccess::Write;
             if named.split(['+', '-']).any(|term| macros.contains_key(term.trim())) {
@@ -211,6 +242,23 @@ mod tests {
         );
         check("#define OUT 10\nSetBit(OUT + 2); ClearBit((OUT)); SetBit(i + OUT);", "10 OUT w, 12 OUT + 2 w");
         check("#define LOOP LOOP\n#define F(x) 3\nReadBit(LOOP); ReadBit(F(1));", "");
+    }
+
+    #[test]
+    fn bits_after_the_first_of_a_group_are_named_with_it() {
+        let text = "#define HOME_X 136\n#define DOOR 139\nReadBit(HOME_X + axis); ReadBit(DOOR);";
+        let mut bits = bits_of(&[text.to_owned()]);
+        for number in [137, 138, 140] {
+            bits.entry(Bit::new(number).expect("a bit")).or_default().is_read = true;
+        }
+        name_groups(&mut bits);
+        let names: Vec<_> = bits.values().map(|used| used.name.as_deref().unwrap_or("-")).collect();
+        assert_eq!(names, ["HOME_X", "HOME_X + 1", "HOME_X + 2", "DOOR", "-"]);
+    }
+
+    #[test]
+    fn text_that_is_not_utf8_is_latin1() {
+        assert_eq!((decoded(b"\xe9t\xe9"), decoded("été".as_bytes())), ("été".to_owned(), "été".to_owned()));
     }
 
     #[test]

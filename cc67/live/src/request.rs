@@ -73,6 +73,16 @@ pub(crate) enum PageRequest {
         /// The tick.
         tick: u64,
     },
+    /// Take up a line of history that was left.
+    Branch {
+        /// Its number.
+        id: u64,
+    },
+    /// Drop a line of history that was left.
+    Forget {
+        /// Its number.
+        id: u64,
+    },
     /// Begin again.
     Restart {},
     /// Save what was done by hand as a test.

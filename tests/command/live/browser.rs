@@ -152,6 +152,18 @@ impl Browser {
         self.call("Input.dispatchMouseEvent", event);
     }
 
+    /// Moves, presses or releases the mouse at a place.
+    pub(super) fn mouse_at(&mut self, kind: &str, x: f64, y: f64) {
+        let button = json!({ "type": kind, "x": x, "y": y, "button": "left", "buttons": 1, "clickCount": 1 });
+        self.call("Input.dispatchMouseEvent", button);
+    }
+
+    /// Gives the page a size.
+    pub(super) fn resize(&mut self, width: u32, height: u32) {
+        let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        self.call("Emulation.setDeviceMetricsOverride", size);
+    }
+
     /// Clicks on an element.
     pub(super) fn click(&mut self, selector: &str) {
         self.mouse("mousePressed", selector);

@@ -31,7 +31,7 @@ main()
 ";
 
 /// A board at the other end of a link, and the page of it; nothing where there is no browser.
-fn page(name: &str) -> Option<(Server, Browser, Live)> {
+fn page(name: &str) -> Option<(Server, Browser, Live, Scratch)> {
     let Some(browser) = Browser::start() else {
         println!("no Chromium here: the page is not opened");
         return None;
@@ -41,12 +41,12 @@ fn page(name: &str) -> Option<(Server, Browser, Live)> {
     let folder = Scratch::new(name);
     folder.write("move.c", PROGRAM);
     let live = Live::start(&folder, &["--yes", "--on", &server.places[0], "move.c"]);
-    Some((server, browser, live))
+    Some((server, browser, live, folder))
 }
 
 #[test]
 fn a_page_looks_at_a_controller_until_control_is_switched_on() {
-    let Some((server, mut browser, live)) = page("live-connected") else { return };
+    let Some((server, mut browser, live, _folder)) = page("live-connected") else { return };
     browser.open(&live.url);
     // Nothing was loaded, and nothing that acts can be pressed.
     browser.until("document.querySelector('#bar .control input').checked === false");

@@ -1,14 +1,19 @@
 //! `cc67 live`: the page in a real browser, and clients that mean no good.
 
 mod asks;
+mod branches;
 mod browser;
 mod connected;
+mod files;
 mod firefox;
 mod hostile;
 #[cfg(target_os = "linux")]
 mod lasting;
+mod layout;
 mod page;
 mod panels;
+mod restarts;
+mod signals;
 
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
@@ -25,9 +30,17 @@ pub(super) struct Live {
 impl Live {
     /// Starts it in a folder; a program that is wrong is a failure of the test.
     pub(super) fn start(folder: &Scratch, arguments: &[&str]) -> Self {
+        Self::start_at(folder, "0", arguments)
+    }
+
+    /// The same on a port.
+    fn start_at(folder: &Scratch, port: &str, arguments: &[&str]) -> Self {
+        let state = folder.path().join(".state");
         let mut child = Command::new(command())
-            .args(["live", "--no-open", "--port", "0"])
+            .args(["live", "--no-open", "--port", port])
             .args(arguments)
+            .env("XDG_STATE_HOME", &state)
+            .env("LOCALAPPDATA", &state)
             .current_dir(folder.path())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())

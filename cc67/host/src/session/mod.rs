@@ -94,7 +94,7 @@ pub use journal::Input;
 pub use setup::resolve;
 pub use signals::SubscriptionId;
 pub use snapshot::Snapshot;
-pub use timeline::{History, Timeline, TimelineError};
+pub use timeline::{Branch, BranchId, History, Timeline, TimelineError};
 pub use until::Until;
 
 use std::sync::Arc;

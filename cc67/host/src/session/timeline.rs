@@ -3,7 +3,9 @@
 //! Snapshots are kept every so much work of the computer; what is between two of them is executed again, with what
 //! was done by hand done again at its tick. Older snapshots are kept at larger distances, so that their number does not
 //! grow with the length of a session. Whoever does something else in the past than was done there begins a new line of
-//! history: what came later is forgotten.
+//! history: what came later is forgotten, or kept as a [branch](Timeline::keep_branches) to be taken up again.
+
+use std::sync::Arc;
 
 use kmotiondef::Ticks;
 use runtime::Event;
@@ -45,10 +47,32 @@ pub enum History {
 /// A snapshot, and how much work it is from the beginning of the line.
 #[derive(Debug)]
 struct Mark<T: Target> {
-    snapshot: Box<Snapshot<T>>,
+    snapshot: Arc<Snapshot<T>>,
     place: u64,
     /// Nothing before it leads to it by the journal alone.
     is_needed: bool,
+}
+
+impl<T: Target> Clone for Mark<T> {
+    fn clone(&self) -> Self {
+        Self { snapshot: Arc::clone(&self.snapshot), ..*self }
+    }
+}
+
+/// Names a branch of a timeline.
+pub type BranchId = u64;
+
+/// A line of history that was left: it is kept whole, and shares snapshots with the others.
+#[derive(Debug)]
+pub struct Branch<T: Target> {
+    /// Its name.
+    pub id: BranchId,
+    /// The tick after which it was left.
+    pub from: Ticks,
+    /// The last tick of it.
+    pub end: Ticks,
+    marks: Vec<Mark<T>>,
+    journal: Vec<(Ticks, Input)>,
 }
 
 /// The past of one session.
@@ -80,6 +104,11 @@ pub struct Timeline<T: Target> {
     base: (u64, u64),
     /// Work between two snapshots.
     interval: u64,
+    /// Lines that were left, the oldest first, and how many of them are kept.
+    branches: Vec<Branch<T>>,
+    most_branches: usize,
+    /// The number of branches that there have been.
+    branch_count: u64,
 }
 
 impl<T: Target> Timeline<T> {
@@ -90,9 +119,91 @@ impl<T: Target> Timeline<T> {
     pub fn new(session: &mut Session<T>) -> Result<Self, SnapshotError> {
         let journal = session.journal().to_vec();
         let (work, end) = (session.work(), session.tick());
-        let first = Mark { snapshot: Box::new(session.snapshot()?), place: 0, is_needed: true };
+        let first = Mark { snapshot: Arc::new(session.snapshot()?), place: 0, is_needed: true };
         let (marks, done) = (vec![first], journal.len());
-        Ok(Self { marks, done, journal, end, base: (work, 0), interval: INTERVAL })
+        let (base, interval, branches) = ((work, 0), INTERVAL, Vec::new());
+        Ok(Self { marks, done, journal, end, base, interval, branches, most_branches: 0, branch_count: 0 })
+    }
+
+    /// Keeps this many of the lines that are left when something else is done in the past; 0 at first.
+    pub fn keep_branches(&mut self, most: usize) {
+        self.most_branches = most;
+        self.drop_oldest_branches();
+    }
+
+    /// The lines that were left and are kept, the oldest first.
+    pub fn branches(&self) -> &[Branch<T>] {
+        &self.branches
+    }
+
+    /// Forgets a branch; returns whether there was one of this name.
+    pub fn forget_branch(&mut self, id: BranchId) -> bool {
+        let count = self.branches.len();
+        self.branches.retain(|branch| branch.id != id);
+        self.branches.len() < count
+    }
+
+    /// Takes the session to the end of a branch. The line that it was on becomes a branch itself. Returns the last tick
+    /// that both have in common; `None` if there is no such branch.
+    ///
+    /// # Errors
+    /// [`SnapshotError`].
+    pub fn take_branch(
+        &mut self,
+        session: &mut Session<T>,
+        id: BranchId,
+    ) -> Result<Option<Ticks>, SnapshotError> {
+        let _ = self.keep(session);
+        let Some(index) = self.branches.iter().position(|branch| branch.id == id) else { return Ok(None) };
+        let common = self.common(&self.branches[index]);
+        let before = self.branches[index].marks.iter().rposition(|mark| mark.snapshot.tick() <= common);
+        let taken = self.branches.remove(index);
+        if self.end > common {
+            self.leave(common);
+        }
+        (self.marks, self.journal, self.end) = (taken.marks, taken.journal, taken.end);
+        self.restore(session, before.unwrap_or_default())?;
+        // Something that no journal has was done where a snapshot is needed: the line continues from there.
+        let needed = self.marks.iter().filter(|mark| mark.is_needed && mark.snapshot.tick() > common);
+        for place in needed.map(|mark| mark.place).collect::<Vec<_>>() {
+            let tick = self.marks.iter().find(|mark| mark.place == place).map(|mark| mark.snapshot.tick());
+            if let Some(tick) = tick {
+                self.replay(session, tick);
+                self.restore_place(session, place)?;
+            }
+        }
+        self.replay(session, self.end);
+        Ok(Some(common))
+    }
+
+    /// The last tick at which this line and a branch are the same; `None` if there is no such branch.
+    #[must_use]
+    pub fn common_with(&self, id: BranchId) -> Option<Ticks> {
+        self.branches.iter().find(|branch| branch.id == id).map(|branch| self.common(branch))
+    }
+
+    /// The same of a branch that there is.
+    fn common(&self, branch: &Branch<T>) -> Ticks {
+        let pairs = self.journal.iter().zip(&branch.journal);
+        let same = pairs.take_while(|(one, other)| one == other).count();
+        let next = [&self.journal, &branch.journal].map(|journal| journal.get(same).map(|(tick, _)| *tick));
+        next.into_iter().flatten().fold(self.end.min(branch.end), Ticks::min)
+    }
+
+    /// Keeps the present line as a branch that is left after a tick.
+    fn leave(&mut self, from: Ticks) {
+        if self.most_branches == 0 {
+            return;
+        }
+        self.branch_count += 1;
+        let (marks, journal) = (self.marks.clone(), self.journal.clone());
+        self.branches.push(Branch { id: self.branch_count, from, end: self.end, marks, journal });
+        self.drop_oldest_branches();
+    }
+
+    fn drop_oldest_branches(&mut self) {
+        let surplus = self.branches.len().saturating_sub(self.most_branches);
+        self.branches.drain(..surplus);
     }
 
     /// Keeps a snapshot after so much work of the engine, about the number of its instructions, in place of the usual
@@ -159,12 +270,15 @@ impl<T: Target> Timeline<T> {
         let noted = self.note(session);
         let place = self.place(session);
         let (tick, is_past) = (session.tick(), self.end > session.tick() || self.is_known(place));
+        if self.end > tick {
+            self.leave(tick);
+        }
         self.forget(place);
         self.journal.truncate(self.done);
         self.end = tick;
         // There was one at the beginning, so the target has them.
         if let Ok(snapshot) = session.snapshot() {
-            self.marks.push(Mark { snapshot: Box::new(snapshot), place, is_needed: true });
+            self.marks.push(Mark { snapshot: Arc::new(snapshot), place, is_needed: true });
         }
         if is_past || noted != History::Same { History::New(tick) } else { History::Same }
     }
@@ -265,6 +379,9 @@ impl<T: Target> Timeline<T> {
                 let is_past = self.done < self.journal.len() || self.end > entry.0;
                 if is_past {
                     history = History::New(entry.0);
+                    if self.end > entry.0 {
+                        self.leave(entry.0);
+                    }
                     self.journal.truncate(self.done);
                     self.marks.retain(|mark| mark.snapshot.tick() <= entry.0);
                     self.end = entry.0;
@@ -307,7 +424,7 @@ impl<T: Target> Timeline<T> {
         let before = next.checked_sub(1).and_then(|index| self.marks.get(index));
         if before.is_none_or(is_far) && self.marks.get(next).is_none_or(is_far) {
             let Ok(snapshot) = session.snapshot() else { return };
-            self.marks.insert(next, Mark { snapshot: Box::new(snapshot), place, is_needed: false });
+            self.marks.insert(next, Mark { snapshot: Arc::new(snapshot), place, is_needed: false });
             self.thin();
         }
     }
@@ -380,5 +497,34 @@ mod tests {
         timeline.go_to(&mut session, Ticks::new(known[1].0)).expect("it is of this session");
         timeline.go_to(&mut session, Ticks::new(tick + 5000)).expect("it is of this session");
         assert_eq!(session.read("chan[0].Dest"), dest);
+    }
+
+    #[test]
+    fn a_line_that_was_left_is_taken_up_again_and_is_the_same() {
+        let (mut session, mut timeline, known) = played();
+        timeline.keep_branches(2);
+        let (last, dest) = known[7];
+        timeline.go_to(&mut session, Ticks::new(known[3].0)).expect("it is of this session");
+        session.act("command \"Jog0=-50\"").expect("it is right");
+        let _ = timeline.advance(&mut session, Ticks::new(known[3].0 + 5000), &mut |_| ());
+        let other = session.read("chan[0].Dest");
+        let [left] = timeline.branches() else { panic!("one line was left") };
+        assert_eq!((left.from.get(), left.end.get()), (known[3].0, last));
+        let first = left.id;
+
+        // There and back again, also after the present line was left at another place.
+        assert_eq!(timeline.take_branch(&mut session, first), Ok(Some(Ticks::new(known[3].0))));
+        assert_eq!((session.tick().get(), session.read("chan[0].Dest")), (last, Ok(dest)));
+        let [left] = timeline.branches() else { panic!("the other line was left") };
+        let second = left.id;
+        timeline.go_to(&mut session, Ticks::new(known[1].0)).expect("it is of this session");
+        assert_eq!(session.read("chan[0].Dest"), Ok(known[1].1));
+        session.act("command \"Jog0=7\"").expect("it is right");
+        let _ = timeline.keep(&mut session);
+        assert!(timeline.take_branch(&mut session, second).expect("it is of this session").is_some());
+        assert_eq!(session.read("chan[0].Dest"), other);
+
+        assert_eq!(timeline.branches().len(), 1, "nothing was left of a line that is a part of another one");
+        assert!(!timeline.forget_branch(first) && timeline.take_branch(&mut session, first) == Ok(None));
     }
 }

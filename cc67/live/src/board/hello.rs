@@ -32,7 +32,7 @@ pub(super) fn files(show: &Show) -> Vec<PathBuf> {
 pub(super) fn sources(show: &Show) -> Value {
     let source = |path: PathBuf| {
         let bytes = fs::read(&path).ok()?;
-        Some(json!({ "file": path.display().to_string(), "text": String::from_utf8_lossy(&bytes) }))
+        Some(json!({ "file": path.display().to_string(), "text": names::decoded(&bytes) }))
     };
     let sources: Vec<_> = files(show).into_iter().filter_map(source).collect();
     json!({ "kind": "sources", "sources": sources })
@@ -40,7 +40,7 @@ pub(super) fn sources(show: &Show) -> Value {
 
 /// What does not change while the board runs, and what the programs call their bits.
 pub(super) fn hello(show: &Show) -> Value {
-    let axes = AxisId::all().zip(&show.machine.axes).map(|(axis, described)| {
+    let axes = AxisId::all().zip(&show.machine.file.axes).map(|(axis, described)| {
         let name = if described.name.is_empty() { format!("Axis {axis}") } else { described.name.clone() };
         json!({
             "axis": axis.get(), "name": name, "units": described.units, "exists": described.model != Model::None,
@@ -70,7 +70,7 @@ fn switches(show: &Show) -> Vec<Value> {
         };
         json!({ "bit": bit.get(), "axis": axis.get(), "from": from, "to": to })
     };
-    let connected = &show.machine.connected;
+    let connected = &show.machine.file.connected;
     let switches = connected.switches.iter().map(|one| switch(one.bit, one.axis, one.when));
     switches
         .chain(connected.probes.iter().map(|probe| switch(probe.bit, probe.axis, probe.touches)))
@@ -79,10 +79,8 @@ fn switches(show: &Show) -> Vec<Value> {
 
 /// The bits that programs or machine use, with a name for each.
 fn bits(show: &Show) -> Vec<Value> {
-    let texts: Vec<String> = files(show)
-        .iter()
-        .filter_map(|path| Some(String::from_utf8_lossy(&fs::read(path).ok()?).into_owned()))
-        .collect();
+    let texts: Vec<String> =
+        files(show).iter().filter_map(|path| Some(names::decoded(&fs::read(path).ok()?))).collect();
     let mut used = names::bits_of(&texts);
     let mut note = |bit: Bit, is_input: bool| {
         let entry: &mut Used = used.entry(bit).or_default();
@@ -90,13 +88,14 @@ fn bits(show: &Show) -> Vec<Value> {
         entry.is_written |= !is_input;
     };
     LAMPS.into_iter().filter_map(Bit::new).for_each(|bit| note(bit, false));
-    let connected = &show.machine.connected;
+    let connected = &show.machine.file.connected;
     connected.switches.iter().for_each(|switch| note(switch.bit, true));
     connected.probes.iter().for_each(|probe| note(probe.bit, true));
-    for wire in &show.machine.wires {
+    for wire in &show.machine.file.wires {
         note(wire.from, false);
         note(wire.to, true);
     }
+    names::name_groups(&mut used);
     let places = places(show);
     let row = |(bit, used): (Bit, Used)| {
         let range = range_of(bit);
@@ -119,7 +118,7 @@ fn bits(show: &Show) -> Vec<Value> {
 /// What is at a bit according to the machine file, in words.
 fn places(show: &Show) -> BTreeMap<Bit, String> {
     let axis_name = |axis: AxisId| {
-        let name = show.machine.axes.get(axis.index()).map_or("", |axis| &axis.name);
+        let name = show.machine.file.axes.get(axis.index()).map_or("", |axis| &axis.name);
         if name.is_empty() { format!("axis {axis}") } else { name.to_owned() }
     };
     let words = |axis: AxisId, when: Condition| match when {
@@ -127,7 +126,7 @@ fn places(show: &Show) -> BTreeMap<Bit, String> {
         Condition::AtLeast(limit) => format!("{} ≥ {limit}", axis_name(axis)),
         Condition::Between(from, to) => format!("{from} ≤ {} ≤ {to}", axis_name(axis)),
     };
-    let connected = &show.machine.connected;
+    let connected = &show.machine.file.connected;
     let switches = connected.switches.iter().map(|one| (one.bit, words(one.axis, one.when)));
     switches.chain(connected.probes.iter().map(|one| (one.bit, words(one.axis, one.touches)))).collect()
 }

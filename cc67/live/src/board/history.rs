@@ -50,6 +50,7 @@ impl<T: Target> Stage<T> {
 
     /// What was later than the present moment is gone.
     fn cut(&mut self, session: &Session<T>) {
+        self.note_branches();
         let tick = session.tick();
         self.log.cut(tick);
         let rows = self.samples.cut(tick);
@@ -59,6 +60,9 @@ impl<T: Target> Stage<T> {
 
     /// Begins again, with the programs as they are now.
     pub(super) fn restart(&mut self, session: &mut Session<T>) -> Result<(), String> {
+        if self.wants_new_machine()? {
+            return Ok(());
+        }
         let Some(timeline) = &mut self.timeline else { return Ok(()) };
         timeline.restore(session, 0).map_err(|error| error.to_string())?;
         self.go_on(session);

@@ -1,11 +1,13 @@
 //! Messages of the board, about it, and to it. The last few thousand entries are kept for pages opened later.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 
-use cc67_host::{Session, Target, remark};
+use cc67_host::{BranchId, Session, Target, remark};
 use kmotiondef::{CodeAddr, Cycles, Ticks};
 use runtime::{Event, EventKind};
 use serde::Serialize;
+
+use crate::names::decoded;
 
 /// Entries that are kept.
 const KEPT: usize = 5000;
@@ -48,6 +50,8 @@ pub(super) struct Log {
     entries: VecDeque<LogEntry>,
     /// How many of the last ones no page has.
     fresh: usize,
+    /// The entries of each line of history that was left, as they were then.
+    pub(super) left: BTreeMap<BranchId, Vec<LogEntry>>,
 }
 
 impl Log {
@@ -99,6 +103,27 @@ impl Log {
         self.fresh = self.fresh.min(self.entries.len());
     }
 
+    /// The entries in the order of time, to be kept: without those that were added for an earlier moment than the last.
+    pub(super) fn in_order(&self) -> Vec<LogEntry> {
+        let mut last = 0;
+        let is_later = |entry: &&LogEntry| {
+            let is_later = entry.tick >= last;
+            last = last.max(entry.tick);
+            is_later
+        };
+        self.entries.iter().filter(is_later).cloned().collect()
+    }
+
+    /// Puts other entries in place of those that there are; pages receive them elsewhere.
+    pub(super) fn put(&mut self, entries: Vec<LogEntry>) {
+        (self.entries, self.fresh) = (entries.into(), 0);
+    }
+
+    /// The entries later than a tick.
+    pub(super) fn later(&self, tick: Ticks) -> Vec<&LogEntry> {
+        self.entries.iter().filter(|entry| entry.tick > tick.get()).collect()
+    }
+
     /// What programs have printed until a tick, as `cc67 run --time` shows it; `None` if some of it is not kept.
     pub(super) fn console(&self, until: Ticks) -> Option<String> {
         let is_printed = |entry: &&LogEntry| entry.voice == Voice::Console && entry.tick <= until.get();
@@ -120,7 +145,7 @@ impl Log {
 }
 
 fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
+    decoded(bytes)
 }
 
 fn words<T: Target>(session: &Session<T>, event: &Event) -> String {

@@ -4,6 +4,7 @@
 //! due one. All of it happens on one thread, so what pages ask for falls between two ticks. A session that somebody
 //! else runs has the same beat without the second step: a [`LiveView`].
 
+mod branches;
 mod clock;
 mod connected;
 mod frame;
@@ -13,6 +14,7 @@ mod history;
 mod jogs;
 mod keep;
 mod log;
+mod machine;
 mod programs;
 mod samples;
 mod saved;
@@ -40,7 +42,7 @@ use crate::{Keeper, Show, TimeControl};
 use clock::{Clock, now};
 use connected::PageAccess;
 use frame::Moment;
-use log::{Log, Voice};
+use log::{Log, LogEntry, Voice};
 use programs::Programs;
 use samples::Samples;
 use threads::ThreadRow;
@@ -63,23 +65,46 @@ const SIGNALS: &str = "dest0,dest1,dest2";
 /// Ticks within which a thread has a slice, if one is active: all seven, and the primary thread in between.
 const ROTATION: u64 = 30;
 
-/// Runs a session and shows it until its time has passed.
+/// Why a board is not shown any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
+pub enum ShowEnd {
+    /// Its time has passed.
+    TimeOver,
+    /// A page has requested a board of the machine file that was saved.
+    NewMachine,
+}
+
+/// Runs a session and shows it until its time has passed, or another machine is wanted; `check` says whether there is a
+/// board of that.
 pub(crate) fn run<T: Target>(
     session: &mut Session<T>,
     show: Show,
     company: Company<T>,
+    check: &mut dyn FnMut() -> Result<(), String>,
     (desk, requests): (&Arc<Desk>, &Receiver<Incoming>),
-) {
+) -> ShowEnd {
     let limit = show.limit.map(|seconds| session.tick_after(seconds));
     let mut stage = Stage::new(session, show, desk);
     stage.company = company;
+    stage.watch_machine(desk);
     while limit.is_none_or(|limit| session.tick() < limit) {
         stage.take(session, requests, BEAT);
         stage.stop_silent_jogs(session);
         stage.advance(session, limit);
         stage.tell(session);
+        if stage.is_rebuild_wanted() {
+            match check() {
+                Ok(()) => {
+                    stage.close();
+                    return ShowEnd::NewMachine;
+                }
+                Err(text) => stage.refuse_rebuild(&text),
+            }
+        }
     }
     stage.close();
+    ShowEnd::TimeOver
 }
 
 /// A session that somebody else runs, to be shown.
@@ -154,8 +179,9 @@ impl<T: Target> Stage<T> {
         let mut samples = Samples::new(show.time == TimeControl::Real);
         let list = if show.watch.is_empty() { SIGNALS } else { &show.watch };
         let mut log = Log::default();
-        if let Err(error) = samples.follow(session, list, clock.speed()) {
-            log.say(session.tick(), Voice::Remark, format!("the scope: {error}"));
+        samples.follow(session, list, clock.speed());
+        for wrong in samples.wrong() {
+            log.say(session.tick(), Voice::Remark, format!("the scope: {}: {}", wrong.name, wrong.text));
         }
         if show.time == TimeControl::Full && session.can(Capability::Surroundings) {
             // Boxes are answered here; the statement is recorded, so that a test waits as well.
@@ -163,7 +189,10 @@ impl<T: Target> Stage<T> {
             debug_assert!(waits.is_ok(), "it is a statement: {waits:?}");
         }
         // A target without snapshots is shown without a way back.
-        let timeline = (show.time == TimeControl::Full).then(|| Timeline::new(session).ok()).flatten();
+        let mut timeline = (show.time == TimeControl::Full).then(|| Timeline::new(session).ok()).flatten();
+        if let Some(timeline) = &mut timeline {
+            timeline.keep_branches(branches::MOST);
+        }
         Self {
             show,
             programs,
@@ -207,6 +236,7 @@ impl<T: Target> Stage<T> {
                     self.answer(id, &json!({ "kind": "problem", "text": problem }));
                 }
             }
+            Incoming::Machine(checked) => self.machine_saved(session, checked),
             Incoming::Saved(compiled) => {
                 let programs = self.programs.saved(*compiled, self.may_load());
                 self.load(session, programs);
@@ -228,14 +258,17 @@ impl<T: Target> Stage<T> {
         }
         self.answer(id, &self.programs.message());
         self.answer(id, &self.signals());
-        self.answer(id, &json!({ "kind": "log", "entries": self.log.all() }));
+        self.answer(id, &self.branches());
+        self.answer(id, &self.machine());
+        self.answer(id, &log_message(&self.log.all()));
         self.answer(id, &json!({ "kind": "threads", "threads": threads::rows(session), "turns": [] }));
         self.answer(id, &asks(self.told.open_box.as_ref()));
     }
 
     fn signals(&self) -> Value {
         let (names, list) = (self.samples.names(), self.samples.list());
-        json!({ "kind": "signals", "generation": self.samples.generation, "names": names, "list": list })
+        let (generation, wrong) = (self.samples.generation, self.samples.wrong());
+        json!({ "kind": "signals", "generation": generation, "names": names, "list": list, "wrong": wrong })
     }
 
     /// Does what a page asks for.
@@ -281,16 +314,24 @@ impl<T: Target> Stage<T> {
                 let programs = self.programs.reload();
                 self.load(session, programs);
                 self.broadcast(&self.programs.message());
+                if let Some(refusal) = self.programs.refusal() {
+                    self.log.say(session.tick(), Voice::Remark, refusal.clone());
+                    return Err(refusal);
+                }
             }
             PageRequest::Watch { list } => {
-                let followed = self.samples.follow(session, &list, self.clock.speed());
-                followed.map_err(|error| error.to_string())?;
+                self.samples.follow(session, &list, self.clock.speed());
                 self.broadcast(&self.signals());
+                if let Some(wrong) = self.samples.wrong().first() {
+                    return Err(format!("{}: {}", wrong.name, wrong.text));
+                }
             }
             PageRequest::Goto { tick } => {
                 self.clock.pause();
                 self.go_to(session, Ticks::new(tick))?;
             }
+            PageRequest::Branch { id } => self.take_branch(session, id)?,
+            PageRequest::Forget { id } => self.forget_branch(id)?,
             PageRequest::Restart {} => self.restart(session)?,
             PageRequest::Save { name } => self.save(session, id, &name)?,
             PageRequest::Gather { from, count, kind } => {
@@ -443,7 +484,7 @@ impl<T: Target> Stage<T> {
     fn tell(&mut self, session: &Session<T>) {
         self.tell_link(session);
         let fresh = self.log.take_fresh();
-        let entries = (!fresh.is_empty()).then(|| json!({ "kind": "log", "entries": fresh }));
+        let entries = (!fresh.is_empty()).then(|| log_message(&fresh));
         if let Some(entries) = entries {
             self.broadcast(&entries);
         }
@@ -506,6 +547,11 @@ impl<T: Target> Stage<T> {
         let text: Arc<str> = message.to_string().into();
         self.pages.values().for_each(|page| page.mailbox.post(&text));
     }
+}
+
+/// Entries of the log, as a message to pages.
+fn log_message(entries: &[&LogEntry]) -> Value {
+    json!({ "kind": "log", "entries": entries })
 }
 
 /// The box that waits for an answer, as a message to pages.

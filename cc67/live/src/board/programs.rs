@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use cc67_host::{Options, UserProgram};
+use cc67_host::{CompileMessage, Options, UserProgram};
 use kmotiondef::ThreadId;
 use serde_json::{Value, json};
 
-use super::saved;
+use super::machine::MachineState;
+use super::saved::{self, Watch};
 use crate::desk::{Compiled, Desk};
 use crate::{Program, Show};
 
@@ -22,15 +23,22 @@ pub(super) struct Programs {
     waiting: BTreeMap<ThreadId, UserProgram>,
     /// Those that were loaded in place of the first ones.
     loaded: BTreeMap<ThreadId, UserProgram>,
-    /// What is wrong with those that were saved with errors: lines of `file:line: message`.
-    wrong: BTreeMap<ThreadId, String>,
+    /// What is wrong with those that were saved with errors.
+    wrong: BTreeMap<ThreadId, Vec<CompileMessage>>,
+    /// The machine file since the board was made.
+    pub(super) machine: MachineState,
+    /// Their files are looked at as long as there are programs.
+    pub(super) watch: Watch,
 }
 
 impl Programs {
     /// The programs of a board, whose files are looked at from now on.
     pub(super) fn watched(show: &Show, options: &Options, desk: &Arc<Desk>) -> Self {
-        saved::watch(show.programs.clone(), show.include_dirs.clone(), options.clone(), desk);
+        let watch = Watch::default();
+        saved::watch(show.programs.clone(), show.include_dirs.clone(), options.clone(), (&watch, desk));
         Self {
+            watch,
+            machine: MachineState::default(),
             programs: show.programs.clone(),
             options: options.clone(),
             reloads: show.reloads,
@@ -72,19 +80,32 @@ impl Programs {
         self.wrong.remove(&program.thread);
         match result {
             Ok(image) => drop(self.waiting.insert(program.thread, image.started())),
-            Err(text) => drop(self.wrong.insert(program.thread, text)),
+            Err(messages) => drop(self.wrong.insert(program.thread, messages)),
         }
+    }
+
+    /// The programs that were not loaded because of errors, in words; `None` without any.
+    pub(super) fn refusal(&self) -> Option<String> {
+        let (thread, errors) = self.wrong.first_key_value()?;
+        let named = self.programs.iter().find(|program| program.thread == *thread);
+        let name =
+            named.map_or_else(|| format!("thread {thread}"), |program| program.path.display().to_string());
+        let first = errors.first().map_or("", |error| &*error.message);
+        let more = if errors.len() > 1 { format!(" and {} more", errors.len() - 1) } else { String::new() };
+        Some(format!("{name} is not loaded: {first}{more}; the errors are at their lines in Source"))
     }
 
     /// What pages are told: which programs have changed, and what is wrong with which.
     pub(super) fn message(&self) -> Value {
         let waiting: Vec<_> = self.waiting.keys().map(|thread| thread.get()).collect();
-        let errors = self.wrong.iter().flat_map(|(thread, text)| {
-            text.lines().map(|line| {
-                let (file, number, message) = place(line);
-                json!({ "thread": thread.get(), "file": file, "line": number, "text": message })
+        let error = |thread: ThreadId, error: &CompileMessage| {
+            json!({
+                "thread": thread.get(), "file": error.file, "line": error.line, "column": error.column,
+                "text": error.message, "report": error.report,
             })
-        });
+        };
+        let errors = self.wrong.iter();
+        let errors = errors.flat_map(|(thread, errors)| errors.iter().map(|one| error(*thread, one)));
         json!({ "kind": "programs", "waiting": waiting, "errors": errors.collect::<Vec<_>>() })
     }
 }
@@ -92,28 +113,4 @@ impl Programs {
 /// A program that is loaded when a page asks for it, with its thread.
 fn waiting(program: &Program) -> Option<(ThreadId, UserProgram)> {
     program.waiting.as_deref().map(|compiled| (program.thread, compiled.clone()))
-}
-
-/// The parts of `file:line: message`; a drive letter is not a file.
-fn place(line: &str) -> (Option<&str>, Option<u32>, &str) {
-    for (at, _) in line.match_indices(':').filter(|(at, _)| *at > 1) {
-        let (file, rest) = (line.get(..at), line.get(at + 1..).unwrap_or_default());
-        let Some((number, message)) = rest.split_once(':') else { continue };
-        if let Ok(number) = number.parse() {
-            return (file, Some(number), message.trim());
-        }
-    }
-    (None, None, line)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_place_is_split_off_a_compiler_message() {
-        assert_eq!(place("a.c:12: error: no"), (Some("a.c"), Some(12), "error: no"));
-        assert_eq!(place("C:\\x\\a.c:3: e"), (Some("C:\\x\\a.c"), Some(3), "e"));
-        assert_eq!(place("cannot be linked: x"), (None, None, "cannot be linked: x"));
-    }
 }

@@ -3,8 +3,9 @@
 use std::sync::{Arc, Mutex};
 
 use cc67_host::session::{SubscriptionId, expressions};
-use cc67_host::{Session, Target, Watch, WatchError};
+use cc67_host::{Session, Target, Watch};
 use kmotiondef::Ticks;
+use serde::Serialize;
 
 use crate::desk::locked;
 
@@ -62,10 +63,21 @@ impl Rows {
     }
 }
 
+/// A signal that cannot be followed.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct WrongSignal {
+    /// As it is in the list.
+    pub(super) name: String,
+    /// The reason.
+    pub(super) text: String,
+}
+
 /// The signals that are followed.
 #[derive(Debug, Default)]
 pub(super) struct Samples {
     names: Vec<String>,
+    /// Those of the list that cannot be followed.
+    wrong: Vec<WrongSignal>,
     list: String,
     /// Ticks from one sample to the next at the pace of the real board.
     interval: u64,
@@ -82,22 +94,32 @@ impl Samples {
         Self { interval: if is_real { EVERY_STATUS } else { EVERY }, ..Self::default() }
     }
 
-    /// Follows the signals of a list.
-    pub(super) fn follow<T: Target>(
-        &mut self,
-        session: &mut Session<T>,
-        list: &str,
-        speed: f64,
-    ) -> Result<(), WatchError> {
-        let names: Vec<_> = expressions(list).into_iter().flat_map(parts).collect();
-        let watched = names.iter().map(|name| session.watch(name)).collect::<Result<Vec<_>, _>>()?;
-        let watched: Vec<_> = watched.into_iter().take(SIGNALS).collect();
+    /// Follows the signals of a list, apart from those that are [wrong](Self::wrong).
+    pub(super) fn follow<T: Target>(&mut self, session: &mut Session<T>, list: &str, speed: f64) {
+        let (mut watched, mut wrong) = (Vec::new(), Vec::new());
+        for name in expressions(unquoted(list)).into_iter().map(unquoted).flat_map(parts) {
+            match session.watch(&name) {
+                Ok(_) if watched.len() == SIGNALS => {
+                    wrong.push(WrongSignal {
+                        name,
+                        text: format!("the scope shows {SIGNALS} signals at most"),
+                    });
+                }
+                Ok(watch) => watched.push(watch),
+                Err(error) => wrong.push(WrongSignal { name, text: error.to_string() }),
+            }
+        }
+        self.wrong = wrong;
         self.names = watched.iter().map(ToString::to_string).collect();
         list.clone_into(&mut self.list);
         self.generation += 1;
         self.rows = Arc::new(Mutex::new(Rows { width: watched.len() + 1, ..Rows::default() }));
         self.subscribe(session, watched, speed);
-        Ok(())
+    }
+
+    /// The signals of the list that cannot be followed.
+    pub(super) fn wrong(&self) -> &[WrongSignal] {
+        &self.wrong
     }
 
     /// Samples less often when time goes faster, so that as many come in a second.
@@ -155,6 +177,13 @@ impl Samples {
         out.extend(numbers.flat_map(|number| number.to_le_bytes()));
         (count as u32, first + count as u64)
     }
+}
+
+/// A name or list without the quotation marks of a shell, which people copy with it.
+fn unquoted(text: &str) -> &str {
+    let text = text.trim();
+    let inner = text.strip_prefix('\'').and_then(|text| text.strip_suffix('\''));
+    inner.filter(|inner| !inner.contains('\'')).unwrap_or(text).trim_matches('"').trim()
 }
 
 /// What a name of a list stands for: `axis0` is where an axis is sent, where it is and what drives it.

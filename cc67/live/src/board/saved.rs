@@ -3,17 +3,23 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 use std::thread;
 use std::time::{Duration, SystemTime};
 
-use cc67_host::{HostError, Options, UserProgram};
+use cc67_host::{CompileMessage, HostError, Options, UserProgram};
+use runtime::MachineFile;
 
 use crate::desk::{Compiled, Desk, Incoming};
 use crate::{Program, names};
 
 /// How often files are looked at.
 const LOOK: Duration = Duration::from_millis(200);
+/// How long a file may be away while an editor replaces it.
+const AWAY: Duration = Duration::from_millis(100);
+
+/// Files are looked at as long as there is one of these.
+pub(super) type Watch = Arc<()>;
 
 /// Compiles a program.
 pub(super) fn compile(program: &Program, options: &Options) -> Compiled {
@@ -21,20 +27,32 @@ pub(super) fn compile(program: &Program, options: &Options) -> Compiled {
         true => UserProgram::from_image(&program.path, program.thread),
         false => UserProgram::compile(&program.path, program.thread, options),
     };
-    let result = compiled.map_err(|error: HostError| error.to_string());
+    let result = compiled.map_err(|error: HostError| match &error {
+        HostError::Compile(error) => error.messages().to_vec(),
+        other => vec![CompileMessage::new(other.to_string())],
+    });
     Compiled { program: program.clone(), result }
 }
 
-/// Looks at the files of some programs from now on, and hands in what becomes of those that are saved.
-pub(super) fn watch(programs: Vec<Program>, include_dirs: Vec<PathBuf>, options: Options, desk: &Arc<Desk>) {
-    let desk = Arc::clone(desk);
+/// Looks at the files of some programs from now on, and hands in what becomes of those that are saved or deleted.
+pub(super) fn watch(
+    programs: Vec<Program>,
+    include_dirs: Vec<PathBuf>,
+    options: Options,
+    (watch, desk): (&Watch, &Arc<Desk>),
+) {
+    let (desk, watch) = (Arc::clone(desk), Arc::downgrade(watch));
     thread::spawn(move || {
         let mut known: Vec<_> = programs.iter().map(|program| stamps(&program.path, &include_dirs)).collect();
-        loop {
+        while is_wanted(&watch) {
             thread::sleep(LOOK);
             for (program, known) in programs.iter().zip(&mut known) {
-                let stamps = stamps(&program.path, &include_dirs);
-                if stamps == *known || stamps.is_empty() {
+                let mut stamps = stamps(&program.path, &include_dirs);
+                if !stamps.contains_key(&program.path) {
+                    thread::sleep(AWAY);
+                    stamps = self::stamps(&program.path, &include_dirs);
+                }
+                if stamps == *known {
                     continue;
                 }
                 *known = stamps;
@@ -44,6 +62,41 @@ pub(super) fn watch(programs: Vec<Program>, include_dirs: Vec<PathBuf>, options:
             }
         }
     });
+}
+
+/// Looks at the machine file from now on, and hands in whether it is right when it is saved.
+pub(super) fn watch_machine(path: PathBuf, watch: &Watch, desk: &Arc<Desk>) {
+    let (desk, watch) = (Arc::clone(desk), Arc::downgrade(watch));
+    thread::spawn(move || {
+        let mut known = fs::read(&path).ok();
+        while is_wanted(&watch) {
+            thread::sleep(LOOK);
+            let bytes = fs::read(&path).ok();
+            if bytes == known {
+                continue;
+            }
+            if bytes.is_none() {
+                thread::sleep(AWAY);
+            }
+            known = fs::read(&path).ok();
+            if !desk.hand_in(Incoming::Machine(check_machine(&path, known.as_deref()))) {
+                return;
+            }
+        }
+    });
+}
+
+/// Whether what a machine file holds is right, else `file:line:column: reason`.
+fn check_machine(path: &Path, bytes: Option<&[u8]>) -> Result<(), String> {
+    let name = path.display();
+    let bytes = bytes.ok_or_else(|| format!("{name} cannot be read"))?;
+    let text = std::str::from_utf8(bytes).map_err(|_| format!("{name} is not text"))?;
+    let parsed = MachineFile::parse(text);
+    parsed.map(drop).map_err(|error| format!("{name}:{}:{}: {error}", error.line, error.column))
+}
+
+fn is_wanted(watch: &Weak<()>) -> bool {
+    watch.strong_count() > 0
 }
 
 /// When the files of a program were written, and how long they are.

@@ -52,6 +52,7 @@ files! {
     "/timeline.js" = SCRIPT "timeline.js";
     "/source.js" = SCRIPT "source.js";
     "/tabs.js" = SCRIPT "tabs.js";
+    "/layout.js" = SCRIPT "layout.js";
 }
 
 /// The file at a path.

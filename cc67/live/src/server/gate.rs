@@ -8,6 +8,14 @@ use std::net::{IpAddr, SocketAddr};
 
 use super::http::Head;
 
+/// Hexadecimal digits of a token.
+const TOKEN: usize = 32;
+
+/// Whether a text can be a token.
+fn is_token(text: &str) -> bool {
+    text.len() == TOKEN && text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
+}
+
 /// What a client has to show.
 #[derive(Debug)]
 pub(super) struct Gate {
@@ -38,12 +46,22 @@ impl Refusal {
 }
 
 impl Gate {
-    /// A gate for the address that is listened on, with a token of its own.
-    pub(super) fn new(address: SocketAddr) -> Result<Self, getrandom::Error> {
-        let mut bytes = [0; 16];
-        getrandom::fill(&mut bytes)?;
-        let token = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+    /// A gate for the address that is listened on, with a token that was drawn before, or a new one.
+    pub(super) fn new(address: SocketAddr, kept: Option<&str>) -> Result<Self, getrandom::Error> {
+        let token = match kept.filter(|token| is_token(token)) {
+            Some(token) => token.to_owned(),
+            None => {
+                let mut bytes = [0; TOKEN / 2];
+                getrandom::fill(&mut bytes)?;
+                bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+            }
+        };
         Ok(Self { address, token })
+    }
+
+    /// The token.
+    pub(super) fn token(&self) -> &str {
+        &self.token
     }
 
     /// The address of the page.
@@ -103,10 +121,19 @@ mod tests {
 
     /// What a gate says to a request; `TOKEN` is the right one.
     fn check(path: &str, headers: &str) -> Result<(), Refusal> {
-        let gate = Gate::new("127.0.0.1:8067".parse().expect("an address")).expect("random numbers");
+        let gate = Gate::new("127.0.0.1:8067".parse().expect("an address"), None).expect("random numbers");
         let path = path.replace("TOKEN", &gate.token);
         let text = format!("GET {path} HTTP/1.1\r\n{headers}\r\n");
         gate.check(&Head::parse(text.as_bytes()).expect("it is HTTP"))
+    }
+
+    #[test]
+    fn a_token_is_kept_only_if_it_is_one() {
+        let address = "127.0.0.1:8067".parse().expect("an address");
+        let token = |kept| Gate::new(address, Some(kept)).expect("random numbers").token().to_owned();
+        let kept = "0123456789abcdef0123456789abcdef";
+        assert_eq!(token(kept), kept);
+        assert!(["", "1234", "0123456789ABCDEF0123456789ABCDEF"].iter().all(|text| token(text) != **text));
     }
 
     #[test]

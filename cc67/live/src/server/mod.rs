@@ -15,7 +15,7 @@ use std::time::Duration;
 use cc67_host::seats::{Closer, Seat, Seats};
 use cc67_host::{Attendant, Session, Target};
 
-use crate::board::{self, Company, LiveView};
+use crate::board::{self, Company, LiveView, ShowEnd};
 use crate::desk::{Desk, Incoming};
 use crate::{Keeper, Show};
 use gate::Gate;
@@ -48,26 +48,29 @@ pub enum ListenError {
 #[derive(Debug)]
 pub struct Server {
     url: String,
+    port: u16,
+    token: String,
     desk: Arc<Desk>,
     requests: Receiver<Incoming>,
 }
 
 impl Server {
-    /// Listens on an address of this computer; port 0 is one that is free.
+    /// Listens on an address of this computer; port 0 is one that is free. `token` is that of an earlier server whose
+    /// pages should find this one; without it, or if it is not one, a new one is drawn.
     ///
     /// # Errors
     /// [`ListenError`].
-    pub fn listen(host: IpAddr, port: u16) -> Result<Self, ListenError> {
+    pub fn listen(host: IpAddr, port: u16, token: Option<&str>) -> Result<Self, ListenError> {
         let address = SocketAddr::new(host, port);
         let failed = |error| ListenError::Address { address, error };
         let listener = TcpListener::bind(address).map_err(failed)?;
         let bound = listener.local_addr().map_err(failed)?;
-        let gate = Gate::new(bound).map_err(ListenError::Random)?;
-        let url = gate.url();
+        let gate = Gate::new(bound, token).map_err(ListenError::Random)?;
+        let (url, token) = (gate.url(), gate.token().to_owned());
         let (desk, requests) = Desk::new();
         let shared = Arc::clone(&desk);
         thread::spawn(move || accept(&listener, &Arc::new(gate), &shared));
-        Ok(Self { url, desk, requests })
+        Ok(Self { url, port: bound.port(), token, desk, requests })
     }
 
     /// The address of the page, with the token.
@@ -76,16 +79,29 @@ impl Server {
         &self.url
     }
 
-    /// Runs a board and shows it, until its time has passed; an attendant may stop it, a keeper sees its events first.
+    /// The port that it listens on.
+    #[must_use]
+    pub const fn port(&self) -> u16 {
+        self.port
+    }
+
+    /// The token of its pages.
+    #[must_use]
+    pub fn token(&self) -> &str {
+        &self.token
+    }
+
+    /// Runs a board and shows it, until its time has passed or another machine is wanted, for which `check` says
+    /// whether there is a board; an attendant may stop it, a keeper sees its events first.
     pub fn run<T: Target>(
-        self,
+        &self,
         session: &mut Session<T>,
         show: Show,
-        attendant: Option<Box<dyn Attendant<T>>>,
-        keeper: Box<dyn Keeper<T>>,
-    ) {
+        (attendant, keeper): (Option<Box<dyn Attendant<T>>>, Box<dyn Keeper<T>>),
+        check: &mut dyn FnMut() -> Result<(), String>,
+    ) -> ShowEnd {
         let company = Company { attendant, keeper: Some(keeper) };
-        board::run(session, show, company, (&self.desk, &self.requests));
+        board::run(session, show, company, check, (&self.desk, &self.requests))
     }
 
     /// Shows a board that somebody else runs.
@@ -136,7 +152,8 @@ fn serve(mut stream: TcpStream, seat: &Seat, gate: &Gate, desk: &Arc<Desk>) -> i
     };
     if let Err(refusal) = gate.check(&head) {
         desk.log(refusal.why(), "");
-        return HttpAnswer::problem(403, refusal.why()).send(&mut stream);
+        let why = format!("{}\nOpen the address that cc67 printed when it started.", refusal.why());
+        return HttpAnswer::problem(403, &why).send(&mut stream);
     }
     match head.path() {
         "/socket" => match head.websocket_key() {

@@ -8,4 +8,5 @@ pub(crate) mod output;
 pub(crate) mod pace;
 pub(crate) mod pty;
 pub(crate) mod stack;
+pub(crate) mod state;
 pub(crate) mod terminal;

@@ -12,7 +12,7 @@ use kmotiondef::ThreadId;
 
 use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::args::controller::ControllerArguments;
-use crate::cli::io::terminal;
+use crate::cli::io::{state, terminal};
 
 /// Connects to the controller at an address, after a person has agreed.
 pub(super) fn connect(address: &Address, arguments: &ControllerArguments) -> Result<ControllerLink> {
@@ -62,13 +62,7 @@ fn agrees_to(question: &str) -> Result<bool> {
 
 /// The file with the project folders for which a person has agreed.
 fn record() -> Option<PathBuf> {
-    let named = |name| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
-    let state = if cfg!(windows) {
-        named("LOCALAPPDATA")
-    } else {
-        named("XDG_STATE_HOME").or_else(|| Some(named("HOME")?.join(".local/state")))
-    };
-    Some(state?.join("cc67").join("controllers"))
+    Some(state::folder()?.join("controllers"))
 }
 
 /// Returns what programs for a controller are linked against: what the options name, or else its own firmware.

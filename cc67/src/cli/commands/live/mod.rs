@@ -3,6 +3,7 @@
 //! What the page shows and does is in `cc67-live`; here it gets its board, and a browser.
 
 mod demo;
+mod kept;
 
 use std::ffi::{OsStr, OsString};
 use std::io::{self, Write};
@@ -12,7 +13,7 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail, ensure};
 use cc67_host::{Target, UserProgram};
-use cc67_live::{ListenError, Program, Server, Show, TestOption, TimeControl};
+use cc67_live::{ListenError, Program, Server, Show, ShowEnd, ShownMachine, TestOption, TimeControl};
 use clap::{Arg, Args, Parser};
 
 use crate::cli::args::attach::AttachArguments;
@@ -25,6 +26,7 @@ use crate::cli::args::uart::UartArguments;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::terminal;
 use crate::cli::session::{Rig, Setup, Started, Work};
+use kept::KeptAccess;
 
 /// The port that is taken if it is free and no other is requested.
 const PORT: u16 = 8067;
@@ -101,19 +103,29 @@ pub(super) fn live(arguments: &LiveArguments) -> Result<Exit> {
     if arguments.demo {
         return demonstrate(arguments);
     }
-    let started = Started { programs: &arguments.programs, first: &arguments.beside.first };
-    let setup = Setup::new(started, &arguments.board, &arguments.compiler)?;
-    let Some(mut setup) = setup else { return Ok(Exit::Failure) };
-    // Nothing is loaded into a controller before somebody has switched control on.
-    let waiting = if setup.is_of_controller() { setup.take_programs() } else { Vec::new() };
-    let debugger = arguments.attach.open()?;
-    setup.debugged(debugger, LivePage { arguments, waiting })
+    let mut server = None;
+    loop {
+        let Some(mut setup) = arguments.setup()? else { return Ok(Exit::Failure) };
+        // Nothing is loaded into a controller before somebody has switched control on.
+        let waiting = if setup.is_of_controller() { setup.take_programs() } else { Vec::new() };
+        let debugger = arguments.attach.open()?;
+        let mut end = ShowEnd::TimeOver;
+        let page = LivePage { arguments, waiting, server: &mut server, end: &mut end };
+        let exit = setup.debugged(debugger, page)?;
+        if end == ShowEnd::TimeOver {
+            return Ok(exit);
+        }
+    }
 }
 
 /// The page of a board, and the programs that wait until a person loads them.
 struct LivePage<'a> {
     arguments: &'a LiveArguments,
     waiting: Vec<UserProgram>,
+    /// The server, once it listens: it stays for another board.
+    server: &'a mut Option<Server>,
+    /// The reason for the end.
+    end: &'a mut ShowEnd,
 }
 
 /// Shows the demonstration, with those of the arguments that are about the page.
@@ -140,19 +152,35 @@ struct Demonstration {
 
 impl Work for LivePage<'_> {
     fn on<T: Target>(self, mut rig: Rig<T>) -> Result<Exit> {
-        let Self { arguments, waiting } = self;
+        let Self { arguments, waiting, server, end } = self;
         let mut show = arguments.show()?;
+        // An editor that is attached cannot be given another board.
+        show.machine.can_rebuild =
+            arguments.attach.debug.is_none() && arguments.board.controller.on.is_none();
         for compiled in waiting {
             let shown = show.programs.iter_mut().find(|program| program.thread == compiled.thread);
             if let Some(shown) = shown {
                 shown.waiting = Some(Box::new(compiled));
             }
         }
-        let server = listen(arguments.port, &arguments.board)?;
-        announce(&server, &arguments.board, !arguments.no_open)?;
-        let attendant = rig.attendant.take();
-        let keeper = Box::new(rig.flash_keeper());
-        server.run(&mut rig.session, show, attendant, keeper);
+        let server = match server {
+            Some(server) => {
+                show.is_paused = false;
+                server
+            }
+            None => {
+                let listening = listen(arguments.port, &arguments.board)?;
+                announce(&listening, &arguments.board, !arguments.no_open)?;
+                server.insert(listening)
+            }
+        };
+        let company = (rig.attendant.take(), Box::new(rig.flash_keeper()) as _);
+        let mut check = || match arguments.setup() {
+            Ok(Some(_)) => Ok(()),
+            Ok(None) => Err("the board is not made again: a program has errors".to_owned()),
+            Err(error) => Err(format!("the board is not made again: {error:#}")),
+        };
+        *end = server.run(&mut rig.session, show, company, &mut check);
         rig.finish(&mut |_| ())?;
         Ok(Exit::Success)
     }
@@ -173,7 +201,11 @@ pub(super) fn show(
     });
     Ok(Show {
         title: programs.join(OsStr::new(", ")).to_string_lossy().into_owned(),
-        machine: board.machine_file()?,
+        machine: ShownMachine {
+            file: board.machine_file()?,
+            path: board.machine.clone(),
+            can_rebuild: false,
+        },
         programs: shown.collect(),
         include_dirs: compiler.resolve()?.preprocessor.include_dirs,
         watch: String::new(),
@@ -187,18 +219,27 @@ pub(super) fn show(
     })
 }
 
-/// Listens for pages; on a port that is free if the usual one is taken and none is requested.
+/// Listens for pages: on the port that is requested, or else on that of the last run in this folder, the usual one, or
+/// one that is free. Pages of the last run are let in again, unless other computers can listen to the connection.
 pub(super) fn listen(port: Option<u16>, board: &BoardArguments) -> Result<Server> {
     let host = board.pc.address().unwrap_or(Ipv4Addr::LOCALHOST.into());
-    let listen = |port| Server::listen(host, port);
-    let server = match port {
-        Some(port) => listen(port),
-        None => listen(PORT).or_else(|error| match error {
-            ListenError::Address { .. } => listen(0),
-            ListenError::Random(_) => Err(error),
-        }),
+    let kept = if host.is_loopback() { kept::read() } else { None };
+    let token = kept.as_ref().map(|kept| &*kept.token);
+    let mut ports = match port {
+        Some(port) => vec![port],
+        None => kept.as_ref().map(|kept| kept.port).into_iter().chain([PORT, 0]).collect(),
+    }
+    .into_iter();
+    let server = loop {
+        match (Server::listen(host, ports.next().unwrap_or_default(), token), ports.len()) {
+            (Err(ListenError::Address { .. }), 1..) => {}
+            (listening, _) => break listening?,
+        }
     };
-    Ok(server?)
+    if host.is_loopback() {
+        kept::write(&KeptAccess { token: server.token().to_owned(), port: server.port() });
+    }
+    Ok(server)
 }
 
 /// Prints the address of the page, and opens it.
@@ -229,6 +270,12 @@ impl LiveArguments {
             "`--first` is about a simulated board: it does not work with `--on`"
         );
         Ok(())
+    }
+
+    /// Reads and compiles what the board is made of; `None` if a program has errors, which have been reported.
+    fn setup(&self) -> Result<Option<Setup>> {
+        let started = Started { programs: &self.programs, first: &self.beside.first };
+        Setup::new(started, &self.board, &self.compiler)
     }
 
     /// What the page shows beside the board.

@@ -1,0 +1,87 @@
+//! The machine file while its board is shown: one that is saved is applied when the board begins again.
+
+use cc67_host::{Session, Target};
+use serde_json::{Value, json};
+
+use super::log::Voice;
+use super::{Stage, saved};
+use crate::desk::Desk;
+
+/// The machine file since the board was made with it.
+#[derive(Debug, Default)]
+pub(super) enum MachineState {
+    /// It is the same.
+    #[default]
+    Same,
+    /// It was saved.
+    Saved,
+    /// It was saved with an error.
+    Wrong(String),
+    /// It was saved, and a page has requested a board of it.
+    Wanted,
+}
+
+impl<T: Target> Stage<T> {
+    /// Looks at the machine file from now on.
+    pub(super) fn watch_machine(&self, desk: &std::sync::Arc<Desk>) {
+        if let Some(path) = &self.show.machine.path {
+            saved::watch_machine(path.clone(), &self.programs.watch, desk);
+        }
+    }
+
+    /// The machine file was saved.
+    pub(super) fn machine_saved(&mut self, session: &Session<T>, checked: Result<(), String>) {
+        self.programs.machine = match checked {
+            Ok(()) => MachineState::Saved,
+            Err(text) => MachineState::Wrong(text),
+        };
+        if let Some(text) = self.machine_text() {
+            self.log.say(session.tick(), Voice::Remark, text);
+        }
+        self.broadcast(&self.machine());
+    }
+
+    /// The machine file, as a message to pages.
+    pub(super) fn machine(&self) -> Value {
+        let is_wrong = matches!(self.programs.machine, MachineState::Wrong(_));
+        json!({ "kind": "machine", "text": self.machine_text(), "wrong": is_wrong })
+    }
+
+    fn machine_text(&self) -> Option<String> {
+        let name = self.show.machine.path.as_ref()?.display();
+        match &self.programs.machine {
+            MachineState::Same | MachineState::Wanted => None,
+            MachineState::Saved if self.show.machine.can_rebuild => {
+                Some(format!("{name} is saved: Restart applies it"))
+            }
+            MachineState::Saved => {
+                Some(format!("{name} is saved: this board keeps the old one until cc67 is started again"))
+            }
+            MachineState::Wrong(text) => Some(format!("{text}; this board keeps the machine that it has")),
+        }
+    }
+
+    /// Begins again with a machine file that was saved; returns whether that is what Restart means now.
+    pub(super) fn wants_new_machine(&mut self) -> Result<bool, String> {
+        match &self.programs.machine {
+            MachineState::Wrong(text) => Err(text.clone()),
+            MachineState::Saved if self.show.machine.can_rebuild => {
+                self.programs.machine = MachineState::Wanted;
+                Ok(true)
+            }
+            MachineState::Same | MachineState::Saved | MachineState::Wanted => Ok(false),
+        }
+    }
+
+    /// Whether a page has requested a board of the machine file that was saved.
+    pub(super) const fn is_rebuild_wanted(&self) -> bool {
+        matches!(self.programs.machine, MachineState::Wanted)
+    }
+
+    /// There is no board of that machine file.
+    pub(super) fn refuse_rebuild(&mut self, text: &str) {
+        self.programs.machine = MachineState::Wrong(text.to_owned());
+        self.broadcast(&self.machine());
+        self.broadcast(&json!({ "kind": "problem", "text": text }));
+    }
+}
