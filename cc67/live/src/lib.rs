@@ -29,7 +29,7 @@ mod names;
 mod request;
 mod server;
 
-pub use board::{LiveView, ShowEnd, Wishes};
+pub use board::{Company, LiveView, ShowEnd, Wishes};
 pub use control::TimeControl;
 pub use server::{ListenError, Server};
 

@@ -32,7 +32,7 @@ fn errors_are_shown_as_in_the_terminal_and_reload_says_that_nothing_is_loaded() 
     browser.open(&live.url);
     browser.until(&shows("#console", "homing"));
 
-    folder.write("home.c", &PROGRAM.replace("Zero(0)", "Zeroo(0)"));
+    folder.write("home.c", PROGRAM.replace("Zero(0)", "Zeroo(0)"));
     browser.until(&shows("#source .head", "home.c:16:5: "));
     // The line, a caret under the word, and help, as the compiler writes them.
     browser.until(&shows("#source .report", "^^^^^"));

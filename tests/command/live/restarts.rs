@@ -23,7 +23,7 @@ fn an_open_page_finds_the_server_that_was_started_again() {
     let locked = "['#bar', '#panels'].every((part) => document.querySelector(part).inert)";
     browser.until(locked);
 
-    folder.write("home.c", &PROGRAM.replace("homing", "homing again"));
+    folder.write("home.c", PROGRAM.replace("homing", "homing again"));
     let second = Live::start_at(&folder, &port, &["home.c"]);
     assert_eq!(second.url, url, "the token is kept for the project");
     browser.until(&shows("#console", "homing again"));

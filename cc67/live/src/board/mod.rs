@@ -163,13 +163,13 @@ struct Stage<T: Target> {
     access: PageAccess,
 }
 
-/// Who is with a board besides its pages.
+/// The users of a board besides its pages.
 #[derive(Debug)]
-pub(crate) struct Company<T: Target> {
-    /// Who may stop the board.
-    pub(crate) attendant: Option<Box<dyn Attendant<T>>>,
-    /// Who sees events before pages do.
-    pub(crate) keeper: Option<Box<dyn Keeper<T>>>,
+pub struct Company<T: Target> {
+    /// A debugger or the like, which may stop the board.
+    pub attendant: Option<Box<dyn Attendant<T>>>,
+    /// The keeper of its flash, which sees events before pages do.
+    pub keeper: Option<Box<dyn Keeper<T>>>,
 }
 
 impl<T: Target> Stage<T> {

@@ -13,11 +13,11 @@ use std::thread;
 use std::time::Duration;
 
 use cc67_host::seats::{Closer, Seat, Seats};
-use cc67_host::{Attendant, Session, Target};
+use cc67_host::{Session, Target};
 
+use crate::Show;
 use crate::board::{self, Company, LiveView, ShowEnd};
 use crate::desk::{Desk, Incoming};
-use crate::{Keeper, Show};
 use gate::Gate;
 use http::{Head, HttpAnswer};
 
@@ -92,15 +92,14 @@ impl Server {
     }
 
     /// Runs a board and shows it, until its time has passed or another machine is wanted, for which `check` says
-    /// whether there is a board; an attendant may stop it, a keeper sees its events first.
+    /// whether there is a board.
     pub fn run<T: Target>(
         &self,
         session: &mut Session<T>,
         show: Show,
-        (attendant, keeper): (Option<Box<dyn Attendant<T>>>, Box<dyn Keeper<T>>),
+        company: Company<T>,
         check: &mut dyn FnMut() -> Result<(), String>,
     ) -> ShowEnd {
-        let company = Company { attendant, keeper: Some(keeper) };
         board::run(session, show, company, check, (&self.desk, &self.requests))
     }
 

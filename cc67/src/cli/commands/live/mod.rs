@@ -13,7 +13,9 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail, ensure};
 use cc67_host::{Target, UserProgram};
-use cc67_live::{ListenError, Program, Server, Show, ShowEnd, ShownMachine, TestOption, TimeControl};
+use cc67_live::{
+    Company, ListenError, Program, Server, Show, ShowEnd, ShownMachine, TestOption, TimeControl,
+};
 use clap::{Arg, Args, Parser};
 
 use crate::cli::args::attach::AttachArguments;
@@ -174,7 +176,8 @@ impl Work for LivePage<'_> {
                 server.insert(listening)
             }
         };
-        let company = (rig.attendant.take(), Box::new(rig.flash_keeper()) as _);
+        let keeper = Box::new(rig.flash_keeper());
+        let company = Company { attendant: rig.attendant.take(), keeper: Some(keeper) };
         let mut check = || match arguments.setup() {
             Ok(Some(_)) => Ok(()),
             Ok(None) => Err("the board is not made again: a program has errors".to_owned()),
