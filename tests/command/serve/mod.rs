@@ -45,6 +45,9 @@ impl Server {
     }
 
     fn spawn(mut command: Command, scratch: Scratch, count: usize) -> Self {
+        // Where it keeps the token of a page.
+        let state = scratch.path().join(".state");
+        command.env("XDG_STATE_HOME", &state).env("LOCALAPPDATA", &state);
         let mut child = command.stderr(Stdio::piped()).spawn().expect("the command under test starts");
         let stderr = BufReader::new(child.stderr.take().expect("it is piped"));
         let (sender, lines) = channel();
