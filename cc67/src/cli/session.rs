@@ -160,6 +160,7 @@ impl Setup {
     }
 
     /// Returns whether the board is a connected controller.
+    #[cfg(feature = "live")]
     pub(crate) const fn is_of_controller(&self) -> bool {
         self.controller.is_some()
     }
