@@ -241,7 +241,7 @@ impl<T: Target> Session<T> {
         Ok(())
     }
 
-    /// Pauses a thread while the others run ([`Capability::Pauses`](crate::Capability::Pauses)).
+    /// Pauses a thread while the others run ([`Capability::Pauses`]).
     ///
     /// # Errors
     /// The target cannot, or does not answer.
