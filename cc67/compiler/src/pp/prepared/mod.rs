@@ -33,6 +33,9 @@ use super::token::{Token, TokenKind};
 use index::{At, BOARD, INDEX, PREDEFINED, Piece, TEXTS};
 use state::HeaderState;
 
+/// Functions, and a variable that the code of a call uses without naming it: both ways to read the headers declare it.
+const USED_BY_CODE: [(&[u8], &[u8]); 1] = [(b"ThreadDone", b"CurrentThread")];
+
 impl Preprocessor<'_> {
     /// The definition in force for a name; the prepared texts are searched for it when it is met first.
     pub(super) fn find_macro(&mut self, name: Name) -> Option<MacroId> {
@@ -136,8 +139,10 @@ impl Preprocessor<'_> {
     fn find_needed(&self, tokens: &[Token], seen: &mut EntitySet<Name>, needed: &mut Vec<usize>) {
         for token in tokens.iter().filter(|token| token.kind == TokenKind::Identifier) {
             if seen.insert(token.name) {
-                let word = INDEX.find(self.names.get(token.name).as_bytes());
-                needed.extend(word.and_then(index::IndexedName::piece));
+                let name = self.names.get(token.name).as_bytes();
+                let used = USED_BY_CODE.iter().filter(|(caller, _)| *caller == name).map(|(_, used)| *used);
+                let words = std::iter::once(name).chain(used).filter_map(|name| INDEX.find(name));
+                needed.extend(words.filter_map(index::IndexedName::piece));
             }
         }
     }
