@@ -8,6 +8,7 @@ export class Link {
   #token;
   #pause = 250;
   #version = null;
+  #beforeAction = () => {};
 
   constructor(token) {
     this.#token = token;
@@ -22,7 +23,13 @@ export class Link {
 
   /** Asks for something. */
   ask(what, more = {}) {
+    if (what !== "goto") this.#beforeAction();
     if (this.#socket?.readyState === WebSocket.OPEN) this.#socket.send(JSON.stringify({ do: what, ...more }));
+  }
+
+  /** Calls this before anything but a way through time is sent: what was asked for earlier is done earlier. */
+  before(listener) {
+    this.#beforeAction = listener;
   }
 
   connect() {

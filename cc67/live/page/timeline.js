@@ -30,6 +30,12 @@ export function mountTimeline(section, link) {
     link.ask("goto", { tick: asked });
   }
 
+  // An action belongs to the moment to which the slider was dragged.
+  link.before(() => {
+    if (wanted === null) return;
+    asked = null;
+    ask();
+  });
   slider.addEventListener("pointerdown", () => { held = true; });
   addEventListener("pointerup", () => { held = false; });
   slider.addEventListener("input", () => {
