@@ -20,6 +20,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use cranelift_entity::EntitySet;
+use kmotiondef::firmware::Function;
 
 use crate::names::{Name, word};
 use crate::source::{FileId, Span};
@@ -33,8 +34,8 @@ use super::token::{Token, TokenKind};
 use index::{At, BOARD, INDEX, PREDEFINED, Piece, TEXTS};
 use state::HeaderState;
 
-/// Functions, and a variable that the code of a call uses without naming it: both ways to read the headers declare it.
-const USED_BY_CODE: [(&[u8], &[u8]); 1] = [(b"ThreadDone", b"CurrentThread")];
+/// The variable that the code of a call of `ThreadDone` uses without naming it: both ways to read the headers declare it.
+const USED_BY_THREAD_DONE: &str = "CurrentThread";
 
 impl Preprocessor<'_> {
     /// The definition in force for a name; the prepared texts are searched for it when it is met first.
@@ -140,7 +141,8 @@ impl Preprocessor<'_> {
         for token in tokens.iter().filter(|token| token.kind == TokenKind::Identifier) {
             if seen.insert(token.name) {
                 let name = self.names.get(token.name).as_bytes();
-                let used = USED_BY_CODE.iter().filter(|(caller, _)| *caller == name).map(|(_, used)| *used);
+                let ends_thread = name == Function::ThreadDone.name().as_bytes();
+                let used = ends_thread.then_some(USED_BY_THREAD_DONE.as_bytes());
                 let words = std::iter::once(name).chain(used).filter_map(|name| INDEX.find(name));
                 needed.extend(words.filter_map(index::IndexedName::piece));
             }
