@@ -7,6 +7,7 @@
 //!
 //! ```text
 //! main.rs           the process
+//! record.rs         the record of a compared run, which vectors share
 //! cli/commands/     one file for each subcommand: arguments in, work done, exit code out
 //! cli/session.rs    arguments → configuration → a session, on the engine that was requested
 //! cli/compile/      files → programs, with the compiler's diagnostics
@@ -25,5 +26,6 @@
 #![forbid(unsafe_code)]
 
 pub mod cli;
+pub mod record;
 
 pub use cli::limits;

@@ -34,7 +34,7 @@ fn number(variable: &str, default: u64) -> u64 {
     std::env::var(variable).ok().and_then(|text| text.parse().ok()).unwrap_or(default)
 }
 
-/// What can be seen of a run.
+/// Everything that can be seen of a run.
 #[derive(Debug, PartialEq)]
 struct Seen {
     events: Vec<Event>,

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use cc67_host::{Session, Setup, UserProgram};
 use compiler::target::Target;
+use harness::random::Random;
 use harness::root;
 use kmotiondef::{Cycles, ThreadId, Ticks};
 use runtime::stimulus::Stimulus;
@@ -46,18 +47,6 @@ const INSTANTS: usize = 10;
 
 /// Most ticks of a program: 1.8 s.
 const LONGEST: u64 = 20_000;
-
-/// A small generator of numbers (Marsaglia's xorshift).
-struct Numbers(u64);
-
-impl Numbers {
-    fn below(&mut self, limit: u64) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0 % limit
-    }
-}
 
 /// A program with what is beside it, and with those that its first line names for other threads.
 fn setup(name: &str, target: Target) -> Setup {
@@ -136,7 +125,7 @@ impl Run {
 }
 
 /// Runs a program straight on, then with snapshots at random instants, and then from each of them.
-fn check<E: Engine>(name: &str, target: Target, numbers: &mut Numbers) {
+fn check<E: Engine>(name: &str, target: Target, random: &mut Random) {
     let session = || setup(name, target).session_on(E::default()).expect(name);
     let mut straight = session();
     let mut events = Vec::new();
@@ -146,7 +135,7 @@ fn check<E: Engine>(name: &str, target: Target, numbers: &mut Numbers) {
     drop(straight);
 
     let mut session = session();
-    let mut instants: Vec<u64> = (0..INSTANTS).map(|_| numbers.below(end.get())).collect();
+    let mut instants: Vec<u64> = (0..INSTANTS).map(|_| random.draw() % end.get()).collect();
     instants.sort_unstable();
     let mut events = Vec::new();
     let kept: Vec<_> = instants
@@ -165,7 +154,7 @@ fn check<E: Engine>(name: &str, target: Target, numbers: &mut Numbers) {
         session.restore(snapshot).expect("it is of this board");
         assert_eq!(session.tick(), snapshot.tick());
         // Some way on, and again from the same instant.
-        let way = session.tick().get() + numbers.below(50);
+        let way = session.tick().get() + random.draw() % 50;
         session.advance(Ticks::new(way.min(end.get())), &mut |_| ());
         session.restore(snapshot).expect("it is of this board");
         let rest = Run::to(&mut session, end);
@@ -175,9 +164,9 @@ fn check<E: Engine>(name: &str, target: Target, numbers: &mut Numbers) {
 }
 
 fn check_all<E: Engine>(target: Target) {
-    let mut numbers = Numbers(0x5EED_0019);
+    let mut random = Random::new(0x5EED_0019);
     for name in PROGRAMS {
-        check::<E>(name, target, &mut numbers);
+        check::<E>(name, target, &mut random);
     }
 }
 

@@ -11,6 +11,7 @@ use std::path::PathBuf;
 use cc67_host::{BootedFirmware, Session, Setup, Target, Timeline, UserProgram};
 use compiler::target::Target as CodeTarget;
 use harness::Scratch;
+use harness::random::Random;
 use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE};
 use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::{Event, EventKind};
@@ -101,16 +102,10 @@ fn seen<T: Target>(session: &Session<T>) -> Seen {
     }
 }
 
-/// Random ticks of the trial (Marsaglia's xorshift).
+/// Random ticks of the trial.
 fn instants() -> Vec<Ticks> {
-    let mut state = 0x5EED_u64;
-    let mut next = || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        Ticks::new(1 + state % (END - 1))
-    };
-    (0..INSTANTS).map(|_| next()).collect()
+    let mut random = Random::new(0x5EED);
+    (0..INSTANTS).map(|_| Ticks::new(1 + random.draw() % (END - 1))).collect()
 }
 
 /// The console lines of a session, each with its time.

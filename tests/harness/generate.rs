@@ -11,6 +11,8 @@
 
 use std::fmt::Write as _;
 
+use crate::random::Random;
+
 /// Types of variables, each with whether it is floating.
 const TYPES: &[(&str, bool)] = &[
     ("char", false),
@@ -56,7 +58,7 @@ struct Variable {
 }
 
 struct Writer {
-    state: u64,
+    random: Random,
     prefix: String,
     text: String,
     indent: usize,
@@ -72,9 +74,8 @@ struct Writer {
 impl Writer {
     fn new(seed: u64, prefix: &str) -> Self {
         // Neighbouring seeds must not give similar programs.
-        let state = (seed + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         Self {
-            state,
+            random: Random::of_seed(seed),
             prefix: prefix.to_owned(),
             text: String::new(),
             indent: 0,
@@ -87,15 +88,11 @@ impl Writer {
     }
 
     fn below(&mut self, end: usize) -> usize {
-        // An xorshift generator (Marsaglia); the upper half is the better one.
-        self.state ^= self.state << 13;
-        self.state ^= self.state >> 7;
-        self.state ^= self.state << 17;
-        (self.state >> 33) as usize % end
+        self.random.below(end)
     }
 
     fn pick<'a>(&mut self, from: &[&'a str]) -> &'a str {
-        from[self.below(from.len())]
+        self.random.pick(from)
     }
 
     fn line(&mut self, text: &str) {

@@ -8,6 +8,7 @@ mod measure;
 pub mod motions;
 pub mod oracles;
 pub mod polling;
+pub mod random;
 pub mod stages;
 pub mod usage;
 pub mod vendor;

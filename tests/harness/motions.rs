@@ -7,6 +7,8 @@
 
 use std::fmt::Write as _;
 
+use crate::random::Random;
+
 /// Axes of the board.
 const AXES: u64 = 8;
 /// From one slice of a thread that is alone to the next, in µs.
@@ -60,7 +62,7 @@ enum Moved {
 }
 
 struct MotionWriter {
-    state: u64,
+    random: Random,
     /// The first axis, and the one after the last.
     first: u64,
     end: u64,
@@ -71,8 +73,8 @@ struct MotionWriter {
 
 impl MotionWriter {
     fn new(seed: u64) -> Self {
-        let state = (seed * 2 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        let mut writer = Self { state, first: 0, end: 0, slices: 0, text: HEAD.to_owned() };
+        let random = Random::new((seed * 2 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        let mut writer = Self { random, first: 0, end: 0, slices: 0, text: HEAD.to_owned() };
         // Neighbouring seeds begin alike.
         for _ in 0..8 {
             writer.below(2);
@@ -81,10 +83,7 @@ impl MotionWriter {
     }
 
     fn below(&mut self, limit: u64) -> u64 {
-        self.state ^= self.state << 13;
-        self.state ^= self.state >> 7;
-        self.state ^= self.state << 17;
-        self.state % limit
+        self.random.draw() % limit
     }
 
     fn pick<'a>(&mut self, from: &[&'a str]) -> &'a str {

@@ -5,6 +5,8 @@
 
 use std::fmt::Write as _;
 
+use crate::random::Random;
+
 /// The machine and its surroundings for all programs: a switch that axis 0 closes, and inputs that change by themselves.
 pub const MACHINE: &str = "\
 [[switch]]
@@ -30,7 +32,7 @@ at = 0.09
 adc = { 0 = 3000 }
 ";
 
-/// What begins every program.
+/// The beginning of every program.
 const HEAD: &str = "\
 #include \"KMotionDef.h\"
 
@@ -61,27 +63,23 @@ main()
 /// The programs of a number, for threads 1, 2 and so on.
 #[must_use]
 pub fn programs(seed: u64) -> Vec<String> {
-    let mut writer = Writer { state: (seed + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15), text: String::new() };
+    let mut writer = Writer { random: Random::of_seed(seed), text: String::new() };
     let threads = [1, 1, 1, 2, 2, 3, 4, 7][writer.below(8)];
     (0..threads).map(|_| writer.program()).collect()
 }
 
 struct Writer {
-    state: u64,
+    random: Random,
     text: String,
 }
 
 impl Writer {
     fn below(&mut self, end: usize) -> usize {
-        // An xorshift generator (Marsaglia); the upper half is the better one.
-        self.state ^= self.state << 13;
-        self.state ^= self.state >> 7;
-        self.state ^= self.state << 17;
-        (self.state >> 33) as usize % end
+        self.random.below(end)
     }
 
     fn pick<'a>(&mut self, from: &[&'a str]) -> &'a str {
-        from[self.below(from.len())]
+        self.random.pick(from)
     }
 
     fn program(&mut self) -> String {

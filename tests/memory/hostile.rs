@@ -6,35 +6,20 @@
 
 use harness::is_long;
 use harness::oracles::{read_file, valid_files};
+use harness::random::Random;
 
 use crate::{MEMORY, alone};
 
 /// Most bytes that reading one file may take.
 const LIMIT: usize = 64 << 20;
 
-/// A sequence of numbers that looks random and is the same on every host.
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
-    fn below(&mut self, limit: usize) -> usize {
-        (self.next() % limit.max(1) as u64) as usize
-    }
-}
-
 /// Changes a few bytes, mostly of the headers, to values that are often awkward; may cut the end off.
-fn mutate(bytes: &mut Vec<u8>, numbers: &mut Numbers) {
+fn mutate(bytes: &mut Vec<u8>, numbers: &mut Random) {
     const AWKWARD: [u8; 8] = [0, 1, 2, 0x7f, 0x80, 0xfe, 0xff, 0x10];
     for _ in 0..=numbers.below(6) {
         let range = if numbers.below(3) == 0 { bytes.len() } else { bytes.len().min(200) };
-        let at = numbers.below(range);
-        let value = if numbers.below(2) == 0 { AWKWARD[numbers.below(8)] } else { numbers.next() as u8 };
+        let at = numbers.below(range.max(1));
+        let value = if numbers.below(2) == 0 { AWKWARD[numbers.below(8)] } else { numbers.draw() as u8 };
         if let Some(byte) = bytes.get_mut(at) {
             *byte = value;
         }
@@ -44,8 +29,8 @@ fn mutate(bytes: &mut Vec<u8>, numbers: &mut Numbers) {
     }
 }
 
-fn random(numbers: &mut Numbers) -> Vec<u8> {
-    let mut bytes: Vec<u8> = (0..numbers.below(400)).map(|_| numbers.next() as u8).collect();
+fn random(numbers: &mut Random) -> Vec<u8> {
+    let mut bytes: Vec<u8> = (0..numbers.below(400)).map(|_| numbers.draw() as u8).collect();
     // Most of what does not begin like an image is refused at once.
     if numbers.below(2) == 0 {
         bytes.splice(..bytes.len().min(2), [0xC2, 0]);
@@ -62,7 +47,7 @@ fn hostile_files_do_no_harm() {
     let _alone = alone();
     let rounds = if is_long() { 1_000_000 } else { 50_000 };
     let seeds = valid_files();
-    let mut numbers = Numbers(0x6701_C0FF);
+    let mut numbers = Random::new(0x6701_C0FF);
     let (mut accepted, mut most) = (0, 0);
     for round in 0..rounds {
         let bytes = if round % 4 == 3 {

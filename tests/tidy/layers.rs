@@ -219,6 +219,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
             ("reports", &["cli/report"]),
             ("arguments", &["cli/args"]),
             ("input and output", &["cli/io"]),
+            ("records", &["record"]),
         ],
     ),
 ];

@@ -227,8 +227,8 @@ mod tests {
     use super::*;
     use crate::testing::{HEAD_WORDS, program};
 
-    /// Where the iterations of the loops of `body` begin, as instructions counted from the first; `0x10008000` only
-    /// reads.
+    /// Checks at which instructions, counted from the first, the iterations of the loops of `body` begin; `0x10008000`
+    /// only reads.
     fn check(body: &str, expected: &[usize]) {
         let program = program(1, &format!("@main: func sig0, 7, 0\ntypes 0x3f00\n{body}"));
         let found = polling_loops(&program, &|address| match address.get() {

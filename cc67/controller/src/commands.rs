@@ -1,4 +1,4 @@
-//! What a PC does to the board for the requests of programs, as commands of a controller.
+//! The acts of a PC for the requests of programs, as commands of a controller.
 
 use cc67_wire::{Client, WireError};
 use runtime::RemoteBoard;

@@ -75,11 +75,11 @@ struct Resident {
 /// The monitor of a board, which is loaded for its first request.
 #[derive(Debug)]
 pub(crate) struct Monitor {
-    /// How it is compiled.
+    /// The options of its compilation.
     options: Options,
     /// The version of the firmware that it is linked for.
     linked_for: String,
-    /// Whether a view has allowed it.
+    /// A view has allowed it.
     is_allowed: bool,
     resident: Option<Resident>,
     /// The thread that it was loaded into last, once for a message.
@@ -138,7 +138,7 @@ impl Monitor {
         Ok(())
     }
 
-    /// What was read is no longer so.
+    /// Forgets what was read: the memory has changed.
     pub(crate) fn note_change(&mut self) {
         self.recent.clear();
     }

@@ -48,7 +48,7 @@ impl UserProgram {
     /// Compiles a source that is in memory and links it for a thread; `path` is its name in messages.
     ///
     /// # Errors
-    /// What the compiler says.
+    /// The source has errors, or it cannot be linked.
     pub fn compile_text(
         path: &Path,
         text: Vec<u8>,

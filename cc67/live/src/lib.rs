@@ -74,7 +74,7 @@ pub struct ShownMachine {
     pub file: MachineFile,
     /// The path of its file, to be looked at while the board is shown.
     pub path: Option<PathBuf>,
-    /// Whether there can be another board when that file is saved.
+    /// There can be another board when that file is saved.
     pub can_rebuild: bool,
 }
 

@@ -29,7 +29,7 @@ pub(crate) struct Used {
     pub(crate) is_read: bool,
     /// Whether a program writes it.
     pub(crate) is_written: bool,
-    /// Whether it is the first of a group: a program adds a variable to its name.
+    /// It is the first of a group: a program adds a variable to its name.
     pub(crate) is_base: bool,
 }
 

@@ -269,7 +269,7 @@ impl Setup {
         Ok(self.rig_of_any()?.session)
     }
 
-    /// The same with a recording: on a connected controller programs start when it has begun.
+    /// Prepares for a recording: on a connected controller programs start when it has begun.
     pub(crate) fn recorded(mut self) -> Self {
         if let Some(Connected { terms, .. }) = &mut self.controller {
             (terms.start, terms.has_monitor) = (ProgramStart::WithTime, true);

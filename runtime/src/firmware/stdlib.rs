@@ -218,7 +218,7 @@ const MOST_DIGITS: usize = 380;
 struct Converted {
     text: Vec<u8>,
     point: i32,
-    /// Whether it has become longer by rounding.
+    /// It has become longer by rounding.
     has_grown: bool,
 }
 

@@ -9,10 +9,10 @@ use std::fmt;
 use kmotiondef::firmware::Function;
 use kmotiondef::{AxisId, Bit, CodeAddr, GuestAddr, ThreadId};
 
-/// How much a remark matters.
+/// The weight of a remark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// Only worth making to who asks for all of them.
+    /// A remark for those who ask for all of them.
     Detail,
     /// What a program may have forgotten; a machine file can switch these off.
     Hint,

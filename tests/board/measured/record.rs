@@ -1,5 +1,6 @@
 //! The record that a program leaves in the gather buffer: what it saw slice by slice, and everything at its end.
 
+use cc67::record::{PATH, PATH_VARIABLES, PRECISION, SAMPLES, STATES};
 use cc67_host::Session;
 use cc67_host::target::Target;
 use kmotiondef::structs::Chan;
@@ -8,52 +9,8 @@ use kmotiondef::{CType, GuestAddr};
 use serde_json::Value as Json;
 use vm::memory::Scalar;
 
-/// Words of the record: the axes as they are in memory, the variables of the path, states of the axes, and the rows.
-const PATH: u32 = 2784;
-const STATES: u32 = 2900;
-const SAMPLES: u32 = 2944;
-
-/// The tolerance of a double, relative to the larger of it and 1: divisions differ in the last bit.
-const PRECISION: f64 = 1e-9;
-
 /// Columns that are single precision in memory.
 const SINGLES: [&str; 4] = ["ch0->Output", "ch0->integrator", "ch0->Backlash", "ch0->x1last"];
-
-/// Variables of the path, doubles from [`PATH`] on.
-const PATH_VARIABLES: [&str; 32] = [
-    "CS0_t",
-    "TimeExecuted",
-    "TimeBase",
-    "TimeBaseDesired",
-    "TimeBaseDelta",
-    "TimeDownloaded",
-    "TimeLost",
-    "LastFRO",
-    "LastRapidFRO",
-    "DecelTime",
-    "NomDecel2TB2",
-    "StoppingState",
-    "Flushed",
-    "DoingRapid",
-    "CoordSystem0",
-    "LastCoordSystem0",
-    "ParametricIndex",
-    "ParametricIndexWrapped",
-    "KLP",
-    "TauKLP",
-    "VirtualBits",
-    "CheckDoneBuf",
-    "CheckDoneXYZABC",
-    "CheckDone0",
-    "CheckDone1",
-    "CheckDone2",
-    "CheckDone3",
-    "CheckDone4",
-    "CheckDone5",
-    "CheckDone6",
-    "CheckDone7",
-    "VirtualBitsEx",
-];
 
 /// A value, and whether it has single precision.
 struct Value {

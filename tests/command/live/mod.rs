@@ -33,7 +33,7 @@ impl Live {
         Self::start_at(folder, "0", arguments)
     }
 
-    /// The same on a port.
+    /// Starts it in a folder, on a port.
     fn start_at(folder: &Scratch, port: &str, arguments: &[&str]) -> Self {
         let state = folder.path().join(".state");
         let mut child = Command::new(command())

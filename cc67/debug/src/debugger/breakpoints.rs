@@ -8,7 +8,7 @@ use super::values::Prepared;
 use super::{DebugError, Debugger, HitCondition, file_name, place_of};
 use crate::programs::Statement;
 
-/// What a breakpoint is about.
+/// The kind of a breakpoint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum BreakpointKind {
     /// Instructions: where to stop in words, and their addresses.
@@ -24,11 +24,11 @@ pub enum BreakpointKind {
 pub struct Breakpoint {
     /// Its number, counted from 1.
     pub id: u32,
-    /// What it is about.
+    /// Its kind.
     pub kind: BreakpointKind,
     /// Stops only where this is not 0, an expression of the program.
     pub condition: Option<String>,
-    /// Passes so often before it stops.
+    /// The number of crossings that do not stop, counted down.
     pub ignore: u64,
     /// Prints this in place of stopping; `{expression}` is its value.
     pub log: Option<String>,
@@ -36,7 +36,7 @@ pub struct Breakpoint {
     pub is_temporary: bool,
     /// It is in effect.
     pub is_enabled: bool,
-    /// How often it was met.
+    /// The number of times that it was met.
     pub hits: u64,
     /// At which of these times it stops; `None` at each.
     pub stops_at: Option<HitCondition>,
@@ -255,7 +255,7 @@ impl<T: Target> Debugger<T> {
         id
     }
 
-    /// What a person means by a place, and what there is to say of it.
+    /// Resolves a place as a person writes it; returns its statements and a note on them.
     pub(crate) fn resolve(
         &self,
         place: &str,

@@ -182,7 +182,7 @@ impl<T: Target> Timeline<T> {
         self.branches.iter().find(|branch| branch.id == id).map(|branch| self.common(branch))
     }
 
-    /// The same of a branch that there is.
+    /// Returns the tick up to which a branch has the inputs of the present run.
     fn common(&self, branch: &Branch<T>) -> Ticks {
         let pairs = self.journal.iter().zip(&branch.journal);
         let same = pairs.take_while(|(one, other)| one == other).count();

@@ -73,7 +73,7 @@ impl<T: Target> Stage<T> {
         }
     }
 
-    /// Whether a page has requested a board of the machine file that was saved.
+    /// Returns whether a page has requested a board of the machine file that was saved.
     pub(super) const fn is_rebuild_wanted(&self) -> bool {
         matches!(self.programs.machine, MachineState::Wanted)
     }

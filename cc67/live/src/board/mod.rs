@@ -65,7 +65,7 @@ const SIGNALS: &str = "dest0,dest1,dest2";
 /// Ticks within which a thread has a slice, if one is active: all seven, and the primary thread in between.
 const ROTATION: u64 = 30;
 
-/// Why a board is not shown any more.
+/// The reason why a board is not shown any more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum ShowEnd {

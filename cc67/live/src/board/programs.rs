@@ -23,7 +23,7 @@ pub(super) struct Programs {
     waiting: BTreeMap<ThreadId, UserProgram>,
     /// Those that were loaded in place of the first ones.
     loaded: BTreeMap<ThreadId, UserProgram>,
-    /// What is wrong with those that were saved with errors.
+    /// The errors of those that were saved with some.
     wrong: BTreeMap<ThreadId, Vec<CompileMessage>>,
     /// The machine file since the board was made.
     pub(super) machine: MachineState,

@@ -13,9 +13,9 @@ use runtime::MachineFile;
 use crate::desk::{Compiled, Desk, Incoming};
 use crate::{Program, names};
 
-/// How often files are looked at.
+/// The interval at which files are looked at.
 const LOOK: Duration = Duration::from_millis(200);
-/// How long a file may be away while an editor replaces it.
+/// The time for which a file may be away while an editor replaces it.
 const AWAY: Duration = Duration::from_millis(100);
 
 /// Files are looked at as long as there is one of these.
@@ -86,7 +86,7 @@ pub(super) fn watch_machine(path: PathBuf, watch: &Watch, desk: &Arc<Desk>) {
     });
 }
 
-/// Whether what a machine file holds is right, else `file:line:column: reason`.
+/// Checks a machine file; the error is `file:line:column: reason`.
 fn check_machine(path: &Path, bytes: Option<&[u8]>) -> Result<(), String> {
     let name = path.display();
     let bytes = bytes.ok_or_else(|| format!("{name} cannot be read"))?;

@@ -11,7 +11,7 @@ use super::http::Head;
 /// Hexadecimal digits of a token.
 const TOKEN: usize = 32;
 
-/// Whether a text can be a token.
+/// Returns whether a text can be a token.
 fn is_token(text: &str) -> bool {
     text.len() == TOKEN && text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
 }

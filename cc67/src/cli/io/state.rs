@@ -1,4 +1,4 @@
-//! What cc67 keeps between two runs, in the folder of the system for that.
+//! The folder of the system in which cc67 keeps something between two runs.
 
 use std::env;
 use std::path::PathBuf;

@@ -41,7 +41,7 @@ pub struct RecordedCell {
     pub address: GuestAddr,
     /// Its type.
     pub kind: GatherType,
-    /// What is added to the value that was recorded.
+    /// The number that is added to the value that was recorded.
     pub offset: f64,
 }
 

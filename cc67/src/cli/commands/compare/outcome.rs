@@ -43,7 +43,7 @@ pub(super) struct Outcome {
     /// What the serial port has sent, if somebody listens.
     serial: Vec<u8>,
     user_data: Vec<u32>,
-    /// What a board that was not reset held before the run.
+    /// The state before the run, of a board that was not reset.
     before: Before,
     /// Commanded and measured position of each axis.
     pub(super) axes: Vec<(f64, f64)>,
@@ -57,7 +57,7 @@ pub(super) struct Outcome {
     has_kstep: bool,
 }
 
-/// What a board that was not reset held before a run.
+/// The state of a board that was not reset, before a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Before {
     user_data: Vec<u32>,
@@ -102,7 +102,7 @@ impl Outcome {
         self.lines.retain(|line| line.1 != LineKind::Host);
     }
 
-    /// What the modelled board, or a controller, is left with.
+    /// Looks at what the modelled board, or a controller, is left with.
     pub(super) fn look_at_model<T: Target>(&mut self, rig: &Rig<T>) {
         let session = &rig.session;
         self.ticks = session.tick();

@@ -58,7 +58,7 @@ impl RandomArguments {
         if named.is_empty() { Area::ALL.to_vec() } else { named.to_vec() }
     }
 
-    /// Whether scenarios are compared instead of programs.
+    /// Returns whether scenarios are compared instead of programs.
     pub(super) const fn is_requested(&self) -> bool {
         self.random.is_some()
     }

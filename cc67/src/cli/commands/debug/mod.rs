@@ -144,7 +144,7 @@ fn note_active<T: Target>(shell: &Shell<T>) {
     }
 }
 
-/// What the arguments ask for; `None` if a program has errors, which have been reported.
+/// Makes the setup that the arguments ask for; `None` if a program has errors, which have been reported.
 fn setup(arguments: &DebugArguments) -> Result<Option<Setup>> {
     let started = Started { programs: &arguments.programs, first: &arguments.beside.first };
     Setup::new(started, &arguments.board, &arguments.compiler)

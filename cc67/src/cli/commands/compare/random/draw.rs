@@ -52,7 +52,7 @@ impl Draw {
         six_digits(low * libm::pow(high / low, exponent))
     }
 
-    /// The same with either sign.
+    /// A number of such a magnitude with either sign.
     pub(super) fn signed(&mut self, low: f64, high: f64) -> f64 {
         let magnitude = self.magnitude(low, high);
         if self.chance(50) { magnitude } else { -magnitude }

@@ -7,54 +7,15 @@ use kmotiondef::variables::GATHER_BUFFER;
 use kmotiondef::{AxisId, CType, GuestAddr, ThreadId, Ticks};
 use runtime::{Event, EventKind};
 
-use super::scenario::{SAMPLES, Scenario};
+use super::scenario::Scenario;
+use crate::record::{PATH, PATH_VARIABLES, PRECISION, SAMPLES, STATES};
 
 /// Ticks that the longest program takes; one that has stopped the board never ends.
 const LONGEST: u64 = 12_000;
 /// Ticks in which the texts that a program has printed reach the PC.
 const TO_THE_END: u64 = 300;
-/// Words of the gather buffer in which a program leaves the variables of the path, and the states of the axes.
-const PATH: u32 = 2784;
-const PATH_VARIABLES: [&str; 32] = [
-    "CS0_t",
-    "TimeExecuted",
-    "TimeBase",
-    "TimeBaseDesired",
-    "TimeBaseDelta",
-    "TimeDownloaded",
-    "TimeLost",
-    "LastFRO",
-    "LastRapidFRO",
-    "DecelTime",
-    "NomDecel2TB2",
-    "StoppingState",
-    "Flushed",
-    "DoingRapid",
-    "CoordSystem0",
-    "LastCoordSystem0",
-    "ParametricIndex",
-    "ParametricIndexWrapped",
-    "KLP",
-    "TauKLP",
-    "VirtualBits",
-    "CheckDoneBuf",
-    "CheckDoneXYZABC",
-    "CheckDone0",
-    "CheckDone1",
-    "CheckDone2",
-    "CheckDone3",
-    "CheckDone4",
-    "CheckDone5",
-    "CheckDone6",
-    "CheckDone7",
-    "VirtualBitsEx",
-];
-const STATES: u32 = 2900;
 /// Elements of `persist.UserData` that are compared.
 const USER_DATA: usize = 100;
-/// The tolerance of a double, relative to the larger of it and 1: quotients differ in the last bit.
-const PRECISION: f64 = 1e-9;
-
 /// A number at the end of a program.
 #[derive(Clone, Debug)]
 pub(super) struct EndValue {
@@ -258,7 +219,7 @@ impl Observation {
     }
 }
 
-/// Whether two numbers are equal: singles to the last bit, doubles nearly.
+/// Returns whether two numbers are equal: singles to the last bit, doubles nearly.
 fn is_equal(one: f64, two: f64, is_single: bool) -> bool {
     let is_same = one.to_bits() == two.to_bits() || one == two || one.is_nan() && two.is_nan();
     is_same || !is_single && (one - two).abs() <= PRECISION * two.abs().max(1.0)

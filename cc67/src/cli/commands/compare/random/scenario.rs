@@ -1,5 +1,6 @@
 //! A scenario: what is done on a board, in parts that can be left out one by one.
 
+use crate::record::SAMPLES;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
@@ -52,9 +53,6 @@ pub(super) struct Scenario {
     pub(super) columns: Vec<String>,
 }
 
-/// Words of the gather buffer before the samples: axes, variables of the path, states of the axes.
-pub(super) const SAMPLES: u32 = 2944;
-
 /// The declarations of every program that observes; the memory of a program is described in `tests/board/measured`.
 const HEAD: &str = "\
 int *g; double *r; int m; double *cs; double T0_; int dk_; int cbn; int k_;
@@ -67,7 +65,7 @@ void dump(void){ int k; dk_=0; WaitNextTimeSlice(); UserCallBack=dcb_; while(dk_
 ";
 
 impl Scenario {
-    /// Whether the PC sends lines to a board without programs.
+    /// Returns whether the PC sends lines to a board without programs.
     pub(super) fn is_session(&self) -> bool {
         self.slices == 0
     }
