@@ -20,10 +20,8 @@ const OTHER_LANGUAGES: &[(&str, &str)] = &[
     ("cc67/compiler/src/words/", "words of other systems, each with the board's word for it"),
     ("cc67/debug/src/words.rs", "commands of the debugger"),
     ("cc67/src/cli/commands/console/words.rs", "commands of the console"),
-    (
-        "cc67/src/cli/commands/compare/random/",
-        "statements and script commands that are drawn, columns of vectors",
-    ),
+    ("cc67/src/cli/commands/compare/random/", "statements and script commands that are drawn"),
+    ("cc67/src/record.rs", "columns of vectors"),
     ("cc67/src/cli/commands/explain/topics.rs", "topics"),
     ("cc67/live/src/board/mod.rs", "messages of the page"),
 ];

@@ -1,22 +1,21 @@
 //! The target: a connected controller.
 
+mod acting;
+mod reading;
+
 use std::cell::RefCell;
 use std::fmt;
-use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use cc67_host::target::Target;
 use cc67_host::{Capability, EventSink, HostError, SnapshotError, TargetSnapshot, Unsupported, UserProgram};
-use cc67_wire::{Client, LoadImage, Progress, Status, WireError};
+use cc67_wire::{Client, Progress, Status, WireError};
 use compiler::Options;
 use compiler::firmware::FirmwareNames;
 use kmotiondef::boards::TargetBoard;
-use kmotiondef::limits::{N_CHANNELS, N_USER_DATA_VARS, TIMEBASE};
-use kmotiondef::structs::{Chan, Persist};
-use kmotiondef::variables::{CHAN, GATHER_BUFFER, PERSIST};
 use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
-use runtime::trace::{Item, Record, TraceRequest};
+use runtime::trace::{Item, TraceRequest};
 use runtime::{Answers, Event, EventKind, HostFiles, OpenBox, RemoteBoard as _, RequestServer};
 use vm::scheduler::Turn;
 use vm::thread::ThreadState;
@@ -26,13 +25,11 @@ use crate::commands::Commands;
 use crate::files::{FileRemarks, Files};
 use crate::image;
 use crate::monitor::{self, Monitor};
-use crate::recording::{BoardRecording, BoardSample, Unrecordable};
+use crate::recording::BoardRecording;
 use crate::seen::SeenMemory;
 use crate::terms::{LoadTerms, ProgramStart};
 use crate::threads::BoardThreads;
 
-/// The pause between two readings of the status record: 20 a second.
-const STATUS_EVERY: Duration = Duration::from_millis(50);
 /// The longest time that a call waits for the console before it looks at something else.
 const LONGEST_WAIT: Duration = Duration::from_millis(10);
 /// Console lines that a program has printed before its end come within this time.
@@ -156,15 +153,6 @@ impl Controller {
         Ok(())
     }
 
-    /// Takes up a status record.
-    fn note_status(&mut self, status: Status) {
-        for thread in ThreadId::all() {
-            self.threads.note(thread, status.is_active(thread));
-        }
-        self.seen.note_status(&status);
-        self.status = Some(status);
-    }
-
     /// Takes up a failure: of the link for good, of anything else as an event.
     fn note_error(&mut self, error: &WireError) {
         let text = error.to_string();
@@ -175,71 +163,6 @@ impl Controller {
         } else {
             self.pending.push(EventKind::Host(text));
         }
-    }
-
-    /// Reads the status record if it is due.
-    fn poll(&mut self) {
-        if self.lost.is_some() || now() < self.time.next_status {
-            return;
-        }
-        match self.client.get_mut().status() {
-            Ok(status) => {
-                let words = std::array::from_fn(|index| status.request(index));
-                self.note_status(status);
-                self.answer(words);
-                if self.seen.take_look() {
-                    self.read_elements();
-                }
-            }
-            Err(error) => self.note_error(&error),
-        }
-        // As many a second, whatever an exchange takes.
-        self.time.next_status = (self.time.next_status + STATUS_EVERY).max(now());
-    }
-
-    /// Reads the velocities of the axes, for jog buttons.
-    fn read_velocities(&mut self) {
-        let command = AxisId::all().map(|axis| format!("Vel{axis}")).collect::<Vec<_>>().join(";");
-        match self.client.get_mut().ask_lines(&command, N_CHANNELS) {
-            Ok(answers) => {
-                for (axis, answer) in AxisId::all().zip(answers) {
-                    if let Ok(velocity) = answer.trim().parse::<f32>() {
-                        let place = CHAN.element(axis.index()).field(Chan::VEL).address();
-                        self.seen.note(self.seen.place_of(place), &velocity.to_le_bytes());
-                    }
-                }
-            }
-            Err(error) => self.note_error(&error),
-        }
-    }
-
-    /// Reads the next elements of `persist.UserData`, for whoever looks at known memory.
-    fn read_elements(&mut self) {
-        let elements = self.seen.next_elements();
-        if elements.start == 0 {
-            self.read_velocities();
-        }
-        match Commands(self.client.get_mut()).user_data(elements.start, elements.len()) {
-            Ok(words) => {
-                for (index, word) in elements.zip(words) {
-                    self.seen.note(self.element_address(index), &word.to_le_bytes());
-                }
-            }
-            Err(error) => self.note_error(&error),
-        }
-    }
-
-    /// The address of an element of `persist.UserData` in the controller's firmware.
-    fn element_address(&self, index: usize) -> GuestAddr {
-        self.seen.place_of(PERSIST.field(Persist::USER_DATA).element(index).address())
-    }
-
-    /// The elements of `persist.UserData` in the bytes from an address on; `None` where there are others.
-    fn elements(&self, address: GuestAddr, length: usize) -> Option<Range<usize>> {
-        let offset = address.get().checked_sub(self.element_address(0).get())? as usize;
-        let (first, end) = (offset / 4, offset / 4 + length / 4);
-        let is_whole = offset.is_multiple_of(4) && length.is_multiple_of(4);
-        (is_whole && end <= N_USER_DATA_VARS).then_some(first..end)
     }
 
     /// Answers the request to the PC in these elements of `persist.UserData`, if there is one.
@@ -574,104 +497,10 @@ impl Target for Controller {
     }
 
     fn snapshot(&mut self) -> Result<NoSnapshot, SnapshotError> {
-        Err(self.unsupported().into())
+        Err(Unsupported { target: self.name(), capability: Capability::Snapshots }.into())
     }
 
     fn restore(&mut self, snapshot: &NoSnapshot) -> Result<(), SnapshotError> {
         match *snapshot {}
-    }
-}
-
-impl Controller {
-    fn unsupported(&self) -> Unsupported {
-        Unsupported { target: self.name(), capability: Capability::Snapshots }
-    }
-
-    /// Starts the programs that wait for time to pass.
-    fn start_waiting(&mut self) {
-        let waiting = self.threads.take_waiting();
-        if !waiting.is_empty() {
-            self.time.origin = now();
-            if let Err(error) = self.start_together(&waiting) {
-                self.pending.push(EventKind::Host(error.to_string()));
-            }
-        }
-    }
-
-    fn begin_recording(&mut self, request: &TraceRequest) -> Result<(), HostError> {
-        let mut pointer = [0; 4];
-        self.read(self.place_of(GATHER_BUFFER.address()), &mut pointer)?;
-        let buffer = GuestAddr::new(u32::from_le_bytes(pointer));
-        let recording = BoardRecording::new(request, |address| self.seen.place_of(address), buffer);
-        let recording = recording.map_err(|Unrecordable(what)| HostError::Link(what))?;
-        recording.begin(self.client.get_mut()).map_err(link)?;
-        self.recording = Some(recording);
-        Ok(())
-    }
-
-    /// Ends the recording, and hands over its samples.
-    fn end_recording(&mut self, events: EventSink<'_>) {
-        let Some(recording) = self.recording.take().filter(|_| self.lost.is_none()) else { return };
-        if let Err(error) = self.read_recording(&recording, events) {
-            let at = self.now();
-            events(Event { at, kind: EventKind::Host(format!("the recording cannot be read: {error}")) });
-        }
-    }
-
-    fn read_recording(&mut self, recording: &BoardRecording, events: EventSink<'_>) -> Result<(), HostError> {
-        let at = self.now();
-        let (descriptor, length) = recording.head();
-        let mut head = vec![0; length];
-        self.monitor.get_mut().note_change();
-        self.read(descriptor, &mut head)?;
-        let board = self.client.get_mut();
-        let mut say = |text: String| events(Event { at, kind: EventKind::Host(text) });
-        let Some(end) = recording.end_of(board, &head).map_err(link)? else {
-            say("a program has used the board's data recorder: nothing is recorded".to_owned());
-            return Ok(());
-        };
-        let seconds = f64::from(end.samples) * TIMEBASE;
-        if end.is_full {
-            say(format!("the recording ends after {seconds:.3} s: the board's buffer is full"));
-        }
-        let read = recording.read(board, end.samples, &mut |sample| {
-            let at = Cycles::new((sample.tick as i64 + 1) * Cycles::PER_TICK.get());
-            let BoardSample { values, enabled, .. } = sample;
-            events(Event { at, kind: EventKind::Trace(Record::Sample { values, enabled }) });
-        });
-        read.map_err(link)
-    }
-
-    /// Starts threads without a pause between them.
-    fn start_together(&mut self, threads: &[ThreadId]) -> Result<(), HostError> {
-        self.client.get_mut().execute(threads).map_err(link)?;
-        threads.iter().for_each(|thread| self.threads.note_started(*thread));
-        self.time.next_status = now();
-        Ok(())
-    }
-
-    /// Pauses a thread or lets it continue.
-    fn set_paused(&mut self, thread: ThreadId, is_paused: bool) -> Result<(), HostError> {
-        let free = self.threads.free();
-        let monitor = self.monitor.get_mut();
-        monitor.note_change();
-        monitor.pause(self.client.get_mut(), &free, thread, is_paused)
-    }
-
-    /// Compares the memory of the board with what was loaded.
-    fn verify(&mut self, image: &LoadImage) -> Result<(), HostError> {
-        let free = self.threads.free();
-        for (address, bytes) in &image.parts {
-            let monitor = self.monitor.get_mut();
-            let place = GuestAddr::new(*address);
-            if !monitor.verify(self.client.get_mut(), &free, place, bytes)? {
-                return Err(HostError::Link(format!(
-                    "thread {}: the memory from {address:#010x} on ({} bytes) is not what was loaded",
-                    image.thread,
-                    bytes.len()
-                )));
-            }
-        }
-        Ok(())
     }
 }

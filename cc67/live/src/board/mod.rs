@@ -18,6 +18,7 @@ mod machine;
 mod programs;
 mod samples;
 mod saved;
+mod sending;
 mod threads;
 mod turns;
 mod view;
@@ -41,7 +42,6 @@ use crate::request::PageRequest;
 use crate::{Keeper, Show, TimeControl};
 use clock::{Clock, now};
 use connected::PageAccess;
-use frame::Moment;
 use log::{Log, LogEntry, Voice};
 use programs::Programs;
 use samples::Samples;
@@ -478,74 +478,6 @@ impl<T: Target> Stage<T> {
             TimeControl::Full | TimeControl::Real => false,
             TimeControl::Forward | TimeControl::Foreign => true,
         }
-    }
-
-    /// Tells pages what is new.
-    fn tell(&mut self, session: &Session<T>) {
-        self.tell_link(session);
-        let fresh = self.log.take_fresh();
-        let entries = (!fresh.is_empty()).then(|| log_message(&fresh));
-        if let Some(entries) = entries {
-            self.broadcast(&entries);
-        }
-        if !self.pages.is_empty() && self.told.at.elapsed() >= THREADS {
-            let rows = threads::rows(session);
-            if rows != self.told.threads || self.clock.is_running() {
-                // Those of a moment ago do while the board runs.
-                let turns = self.turns.until(session.tick());
-                let turns = if self.clock.is_running() { turns } else { Some(turns.unwrap_or_default()) };
-                self.broadcast(&json!({ "kind": "threads", "threads": rows, "turns": turns }));
-            }
-            (self.told.threads, self.told.at) = (rows, now());
-            let open_box = session.target().open_box();
-            if open_box != self.told.open_box {
-                self.broadcast(&asks(open_box.as_ref()));
-                self.told.open_box = open_box;
-            }
-        }
-        self.send_frames(session);
-    }
-
-    /// Sends a frame to each page that is due one and has taken the last.
-    fn send_frames(&mut self, session: &Session<T>) {
-        let tick = session.tick();
-        let moment = Moment {
-            is_running: self.clock.is_running(),
-            is_past: self.is_past(session),
-            end: self.end(session),
-            speed: [self.clock.speed(), self.clock.measured(tick)],
-        };
-        for page in self.pages.values_mut() {
-            let Some(every) = page.every else { continue };
-            let since = page.last.elapsed();
-            if since + BEAT / 2 < every || !page.mailbox.wants_frame() {
-                continue;
-            }
-            if page.generation != self.samples.generation {
-                (page.generation, page.next_row) = (self.samples.generation, 0);
-            }
-            let (bytes, next) = frame::frame(session, moment, &self.samples, page.next_row);
-            page.next_row = next;
-            // A frame that is a beat late does not move those after it, so that as many come as a page asks for.
-            page.last = if since < 2 * every { page.last + every } else { now() };
-            page.mailbox.show(bytes);
-        }
-    }
-
-    /// The board is shown no more.
-    fn close(&self) {
-        self.pages.values().for_each(|page| page.mailbox.close());
-    }
-
-    fn answer(&self, id: PageId, message: &Value) {
-        if let Some(page) = self.pages.get(&id) {
-            page.mailbox.post(&message.to_string().into());
-        }
-    }
-
-    fn broadcast(&self, message: &Value) {
-        let text: Arc<str> = message.to_string().into();
-        self.pages.values().for_each(|page| page.mailbox.post(&text));
     }
 }
 
