@@ -32,6 +32,7 @@ use vm::native::NativeEngine;
 
 use super::args::board::BoardArguments;
 use super::args::compiler::CompilerArguments;
+use super::args::controller::WORK_WITH_CONTROLLER;
 use super::args::engine::EngineName;
 use super::args::program::{ProgramFile, assign};
 use super::args::setting::{self, Setting};
@@ -232,10 +233,7 @@ impl Setup {
 
     /// The target that was requested; the modelled board on the interpreter.
     pub(crate) fn rig_of_any(self) -> Result<Rig<AnyTarget>> {
-        ensure!(
-            self.controller.is_none(),
-            "this does not work with `--on` yet: `cc67 run`, `cc67 console`, `cc67 live` and `cc67 debug` do"
-        );
+        ensure!(self.controller.is_none(), "this does not work with `--on` yet: {WORK_WITH_CONTROLLER} do");
         self.rig_with(|session, code| match code {
             CodeFor::Engine(_) | CodeFor::Controller(_) => session.session_on_any(None),
             CodeFor::Firmware(firmware) => session.session_on_any(Some(firmware)),

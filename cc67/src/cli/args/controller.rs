@@ -6,11 +6,14 @@ use clap::Args;
 
 use super::heading;
 
+/// The commands that take a controller, for messages of those that do not.
+pub(crate) const WORK_WITH_CONTROLLER: &str = "run, console, live, test, debug and compare";
+
 /// The controller that takes the place of the simulated board, and the risks that its user accepts.
 #[derive(Debug, Args)]
 #[command(next_help_heading = heading::CONTROLLER)]
 pub(crate) struct ControllerArguments {
-    /// Use a connected controller in place of a simulated board (run, console, live, debug): usb[:LOCATION], serial:PATH, server[:PATH|:HOST:PORT],
+    /// Use a connected controller in place of a simulated board (run, console, live, test, debug, compare): usb[:LOCATION], serial:PATH, server[:PATH|:HOST:PORT],
     /// tcp:HOST:PORT; `cc67 boards` lists what is connected
     #[arg(long, value_name = "BOARD")]
     pub(crate) on: Option<Address>,
@@ -36,7 +39,7 @@ impl ControllerArguments {
     pub(crate) fn refuse_in(&self, command: &str) -> Result<()> {
         ensure!(
             self.on.is_none(),
-            "`cc67 {command}` does not work with `--on` yet: `cc67 run`, `cc67 console`, `cc67 live` and `cc67 debug` do"
+            "`cc67 {command}` does not work with `--on` yet: {WORK_WITH_CONTROLLER} do"
         );
         Ok(())
     }
