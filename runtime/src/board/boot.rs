@@ -103,7 +103,7 @@ impl<E: Engine> Board<E> {
         self.power_up(is_strict);
     }
 
-    /// What flash memory holds.
+    /// Returns the contents of flash memory.
     #[must_use]
     pub fn flash(&self) -> &[u8] {
         let seen = || self.memory().read_bytes(FLASH.base, FLASH.size).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! What the bytes of a program are: bytecode, or code of the real processor.
+//! The kind of code that a program holds: bytecode, or code of the real processor.
 
 use kmotiondef::GuestAddr;
 use kmotiondef::firmware::Function;

@@ -46,7 +46,7 @@ pub(crate) fn install(parts: &mut Parts, machine: &MachineFile) {
     }
 }
 
-/// What a machine does by itself: its wires and devices, and its events.
+/// Connects to the board all that acts without a program: wires, devices and the events of the machine file.
 pub(crate) fn play(parts: &mut Parts, machine: &MachineFile, memory: &mut GuestMemory) {
     if machine.boards.has_kanalog || !machine.connected.analog.is_empty() {
         memory.set(KANALOG_PRESENT, 1);

@@ -1,4 +1,4 @@
-//! What a loaded image knows about itself: functions, source lines, objects.
+//! Debug information of a loaded image: functions, source lines, objects.
 //!
 //! Traps and traces name places with it. An image without symbols has none, and every
 //! answer is then `None`.
@@ -46,7 +46,7 @@ pub struct SourcePlace<'a> {
     pub around: Option<&'a str>,
 }
 
-/// What the compiler knows of the code from an address on and no image holds.
+/// Details of the code at an address that the compiler knows and no image holds.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CodeDetail {
     /// The address.
@@ -114,7 +114,7 @@ impl DebugInfo {
         Some(SourcePlace { function: name, file: &function.file, line, column, around })
     }
 
-    /// What is at or just before a data address, in words: "4 bytes past the end of `table`".
+    /// Describes a data address by the object at or just before it: "4 bytes past the end of `table`".
     #[must_use]
     pub fn describe(&self, address: GuestAddr) -> Option<String> {
         /// Farther than this from an object, naming it would mislead.

@@ -20,9 +20,9 @@ use crate::firmware::level::ModelledBoard;
 pub struct Prepared {
     /// The code: verified bytecode, or an image of the real processor.
     pub code: Code,
-    /// Where a thread begins to execute it.
+    /// The address at which a thread begins to execute.
     pub entry: GuestAddr,
-    /// What goes into memory.
+    /// The sections to be written to memory.
     pub sections: Vec<Placed>,
     /// Names and lines.
     pub debug: DebugInfo,
@@ -31,9 +31,9 @@ pub struct Prepared {
 /// A section and its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Placed {
-    /// Where it goes.
+    /// The first address.
     pub address: GuestAddr,
-    /// What goes there.
+    /// The bytes to be written.
     pub contents: Fill,
 }
 
@@ -57,7 +57,7 @@ impl Placed {
     }
 }
 
-/// Why an image is refused.
+/// The reason for which an image is refused.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     /// The bytes are not a TI COFF image.
@@ -108,7 +108,7 @@ pub enum LoadError {
     OutsideProgramArea {
         /// The section.
         name: String,
-        /// Where it is.
+        /// The address of the part that is outside.
         address: GuestAddr,
         /// Its size.
         size: u64,
@@ -202,9 +202,10 @@ fn check_origin(image: &Image, board: &TargetBoard) -> Result<(), LoadError> {
     }
 }
 
-/// Whether the stamp of an image is the version of its firmware; those of other linkers are their own.
+/// Returns whether the stamp of an image is the version of its firmware. Other linkers use the field for a stamp of
+/// their own.
 fn states_firmware(target: Target, stamp: i16) -> bool {
-    /// What the vendor's compiler writes.
+    /// The stamp of the vendor's compiler.
     const VENDOR: i16 = 0x190;
     target == Target::CC67 || (VENDOR + 1..1000).contains(&stamp)
 }
@@ -219,7 +220,7 @@ fn version(stamp: i16) -> String {
     }
 }
 
-/// Whether a load puts the section into memory (`coff.md` section 9.2).
+/// Returns whether a load puts the section into memory (`coff.md` section 9.2).
 fn is_loaded(section: &Section) -> bool {
     let is = |flag| section.flags.contains(flag);
     let is_kept_back = is(SectionFlags::DSECT) || is(SectionFlags::NOLOAD) || is(SectionFlags::COPY);
@@ -286,7 +287,7 @@ fn check_sections(
     Ok(())
 }
 
-/// Where functions begin.
+/// Returns the addresses at which functions begin.
 fn functions(image: &Image) -> Vec<u32> {
     let functions = image.symbols.iter().filter(|symbol| {
         matches!(symbol.class, StorageClass::EXTERNAL | StorageClass::STATIC)

@@ -51,22 +51,22 @@ pub struct Config {
     pub board: ModelledBoard,
     /// Settings of the machine: servo time, shortcuts, stacks.
     pub machine: MachineConfig,
-    /// Whether the built-in PC polls and answers.
+    /// True if the built-in PC polls and answers.
     pub host: bool,
-    /// What it answers to programs; `None` for what the machine file says.
+    /// Its answers to programs; `None` for those of the machine file.
     pub answers: Option<Answers>,
-    /// Where the PC keeps its files.
+    /// The folder in which the PC keeps its files.
     pub files: Box<dyn HostFiles>,
     /// Byte put into uninitialised data at a load.
     pub bss_fill: u8,
     /// Whose time is counted: of the servo interrupt and of registers. Programs bring theirs.
     pub timing: Timing,
-    /// What is connected to the board.
+    /// The equipment that is connected to the board.
     pub machine_file: MachineFile,
     /// The numbers of accesses to shared memory, from 1, before which a thread loses the processor; for a board whose
     /// accesses are [observed](MachineConfig::observed).
     pub switches: BTreeSet<u64>,
-    /// What flash memory holds, [`FLASH_SIZE`] bytes; `None` for a board whose flash was never written.
+    /// The contents of flash memory, [`FLASH_SIZE`] bytes; `None` for a board whose flash was never written.
     pub flash: Option<Vec<u8>>,
 }
 
@@ -90,7 +90,7 @@ impl Default for Config {
 /// Cycles of a microsecond.
 const CYCLES_PER_US: f64 = Cycles::PER_SECOND.get() as f64 / 1e6;
 
-/// Why a run ended.
+/// The reason for which a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunEnd {
     /// No thread is active, and nothing moves, records, prints or waits for the PC.
@@ -99,7 +99,7 @@ pub enum RunEnd {
     Limit,
 }
 
-/// What the board knows of a loaded image.
+/// Facts about a loaded image.
 #[derive(Clone, Debug)]
 struct Loaded {
     debug: DebugInfo,
@@ -110,11 +110,11 @@ struct Loaded {
 /// An image that a stimulus may load, and what is known about its code beyond it.
 type Offered = (Vec<u8>, Arc<[CodeDetail]>);
 
-/// What the board knows of programs.
+/// Facts about the programs on the board.
 #[derive(Clone, Debug, Default)]
 struct Programs {
     loaded: [Option<Loaded>; ThreadId::MAX as usize],
-    /// What is known about the programs in flash.
+    /// Debug information of the programs in flash.
     flashed: [Option<DebugInfo>; ThreadId::MAX as usize],
     /// Images that a stimulus may load, by the thread they are linked for and what it calls them.
     offered: BTreeMap<(ThreadId, Arc<str>), Offered>,
@@ -127,9 +127,9 @@ pub struct Board<E = BytecodeEngine> {
     /// Shared with snapshots.
     programs: Arc<Programs>,
     bss_fill: u8,
-    /// What an instruction takes, in units of what it takes on the board.
+    /// The cost of an instruction, relative to its cost on the board.
     price: f64,
-    /// What the machine file calls the axes, and their units; an empty unit is the one that nobody named.
+    /// The names of the axes in the machine file, and their units; an empty unit was not given.
     names: [(String, String); N_CHANNELS],
 }
 
@@ -255,7 +255,7 @@ impl<E: Engine> Board<E> {
         false
     }
 
-    /// Whether no thread is active and nothing is under way that a program has begun.
+    /// Returns whether no thread is active and nothing is in progress that a program has begun.
     #[must_use]
     pub fn has_ended(&self) -> bool {
         let is_active = ThreadId::all().any(|thread| self.machine.threads().state(thread).is_active());
@@ -362,7 +362,7 @@ impl<E: Engine> Board<E> {
         self.machine.set_watched(ranges);
     }
 
-    /// Which of the watched bytes have changed since that was last said.
+    /// Returns the index of a watched byte that has changed since the last call, if any has.
     pub fn take_change(&mut self) -> Option<usize> {
         self.machine.take_change()
     }
@@ -383,7 +383,7 @@ mod tests {
 sig 0, 0\nsig 2, 0\ntypes 0xc\nsig 1, 0\ntypes 3\nsig 1, 1\ntypes 0\n";
     /// First word after it.
     const MAIN: usize = 11;
-    /// Where the text to print stands, in the thread's own space.
+    /// The address of the text to print, in the thread's own space.
     const TEXT: u32 = 0x8005_F000;
 
     fn call(name: &str, signature: usize, loads: &str, arguments: &str) -> String {

@@ -19,7 +19,7 @@ impl<E: Engine> Board<E> {
         kernel.parts.disturb();
     }
 
-    /// Whether bytes from the PC wait to be taken.
+    /// Returns whether bytes from the PC wait to be taken.
     #[must_use]
     pub fn is_receiving(&self) -> bool {
         self.machine.firmware().parts.pc.usb.is_busy()
@@ -49,7 +49,7 @@ impl<E: Engine> Board<E> {
         self.machine.firmware_mut().0.parts.out.take_wire()
     }
 
-    /// Whether a command waits for its data lines, so that the next line is one.
+    /// Returns whether a command waits for its data lines, so that the next line is one.
     #[must_use]
     pub fn is_in_command(&self) -> bool {
         self.machine.firmware().scripts.is_in_command()

@@ -1,4 +1,4 @@
-//! What guest memory holds when the board starts.
+//! The contents of guest memory when the board starts.
 
 use kmotiondef::start::{Start, Stored};
 use kmotiondef::structs::{STRUCTURES, Structure, StructureField};
@@ -8,17 +8,17 @@ use vm::memory::GuestMemory;
 
 use crate::views::Typed;
 
-/// What memory holds before it is filled.
+/// The contents of memory before it is filled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Before {
     /// Nothing: all of it is zero.
     Zero,
-    /// What was flashed; some values stay as they are.
+    /// The flashed contents; some values keep what is there.
     Flashed,
 }
 
 impl Before {
-    /// Whether a value is stored.
+    /// Returns whether a value is stored over these contents.
     fn takes(self, stored: Stored) -> bool {
         self == Self::Zero || stored == Stored::Always
     }

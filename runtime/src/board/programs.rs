@@ -75,12 +75,12 @@ impl<E: Engine> Board<E> {
         &self.machine.firmware().parts.level
     }
 
-    /// What is known about programs, to change it; snapshots keep what they have.
+    /// Returns the facts about programs for a change; snapshots keep the old ones.
     pub(super) fn programs_mut(&mut self) -> &mut Programs {
         Arc::make_mut(&mut self.programs)
     }
 
-    /// Whether a program other than that of `except` lies in the space of `thread`.
+    /// Returns whether a program other than that of `except` lies in the space of `thread`.
     pub(super) fn is_taken(&self, thread: ThreadId, except: ThreadId) -> bool {
         let start = program_base(thread).get();
         let others = ThreadId::all().filter(|&other| other != except);
@@ -121,7 +121,7 @@ impl<E: Engine> Board<E> {
         }
     }
 
-    /// What is known about the image in `thread`.
+    /// Returns the debug information of the image in `thread`.
     #[must_use]
     pub fn debug(&self, thread: ThreadId) -> Option<&DebugInfo> {
         self.programs.loaded[thread.index()].as_ref().map(|loaded| &loaded.debug)

@@ -33,7 +33,7 @@ impl<E: Engine> BoardSnapshot<E> {
         self.machine.tick()
     }
 
-    /// Whether a program holds the tick in progress.
+    /// Returns whether a program holds the tick in progress.
     #[must_use]
     pub const fn is_held(&self) -> bool {
         self.machine.is_held()

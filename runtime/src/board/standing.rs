@@ -1,4 +1,4 @@
-//! How things are when a run is over: what each thread waits for, what each axis does and why it does not move.
+//! The state of the board when a run is over: what each thread waits for, what each axis does and why it does not move.
 //!
 //! Facts only; whoever tells them to a person finds the words.
 
@@ -27,17 +27,17 @@ use crate::views::Typed;
 pub struct StandingThread {
     /// Its number.
     pub thread: ThreadId,
-    /// What it does.
+    /// Its state.
     pub state: Standing,
     /// Its instruction, then the calls that led there, innermost first.
     pub calls: Vec<CodeAddr>,
     /// When it last did anything but look and wait.
     pub since: Cycles,
-    /// What it has looked at since.
+    /// The values that it has polled since.
     pub awaited: Vec<Awaited>,
 }
 
-/// What a thread that has not ended does.
+/// The state of a thread that has not ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standing {
     /// It computes.
@@ -69,7 +69,7 @@ pub enum Awaited {
     Lock,
 }
 
-/// Where the level of a bit comes from.
+/// The origin of a bit's level.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
     /// Nothing drives the input.
@@ -91,25 +91,25 @@ pub enum Source {
 pub struct StandingAxis {
     /// Its number.
     pub axis: AxisId,
-    /// What the machine file calls it; empty for nothing.
+    /// Its name in the machine file; empty if it has none.
     pub name: String,
-    /// What the machine file calls its unit; empty for nothing.
+    /// Its unit in the machine file; empty if it has none.
     pub units: String,
-    /// Whether its position is measured: its `InputMode` is not `NO_INPUT_MODE`.
+    /// True if its position is measured: its `InputMode` is not `NO_INPUT_MODE`.
     pub is_measured: bool,
-    /// Whether it is enabled.
+    /// True if it is enabled.
     pub is_enabled: bool,
     /// Its commanded position.
     pub dest: f64,
     /// Its measured position.
     pub position: f64,
-    /// How fast the command moves, units a second.
+    /// The commanded velocity, in units a second.
     pub velocity: f64,
-    /// Why it does not move, or what it does.
+    /// The reasons for which it does not move, or its movements.
     pub reasons: Vec<Reason>,
 }
 
-/// Why an axis does not move.
+/// A reason for which an axis does not move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reason {
     /// It is disabled.
@@ -189,7 +189,7 @@ impl<E: Engine> Board<E> {
         }
     }
 
-    /// Where the level of a bit comes from.
+    /// Returns the origin of a bit's level.
     fn source_of(&self, bit: Bit) -> Source {
         let parts = &self.machine.firmware().parts;
         if let Some((axis, condition, active)) = parts.machine.mechanics.contact(bit) {

@@ -40,7 +40,7 @@ use chips::stepgen::generator_of;
 const ANSWERED: [std::ops::Range<usize>; 5] = [0x08..0x09, 0x88..0x8A, 0x90..0x99, 0xC0..0xC2, 0x130..0x136];
 /// An analog input of 0 V.
 const ADC_ZERO: i32 = 2048;
-/// Where the converters are.
+/// The index of the first register of the converters.
 const CONVERTERS: usize = 0x90;
 /// Inputs of a KStep.
 const KSTEP_INPUTS: i32 = 168;
@@ -50,7 +50,7 @@ const ANY_STEPS: f64 = f64::MAX;
 /// The shortest interrupt: no thread has done what came earlier in a tick.
 const INTERRUPT: Cycles = Cycles::new(2006);
 
-/// What a stimulus asks of the board.
+/// A request of a stimulus to the board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Asked {
     /// The PC sends these bytes.
@@ -72,7 +72,7 @@ pub struct ProgramCall {
     pub at: Option<CodeAddr>,
 }
 
-/// What a tick of the firmware is seen with.
+/// The view of a firmware's tick.
 #[derive(Debug)]
 pub struct Instant<'a> {
     /// Memory.
@@ -83,9 +83,9 @@ pub struct Instant<'a> {
     pub tick: Ticks,
     /// Steps that each generator has made.
     pub steps: [f64; N_CHANNELS],
-    /// What the encoders show.
+    /// The count bytes of the encoders.
     pub encoders: &'a mut [u8; N_CHANNELS],
-    /// What a KStep shows, if there is one.
+    /// The word of a KStep, if there is one.
     pub kstep: &'a mut Option<u16>,
 }
 
@@ -96,21 +96,21 @@ pub struct Surroundings {
     threads: Threads,
     /// Steps of each generator when they were last looked at.
     steps: [f64; N_CHANNELS],
-    /// What the step generator of each axis has been commanded to, position units.
+    /// The commanded position of each axis' step generator, in position units.
     stepped: [f64; N_CHANNELS],
-    /// Where each axis is after the interrupt, if no program writes its position.
+    /// The position of each axis after the interrupt, if no program writes it.
     positions: [f64; N_CHANNELS],
     was_enabled: [bool; N_CHANNELS],
-    /// Where this firmware keeps which threads are active.
+    /// The address of the word in which this firmware keeps the active threads.
     active: GuestAddr,
-    /// What the converters show: what was there a tick ago.
+    /// The results of the converters: those of one tick ago.
     conversions: [u16; ADC_CHANNELS],
     asked: Vec<Asked>,
 }
 
 impl Surroundings {
-    /// What a machine file describes, with a PC that keeps its files; the word at `active` says which threads are
-    /// active.
+    /// Creates the surroundings that a machine file describes, with a PC that keeps its files. The word at `active`
+    /// holds the active threads.
     ///
     /// What concerns the firmware and its memory comes with [`begin`](Self::begin).
     #[must_use]
@@ -178,7 +178,7 @@ impl Surroundings {
         self.parts.io.uart.backlog()
     }
 
-    /// What waits on the line to the serial port, and whether every character that the port sends is told.
+    /// Queues characters for the serial port, and sets whether each character that the port sends is reported.
     pub fn connect_uart(&mut self, waiting: &[u8], is_heard: bool) {
         if !waiting.is_empty() {
             self.parts.io.uart.arrive(waiting, Cycles::default());
@@ -230,7 +230,7 @@ impl Surroundings {
         self.parts.view(memory).item(item)
     }
 
-    /// What a register shows; `None` where the board itself answers.
+    /// Returns the value of a register; `None` where the board itself answers.
     pub fn read(&mut self, register: usize, is_byte: bool, now: Cycles) -> Option<u16> {
         if let Some(conversion) = register.checked_sub(CONVERTERS).and_then(|at| self.conversions.get(at)) {
             return Some(*conversion);
@@ -437,12 +437,12 @@ impl Surroundings {
         self.asked.push(Asked::Send(format!("\u{1b}.{line}\r").into_bytes()));
     }
 
-    /// What was asked of the board since the last time.
+    /// Takes the requests to the board since the last call.
     pub fn take_asked(&mut self) -> Vec<Asked> {
         std::mem::take(&mut self.asked)
     }
 
-    /// What has happened since the last time.
+    /// Takes the events since the last call.
     pub fn take_events(&mut self) -> Vec<Event> {
         let is_told = |event: &Event| match &event.kind {
             // Of the programs on a booted board nothing is known that a remark could say.
@@ -455,7 +455,8 @@ impl Surroundings {
         events
     }
 
-    /// Whether something is still to come: a statement that starts something, an answer that a program waits for.
+    /// Returns whether something is still to come: a statement that starts something, or an answer that a program waits
+    /// for.
     #[must_use]
     pub fn is_busy(&self, memory: &GuestMemory) -> bool {
         let Parts { out, pc, world, .. } = &self.parts;

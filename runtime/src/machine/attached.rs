@@ -15,7 +15,7 @@ use chips::kanalog::Kanalog;
 use chips::pins::Pins;
 use chips::uart::Uart;
 
-/// What a device can reach.
+/// The parts of the board that a device can reach.
 #[derive(Debug)]
 pub(crate) struct Outside<'a> {
     pub(crate) pins: &'a mut Pins,
@@ -66,13 +66,13 @@ pub(crate) trait Attached: Debug + Send + Copied {
         let _ = (now, outside);
     }
 
-    /// Whether it takes every edge of a bit; else one level a tick is enough.
+    /// Returns whether it takes every edge of a bit; otherwise one level a tick is enough.
     fn watches(&self, bit: Bit) -> bool {
         let _ = bit;
         false
     }
 
-    /// Whether the next tick does what the last one did.
+    /// Returns whether the next tick would repeat the last one.
     fn is_settled(&self) -> bool {
         true
     }

@@ -6,7 +6,7 @@ use kmotiondef::{AxisId, Bit};
 
 macro_rules! models {
     ($($(#[doc = $doc:literal])+ $name:ident = $word:literal,)*) => {
-        /// How an axis' load moves.
+        /// The motion model of an axis' load.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Model {
             $($(#[doc = $doc])+ $name,)*
@@ -36,7 +36,7 @@ models! {
     None = "none",
 }
 
-/// Whether an axis' load turns its encoder.
+/// The source of an axis' encoder counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoder {
     /// So that the position follows the command.
@@ -47,7 +47,7 @@ pub enum Encoder {
     Absent,
 }
 
-/// What an axis' encoder and motor are connected to.
+/// The connections of an axis' encoder and motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Connection {
     /// The encoder.
@@ -94,9 +94,9 @@ const COUNTS: &str = "counts";
 /// One axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What the user calls it.
+    /// The user's name for the axis.
     pub name: String,
-    /// How its load moves.
+    /// The motion model of its load.
     pub model: Model,
     /// Name of its unit.
     pub units: String,
@@ -110,14 +110,14 @@ pub struct Axis {
     pub travel: Travel,
     /// Its motor.
     pub motor: Motor,
-    /// How its rotor is built in.
+    /// The mounting of its rotor.
     pub rotor: Rotor,
     /// Its index pulse.
     pub index: Option<Index>,
 }
 
 impl Axis {
-    /// What it is called, and its unit; empty where nobody has named them.
+    /// Returns its name and its unit; empty if they were not given.
     pub(crate) fn names(&self) -> (String, String) {
         let units = if self.units == COUNTS { String::new() } else { self.units.clone() };
         (self.name.clone(), units)
@@ -185,7 +185,7 @@ impl Default for Motor {
     }
 }
 
-/// How the rotor of a brushless motor is connected to its load.
+/// The connection of a brushless motor's rotor to its load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotor {
     /// Electrical cycles of a unit; what the axis says if absent.
@@ -209,11 +209,11 @@ pub struct Index {
     pub every: f64,
     /// Units of a pulse.
     pub width: f64,
-    /// Where one begins.
+    /// The position of the first pulse.
     pub offset: f64,
 }
 
-/// Where a switch is active.
+/// The range of positions in which a switch is active.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Condition {
     /// At or below a coordinate.
@@ -236,7 +236,7 @@ impl fmt::Display for Condition {
 }
 
 impl Condition {
-    /// Whether it holds at a machine coordinate.
+    /// Returns whether the condition holds at a machine coordinate.
     #[must_use]
     pub fn holds(self, coordinate: f64) -> bool {
         match self {
@@ -254,7 +254,7 @@ pub struct Switch {
     pub bit: Bit,
     /// The axis.
     pub axis: AxisId,
-    /// Where it is active.
+    /// The range in which it is active.
     pub when: Condition,
     /// The level there.
     pub active: bool,
@@ -267,7 +267,7 @@ pub struct Probe {
     pub bit: Bit,
     /// The axis that carries it.
     pub axis: AxisId,
-    /// Where it touches.
+    /// The range in which it touches.
     pub touches: Condition,
 }
 
@@ -285,11 +285,11 @@ pub struct Handwheel {
 pub struct Analog {
     /// The input.
     pub channel: usize,
-    /// What it reads.
+    /// The signal at the input.
     pub source: AnalogSource,
 }
 
-/// What an analog input reads.
+/// The signal at an analog input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AnalogSource {
     /// A constant.
@@ -321,7 +321,7 @@ pub struct Spindle {
     pub axis: AxisId,
     /// Counts of a revolution.
     pub counts_per_rev: f64,
-    /// What drives it.
+    /// The output that drives it.
     pub drive: SpindleDrive,
     /// Revolutions a second at full drive.
     pub full_scale_rps: f64,
@@ -329,7 +329,7 @@ pub struct Spindle {
     pub tau_s: f64,
 }
 
-/// What drives a spindle.
+/// The output that drives a spindle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpindleDrive {
     /// The analog output of an axis.
@@ -352,7 +352,7 @@ pub struct Wire {
     pub from: Bit,
     /// The input.
     pub to: Bit,
-    /// Whether it inverts.
+    /// True if it inverts.
     pub invert: bool,
     /// The delay of the input.
     pub delay_s: f64,

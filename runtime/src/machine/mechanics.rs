@@ -29,7 +29,7 @@ struct Contact {
     read: Option<(Cycles, f64)>,
 }
 
-/// Where it does.
+/// The range in which it is closed.
 #[derive(Clone, Copy, Debug)]
 enum Closes {
     Where(Condition),
@@ -75,7 +75,7 @@ impl Play {
     }
 }
 
-/// What a machine file connects to the board, beside the loads themselves, in its own words.
+/// The equipment that a machine file connects to the board, without the loads, as the file describes it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Connected {
     /// Switches that axes trip.
@@ -101,12 +101,12 @@ pub(crate) struct Mechanics {
     plays: Vec<Play>,
     /// Inputs that a stimulus has taken from their switches.
     held: Vec<Bit>,
-    /// Whether there is anything of all that.
+    /// True if there is any such equipment.
     is_any: bool,
 }
 
 impl Mechanics {
-    /// What a description of a machine comes to.
+    /// Creates the mechanics of a description.
     pub(crate) fn new(axes: &[Axis; N_CHANNELS], described: &Connected) -> Self {
         let switches = described.switches.iter().map(|switch| Contact {
             bit: switch.bit,
@@ -144,12 +144,13 @@ impl Mechanics {
         Self { contacts, analog, handwheels, spindles, plays, held: Vec::new(), is_any }
     }
 
-    /// Whether an axis trips a switch or carries a probe.
+    /// Returns whether an axis trips a switch or carries a probe.
     pub(crate) fn has_contacts(&self, axis: AxisId) -> bool {
         self.contacts.iter().any(|contact| contact.axis == axis)
     }
 
-    /// What makes a contact on a bit: the axis, where it is closed unless that is once in a distance, the level there.
+    /// Returns the contact on a bit: its axis, the range in which it is closed (`None` if it closes once in a
+    /// distance), and its level there.
     pub(crate) fn contact(&self, bit: Bit) -> Option<(AxisId, Option<Condition>, bool)> {
         let contact = self.contacts.iter().find(|contact| contact.bit == bit)?;
         let condition = match contact.closes {
@@ -173,7 +174,7 @@ impl Mechanics {
         self.held.retain(|held| *held != bit);
     }
 
-    /// Whether it moves by itself after `time`, so that ticks cannot be skipped.
+    /// Returns whether it moves by itself after `time`, so that ticks cannot be skipped.
     fn goes_on(&self, time: f64) -> bool {
         let turns =
             |wheel: &Handwheel| wheel.moves.iter().any(|[start, _, duration]| time <= start + duration);
@@ -199,13 +200,14 @@ impl Machine {
         (passed && now - at < MOMENT).then_some((contact.axis, width, (load - before).abs()))
     }
 
-    /// Whether a machine file connects anything to the board beside the loads themselves.
+    /// Returns whether a machine file connects any equipment besides the loads.
     #[inline]
     pub(crate) const fn has_mechanics(&self) -> bool {
         self.mechanics.is_any
     }
 
-    /// What moves by time and by other outputs than the axes' own; whether it will move in the next tick too.
+    /// Moves all that depends on time and on outputs other than those of the axes; returns whether the next tick moves
+    /// something, too.
     #[inline]
     pub(crate) fn drive(&mut self, io: &Io, memory: &GuestMemory, now: Cycles) -> bool {
         self.mechanics.is_any && self.turn(io, memory, now)
@@ -304,7 +306,7 @@ fn turned(&[start, counts, duration]: &[f64; 3], time: f64) -> f64 {
     }
 }
 
-/// How far a spindle is driven, −1 to 1.
+/// Returns the drive of a spindle as a fraction of full speed, −1 to 1.
 fn fraction(io: &Io, memory: &GuestMemory, spindle: &Spindle) -> f64 {
     const FULL: f64 = 2047.0;
     let dac = |channel: usize| f64::from(dac_value(memory, channel)) / FULL;

@@ -49,7 +49,7 @@ const FIRST_OPTOS: [i32; 2] = [72, 104];
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Loads {
     plants: [Plant; N_CHANNELS],
-    /// Whether something else than the servo has moved one since the servo last asked.
+    /// True if something other than the servo has moved a load since the servo last asked.
     is_pushed: bool,
 }
 
@@ -66,7 +66,7 @@ impl Loads {
         self.is_pushed = true;
     }
 
-    /// Whether something outside has moved a load since the last time.
+    /// Returns whether something outside has moved a load since the last call.
     #[inline]
     pub(crate) fn take_pushed(&mut self) -> bool {
         std::mem::take(&mut self.is_pushed)
@@ -96,16 +96,16 @@ pub(crate) struct SentByte {
     pub(crate) byte: u8,
 }
 
-/// What is connected to the board's outputs.
+/// The equipment at the board's outputs.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Machine {
     pub(crate) loads: Loads,
-    /// Where encoders and motors are connected.
+    /// The connections of encoders and motors.
     pub(crate) wiring: Wiring,
     pub(crate) mechanics: Mechanics,
     /// Devices on the board's lines.
     attached: Vec<Box<dyn Attached>>,
-    /// Whether motors on the first four step generators need the enable signal of a KStep.
+    /// True if motors on the first four step generators need the enable signal of a KStep.
     pub(crate) needs_enable: bool,
 }
 
@@ -132,7 +132,7 @@ impl Machine {
         self.settle(io, out, now);
     }
 
-    /// What devices reach, and the devices.
+    /// Returns the parts that devices reach, and the devices.
     fn outside<'a>(&'a mut self, io: &'a mut Io) -> (Outside<'a>, &'a mut [Box<dyn Attached>]) {
         let outside = Outside {
             pins: &mut io.pins,
@@ -194,7 +194,7 @@ impl Machine {
         self.attached.iter_mut().for_each(|device| device.konnect(board, outputs, at));
     }
 
-    /// Whether the devices do in the next tick what they did in the last one.
+    /// Returns whether the devices would repeat the last tick.
     pub(crate) fn is_settled(&self) -> bool {
         self.attached.iter().all(|device| device.is_settled())
     }

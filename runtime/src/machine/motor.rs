@@ -10,7 +10,7 @@ use super::description::{self, Axis};
 const PWM_KU: f64 = 435.0;
 const DAC_KU: f64 = 50.0;
 
-/// What an amplifier receives.
+/// The signal that an amplifier receives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Applied {
     /// PWM counts.
@@ -27,13 +27,13 @@ pub(crate) enum Applied {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Motor {
     ku: Option<f64>,
-    /// What is left of a difference of speeds after a tick.
+    /// The fraction of a difference of speeds that remains after a tick.
     decay: f64,
     friction: f64,
-    /// What a constant load adds to the speed.
+    /// The speed that a constant load adds.
     pull: f64,
     ka: f64,
-    /// What is left of the speed after a tick of viscous friction alone.
+    /// The fraction of the speed that remains after a tick of viscous friction alone.
     viscous: f64,
     cycles_per_unit: Option<f64>,
     rotor_phase: f64,
@@ -55,7 +55,7 @@ impl Motor {
         }
     }
 
-    /// Whether a constant load moves it while nothing drives it.
+    /// Returns whether a constant load moves it while nothing drives it.
     #[inline(always)]
     pub(crate) fn is_pulled(&self) -> bool {
         self.pull != 0.0

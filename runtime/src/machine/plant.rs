@@ -20,7 +20,7 @@ const NEGLIGIBLE: f64 = 1e-9;
 /// Time constant with which a rotor turns into a vector that stands, seconds.
 const DRAG_S: f64 = 0.01;
 
-/// What drives the load in the next tick.
+/// The drive of the load in the next tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum Drive {
     /// Nothing.
@@ -30,17 +30,17 @@ pub(crate) enum Drive {
     Steps(f64),
     /// A closed loop with this command, and what it outputs.
     Loop(f64, Applied),
-    /// What an output carries to the motor without an axis that follows a command.
+    /// The output that reaches the motor of an axis that follows no command.
     Open(Applied),
     /// A vector on the phases of a disabled axis: magnitude, and angle in cycles.
     Vector(f64, f64),
 }
 
-/// How the load is built; the same all the time.
+/// The constant properties of the load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Build {
     model: Model,
-    /// What a closed loop follows of the rest in one tick.
+    /// The fraction of the remaining error that a closed loop removes in one tick.
     followed: f64,
     encoder: Scale,
     min: f64,
@@ -68,16 +68,16 @@ impl Scale {
     }
 }
 
-/// What the encoder that the load turns has counted.
+/// The count of the encoder that the load turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Counter {
     /// Position units of one count, and what it has counted at the load `counted`.
     gain: f64,
     register: i64,
     counted: f64,
-    /// Whether anything can be counted with that gain.
+    /// True if that gain allows counting.
     counts: bool,
-    /// Where the gain last changed, and the count there.
+    /// The load's position when the gain last changed, and the count there.
     base: f64,
     base_count: i64,
 }
@@ -102,18 +102,18 @@ impl Counter {
     }
 }
 
-/// What the step generator has done with the load.
+/// The state of the load on a step generator.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Steps {
     /// Command that it has reached.
     reached: f64,
-    /// Where the load is when that command is 0.
+    /// The position of the load at the command 0.
     origin: f64,
-    /// What it has output in the last tick, whether that should be reported, and whether its amplifier is off.
+    /// The steps of the last tick, whether they should be reported, and whether the amplifier is off.
     stepped: f64,
     has_stepped: bool,
     is_off: bool,
-    /// Whether it was to make more steps than it can.
+    /// True if more steps were demanded than it can make.
     is_behind: bool,
 }
 
@@ -125,7 +125,7 @@ pub(crate) struct Plant {
     pub(crate) load: f64,
     /// Its velocity, if it has a motor.
     velocity: f64,
-    /// What the axis' position is beyond the load.
+    /// The difference between the axis' position and the load's.
     shift: f64,
     /// The position as the board last stored it.
     position: f64,
@@ -137,7 +137,7 @@ pub(crate) struct Plant {
     torque: Torque,
 }
 
-/// How well a brushless motor that follows its command would have been driven.
+/// The torque that a brushless motor that follows its command would have had.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Torque {
     /// Sum over some ticks of what part of the current turns the motor.
@@ -200,8 +200,8 @@ impl Plant {
         counter.register as i8
     }
 
-    /// Whether a real motor would hardly turn under a vector at this angle in cycles, where this one follows whatever
-    /// is applied; told once. `own_cycles` is what the axis says of its cycles.
+    /// Returns, once, whether a real motor would hardly turn under a vector at this angle in cycles, where this model
+    /// follows any vector. `own_cycles` is the axis' own value of its cycles.
     pub(crate) fn would_not_turn(&mut self, angle: f64, own_cycles: f64) -> bool {
         const TICKS: u32 = 100;
         const ENOUGH: f64 = 0.3;
@@ -252,7 +252,7 @@ impl Plant {
         self.build.motor.load_with(speed);
     }
 
-    /// Whether it has a motor that is driven by what the board outputs.
+    /// Returns whether it has a motor that the board's outputs drive.
     #[inline(always)]
     pub(crate) fn has_motor(&self) -> bool {
         self.build.model == Model::Motor
@@ -295,7 +295,7 @@ impl Plant {
         was_written | moves
     }
 
-    /// What is neither at rest nor follows its command.
+    /// Moves the load for a tick; returns whether it is neither at rest nor equal to its command.
     fn moves(&mut self, chan: &AxisView<'_>, steps_per_tick: f64) -> bool {
         let before = self.load;
         match (self.build.model, self.drive) {
@@ -334,7 +334,7 @@ impl Plant {
         }
     }
 
-    /// Whether the step generator has put anything out since the last time, or was to.
+    /// Returns whether the step generator has made steps since the last call, or was commanded to.
     pub(crate) const fn has_stepped(&self) -> bool {
         self.steps.has_stepped
     }
@@ -345,7 +345,7 @@ impl Plant {
         std::mem::take(&mut self.steps.stepped)
     }
 
-    /// Whether the step generator could not follow its command since the last time.
+    /// Returns whether the step generator could not follow its command since the last call.
     pub(crate) fn take_behind(&mut self) -> bool {
         std::mem::take(&mut self.steps.is_behind)
     }

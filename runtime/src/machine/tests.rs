@@ -73,7 +73,7 @@ fn servos_with_a_motor_respond_as_the_table_says() {
     }
 }
 
-/// How far the output swings half a second after a step.
+/// Returns the range of the output half a second after a step.
 fn swing(gain: f32) -> f32 {
     let mut desk = servo(gain, 0.0, 50.0 * gain);
     desk.run(5000);

@@ -18,7 +18,7 @@ use chips::stepgen::generator_of;
 pub(crate) const DACS: usize = 8;
 pub(crate) const PWMS: usize = 16;
 
-/// Where encoders and motors are connected.
+/// The connections of encoders and motors.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Wiring {
     /// The input of each axis' encoder, if it is known.
@@ -28,7 +28,7 @@ pub(crate) struct Wiring {
 }
 
 impl Wiring {
-    /// What a machine file says.
+    /// Creates the wiring of a machine file.
     pub(crate) fn new(axes: &[Axis; N_CHANNELS]) -> Self {
         let mut wiring = Self::default();
         for (index, axis) in axes.iter().enumerate() {
@@ -50,7 +50,7 @@ impl Wiring {
         self.drives[axis.index()]
     }
 
-    /// Whether the machine file says of any motor which output drives it.
+    /// Returns whether the machine file connects any motor to an output.
     pub(crate) fn has_drives(&self) -> bool {
         self.drives.iter().any(Option::is_some)
     }

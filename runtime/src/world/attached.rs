@@ -149,7 +149,7 @@ impl Settings<'_> {
 mod tests {
     use super::*;
 
-    /// What is wrong with a device, described as in a stimulus.
+    /// Returns the error message for a device, described as in a stimulus.
     fn wrong(text: &str) -> String {
         let mut words = text.split(' ');
         let name = words.next().unwrap_or_default().to_owned();

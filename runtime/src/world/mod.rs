@@ -20,16 +20,16 @@ use crate::world::stimulus::{Assist, Player, Step, Stimulus};
 use crate::world::trace::{Item, Quantity, Record, Recorder, View};
 use chips::changes::BitChange;
 
-/// What acts on the board from outside, and what looks at it.
+/// The world outside the board: the stimulus that acts on it, and the recorder that samples it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct World {
-    /// Whether characters that the UART sends are told.
+    /// True if characters that the UART sends are reported.
     hears_uart: bool,
-    /// What the world does, if anything.
+    /// The stimulus, if there is one.
     stimulus: Option<Box<Player>>,
     /// The operator, if there is one.
     pub(crate) assist: Option<Assist>,
-    /// What is recorded, if anything.
+    /// The recorder, if there is one.
     recorder: Option<Box<Recorder>>,
 }
 
@@ -43,7 +43,7 @@ impl World {
         changes::switch_on(&mut stage.io.pins.changes, memory);
     }
 
-    /// What it does at the beginning of a tick; whether that is anything.
+    /// Acts at the beginning of a tick; returns whether anything was done.
     pub(crate) fn tick(
         &mut self,
         stage: &mut Stage<'_>,
@@ -114,41 +114,41 @@ impl World {
         }
     }
 
-    /// Whether anything is recorded.
+    /// Returns whether anything is recorded.
     #[inline]
     pub(crate) const fn is_recording(&self) -> bool {
         self.recorder.is_some()
     }
 
-    /// Whether levels and slices are recorded.
+    /// Returns whether levels and slices are recorded.
     pub(crate) fn records_changes(&self) -> bool {
         self.recorder.as_ref().is_some_and(|recorder| recorder.records_changes())
     }
 
-    /// Whether the packets of a thread are recorded, of the call-back for `None`.
+    /// Returns whether the packets of a thread are recorded, or those of the call-back for `None`.
     pub(crate) fn records_packets(&self, thread: Option<ThreadId>) -> bool {
         self.recorder.as_ref().is_some_and(|recorder| recorder.records_packets(thread))
     }
 
-    /// Whether what is recorded changes even when nothing happens.
+    /// Returns whether a recorded value changes even when nothing happens.
     pub(crate) fn records_motion(&self, io: &Io, tick_start: Cycles) -> bool {
         io.fpga.is_telling(&io.pins)
             || self.recorder.as_ref().is_some_and(|recorder| recorder.samples("kstep_analog"))
                 && !io.fpga.kstep_output().is_settled(tick_start)
     }
 
-    /// Whether the stimulus still has something to do that the run must wait for.
+    /// Returns whether the stimulus still has something to do that the run must wait for.
     pub(crate) fn is_busy(&self, out: &Out) -> bool {
         let has_shown_lines = out.has_shown_lines();
         self.stimulus.as_ref().is_some_and(|player| player.is_busy(has_shown_lines))
     }
 
-    /// Whether the stimulus looks at something in every tick.
+    /// Returns whether the stimulus looks at something in every tick.
     pub(crate) fn is_watching(&self) -> bool {
         self.stimulus.as_ref().is_some_and(|player| player.is_watching())
     }
 
-    /// How many of the ticks after the one that began at `now` have nothing to do.
+    /// Returns how many of the ticks after the one that began at `now` have nothing to do.
     pub(crate) fn quiet_ticks(&self, out: &Out, now: Cycles) -> u64 {
         if !out.has_shown_lines() {
             return 0;

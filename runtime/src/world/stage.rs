@@ -10,7 +10,7 @@ use crate::machine::{Lines, Machine};
 use crate::out::Out;
 use crate::pc::Pc;
 
-/// What the world reaches at an instant.
+/// The parts of the board that the world reaches at an instant.
 #[derive(Debug)]
 pub(crate) struct Stage<'a> {
     pub(crate) machine: &'a mut Machine,
@@ -32,7 +32,7 @@ impl Stage<'_> {
     }
 }
 
-/// Who has the processor, and since when.
+/// The owner of the processor, and the start of its slice.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moment {
     pub(crate) turn: Turn,

@@ -6,7 +6,7 @@ use super::MachineFileError;
 use super::read::{Read, Table, Value, Wrong};
 use crate::world::stimulus::{Form, KEYS, Rule, StatementPlace, Stimulus};
 
-/// What messages about rules of a machine file call it.
+/// The name under which messages about rules of a machine file cite their source.
 const SOURCE: &str = "machine file";
 
 /// A statement and where it is in the text.

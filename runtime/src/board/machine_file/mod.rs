@@ -32,15 +32,15 @@ pub(crate) const NS_PER_INSTRUCTION: f64 = 5.0;
 pub struct MachineFile {
     /// The eight axes.
     pub axes: [Axis; N_CHANNELS],
-    /// What is connected to the board beside the loads of the axes.
+    /// The equipment that is connected to the board, without the loads of the axes.
     pub connected: Connected,
     /// Connections of outputs with inputs.
     pub wires: Vec<Wire>,
-    /// What happens, and devices on pins.
+    /// The events of the file, and the devices on pins.
     pub stimulus: Stimulus,
     /// Inputs that read 1 while nothing drives them.
     pub idle_high: Vec<Bit>,
-    /// Whether reading an input that nothing drives is worth a hint.
+    /// True if a remark is made when a program reads an input that nothing drives.
     pub hints: bool,
     /// Codes of remarks that are switched off.
     pub unwanted_remarks: BTreeSet<&'static str>,
@@ -50,7 +50,7 @@ pub struct MachineFile {
     pub cpu: Cpu,
     /// The PC.
     pub pc: Pc,
-    /// What is on the UART's line.
+    /// The other end of the UART's line.
     pub uart: Uart,
 }
 
@@ -77,9 +77,9 @@ impl Default for MachineFile {
 pub struct Boards {
     /// SnapAmp boards on the bus.
     pub snapamps: usize,
-    /// Whether a Kanalog is found at power-up.
+    /// True if a Kanalog is found at power-up.
     pub has_kanalog: bool,
-    /// Whether a KStep is on JP7, and whether its motors need the enable signal on bit 45.
+    /// The KStep on JP7, if there is one: true if its motors need the enable signal on bit 45.
     pub has_kstep: bool,
     /// See `has_kstep`.
     pub respect_enable: bool,
@@ -87,7 +87,7 @@ pub struct Boards {
     pub konnects: [u8; 2],
     /// File that keeps the flash; `None` for this run only.
     pub flash: Option<String>,
-    /// Whether reads of flash find the bank that `SetFlashBank` has selected, as the board's address lines have it.
+    /// True if reads of flash find the bank that `SetFlashBank` has selected, as the board's address lines do.
     pub strict_flash: bool,
 }
 
@@ -105,7 +105,7 @@ impl Default for Boards {
     }
 }
 
-/// How the processor behaves.
+/// The behaviour of the processor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cpu {
     /// Microseconds of the servo interrupt; what was measured if absent.
@@ -114,13 +114,13 @@ pub struct Cpu {
     pub ns_per_instruction: f64,
     /// Ticks that a motion call plans before its motion begins.
     pub plan_ticks: u32,
-    /// Whether a program that is started again finds its globals as they were loaded.
+    /// True if a program that is started again finds its globals as they were loaded.
     pub fresh_globals: bool,
     /// Byte put into uninitialised data at a load.
     pub bss_fill: u8,
-    /// Whether stacks are as small as the board's.
+    /// True if stacks are as small as the board's.
     pub strict_stack: bool,
-    /// Whether ROM, control registers and misaligned addresses answer as on the board; otherwise they trap.
+    /// True if ROM, control registers and misaligned addresses answer as on the board; otherwise they trap.
     pub board_faults: bool,
 }
 
@@ -141,13 +141,13 @@ impl Default for Cpu {
 /// The PC and its files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pc {
-    /// Whether the built-in PC polls and answers.
+    /// True if the built-in PC polls and answers.
     pub is_connected: bool,
-    /// What it answers.
+    /// Its answers to programs.
     pub answers: Answers,
     /// The folder of its files; `None` for the usual one.
     pub disk_root: Option<String>,
-    /// How long a round trip to its files takes, seconds.
+    /// The time that a round trip to its files takes, in seconds.
     pub disk_latency_s: f64,
     /// Names that programs use for its files, and the files meant, relative to the folder.
     pub disk_files: Vec<(String, String)>,
@@ -165,7 +165,7 @@ impl Default for Pc {
     }
 }
 
-/// What is on the UART's line.
+/// The other end of the UART's line.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Uart {
     /// File with the characters that it receives.
@@ -194,7 +194,7 @@ impl MachineFile {
         }
     }
 
-    /// Whether remarks of a code are shown; `None` if there is no such code.
+    /// Shows or hides the remarks of a code; `None` if there is no such code.
     pub fn want_remark(&mut self, code: &str, is_wanted: bool) -> Option<()> {
         let RemarkRow { code, .. } = REMARKS.iter().find(|row| row.code == code)?;
         if is_wanted {
@@ -220,7 +220,7 @@ impl MachineFile {
     }
 }
 
-/// What is wrong with a machine file.
+/// An error in a machine file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct MachineFileError {
@@ -228,7 +228,7 @@ pub struct MachineFileError {
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// What is wrong there.
+    /// The message.
     pub message: String,
 }
 

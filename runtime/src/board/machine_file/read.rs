@@ -109,7 +109,7 @@ impl<'a> Value<'a> {
         Wrong::new(self.source.span().start, format!("`{}` must be {expected}, not {found}", self.path))
     }
 
-    /// Where it is in the text.
+    /// Returns its offset in the text.
     pub(super) fn offset(&self) -> usize {
         self.source.span().start
     }

@@ -15,7 +15,7 @@ use chips::kanalog::conversion;
 /// Counts of an analog input in a volt.
 const COUNTS_PER_VOLT: f64 = 204.8;
 
-/// Where the outputs are.
+/// The location of the outputs.
 #[derive(Clone, Copy, Debug)]
 enum Driver {
     Bits { high: Bit, low: Option<Bit> },

@@ -26,7 +26,7 @@ pub(crate) struct Resolver {
     /// Counts at the full amplitude.
     amplitude: f64,
     is_driven: bool,
-    /// What the coil induces at an instant, −1 to 1.
+    /// The field of the coil, −1 to 1.
     field: f64,
     at: Cycles,
 }

@@ -18,15 +18,15 @@ const BITS: f64 = 16.0;
 pub(crate) struct Spi {
     select: Bit,
     clock: Bit,
-    /// Where it shows its bits, an input of the board.
+    /// Its data output, an input of the board.
     out: Bit,
-    /// Where it takes bits from, an output of the board.
+    /// Its data input, an output of the board.
     input: Option<Bit>,
     bits: u32,
     words: Vec<u32>,
     /// Sends what it received the time before, as a shift register does.
     is_looped: bool,
-    /// How many times it was selected.
+    /// The number of times it was selected.
     turns: usize,
     is_selected: bool,
     input_level: bool,
@@ -120,7 +120,7 @@ impl Attached for Spi {
 mod tests {
     use crate::world::outside::testing::Bench;
 
-    /// What a program reads and writes in one selection.
+    /// Selects the device once, sends bits and returns the bits read.
     fn exchange(bench: &mut Bench, send: u32, bits: u32) -> u32 {
         let mut word = 0;
         bench.output(16, false, 0);

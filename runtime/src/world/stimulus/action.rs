@@ -1,4 +1,4 @@
-//! What a statement does: the table of actions.
+//! Actions of statements, as a table.
 //!
 //! A row is an action: how statements write it, what reads each form and what does it, both functions of a file of
 //! [`acts`](super::acts); the key of an `[[event]]` table that writes it in a machine file; and what should be known of
@@ -21,7 +21,8 @@ use crate::io::snapamp::{Quantity, Side};
 use crate::world::Stage;
 use crate::world::attached::DeviceSpec;
 
-/// How the key of an event becomes statements: a template with the event's values in braces. Texts come in quotes.
+/// The translation of an event's key into statements: a template with the event's values in braces. Texts come in
+/// quotes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Form {
     /// One value, or an array of them, as `{value}`.
@@ -52,7 +53,7 @@ impl Written {
         self.usage.split(' ').next().unwrap_or_default()
     }
 
-    /// Whether a statement has its words where it has them, as far as it goes.
+    /// Returns whether a statement has the form's fixed words at the same positions, as far as it goes.
     fn fits(&self, reader: &StatementReader<'_>) -> bool {
         let is_word = |word: &str| word.chars().all(char::is_lowercase);
         let mut words = self.usage.split(' ').enumerate().filter(|(_, word)| is_word(word));
@@ -72,7 +73,7 @@ macro_rules! actions {
             $(keys { $($key:literal => $form:expr),+ })?
         }
     )+) => {
-        /// What the world does to the board.
+        /// An action of the world on the board.
         #[derive(Clone, Debug, PartialEq)]
         pub enum Action {
             $($(#[doc = $doc])+ $name($first_type $(, $type)*),)+
@@ -110,7 +111,7 @@ macro_rules! actions {
                 }
             }
 
-            /// Whether a run continues until it is done, as it begins something.
+            /// Returns whether a run continues until the action is done, because it begins something.
             pub(super) const fn keeps_the_run(&self) -> bool {
                 match self {
                     $(Self::$name(..) => false $(|| $keeps)?,)+
@@ -213,7 +214,7 @@ actions! {
         written { "run thread N \"FILE\"" => computer::read_run }
         keys { "run" => Form::Fields(&["run thread {thread} {program}", "start thread {thread}"]) }
     }
-    /// What the PC answers next, as `key=value`.
+    /// Sets the PC's next answer, as `key=value`.
     Answer(setting: String) {
         does computer::answer;
         written { "answer \"KEY=VALUE\"" => computer::read_answer }

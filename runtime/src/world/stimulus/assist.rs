@@ -7,12 +7,12 @@ use std::collections::BTreeMap;
 
 use kmotiondef::{Bit, CodeAddr, Cycles, ThreadId};
 
-/// How long programs wait before anything is done: 2 s.
+/// The time for which programs wait before the operator acts: 2 s.
 const PATIENCE: Cycles = Cycles::new(2 * Cycles::PER_SECOND.get());
-/// How long an input stays toggled: 0.1 s. As long again is what the programs have to show that it helped.
+/// The time for which an input stays toggled: 0.1 s. The programs have the same time again to react.
 const PRESSED: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 10);
 
-/// Who reads an input.
+/// The reader of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Asker {
     /// The thread; `None` for the call-back.
@@ -21,7 +21,7 @@ pub(crate) struct Asker {
     pub(crate) at: Option<CodeAddr>,
 }
 
-/// What the operator does.
+/// An action of the operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Step {
     /// Toggles an input; who has read it last.
@@ -38,7 +38,7 @@ pub(crate) struct Assist {
     /// When something is done next.
     next: Cycles,
     pressed: Option<Bit>,
-    /// Whether the programs have done something since it was pressed.
+    /// True if the programs have reacted since it was pressed.
     has_helped: bool,
     /// The last input that was pressed: the following one is next.
     last: Option<Bit>,
@@ -65,7 +65,7 @@ impl Assist {
         self.polled.insert(bit, reader);
     }
 
-    /// What is due at the beginning of a tick.
+    /// Returns the action that is due at the beginning of a tick.
     pub(crate) fn step(&mut self, now: Cycles) -> Option<Step> {
         if now < self.next {
             return None;
@@ -84,7 +84,7 @@ impl Assist {
         Some(Step::Press(bit, reader))
     }
 
-    /// How many of the ticks after the one that began at `now` have nothing to do.
+    /// Returns how many of the ticks after the one that began at `now` have nothing to do.
     pub(crate) fn quiet_ticks(&self, now: Cycles) -> u64 {
         let rest = (self.next - now).get() / Cycles::PER_TICK.get() - 1;
         u64::try_from(rest).unwrap_or(0)

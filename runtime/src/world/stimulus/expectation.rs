@@ -1,4 +1,4 @@
-//! What should be: a value compared with another, a text on the console, the state of an axis or a thread.
+//! Expectations: a value compared with another, a text on the console, the state of an axis or a thread.
 //!
 //! An expectation is met or not at an instant, and says then what was. [`monitor`](super::monitor) watches those that
 //! hold over a time.
@@ -18,16 +18,16 @@ use super::tokens::Mistake;
 use crate::views::Typed;
 use crate::world::trace::{Formula, Item, View};
 
-/// What should be, or should not.
+/// A statement that something is, or is not, so.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expectation {
-    /// What is looked at.
+    /// The fact to examine.
     pub predicate: Predicate,
-    /// Whether it should be so.
+    /// The required outcome.
     pub sense: Sense,
 }
 
-/// Whether something should be so.
+/// The outcome that an expectation requires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sense {
     /// It should.
@@ -38,7 +38,7 @@ pub enum Sense {
     Never,
 }
 
-/// What is so, or is not.
+/// A fact about the board that holds or does not.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Predicate {
     /// A value is in a relation to a number, or within a distance of it.
@@ -49,7 +49,7 @@ pub enum Predicate {
         relation: Relation,
         /// The number.
         number: f64,
-        /// How far an equal value may be from it.
+        /// The tolerance for equality.
         tolerance: f64,
     },
     /// A console line so far contains the text.
@@ -60,7 +60,7 @@ pub enum Predicate {
     Active(ThreadId, bool),
 }
 
-/// What has a value.
+/// A value that expectations compare.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Subject {
     /// An item of the board, and what statements call it.
@@ -71,7 +71,7 @@ pub enum Subject {
     Expression(Expression),
 }
 
-/// How a value lies in `persist.UserData`.
+/// The representation of a value in `persist.UserData`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stored {
     /// An integer.
@@ -100,20 +100,20 @@ impl PartialEq for Expression {
 const OF_AXIS: &[(&str, &str)] =
     &[("position", "pos"), ("dest", "dest"), ("velocity", "vel"), ("output", "out"), ("load", "load")];
 
-/// What can be looked at.
+/// The parts of the board that expectations examine.
 pub(super) struct Look<'a> {
     pub(super) view: View<'a>,
     pub(super) threads: ThreadSet,
-    /// Whether the text of this expectation was printed.
+    /// True if the text of this expectation was printed.
     pub(super) said: bool,
 }
 
-/// What was seen.
+/// The result of an examination.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Seen {
-    /// Whether it is as it should be.
+    /// True if the expectation is met.
     pub(super) is_met: bool,
-    /// What was, and what should be.
+    /// The actual and the expected value, as text.
     pub(super) text: String,
 }
 
@@ -145,7 +145,7 @@ impl Expectation {
         Seen { is_met: holds == is_wanted, text: format!("{was}, expected {}", self.expected()) }
     }
 
-    /// What should be, in words that follow "expected".
+    /// Returns the words that follow "expected" in messages.
     fn expected(&self) -> String {
         let what = match &self.predicate {
             Predicate::Value { relation: Relation::Equal, number, tolerance, .. } => match tolerance {
@@ -243,13 +243,13 @@ pub(super) fn read(reader: &mut StatementReader<'_>) -> Result<(Expectation,), M
     Ok((expectation(reader)?,))
 }
 
-/// What should be, or after `not` should not.
+/// Reads an expectation; `not` negates it.
 pub(super) fn expectation(reader: &mut StatementReader<'_>) -> Result<Expectation, Mistake> {
     let sense = if reader.accept("not") { Sense::IsNot } else { Sense::Is };
     Ok(Expectation { predicate: predicate(reader)?, sense })
 }
 
-/// What never should be.
+/// Reads an expectation that must not be so at any time.
 pub(super) fn never(reader: &mut StatementReader<'_>) -> Result<Expectation, Mistake> {
     Ok(Expectation { predicate: predicate(reader)?, sense: Sense::Never })
 }

@@ -54,7 +54,7 @@ use kmotiondef::ThreadId;
 
 use crate::world::trace::Formula;
 
-/// Where a statement stands.
+/// The location of a statement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StatementPlace {
     /// The file, or the option that holds the text.
@@ -74,11 +74,11 @@ impl fmt::Display for StatementPlace {
 /// One statement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
-    /// Where it is.
+    /// Its location.
     pub place: StatementPlace,
     /// When it acts.
     pub trigger: Trigger,
-    /// What it does.
+    /// Its action.
     pub action: Action,
 }
 
@@ -137,7 +137,7 @@ impl Stimulus {
         Ok(())
     }
 
-    /// Whether it does nothing.
+    /// Returns whether it has no rules.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rules.is_empty()

@@ -14,19 +14,19 @@ use crate::out::EventKind;
 use crate::world::Stage;
 use crate::world::trace::View;
 
-/// What is known about a statement so far.
+/// The progress of a statement.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Progress {
     /// When it was due last. Simultaneous repeats count once, so that rules which trigger each other do not
     /// multiply.
     pub(super) last_due: Option<Cycles>,
-    /// Whether the value that it waits for was as it is compared in the last tick.
+    /// True if the value that it waits for compared as true in the last tick.
     pub(super) was_so: bool,
-    /// Whether the text it expects was printed: since the condition, where there is one.
+    /// True if the text it expects was printed: since the condition, where there is one.
     pub(super) said: bool,
-    /// Whether it has done or checked something.
+    /// True if it has acted or checked something.
     pub(super) happened: bool,
-    /// Whether it was told that something is not as expected.
+    /// True if a failure was reported.
     told: bool,
     /// When the condition happened after which something has to come.
     since: Option<Cycles>,
@@ -61,7 +61,7 @@ impl Player {
         }
     }
 
-    /// Whether something is watched in every tick.
+    /// Returns whether something is examined in every tick.
     pub(crate) fn is_watching(&self) -> bool {
         self.rules.iter().zip(&self.progress).any(|(rule, progress)| match &rule.trigger {
             Trigger::Always { .. } => !progress.told,
@@ -103,7 +103,7 @@ impl Player {
         }
     }
 
-    /// Whether what has to come within a time has come, or the time has passed.
+    /// Checks a statement with a deadline: reports its failure once the time has passed.
     fn watch_deadline(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>, index: usize) {
         let Trigger::Within { limit, .. } = self.rules[index].trigger else { return };
         let Action::Expect(expectation) = &self.rules[index].action else { return };
@@ -117,7 +117,7 @@ impl Player {
         }
     }
 
-    /// Whether something is so that belongs to a statement, and what was and should be.
+    /// Examines an expectation of a statement; returns whether it is met, with the actual and the expected value.
     pub(super) fn look(
         &self,
         stage: &Stage<'_>,

@@ -14,7 +14,7 @@ use chips::kanalog::{ADC_CHANNELS, conversion};
 /// The most that may be planned at a time.
 pub const MOST_PLANNED: usize = 100_000;
 
-/// What is due at an instant.
+/// An event that is due at an instant.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Due {
     /// A rule.
@@ -41,7 +41,7 @@ struct Turning {
 /// All that continues by itself.
 #[derive(Clone, Debug)]
 pub(crate) struct Plans {
-    /// What is due, by time and then in the order it became so.
+    /// The pending events, by time and then in the order of planning.
     due: BTreeMap<(Cycles, u64), Due>,
     count: u64,
     waves: [Option<(Wave, Cycles)>; ADC_CHANNELS],
@@ -108,18 +108,18 @@ impl Plans {
         std::mem::take(&mut self.due).into_values()
     }
 
-    /// What is due now, the first of it.
+    /// Takes the first event that is due now.
     pub(super) fn take(&mut self, now: Cycles) -> Option<Due> {
         let entry = self.due.first_entry()?;
         (entry.key().0 <= now).then(|| entry.remove())
     }
 
-    /// Whether an encoder turns.
+    /// Returns whether an encoder turns.
     pub(super) fn is_turning(&self) -> bool {
         !self.turning.is_empty()
     }
 
-    /// How many of the ticks after the one that began at `now` have nothing to do.
+    /// Returns how many of the ticks after the one that began at `now` have nothing to do.
     pub(super) fn quiet_ticks(&self, now: Cycles) -> u64 {
         let moves = self.waves.iter().flatten().any(|(wave, begun)| !wave.is_over(now - *begun));
         if moves || self.is_turning() {

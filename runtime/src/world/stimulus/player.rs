@@ -22,7 +22,7 @@ use chips::changes::BitChange;
 #[derive(Clone, Debug)]
 pub(crate) struct Player {
     pub(super) rules: Vec<Rule>,
-    /// What is known about each so far.
+    /// The progress of each rule.
     pub(super) progress: Vec<Progress>,
     pub(super) plans: Plans,
     /// Console lines that no statement has been compared with yet, and how many statements there were when each came.
@@ -30,7 +30,7 @@ pub(crate) struct Player {
     /// The last characters that the serial port has sent.
     sent: VecDeque<u8>,
     active: ThreadSet,
-    /// Whether nothing was seen at the last tick that a statement could wait for: no thread is active any more.
+    /// True if the last tick had nothing that a statement could wait for: no thread is active any more.
     is_idle: bool,
 }
 
@@ -94,7 +94,7 @@ impl Player {
         self.lines.push_back((at, line, self.rules.len()));
     }
 
-    /// Whether a thread is still to be started or a command to be sent, so that the run must continue.
+    /// Returns whether a thread is still to be started or a command to be sent, so that the run must continue.
     ///
     /// Lines that were sent after the last tick have not been compared with anything.
     pub(crate) fn is_busy(&self, has_shown_lines: bool) -> bool {
@@ -110,7 +110,7 @@ impl Player {
         is_due || (awaits && !(self.is_idle && has_shown_lines))
     }
 
-    /// Whether a statement still waits for the first time of something in order to begin something.
+    /// Returns whether a statement still waits for the first occurrence of its condition to begin something.
     fn awaits(&self) -> bool {
         self.rules.iter().zip(&self.progress).any(|(rule, progress)| {
             let is_once = matches!(rule.trigger, Trigger::When { is_once: true, .. });
@@ -118,13 +118,13 @@ impl Player {
         })
     }
 
-    /// How many of the ticks after the one that began at `now` have nothing to do.
+    /// Returns how many of the ticks after the one that began at `now` have nothing to do.
     pub(crate) fn quiet_ticks(&self, now: Cycles) -> u64 {
         let is_ending = self.active.is_empty() && !self.is_idle && self.awaits();
         if is_ending || !self.lines.is_empty() { 0 } else { self.plans.quiet_ticks(now) }
     }
 
-    /// What the world does at the beginning of a tick; whether it did anything.
+    /// Acts at the beginning of a tick; returns whether anything was done.
     pub(crate) fn tick(
         &mut self,
         stage: &mut Stage<'_>,

@@ -101,7 +101,7 @@ impl StatementReader<'_> {
         self.take("a distance of 0 or more", |word| number(word).filter(|distance| *distance >= 0.0))
     }
 
-    /// Whether a text in quotation marks comes next.
+    /// Returns whether a text in quotation marks comes next.
     pub(crate) fn is_at_text(&self) -> bool {
         matches!(self.tokens.first(), Some(Token { kind: TokenKind::Text(_), .. }))
     }

@@ -1,4 +1,4 @@
-//! How two numbers are compared.
+//! Relations between two numbers.
 
 /// A relation between two numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,7 +18,7 @@ pub enum Relation {
 }
 
 impl Relation {
-    /// How it is written.
+    /// Returns its sign.
     pub(super) const fn sign(self) -> &'static str {
         match self {
             Self::Equal => "=",
@@ -30,7 +30,7 @@ impl Relation {
         }
     }
 
-    /// Whether a value is so.
+    /// Returns whether a value is in this relation to a number.
     pub(super) fn holds(self, value: f64, number: f64, tolerance: f64) -> bool {
         match self {
             Self::Equal => (value - number).abs() <= tolerance,

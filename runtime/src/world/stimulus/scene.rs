@@ -1,4 +1,4 @@
-//! What an action reaches.
+//! The parts of the board that an action reaches.
 
 use vm::firmware::TickContext;
 
@@ -11,8 +11,8 @@ pub(crate) struct Scene<'a, 'b, 'c> {
     pub(crate) plans: &'a mut Plans,
     pub(crate) stage: &'a mut Stage<'b>,
     pub(crate) context: &'a mut TickContext<'c>,
-    /// Where the statement stands, for messages.
+    /// The location of the statement, for messages.
     pub(crate) place: &'a str,
-    /// Whether its expectation should be checked.
+    /// True if its expectation should be checked.
     pub(crate) is_checked: bool,
 }

@@ -12,9 +12,9 @@ use super::{Action, Condition, Edge, Rule, StatementPlace, Trigger, action, expe
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}: {message}")]
 pub struct StimulusError {
-    /// Where.
+    /// The location of the statement.
     pub place: StatementPlace,
-    /// What is wrong.
+    /// The message.
     pub message: String,
 }
 
@@ -182,7 +182,7 @@ mod tests {
     use super::super::{Expectation, Predicate};
     use super::*;
 
-    /// What a statement means, as Rust writes it.
+    /// Checks the debug form of a parsed statement.
     fn check(text: &str, expect: &str) {
         let rules = parse(text, "x.stim").unwrap_or_else(|error| panic!("{error}"));
         let read: Vec<_> = rules.iter().map(|rule| format!("{:?} {:?}", rule.trigger, rule.action)).collect();

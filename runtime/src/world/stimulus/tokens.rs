@@ -1,6 +1,6 @@
 //! Words, texts and signs of a line, each with its column.
 
-/// What is at a place of a line.
+/// The kind and content of a token.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum TokenKind {
     /// A word or number.
@@ -52,7 +52,7 @@ pub(super) fn tokens(line: &str) -> Result<Vec<Token>, Mistake> {
     Ok(tokens)
 }
 
-/// How signs are written, the longer ones first, and what each is.
+/// The spellings of signs, the longer ones first, each with its canonical form.
 const SIGNS: &[(&str, &str)] = &[
     ("<=", "<="),
     (">=", ">="),

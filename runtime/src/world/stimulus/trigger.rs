@@ -6,7 +6,7 @@ use kmotiondef::{Bit, Cycles, ThreadId};
 
 use super::expectation::Expectation;
 
-/// Which change of a level counts.
+/// The change of a level that counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edge {
     /// From 0 to 1.
@@ -18,7 +18,7 @@ pub enum Edge {
 }
 
 impl Edge {
-    /// Whether a change to this level counts.
+    /// Returns whether a change to this level counts.
     pub(crate) fn fits(self, level: bool) -> bool {
         match self {
             Self::Rises => level,
@@ -63,25 +63,25 @@ pub enum Trigger {
     },
     /// Some time after something happens, each time or only the first time.
     When {
-        /// What happens.
+        /// The condition.
         condition: Condition,
-        /// How long after it.
+        /// The delay after it.
         after: Cycles,
-        /// Whether only the first time counts.
+        /// True if only the first time counts.
         is_once: bool,
     },
     /// When the run is over.
     End,
     /// Checked all the time from a condition on, until it is met: at most for this long.
     Within {
-        /// How long.
+        /// The time limit.
         limit: Cycles,
         /// From what on, each time.
         condition: Condition,
     },
     /// Checked in every tick, or in those in which something else is so.
     Always {
-        /// What else, if anything.
+        /// The expectation that must also be met, if there is one.
         while_met: Option<Expectation>,
     },
 }
@@ -117,7 +117,7 @@ impl fmt::Display for Trigger {
 }
 
 impl Trigger {
-    /// What it waits for, if it does.
+    /// Returns the condition that it waits for, if it has one.
     pub(super) const fn condition(&self) -> Option<&Condition> {
         match self {
             Self::When { condition, .. } | Self::Within { condition, .. } => Some(condition),

@@ -31,7 +31,7 @@ pub enum Wave {
         from: f64,
         /// The last value.
         to: f64,
-        /// How long it takes.
+        /// The duration.
         over: Cycles,
     },
     /// The load of an axis.
@@ -66,7 +66,7 @@ impl Wave {
         }
     }
 
-    /// Whether it stays as it is from a time after its beginning on.
+    /// Returns whether the wave is constant from `elapsed` on.
     pub(crate) fn is_over(&self, elapsed: Cycles) -> bool {
         match self {
             Self::Constant(_) => true,

@@ -16,11 +16,11 @@ use crate::views::Typed;
 /// A kind of value: a row of the table of kinds, which says everything about it.
 struct ItemKind {
     name: &'static str,
-    /// How many there are, numbered from 0.
+    /// The number of items, which are numbered from 0.
     count: usize,
     /// The unit; empty for mere numbers.
     unit: &'static str,
-    /// Whether it is a part of what `axisN` names.
+    /// True if `axisN` includes it.
     is_of_axes: bool,
     read: fn(&View<'_>, usize) -> f64,
     /// The variable of the board that it is; `None` of what is only in registers, or of the model.
@@ -213,13 +213,13 @@ impl Item {
         }
     }
 
-    /// Whether there are items of this name with a number after it.
+    /// Returns whether there are numbered items of this name.
     #[must_use]
     pub fn is_kind(name: &str) -> bool {
         KINDS.iter().any(|kind| kind.name == name)
     }
 
-    /// Where every axis is sent, where it is and what drives it.
+    /// Returns the commanded position, the position and the output of every axis.
     #[must_use]
     pub fn of_axes() -> Vec<Self> {
         AxisId::all().flat_map(Self::of_axis).collect()
@@ -232,13 +232,13 @@ impl Item {
         kinds.map(|(kind, _)| Self { kind, index: axis.index() }).collect()
     }
 
-    /// Where the load of every axis is, in machine coordinates.
+    /// Returns the load position of every axis, in machine coordinates.
     #[must_use]
     pub fn of_loads() -> Vec<Self> {
         AxisId::all().flat_map(|axis| Self::new(&format!("load{axis}"))).collect()
     }
 
-    /// What kind of value it is: its name without the number.
+    /// Returns the kind of value: its name without the number.
     #[must_use]
     pub fn kind(self) -> &'static str {
         KINDS[self.kind].name
@@ -268,7 +268,7 @@ impl Item {
         Bit::new(i32::try_from(self.index).ok()?).filter(|_| self.kind() == "bit")
     }
 
-    /// Whether it belongs to an option board that only the modelled firmware serves: a Konnect, a SnapAmp.
+    /// Returns whether it belongs to an option board that only the modelled firmware serves: a Konnect, a SnapAmp.
     #[must_use]
     pub fn is_only_modelled(self) -> bool {
         let is_snapamp = |bit| range_of(bit).is_some_and(|range| range.kind == BitKind::SnapGpio);

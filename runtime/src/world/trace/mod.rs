@@ -16,14 +16,14 @@ pub use crate::out::Record;
 
 use kmotiondef::ThreadId;
 
-/// What should be recorded.
+/// A request to record values.
 #[derive(Clone, Debug)]
 pub struct TraceRequest {
     /// Values to sample.
     pub quantities: Vec<Quantity>,
     /// Ticks from one sample to the next.
     pub every: u64,
-    /// Whether levels and slices are recorded as well.
+    /// True if levels and slices are recorded as well.
     pub changes: bool,
     /// Whose packets of real code are recorded as well.
     pub packets: Option<Packets>,

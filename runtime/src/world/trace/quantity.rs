@@ -20,7 +20,7 @@ pub enum Quantity {
     Formula(String, Arc<dyn Formula>),
 }
 
-/// How a value is computed.
+/// A computation of a value from the board's state.
 pub trait Formula: fmt::Debug + Send + Sync {
     /// The value now.
     fn value(&self, view: &View<'_>) -> f64;
@@ -60,7 +60,7 @@ pub struct View<'a> {
     pub(super) io: &'a Io,
     /// When the present tick began.
     pub(super) tick_start: Cycles,
-    /// What programs see.
+    /// Guest memory, as programs see it.
     pub memory: &'a GuestMemory,
 }
 

@@ -19,12 +19,12 @@ impl Recorder {
         Self { request, last: None }
     }
 
-    /// Whether levels and slices are recorded.
+    /// Returns whether levels and slices are recorded.
     pub(crate) fn records_changes(&self) -> bool {
         self.request.changes
     }
 
-    /// Whether the packets of a thread are recorded, of the call-back for `None`.
+    /// Returns whether the packets of a thread are recorded, or those of the call-back for `None`.
     pub(crate) fn records_packets(&self, thread: Option<ThreadId>) -> bool {
         self.request.packets.is_some_and(|packets| match packets {
             Packets::All => true,
@@ -32,7 +32,7 @@ impl Recorder {
         })
     }
 
-    /// Whether an item is sampled.
+    /// Returns whether an item is sampled.
     pub(crate) fn samples(&self, name: &str) -> bool {
         self.request.quantities.iter().filter_map(Quantity::item).any(|item| item.kind() == name)
     }

@@ -1,4 +1,4 @@
-//! What the PC does: programs, commands, answers, values in `persist`, and characters on the serial port.
+//! Actions of the PC: programs, commands, answers, values in `persist`, and characters on the serial port.
 
 use std::sync::Arc;
 

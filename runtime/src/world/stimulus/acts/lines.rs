@@ -99,7 +99,7 @@ pub(crate) fn bounce(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) 
     }
 }
 
-/// What will be driven is not an accident, and a Kanalog whose inputs are driven is there.
+/// Declares a bit as driven, so that no remark calls its use an accident; a Kanalog whose inputs are driven is present.
 pub(crate) fn announce(bit: &Bit, stage: &mut Stage<'_>, memory: &mut GuestMemory) {
     stage.io.pins.declare(*bit);
     if KANALOG_INPUTS.contains(&bit.get()) {
@@ -174,7 +174,7 @@ fn counts(reader: &mut StatementReader<'_>) -> Result<f64, Mistake> {
     })
 }
 
-/// Whether a bit lives in guest memory.
+/// Returns whether a bit lives in guest memory.
 fn is_memory(bit: Bit) -> bool {
     range_of(bit).is_some_and(|range| range.direction == BitDirection::Memory)
 }

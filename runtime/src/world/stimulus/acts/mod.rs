@@ -1,4 +1,4 @@
-//! What the actions are: of each the function that reads it from a statement, and the one that does it.
+//! Implementations of the actions: for each, the function that reads it from a statement and the one that executes it.
 
 pub(super) mod computer;
 pub(super) mod lines;
