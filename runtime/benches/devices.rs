@@ -1,4 +1,4 @@
-//! What the world costs: a tick of a board whose program toggles a bit in every other one.
+//! The cost of the simulated world: a tick of a board whose program toggles a bit in every other one.
 //!
 //! `devices/none`: nothing is attached, nobody watches. `devices/wire`: an input follows the bit. `devices/stimulus`: a
 //! stimulus waits for an edge of another one. `devices/trace`: every edge and slice is recorded. An element is one tick.

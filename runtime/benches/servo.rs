@@ -1,4 +1,4 @@
-//! What a tick costs: the servo with nothing else to do. An element is one tick of 90 µs.
+//! The cost of a tick: the servo with nothing else to do. An element is one tick of 90 µs.
 //!
 //! `servo/moving/8`: eight servo axes with encoders, jogging. `servo/still/3`: three of them at rest. `servo/idle`: no
 //! axis is enabled. Shortcuts are off, so that no tick is skipped.

@@ -49,7 +49,7 @@ use crate::world::trace::{Record, View};
 /// The address after the gather buffer. Nothing but a program writes there.
 const GATHER_END: GuestAddr = GuestAddr::new(0x8010_2010 + 8 * MAX_GATHER_DATA as u32);
 
-/// What a register access costs beyond the instruction if time is not the board's: 200 ns, a timer 100 ns.
+/// The cost of a register access beyond the instruction if time is not the board's: 200 ns, a timer 100 ns.
 const FPGA_CYCLES: Cycles = Cycles::new(40);
 const TIMER_CYCLES: Cycles = Cycles::new(20);
 
@@ -113,7 +113,7 @@ impl Kernel {
         parts.disturb();
     }
 
-    /// Whether text, motion, a recording or a request to the PC is still under way.
+    /// Returns whether text, motion, a recording or a request to the PC is still in progress.
     pub(crate) fn is_busy(&self, memory: &GuestMemory) -> bool {
         let Parts { out, io, pc, world, calls, .. } = &self.parts;
         !out.console.is_idle()

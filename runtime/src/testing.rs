@@ -73,7 +73,7 @@ impl Desk {
         }
     }
 
-    /// Whether a call is done at once.
+    /// Returns whether a call completes without waiting.
     pub(crate) fn is_done(&mut self, name: &str, arguments: &[u64]) -> bool {
         matches!(self.outcome(name, arguments, None), Outcome::Done(_))
     }

@@ -1,4 +1,4 @@
-//! How fast the processor's interpreter is: millions of cycles and packets a second of the computer's processor time.
+//! The speed of the processor's interpreter: millions of cycles and packets a second of the computer's processor time.
 //!
 //! `kernel/integer`, `kernel/memory` and `kernel/double` are the loops of `c67x.md` 7 by hand, those of `cc67` what the
 //! compiler makes; `translated` are the same as code of the host. Goals: 150 million cycles a second interpreted, 600
@@ -20,7 +20,7 @@ use vm::dsp::{Clock, Core, Halt, Memory};
 use vm::memory::GuestMemory;
 use vm::trap::{Access, TrapKind};
 
-/// Where kernels are, and where they return to.
+/// The address of the kernels, and the one they return to.
 const CODE: u32 = 0x8005_0000;
 const BACK: u32 = 0x0000_1000;
 /// Cycles of a measurement.
@@ -37,7 +37,7 @@ const DOUBLE: &str = "02901059 011839A3 04800029 021088C2 0108205B 04000029 0280
 const COPY: &str =
     "0013E05B 02800029 01900058 030C3665 20000191 2003E05A 00006000 030C0274 000C0362 02140058 00006000";
 
-/// What cc67 makes of `for (i = 0; i < n; i++) s = (s << 1) + (a[i] ^ i);` at `-O1`.
+/// The code that cc67 makes of `for (i = 0; i < n; i++) s = (s << 1) + (a[i] ^ i);` at `-O1`.
 const OWN_INTEGER: &str = "00100ADB 01800029 0280002A 30000912 00008000 02900941 00000001 00000000 03140267 030C2CA1 02948058 00006000 \
      0398ADFB 029421A2 0090AAFB 019CD078 4FFFFC12 00008000 020C0941 000C0362 00008000";
 /// Of `for (i = 0; i < n; i++) to[i] = from[i];`.

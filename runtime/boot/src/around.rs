@@ -9,7 +9,7 @@ use std::fmt::Debug;
 use chips::stepgen::GENERATORS;
 use vm::memory::GuestMemory;
 
-/// What there is to see and to change at a match of the timer.
+/// The state that can be read and changed at a match of the timer.
 #[derive(Debug)]
 pub struct AtMatch<'a> {
     /// Memory, data only.
@@ -18,7 +18,7 @@ pub struct AtMatch<'a> {
     pub now: u64,
     /// Steps that each generator has made.
     pub steps: [f64; GENERATORS],
-    /// What the encoders show from now on.
+    /// The count bytes of the encoders from now on.
     pub encoders: &'a mut [u8; 8],
     /// Inputs of a KStep from now on, if there is one: a bit is set while current flows.
     pub kstep: &'a mut Option<u16>,
@@ -26,7 +26,7 @@ pub struct AtMatch<'a> {
 
 /// Something around the board. Cycles are counted since power-up; a clone is the same in the same state.
 pub trait Around: Clone + Debug {
-    /// What a register shows when the firmware reads it; `None` where the board itself answers.
+    /// Returns the value of a register that the firmware reads; `None` where the board itself answers.
     fn read(&mut self, register: usize, is_byte: bool, now: u64) -> Option<u16>;
 
     /// The firmware writes a register.

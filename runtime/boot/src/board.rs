@@ -41,7 +41,7 @@ const GIE: u32 = 1;
 const ESCAPE: u8 = 0x1B;
 const NO_ECHO: u8 = 1;
 
-/// What the processor is about to do.
+/// The state of the processor before its next packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Doing {
     /// The address of the next packet.
@@ -52,7 +52,7 @@ pub struct Doing {
     pub is_masked: bool,
 }
 
-/// Why the board does not move.
+/// The reason for which the board does not run.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Halted {
     /// The firmware ran away.
@@ -70,9 +70,9 @@ pub struct BootedBoard<A = ()> {
     sent: SentLines,
     /// The cycle in which the timer's interrupt began to wait.
     waits_since: u64,
-    /// What the axes move.
+    /// The loads of the axes.
     loads: Loads,
-    /// Whether waiting loops are skipped.
+    /// True if waiting loops are skipped.
     skips: bool,
     /// Packets that programs have executed, where they are kept.
     packets: Option<Vec<ProgramPacket>>,
@@ -110,13 +110,13 @@ impl<A: Around> BootedSnapshot<A> {
 }
 
 impl<A: Around> BootedBoard<A> {
-    /// Whether loops that wait are run through in one step, as they are at first; nothing that can be seen changes.
+    /// Sets whether loops that wait are skipped in one step, which is the default; nothing observable changes.
     pub const fn skip_waits(&mut self, whether: bool) {
         self.core.skip_waits(whether);
         self.skips = whether;
     }
 
-    /// Whether an address that is nobody's reads 0 and takes writes, as on a board; else it ends the run.
+    /// Sets whether an unmapped address reads 0 and takes writes, as on a board; otherwise an access ends the run.
     pub const fn forgive(&mut self, whether: bool) {
         self.hardware.forgives = whether;
     }
@@ -151,7 +151,7 @@ impl<A: Around> BootedBoard<A> {
         self.hardware.first_look
     }
 
-    /// Whether the firmware is starting or restarting, and does not look for what the PC sends yet.
+    /// Returns whether the firmware is starting or restarting, and does not poll the PC's bytes yet.
     #[must_use]
     pub const fn is_starting(&self) -> bool {
         self.hardware.first_look.is_none()
@@ -169,7 +169,7 @@ impl<A: Around> BootedBoard<A> {
         self.core.registers()
     }
 
-    /// What the processor is about to do.
+    /// Returns the state of the processor before its next packet.
     #[must_use]
     pub fn doing(&self) -> Doing {
         let thread = self.file.address("CurrentThread").map(|at| self.hardware.memory.peek::<u32>(at));
@@ -299,13 +299,14 @@ impl<A: Around> BootedBoard<A> {
         self.send(&[&[ESCAPE, NO_ECHO], command, b"\r"].concat());
     }
 
-    /// Whether the firmware has read everything that was sent.
+    /// Returns whether the firmware has read everything that was sent.
     #[must_use]
     pub fn has_read_all(&self) -> bool {
         self.hardware.window.link.is_read()
     }
 
-    /// How often the firmware has looked for a byte of the PC: while it obeys a command it does not.
+    /// Returns how many times the firmware has polled for a byte of the PC; it does not poll while it executes a
+    /// command.
     #[must_use]
     pub const fn looks(&self) -> u64 {
         self.hardware.window.link.looks()
@@ -389,14 +390,14 @@ impl<A: Around> BootedBoard<A> {
         Ok(())
     }
 
-    /// Whether a user thread is active; `None` if the firmware does not say.
+    /// Returns whether a user thread is active; `None` if the firmware has no such variable.
     #[must_use]
     pub fn is_active(&self, thread: ThreadId) -> Option<bool> {
         let active: u32 = self.memory().peek(self.file.address("ThreadActive")?);
         Some(active >> thread.get() & 1 != 0)
     }
 
-    /// Where an axis is commanded to be and where it is; `None` if the firmware does not say.
+    /// Returns the commanded and the measured position of an axis; `None` if the firmware has no such variables.
     #[must_use]
     pub fn axis(&self, axis: AxisId) -> Option<(f64, f64)> {
         let base = self.file.address("chan")?.offset(axis.get() as u32 * Chan::STRUCTURE.size);
@@ -410,13 +411,13 @@ impl<A: Around> BootedBoard<A> {
         self.hardware.window.steps(generator, now)
     }
 
-    /// Whether a pin is high, as an output or as it is driven.
+    /// Returns whether a pin is high, as an output or as it is driven.
     #[must_use]
     pub fn is_high(&self, pin: usize) -> bool {
         bit(pin).is_some_and(|bit| self.hardware.window.chips.pins.level(bit))
     }
 
-    /// Whether a pin is an output.
+    /// Returns whether a pin is an output.
     #[must_use]
     pub fn is_output(&self, pin: usize) -> bool {
         let group = u32::try_from(pin / 8).unwrap_or(u32::MAX).min(7);
@@ -449,7 +450,7 @@ impl<A: Around> BootedBoard<A> {
         BootedBoard { file, core, hardware, sent, waits_since, loads, skips, packets, crash }
     }
 
-    /// What [is connected](Self::connect).
+    /// Returns the surroundings that [were connected](Self::connect).
     #[must_use]
     pub const fn around(&self) -> Option<&A> {
         self.hardware.window.around.as_ref()
@@ -467,7 +468,7 @@ impl<A: Around> BootedBoard<A> {
         self.hardware.timer.next_match()
     }
 
-    /// What the encoder of a channel shows from now on: the low eight bits of its counts.
+    /// Sets the count byte of a channel's encoder: the low eight bits of its counts.
     pub fn show_encoder(&mut self, channel: usize, counts: u8) {
         self.hardware.window.chips.encoders.set(channel, counts);
     }

@@ -27,7 +27,7 @@ pub(super) struct Hardware<A = ()> {
     pub(super) chip: Chip,
     /// The cycle in which the firmware first looked whether the PC has sent something.
     pub(super) first_look: Option<u64>,
-    /// Whether an address that is nobody's reads 0 and takes writes, as on a board, in place of the end of the run.
+    /// True if an unmapped address reads 0 and takes writes, as on a board; otherwise an access ends the run.
     pub(super) forgives: bool,
     /// Accesses of devices, but for looks at an empty link.
     pub(super) touches: u64,

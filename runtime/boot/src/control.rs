@@ -7,7 +7,7 @@ const PORT: u32 = 0x4400_0018;
 /// Says how many words of the code cache are still to be dropped: none.
 const CACHE_LEFT: u32 = 0x2000_0004;
 
-/// What was written.
+/// The written values.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Control {
     port: u32,
@@ -15,7 +15,7 @@ pub(super) struct Control {
 }
 
 impl Control {
-    /// Whether a control register is at an address.
+    /// Returns whether a control register is at an address.
     pub(super) const fn has(addr: u32) -> bool {
         matches!(addr >> 12, 0x20000 | 0x41000 | 0x44000 | 0x45000 | 0xF0000)
     }

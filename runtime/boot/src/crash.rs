@@ -7,7 +7,7 @@ use vm::trap::Scene;
 /// The processor has stopped for good: why, when and where, its registers, and the code around the place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Crash {
-    /// What went wrong.
+    /// The fault.
     pub reason: String,
     /// Board time in cycles of 5 ns since power-up.
     pub cycle: u64,

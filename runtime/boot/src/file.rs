@@ -14,14 +14,14 @@ use super::rom::{self, RomFunction};
 /// Sections with one of these flags are not loaded; of these one must be there.
 const LEFT_OUT: u32 = 0x12;
 const LOADED: u32 = 0xE0;
-/// What every firmware of this board has.
+/// The symbols that every firmware of this board has.
 const REQUIRED: [&str; 4] = ["c_int00", "main", "persist", "chan"];
 /// The text that says which version it is.
 const VERSION: &str = "VersionAndBuildTime";
 /// Longest such text.
 const VERSION_LENGTH: usize = 80;
 
-/// Why a file cannot be started.
+/// The reason for which a file cannot be started.
 #[derive(Debug, thiserror::Error)]
 pub enum FirmwareError {
     /// The bytes are not a TI COFF image, or end before it does.
@@ -43,7 +43,7 @@ pub enum FirmwareError {
     OtherBoard {
         /// The section.
         name: String,
-        /// Where it should be loaded.
+        /// The address to which it would be loaded.
         address: u32,
     },
     /// It is not a firmware.
@@ -105,7 +105,7 @@ impl FirmwareFile {
         Ok(Self { entry, sections, symbols, functions, rom, places })
     }
 
-    /// Where execution begins.
+    /// Returns the address at which execution begins.
     #[must_use]
     pub const fn entry(&self) -> u32 {
         self.entry
@@ -135,7 +135,7 @@ impl FirmwareFile {
         self.rom.get(&address).copied()
     }
 
-    /// Where this firmware keeps the variables of the tables.
+    /// Returns the addresses that this firmware gives to the variables of the tables.
     pub(super) fn places(&self) -> Places {
         self.places.clone()
     }
@@ -155,7 +155,7 @@ fn holds(address: u32, bytes: &[u8], entry: u32) -> bool {
     (entry.wrapping_sub(address) as usize) < bytes.len()
 }
 
-/// Whether `size` bytes at `address` lie in a RAM.
+/// Returns whether `size` bytes at `address` lie in a RAM.
 fn is_inside(region: &Region, address: u32, size: u64) -> bool {
     let offset = u64::from(address.wrapping_sub(region.base.get()));
     offset + size <= u64::from(region.size)

@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 pub(super) struct Link {
     received: VecDeque<u8>,
     sent: Vec<(u64, u8)>,
-    /// How often the firmware has looked whether a byte waits.
+    /// The number of times the firmware has polled for a byte.
     looks: u64,
 }
 
@@ -17,17 +17,17 @@ impl Link {
         self.received.extend(bytes);
     }
 
-    /// Whether everything that the PC sent was read.
+    /// Returns whether everything that the PC sent was read.
     pub(super) fn is_read(&self) -> bool {
         self.received.is_empty()
     }
 
-    /// How often the firmware has looked for a byte.
+    /// Returns how many times the firmware has polled for a byte.
     pub(super) const fn looks(&self) -> u64 {
         self.looks
     }
 
-    /// What was sent since the last time.
+    /// Takes the bytes sent since the last call, with their times.
     pub(super) fn take_sent(&mut self) -> Vec<(u64, u8)> {
         std::mem::take(&mut self.sent)
     }

@@ -1,5 +1,4 @@
-//! What the axes move: loads that follow, as on the modelled board without a machine file (`plant.md` 2, model
-//! `follow`).
+//! The loads of the axes, which follow as on the modelled board without a machine file (`plant.md` 2, model `follow`).
 //!
 //! A closed loop's load goes to the axis' command with a lag of 0.5 ms while the axis is enabled; a step generator moves
 //! its load by its steps. Encoders count the loads. The axes are read from the firmware's memory, where it has them.

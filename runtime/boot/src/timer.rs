@@ -63,7 +63,7 @@ pub(super) struct Timer {
     uses_second: bool,
     is_enabled: bool,
     flag: bool,
-    /// What was written to registers that do nothing else.
+    /// The values of registers that only store.
     stored: [u32; SIZE / 4],
     /// The cycle of the next match; never, while the counter stands.
     next: u64,

@@ -28,9 +28,9 @@ pub(super) struct Window<A = ()> {
     pub(super) link: Link,
     /// Inputs of a KStep, if there is one: a bit is set while current flows.
     pub(super) kstep: Option<u16>,
-    /// What else is connected.
+    /// The connected surroundings, if there are any.
     pub(super) around: Option<A>,
-    /// How often anything but the status of the link was reached.
+    /// The number of accesses to anything but the status of the link.
     touches: u64,
 }
 
@@ -92,7 +92,7 @@ impl<A: Around> Window<A> {
         (stepgens.position(generator), stepgens.rate(generator))
     }
 
-    /// How often anything but the status of the link was reached.
+    /// Returns the number of accesses to anything but the status of the link.
     pub(super) const fn touches(&self) -> u64 {
         self.touches
     }

@@ -25,7 +25,7 @@ pub struct BitChange {
 pub struct Changes {
     is_on: bool,
     list: Vec<BitChange>,
-    /// How many of them the devices have seen.
+    /// The number of changes that the devices have seen.
     seen: usize,
     /// The virtual bits as they were last told, the extended ones after.
     words: Vec<u32>,

@@ -44,7 +44,7 @@ pub enum Change {
     },
 }
 
-/// How far a command has come.
+/// The progress of a command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Heard {
     /// Nothing was written.

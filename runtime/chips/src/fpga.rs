@@ -19,7 +19,7 @@ use crate::uart::Uart;
 pub const REGISTER_COUNT: u32 = FPGA.size / STRIDE;
 /// Bytes between two registers.
 const STRIDE: u32 = 4;
-/// Where a register lies in its four bytes.
+/// The offset of a register in its four bytes.
 const LANE: u32 = 2;
 /// Groups of eight pins.
 const GROUPS: u32 = PINS as u32 / 8;
@@ -84,7 +84,7 @@ registers! {
     0x90, 8 => kanalog_conversion, ignore;
     /// Inputs of Kanalog: general inputs and opto inputs.
     0x98, 1 => kanalog_inputs, ignore;
-    /// What the pins of the port carry.
+    /// Selects the function of the port's pins.
     PORT_SELECT, 1 => stored, set_pwm;
     /// Characters of the UART.
     0xc0, 1 => uart_data, send_to_uart;
@@ -109,7 +109,7 @@ const START: [(u32, u8); 2] = [(0x06, 32), (ENCODER_FILTER, 7)];
 const ENCODER_FILTER: u32 = 0x05;
 const STEP_RATE: u32 = 0x3c;
 
-/// What connects the port of the Kanalog and the UART to their pins, and its bits.
+/// The register that connects the port of the Kanalog and the UART to their pins, and its bits.
 const PORT_SELECT: u32 = 0xa0;
 const PORT_BYTE: usize = (PORT_SELECT * STRIDE + LANE) as usize;
 const KANALOG_ON: u8 = 1;
@@ -439,7 +439,7 @@ impl Fpga {
         self.bytes[PORT_BYTE] & (UART_ON | KANALOG_ON) != 0
     }
 
-    /// What is stored at an address.
+    /// Returns the stored value at an address.
     fn at(&self, address: GuestAddr, size: AccessSize) -> u32 {
         let start = address.get().wrapping_sub(FPGA.base.get()) as usize;
         let bytes = self.bytes.get(start..start + size.bytes() as usize).unwrap_or_default();

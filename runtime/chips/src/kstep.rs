@@ -22,7 +22,7 @@ pub struct AnalogOutput {
     at: Cycles,
 }
 
-/// What the coupler makes of a duty in counts.
+/// Returns the output of the coupler at a duty in counts.
 fn coupled(counts: f64) -> f64 {
     let last = FIRST.len() - 1;
     let below = libm::floor(counts).max(0.0) as usize;
@@ -42,7 +42,7 @@ impl AnalogOutput {
         self.target = duty.map_or(0.0, |duty| coupled(duty * FULL));
     }
 
-    /// Where it is at an instant, from 0 to 1.
+    /// Returns the level at an instant, from 0 to 1.
     pub fn level(&self, now: Cycles) -> f64 {
         let seconds = (now - self.at).get() as f64 / Cycles::PER_SECOND.get() as f64;
         self.target + (self.level - self.target) * libm::exp(-seconds / CONSTANT)

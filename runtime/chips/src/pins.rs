@@ -54,7 +54,7 @@ pub struct Pins {
     /// Pins whose fast signals are told edge by edge, and the levels last reported of them.
     watched: u64,
     shown: u64,
-    /// What changed, for those who want to know.
+    /// The changes of levels, recorded on request.
     pub changes: Changes,
 }
 

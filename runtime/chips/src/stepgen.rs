@@ -78,7 +78,7 @@ pub struct StepGenerators {
     counting: Counting,
 }
 
-/// How the steps of a rate are counted.
+/// The way in which the steps of a rate are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Counting {
     /// Once a tick, by whoever runs the board.

@@ -5,7 +5,7 @@
 
 use crate::out::Message;
 
-/// Why the board does not know a word.
+/// The reason for which the board does not know a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Why {
     /// The board has it under this name.
@@ -63,7 +63,7 @@ const WORDS: &[(&str, Why)] = &[
 /// Letters that a block of G code begins with, and after which a number stands.
 const G_CODE: &[u8] = b"GMTSFN";
 
-/// What should be reported of a part, in upper case, that begins with no command.
+/// Returns the message about a part, in upper case, that begins with no command.
 pub(super) fn explain(part: &[u8]) -> Option<Message> {
     let letters = part.iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
     let word = std::str::from_utf8(&part[..letters]).ok()?;

@@ -8,7 +8,7 @@ use kmotiondef::{AxisId, Bit, ThreadId};
 
 use crate::text::{float_value, integer_prefix};
 
-/// What a command takes at one place.
+/// An argument of a command.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Argument {
     /// A decimal integer within limits.
@@ -93,7 +93,7 @@ impl<'t> LineReader<'t> {
         self.text.get(self.column..).unwrap_or_default()
     }
 
-    /// Where it is once the spaces are skipped.
+    /// Returns the reader with leading spaces skipped.
     fn behind_spaces(&self) -> Self {
         self.behind(b" ")
     }
@@ -229,7 +229,7 @@ impl Values {
         Ok(read)
     }
 
-    /// Whether the present value is requested.
+    /// Returns whether the present value is requested.
     pub(super) const fn is_question(&self) -> bool {
         self.is_question
     }
@@ -304,7 +304,7 @@ impl Values {
 mod tests {
     use super::*;
 
-    /// What is read from a text, or the column and the message.
+    /// Checks the values that are read from a text, or the column and the message.
     fn check(arguments: &[Argument], text: &str, expect: Result<&[f64], (usize, &str)>) {
         let read = Values::read(arguments, &mut LineReader::new(text.as_bytes(), 0));
         let numbers = read.map(|read| {

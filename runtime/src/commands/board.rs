@@ -8,9 +8,9 @@ use crate::firmware::serial;
 use crate::out::{Message, Request};
 use crate::views::Typed;
 
-/// What the board replies when flash is written (host-protocol.md section 9).
+/// The board's reply once flash is written (host-protocol.md section 9).
 const FLASH_COMPLETE: &str = "Program Flash Image Complete";
-/// What it prints when it has read back what `Flash` has written (dsp-board.md section 2.4).
+/// The board's message once it has read back the data written by `Flash` (dsp-board.md section 2.4).
 const VERIFIED: &str = "Verify Complete";
 /// The UART's clock, 16 of whose periods make the shortest bit.
 const UART_CLOCK: i32 = 16_666_666 / 16;

@@ -19,7 +19,7 @@ pub(super) const GATHER_WORDS: i32 = 2_000_000;
 /// Bytes on a line of a disk file's text.
 const DISK_BYTES_PER_LINE: usize = 80;
 
-/// What the data is for.
+/// The use of the data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum DataKind {
     /// Bytes of a program, which are stored.
@@ -47,9 +47,9 @@ impl DataKind {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Data {
     kind: DataKind,
-    /// Where the first number goes.
+    /// The address of the first number.
     start: GuestAddr,
-    /// Where the next one goes.
+    /// The address of the next number.
     place: GuestAddr,
     /// Numbers still to come.
     left: usize,
@@ -61,7 +61,7 @@ impl Data {
         Self { kind, start, place: start, left: count }
     }
 
-    /// Whether no number is missing.
+    /// Returns whether all numbers have arrived.
     pub(super) const fn is_complete(&self) -> bool {
         self.left == 0
     }
@@ -86,7 +86,7 @@ impl Data {
         Ok(())
     }
 
-    /// What follows from the data being complete.
+    /// Acts on the complete data.
     pub(super) fn finish(&self, downloads: &mut Downloads, context: &mut TickContext<'_>) {
         match self.kind {
             DataKind::Program => downloads.record(self.start, self.place),

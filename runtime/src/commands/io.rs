@@ -12,7 +12,7 @@ use crate::views::Typed;
 
 /// The first LED.
 const LED0: i32 = 46;
-/// What the converters' words are above zero.
+/// The converters' word for zero.
 const ZERO: i32 = 2048;
 /// Characters for which the board has room where it puts words together; the next ones are where it returns to.
 const ANSWER_ROOM: usize = 84;

@@ -27,22 +27,22 @@ const ECHO: usize = 5;
 /// Characters of a data line.
 const DATA_LIMIT: usize = 256;
 
-/// What the command loop remembers of one end of the link: the USB port, or the UART.
+/// The state of the command loop for one end of the link: the USB port, or the UART.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Link {
     /// The buffer of lines, each with a 0 after it: what an earlier one has left stays after that.
     buffer: Vec<u8>,
     /// The ranges of its commands that are still to be executed.
     parts: VecDeque<Range<usize>>,
-    /// What the command in progress waits for.
+    /// The data that the command in progress waits for.
     data: Option<Data>,
-    /// Whether name and `Ready` are due when the line is done.
+    /// True if name and `Ready` are due when the line is done.
     prompts: bool,
     geometry: Geometry,
 }
 
 impl Link {
-    /// Whether a command is in progress, so that no console text may be sent.
+    /// Returns whether a command is in progress, so that no console text may be sent.
     pub(crate) const fn is_in_command(&self) -> bool {
         self.data.is_some()
     }
@@ -89,7 +89,7 @@ impl Link {
     }
 }
 
-/// What goes back to the PC.
+/// A text that is sent to the PC.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Output {
     Echo(Vec<u8>),
@@ -109,7 +109,7 @@ impl Output {
     }
 }
 
-/// What the board calls itself: its version up to the build.
+/// Returns the board's name for itself: its version up to the build.
 fn board_name(board: &TargetBoard) -> &'static str {
     board.version.split_once(" Build").map_or(board.version, |(name, _)| name)
 }
@@ -117,7 +117,7 @@ fn board_name(board: &TargetBoard) -> &'static str {
 /// One end of the link, and the bytes on their way to it.
 type Side = fn(&mut Pc) -> &mut ByteLink;
 
-/// What the primary thread does for one end of the link in its slice: at most one line.
+/// Executes at most one line from one end of the link, in the primary thread's slice.
 pub(super) fn slice(
     link: &mut Link,
     side: Side,

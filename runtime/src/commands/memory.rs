@@ -1,4 +1,4 @@
-//! What script commands remember from one to the next.
+//! State that script commands keep from one to the next.
 
 use kmotiondef::AxisId;
 

@@ -38,7 +38,7 @@ use session::{Answer, Session};
 
 use crate::firmware::parts::Parts;
 
-/// What the board remembers of script commands.
+/// The state of script commands.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scripts {
     /// The command loops over USB and over the UART.
@@ -49,17 +49,17 @@ pub(crate) struct Scripts {
 }
 
 impl Scripts {
-    /// Whether a command over USB is in progress, so that no console text may be sent.
+    /// Returns whether a command over USB is in progress, so that no console text may be sent.
     pub(crate) const fn is_in_command(&self) -> bool {
         self.usb.is_in_command()
     }
 
-    /// Whether a recorded motion is in progress.
+    /// Returns whether a recorded motion is in progress.
     pub(crate) const fn has_experiment(&self) -> bool {
         self.experiment.is_some()
     }
 
-    /// What the primary thread does for the PC's commands in its slice.
+    /// Executes the PC's commands in the primary thread's slice.
     pub(crate) fn slice(&mut self, parts: &mut Parts, context: &mut TickContext<'_>) {
         let Self { usb, uart, experiment } = self;
         if parts.pc.usb.is_busy() {
@@ -77,9 +77,9 @@ impl Scripts {
 pub struct Command {
     /// Its name as the manual spells it; the board ignores the case.
     pub name: &'static str,
-    /// What it takes.
+    /// Its arguments.
     pub arguments: &'static [Argument],
-    /// What it does, in one line.
+    /// Its effect, in one line.
     pub help: &'static str,
     run: fn(&mut Session<'_, '_>, &Values) -> Answer,
 }
@@ -91,7 +91,7 @@ impl std::fmt::Debug for Command {
 }
 
 impl Command {
-    /// How it is written: `Move <0..7>=<number>`.
+    /// Returns its syntax: `Move <0..7>=<number>`.
     #[must_use]
     pub fn usage(&self) -> String {
         let mut text = self.name.to_owned();
@@ -126,7 +126,7 @@ impl Command {
 }
 
 impl Argument {
-    /// What stands for it in the description of a command.
+    /// Returns its placeholder in the description of a command.
     fn placeholder(&self) -> String {
         match self {
             Self::Integer(i32::MIN, i32::MAX) => "<integer>".to_owned(),

@@ -35,7 +35,7 @@ pub(super) fn entry_point(session: &mut Session<'_, '_>, values: &Values) -> Ans
     Answer::Nothing
 }
 
-/// Whether a thread starts at power-up.
+/// Sets whether a thread starts at power-up.
 pub(super) fn set_startup(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let place = PERSIST.field(Persist::RUN_ON_START_UP);
     let bit = 1 << values.integer(0);

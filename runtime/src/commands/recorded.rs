@@ -21,14 +21,14 @@ const BY_FORM: &[(&str, &str, &str)] = &[
     ("host-replies", "\u{1b}\u{1}ADC0", "as above"),
 ];
 
-/// Whether an answer is the recorded one, or has its form where only that can be the same.
+/// Returns whether an answer is the recorded one, or has its form where the values differ between runs.
 fn agrees(name: &str, send: &str, found: &str, expect: &str) -> bool {
     let by_form = BY_FORM.iter().any(|(of, line, _)| *of == name && send.starts_with(line));
     found == expect
         || by_form && form(found) == form(expect) && (name != "GETSTATUS" || is_same_status(found, expect))
 }
 
-/// Whether two status records differ only in analog inputs and the time stamp.
+/// Returns whether two status records differ only in analog inputs and the time stamp.
 fn is_same_status(found: &str, expect: &str) -> bool {
     let mut words = found.split_whitespace().zip(expect.split_whitespace()).enumerate();
     words.all(|(index, (found, expect))| matches!(index, 1..=8 | 104 | 105) || found == expect)

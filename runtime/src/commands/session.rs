@@ -1,4 +1,4 @@
-//! What a command works with, and how it answers.
+//! The context of a command, and the forms of its answer.
 
 use kmotiondef::Cycles;
 use vm::call::CallArguments;
@@ -49,7 +49,7 @@ pub(super) struct Session<'a, 'c> {
     /// The recorded motion in progress, if there is one.
     pub(super) experiment: &'a mut Option<Experiment>,
     pub(super) context: &'a mut TickContext<'c>,
-    /// What the commands of coordinated motion remember.
+    /// The state of the commands of coordinated motion.
     pub(super) geometry: &'a mut Geometry,
     /// The text after the word of `Echo` and the character that ends it, in upper case.
     pub(super) rest: &'a [u8],

@@ -26,7 +26,7 @@ const VERSION_AND_SIZE: i32 = 308 << 16 | WORDS as i32;
 const WORDS: usize = 116;
 /// Words on a line.
 const WORDS_PER_LINE: usize = 16;
-/// What the converters' words are above zero.
+/// The converters' word for zero.
 const ZERO: i32 = 2048;
 /// The first input and the first output of a Kanalog.
 const KAN_INPUTS: i32 = 128;
@@ -113,7 +113,7 @@ fn analog(record: &mut Record, context: &TickContext<'_>) {
     }
 }
 
-/// What is reported of each axis.
+/// Adds the values of each axis to the record.
 fn axes(record: &mut Record, context: &TickContext<'_>) {
     let memory = &*context.memory;
     let (mut enables, mut done) = (0, 0);

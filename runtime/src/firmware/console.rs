@@ -122,7 +122,7 @@ pub(crate) fn converted(
     Ok(found.result)
 }
 
-/// What a character costs that goes to the console's queue (costs.md section 4).
+/// The cost of a character for the console's queue, in cycles (costs.md section 4).
 const QUEUED_CHARACTER: i64 = 133;
 
 /// Spends what it costs to put text in the console's queue.
@@ -130,7 +130,7 @@ pub(crate) fn spend_queueing(caller: &mut Caller<'_>, text: &[u8]) {
     caller.spend(Cycles::new(QUEUED_CHARACTER * text.len() as i64));
 }
 
-/// What one call may print: at most 128 characters, and nothing behind a zero byte.
+/// Returns the part of a text that one call may print: at most 128 characters, and nothing after a zero byte.
 pub(crate) fn cut(text: &[u8]) -> &[u8] {
     let text = &text[..text.len().min(MAX_STRING)];
     &text[..text.iter().position(|&byte| byte == 0).unwrap_or(text.len())]

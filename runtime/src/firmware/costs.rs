@@ -1,4 +1,4 @@
-//! What calls cost beyond the cost of their rows, or less, by their arguments (costs.md section 2).
+//! Costs of calls that depend on their arguments, relative to the cost of their rows (costs.md section 2).
 //!
 //! The numbers are cycles of firmware 4.34 with the wait states of the bus as it sets them.
 
@@ -48,7 +48,7 @@ pub(super) fn spend(caller: &mut Caller<'_>, cycles: i64) {
     caller.spend(Cycles::new(cycles));
 }
 
-/// How the text of a number is read, for its cost.
+/// The function that reads a number from text, which determines the cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum IntegerReading {
     /// `atoi`, `atol`.

@@ -17,7 +17,7 @@ use crate::firmware::{
     sync, thread, time,
 };
 
-/// What a call came to.
+/// The outcome of a call.
 pub(crate) type Answer = Result<Outcome<Value>, TrapKind>;
 
 /// One firmware function under one signature.

@@ -75,7 +75,7 @@ fn address(outcome: Outcome<i32>) -> Outcome<GuestAddr> {
     }
 }
 
-/// What became of the line that was requested last: `None` while it is on its way.
+/// Returns whether the last requested line has arrived: `None` while it is on its way.
 fn arrival(parts: &mut Parts, caller: &Caller<'_>) -> Option<bool> {
     let status = caller.memory.get(READ_DISK_BUFFER_STATUS);
     if status == ASKED {
@@ -133,7 +133,7 @@ pub(crate) fn fclose(parts: &mut Parts, caller: &mut Caller<'_>, file: GuestAddr
     put(parts, caller, &[request.code(), b'\n'], 0)
 }
 
-/// Whether there is a sign that another one does not follow.
+/// Returns whether there is a percent sign that no other one follows.
 fn has_conversion(text: &[u8]) -> bool {
     let mut rest = text;
     while let Some(at) = rest.iter().position(|byte| *byte == b'%') {

@@ -32,7 +32,7 @@ use chips::stepgen::generator_of;
 /// The number after the last axis, which the board does not refuse: it takes what comes after the axes in memory for one.
 const AFTER_AXES: i32 = N_CHANNELS as i32;
 
-/// What the board prints when a program names an axis that does not exist.
+/// Prints the board's message about an axis that does not exist.
 fn invalid(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: i32, what: &str) {
     parts.out.diagnose(caller, Message::NoSuchAxis { function, axis });
     if axis != AFTER_AXES {
@@ -130,7 +130,7 @@ pub(crate) fn reset_filters(parts: &mut Parts, caller: &mut Caller<'_>, axis: i3
     switching::reset_filters(&mut parts.servo, caller.memory, axis);
 }
 
-/// Whether a motion call on an axis may do anything now.
+/// Returns whether a motion call may act on an axis now.
 fn may_move(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Function) -> bool {
     let memory = &*caller.memory;
     if memory.axis(axis, Chan::ENABLE) == 0 {
@@ -162,8 +162,8 @@ fn may_move(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Func
     may
 }
 
-/// Whether an axis is beyond a soft limit and a call would lead it further out: the board does not begin that and does
-/// not say so (axes-and-motion.md section 7.3).
+/// Returns whether an axis is beyond a soft limit and a call would move it further out: the board refuses that silently
+/// (axes-and-motion.md section 7.3).
 fn is_beyond(
     parts: &mut Parts,
     caller: &Caller<'_>,
@@ -225,7 +225,7 @@ fn notice_replaced(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, functio
     }
 }
 
-/// Whether a target or speed is a number that an axis can go to.
+/// Returns whether a target or speed is finite, as an axis needs it.
 fn is_place(parts: &mut Parts, caller: &Caller<'_>, function: Function, value: f64) -> bool {
     if !value.is_finite() {
         parts.out.diagnose(caller, Message::NotAPlace { function, value });

@@ -24,7 +24,7 @@ use crate::servo::{Servo, Tick};
 use crate::world::trace::View;
 use crate::world::{Stage, World};
 
-/// Where in board time things are.
+/// The board times of the tick and of the slice.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clock {
     /// When the present tick began.
@@ -32,7 +32,7 @@ pub(crate) struct Clock {
     /// When the present slice began, and whose it is.
     pub(crate) slice_start: Cycles,
     pub(crate) turn: Turn,
-    /// What the primary thread still needs for a string that it has begun to send.
+    /// The time that the primary thread still needs for a string that it has begun to send.
     pub(crate) sending: Cycles,
 }
 
@@ -51,7 +51,7 @@ pub(crate) struct Parts {
     pub(crate) clock: Clock,
     /// Whose time is counted.
     pub(crate) timing: Timing,
-    /// What threads do to memory that they share, where that is looked at.
+    /// The accesses of threads to shared memory, if races are looked for.
     pub(crate) races: Option<Box<Races>>,
     /// The switches of a schedule.
     pub(crate) switches: Option<Box<Switches>>,
@@ -86,7 +86,7 @@ impl Parts {
         Lines { machine: &mut self.machine, io: &mut self.io, out: &mut self.out, now }
     }
 
-    /// What a tick of the servo works on, and the tick's beginning.
+    /// Returns the parts that a tick of the servo works on, and the tick's beginning.
     pub(crate) fn servo_tick(&mut self) -> Tick<'_> {
         Tick {
             servo: &mut self.servo,

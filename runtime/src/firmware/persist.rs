@@ -10,7 +10,7 @@ use super::string::text;
 use crate::io::flash::{self, Refused};
 use crate::out::Message;
 
-/// How long erasing and programming a block takes; other threads and the servo continue.
+/// The time that erasing and programming a block takes; other threads and the servo continue.
 const PROGRAMMING: Cycles = Cycles::PER_SECOND;
 /// A block that is none, or words that are too many.
 const REFUSED: i32 = 1;

@@ -16,7 +16,7 @@ use super::parts::Parts;
 use crate::out::Message;
 use crate::views::Typed;
 
-/// How long setting up takes: 2 ms.
+/// The time that setting up takes: 2 ms.
 const SETUP: Cycles = Cycles::new(400_000);
 /// The transmitter's pin.
 const TRANSMIT_BIT: i32 = 45;
@@ -59,7 +59,7 @@ fn begin(parts: &mut Parts, memory: &mut GuestMemory) {
     parts.calls.serial.is_on = true;
 }
 
-/// Whether script commands are taken from the UART and answered there.
+/// Returns whether script commands are taken from the UART and answered there.
 #[inline]
 pub(crate) fn has_commands(parts: &Parts, memory: &GuestMemory) -> bool {
     parts.calls.serial.is_on && memory.get(DO_RS232_CMDS) != 0
@@ -153,7 +153,7 @@ fn receive(parts: &mut Parts, context: &mut TickContext<'_>) {
     }
 }
 
-/// What the primary thread does in its slice: it takes what was received as script commands.
+/// Executes the received script commands in the primary thread's slice.
 #[inline]
 pub(crate) fn slice(parts: &mut Parts, context: &mut TickContext<'_>) {
     if !has_commands(parts, context.memory) {

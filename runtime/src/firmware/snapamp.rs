@@ -16,7 +16,7 @@ const FIRST: [i32; 2] = [80, 112];
 /// Differential inputs of a board, and the first of each board.
 const DIFFERENTIALS: i32 = 8;
 const FIRST_DIFFERENTIAL: [i32; 2] = [64, 96];
-/// Where their directions lie in the board's word.
+/// The position of their directions in the board's word.
 const SHADOW_SHIFT: i32 = 16;
 
 /// The general pins of a board, lowest first.

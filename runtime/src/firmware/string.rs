@@ -58,7 +58,7 @@ fn order(parts: &Parts, a: &[u8], b: &[u8]) -> i32 {
     at.map_or(0, |at| byte(a, at) - byte(b, at))
 }
 
-/// What `memcpy` costs beyond its 32 cycles (costs.md section 4).
+/// Returns the cost of `memcpy` beyond its 32 cycles (costs.md section 4).
 fn copying(length: u32, is_alike: bool) -> Cycles {
     let length = i64::from(length);
     Cycles::new(match (length, is_alike) {

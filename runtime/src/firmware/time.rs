@@ -13,7 +13,7 @@ use crate::views::Typed;
 /// Cycles of one second, as a double.
 const CYCLES_PER_SECOND: f64 = Cycles::PER_SECOND.get() as f64;
 
-/// What a delay spends while it passes (costs.md section 3).
+/// The cycles that a delay spends while it passes (costs.md section 3).
 const WITHIN: Cycles = Cycles::new(124);
 
 /// Seconds since power-up, to 20 ns.

@@ -25,7 +25,7 @@ pub(crate) fn after(function: &FirmwareFunction, wake: Wake, waits: WaitStates) 
     )
 }
 
-/// What the primary thread takes to send a console line of some characters.
+/// Returns the time that the primary thread takes to send a console line of `characters`.
 pub(crate) fn sending(characters: usize, waits: WaitStates) -> Cycles {
     let n = i64::try_from(characters).unwrap_or(i64::MAX / 1000);
     let (cycles, accesses, words) = (248 + 79 * n, 5 + 2 * n, 4 + 3 * n);

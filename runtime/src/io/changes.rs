@@ -7,7 +7,7 @@ use vm::memory::GuestMemory;
 
 use crate::views::Typed;
 
-/// How many bits of the word of virtual bits count.
+/// The bits of the word of virtual bits that exist.
 const VIRTUAL_MASK: u32 = 0xffff;
 /// Words of extended virtual bits.
 const EX_WORDS: usize = 32;

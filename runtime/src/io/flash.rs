@@ -18,13 +18,13 @@ pub(crate) use banks::{Banks, Refused};
 /// Bytes of flash memory, and of a file that holds it.
 pub const FLASH_SIZE: usize = FLASH.size as usize;
 
-/// What the saved image begins with; its layout is this simulator's own.
+/// The first bytes of the saved image; its layout is this simulator's own.
 const MAGIC: &[u8; 16] = b"cc67 flash 1\n\0\0\0";
-/// Where the ends of the seven program texts stand, relative to the beginning.
+/// The offset of the ends of the seven program texts.
 const TEXTS: u32 = 0x10;
-/// Where on-chip memory is saved.
+/// The offset of on-chip memory.
 const SAVED_IRAM: u32 = 0x1_0000;
-/// Where the program spaces are saved.
+/// The offset of the program spaces.
 const SAVED_PROGRAMS: u32 = 0x8_0000;
 /// Bytes of the program spaces.
 const PROGRAMS: u32 = PROGRAM_SIZE * ThreadId::MAX as u32;
@@ -57,7 +57,7 @@ pub(crate) fn save(memory: &mut GuestMemory, texts: impl Fn(ThreadId) -> Option<
     copy(memory, at(SAVED_PROGRAMS), GuestAddr::new(PROGRAM_BASE), PROGRAMS);
 }
 
-/// Whether something was saved.
+/// Returns whether flash holds a saved image.
 pub(crate) fn is_saved(memory: &GuestMemory) -> bool {
     let begins_with_magic =
         || memory.read_bytes(FLASH.base, MAGIC.len() as u32).is_ok_and(|bytes| bytes == MAGIC);

@@ -55,7 +55,7 @@ impl Konnects {
         self.absent[port as usize] = !present;
     }
 
-    /// Whether a board is there.
+    /// Returns whether a board is present.
     pub(crate) fn is_present(&self, board: KonnectBoard) -> bool {
         self.absent[board.port as usize] >> board.address & 1 == 0
     }
@@ -112,12 +112,12 @@ impl Konnects {
         (self.outputs.insert(service.board, outputs) != Some(outputs)).then_some((service.board, outputs))
     }
 
-    /// Whether any is exchanged with.
+    /// Returns whether data is exchanged with any board.
     pub(crate) const fn has_any(&self) -> bool {
         !self.services.is_empty()
     }
 
-    /// Whether no exchange changes anything.
+    /// Returns whether no exchange changes anything.
     pub(crate) fn is_settled(&self, memory: &GuestMemory) -> bool {
         self.services.iter().all(|service| {
             memory.peek::<u32>(service.inputs) == self.given(service.board)
@@ -127,7 +127,7 @@ impl Konnects {
     }
 }
 
-/// What a board takes from its output word.
+/// Returns the bits that a board takes from its output word.
 fn taken(memory: &GuestMemory, service: &Service) -> u16 {
     memory.peek::<u32>(service.outputs) as u16
 }

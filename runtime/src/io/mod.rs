@@ -37,7 +37,7 @@ pub(crate) struct Io {
     pub(crate) kanalog: Kanalog,
     pub(crate) encoders: Encoders,
     pub(crate) stepgens: StepGenerators,
-    /// How much of flash is visible.
+    /// The visible part of flash.
     pub(crate) flash: Banks,
 }
 

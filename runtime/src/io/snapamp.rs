@@ -23,7 +23,7 @@ const FULL_AMPS: f64 = 35.0;
 /// Degrees Fahrenheit from which a side is too hot, and from which the fan runs: 80 and 50 °C.
 const TOO_HOT: f64 = 176.0;
 const WARM: f64 = 122.0;
-/// How long bridges stay off: a quarter of a second.
+/// The time for which bridges stay off: a quarter of a second.
 const FAULT_TIME: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 4);
 
 /// Registers: currents, clamp level and switch of side A, limit of side A.
@@ -71,7 +71,7 @@ pub enum Side {
     B,
 }
 
-/// What a side measures.
+/// A measured quantity of a side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Amperes through the bridge, from lead A to lead C.
@@ -82,7 +82,7 @@ pub enum Quantity {
     Temperature,
 }
 
-/// What happens at a side.
+/// The state of a side.
 #[derive(Clone, Copy, Debug)]
 struct SideState {
     amps: f64,
@@ -101,14 +101,14 @@ impl Default for SideState {
 /// A board.
 #[derive(Clone, Debug, Default)]
 struct SnapAmpBoard {
-    /// Whether it is there: if not, it never reports a fault.
+    /// True if the board is present: if not, it never reports a fault.
     is_present: bool,
     written: [u16; REGISTERS],
     sides: [SideState; 2],
 }
 
 impl SnapAmpBoard {
-    /// Whether more current flows on a side than its limit allows; without a limit any does.
+    /// Returns whether the current on a side exceeds its limit; without a limit any current does.
     fn is_over(&self, side: usize) -> bool {
         let level = self.written[PEAK_LIMIT + side] & 0xf;
         let limit = level.checked_sub(FIRST_LEVEL).map_or(0.0, |above| 2.0 + 4.0 * f64::from(above));
@@ -168,8 +168,8 @@ impl SnapAmps {
         }
     }
 
-    /// Whether the bridges of an amplifier's channel are off after too much current. Channels 8 and 9 are side A of
-    /// board 0, 10 and 11 its side B, and so on.
+    /// Returns whether the bridges of an amplifier's channel are off after excessive current. Channels 8 and 9 are side
+    /// A of board 0, 10 and 11 its side B, and so on.
     pub(crate) fn is_off(&mut self, channel: i32, now: Cycles) -> bool {
         let Some(pair) = usize::try_from(channel).ok().and_then(|channel| channel.checked_sub(8)) else {
             return false;
@@ -179,7 +179,7 @@ impl SnapAmps {
         now < board.sides[pair % 4 / 2].off_until
     }
 
-    /// Whether a board is on the bus.
+    /// Returns whether a board is on the bus.
     #[inline]
     pub(crate) fn is_present(&self) -> bool {
         self.0.iter().any(|board| board.is_present)

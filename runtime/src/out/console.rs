@@ -17,7 +17,7 @@ const QUEUE_LIMIT: usize = MAX_NSTRINGS - 1;
 pub(crate) struct Console {
     held: Vec<u8>,
     queue: VecDeque<Vec<u8>>,
-    /// What the servo reports: one place for all axes and all kinds of events.
+    /// The latest report of the servo: one for all axes and all kinds of events.
     servo: Option<String>,
     /// Strings queued since power-up.
     queued: u64,
@@ -95,12 +95,12 @@ impl Console {
         &self.held
     }
 
-    /// Whether a line was begun and has not ended.
+    /// Returns whether a line was begun and has not ended.
     pub(crate) fn is_holding(&self) -> bool {
         !self.held.is_empty()
     }
 
-    /// Whether nothing waits to be sent.
+    /// Returns whether the queue is empty.
     pub(crate) fn is_idle(&self) -> bool {
         self.queue.is_empty() && self.servo.is_none()
     }

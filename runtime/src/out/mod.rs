@@ -1,4 +1,4 @@
-//! What a run reports to the outside, with the board time at which it happened.
+//! Events of a run, with the board time at which they happened.
 //!
 //! Every part of the board can report something. Nothing reported feeds back into the simulation, except console lines
 //! for which a stimulus waits.
@@ -22,7 +22,7 @@ pub use remarks::{Message, OtherPlace, REMARKS, Remark, RemarkRow, Severity, Spe
 /// Begins a console line on the wire, and a line to the board that is not echoed.
 pub(crate) const ESCAPE: u8 = 0x1B;
 
-/// What goes out: console text on its way, events since the last time they were taken, requests to the board.
+/// The output of a run: console text on its way, events not yet taken, requests to the board.
 #[derive(Clone, Debug)]
 pub(crate) struct Out {
     pub(crate) console: Console,
@@ -32,9 +32,9 @@ pub(crate) struct Out {
     lines: Option<VecDeque<(Cycles, Vec<u8>)>>,
     /// Bytes on the wire that a PC elsewhere has not been sent; `None` if there is none.
     wire: Option<Vec<u8>>,
-    /// Whether remarks are worth making that say what a program may have forgotten.
+    /// True if hints are reported: remarks about steps that a program may have forgotten.
     pub(crate) hints: bool,
-    /// Whether a script command is being executed.
+    /// True while a script command is executed.
     pub(crate) is_commanding: bool,
     /// Codes of remarks that nobody wants.
     unwanted: BTreeSet<&'static str>,
@@ -121,7 +121,7 @@ impl Out {
         self.requests.push(request);
     }
 
-    /// What was requested since the last time.
+    /// Takes the requests since the last call.
     pub(crate) fn take_requests(&mut self) -> Vec<Request> {
         std::mem::take(&mut self.requests)
     }
@@ -146,13 +146,13 @@ impl Out {
         self.lines.as_mut()?.pop_front()
     }
 
-    /// Whether a stimulus has seen every console line.
+    /// Returns whether a stimulus has seen every console line.
     pub(crate) fn has_shown_lines(&self) -> bool {
         self.lines.as_ref().is_none_or(VecDeque::is_empty)
     }
 }
 
-/// What only the board as a whole can do, as it holds the programs.
+/// A request to the board as a whole, which holds the programs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Request {
     /// Make a program of what was downloaded into a thread that was started.
@@ -170,11 +170,11 @@ pub(crate) enum Request {
 pub struct Event {
     /// The instant; power-up is 0.
     pub at: Cycles,
-    /// What happened.
+    /// The kind and contents of the event.
     pub kind: EventKind,
 }
 
-/// What happened.
+/// The kind and contents of an event.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EventKind {
     /// The PC received a line of console text, without its line end.

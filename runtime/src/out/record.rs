@@ -1,4 +1,4 @@
-//! What a recording of a run holds: levels, slices, values over time.
+//! A recording of a run: levels, slices, values over time.
 
 use kmotiondef::{Bit, CodeAddr, Cycles, ThreadId};
 
@@ -27,7 +27,7 @@ pub enum Record {
         thread: Option<ThreadId>,
         /// The address of the packet.
         address: CodeAddr,
-        /// What it took.
+        /// Its duration.
         cycles: Cycles,
         /// Its instructions, bars between them.
         text: String,

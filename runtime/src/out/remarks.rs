@@ -14,13 +14,13 @@ use kmotiondef::{AxisId, Bit, CodeAddr, GuestAddr, ThreadId};
 pub enum Severity {
     /// A remark for those who ask for all of them.
     Detail,
-    /// What a program may have forgotten; a machine file can switch these off.
+    /// A step that a program may have forgotten; a machine file can switch these off.
     Hint,
     /// Something is not as it was meant.
     Warning,
 }
 
-/// Who a remark is about.
+/// The subject of a remark.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Speaker {
     /// The board, or what is around it.
@@ -74,11 +74,11 @@ impl fmt::Display for OtherPlace {
 /// A remark of the simulation that the real board would not make.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remark {
-    /// What there is to say.
+    /// The message.
     pub message: Message,
-    /// Who it is about.
+    /// The subject.
     pub speaker: Speaker,
-    /// Where the program is, as far as known.
+    /// The code address, if known.
     pub place: Option<CodeAddr>,
 }
 
@@ -142,7 +142,7 @@ macro_rules! messages {
         $(#[doc = $doc:literal])+
         $name:ident { $($field:ident: $ty:ty),* } = $code:literal, $severity:ident, [$($once:tt)+], $text:literal;
     )*) => {
-        /// What a remark says.
+        /// The message of a remark.
         #[derive(Clone, Debug, PartialEq)]
         pub enum Message {
             $(
@@ -158,11 +158,11 @@ macro_rules! messages {
         pub struct RemarkRow {
             /// Its code, as `-R no-CODE` and JSON have it.
             pub code: &'static str,
-            /// How much it matters.
+            /// The severity.
             pub severity: Severity,
             /// The text, with the names of its arguments in braces.
             pub text: &'static str,
-            /// What it is about, in a sentence.
+            /// A description in a sentence.
             pub about: &'static str,
         }
 
@@ -185,7 +185,7 @@ macro_rules! messages {
                 }
             }
 
-            /// How much it matters.
+            /// Returns the severity.
             #[must_use]
             pub const fn severity(&self) -> Severity {
                 match self {

@@ -1,4 +1,4 @@
-//! What the PC answers, where that is not the default: settings of the form `key=value`.
+//! Settings of the PC's answers, of the form `key=value`.
 //!
 //! Several answers of one kind are given in turn, and the last one from then on. The keys are listed in [`HELP`].
 
@@ -48,7 +48,7 @@ pub enum AnswerError {
         key: String,
         /// The value.
         value: String,
-        /// What it should be.
+        /// The expected form.
         expected: &'static str,
     },
 }
@@ -64,7 +64,7 @@ impl<T> Default for Turns<T> {
 }
 
 impl<T: Copy> Turns<T> {
-    /// Whether there is none.
+    /// Returns whether no answer is left.
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -75,13 +75,13 @@ impl<T: Copy> Turns<T> {
     }
 }
 
-/// What is done with message and input boxes.
+/// The answers to message and input boxes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Boxes {
     pub(super) buttons: Turns<i32>,
     /// Numbers typed; `None` for the cancel button.
     pub(super) inputs: Turns<Option<f32>>,
-    /// Whether a box that has no answer waits for one, and each answer is for one box.
+    /// True if a box that has no answer waits for one, and each answer is for one box.
     pub(super) waits: bool,
 }
 
@@ -91,13 +91,13 @@ impl Boxes {
         if self.waits { self.buttons.0.pop_front() } else { self.buttons.next() }
     }
 
-    /// What is typed next; `Some(None)` for the cancel button.
+    /// Returns the next input; `Some(None)` for the cancel button.
     pub(super) fn type_in(&mut self) -> Option<Option<f32>> {
         if self.waits { self.inputs.0.pop_front() } else { self.inputs.next() }
     }
 }
 
-/// What the PC answers, and what it holds.
+/// The PC's answers and its variables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answers {
     pub(super) boxes: Boxes,

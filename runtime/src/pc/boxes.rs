@@ -5,14 +5,14 @@
 pub enum OpenBox {
     /// A message; the answer is `msgbox=` and a button.
     Message {
-        /// What it says.
+        /// The text of the box.
         text: String,
         /// Its buttons from left to right.
         buttons: &'static [&'static str],
     },
     /// A prompt for a number; the answer is `input=` and the number, or `cancel`.
     Input {
-        /// What it says.
+        /// The text of the box.
         text: String,
     },
 }
@@ -32,7 +32,7 @@ impl OpenBox {
         Self::Message { text, buttons }
     }
 
-    /// How it is shown when it opens.
+    /// Returns the line that is shown when it opens.
     pub(super) fn shown(&self) -> String {
         match self {
             Self::Message { text, .. } => format!("message box: {text}: waiting for an answer"),

@@ -26,7 +26,7 @@ pub(crate) const ARRIVED: i32 = 1;
 pub(crate) const FAILED: i32 = 2;
 pub(crate) const NO_MORE: i32 = 3;
 
-/// What a program asks of the disk.
+/// A request of a program to the disk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum DiskRequest {
     /// Open for writing, and make empty.
@@ -121,7 +121,7 @@ impl FileServer {
 #[derive(Clone, Debug)]
 pub(crate) struct Disk {
     files: Box<dyn HostFiles>,
-    /// What is still to be read.
+    /// The rest of the file that is being read.
     reading: Option<TextLines>,
     writing: Option<String>,
     /// From a request to its answer.
@@ -258,7 +258,7 @@ fn deliver(memory: &mut GuestMemory, line: &[u8]) {
 #[derive(Clone, Debug)]
 struct TextLines {
     text: Vec<u8>,
-    /// Where the next one begins.
+    /// The offset of the next line.
     next: usize,
 }
 

@@ -1,4 +1,4 @@
-//! What was downloaded into threads word by word.
+//! Programs downloaded into threads word by word.
 //!
 //! A download is bytes in memory and an entry point; nothing says where the text of a program ends. What was stored in
 //! one go is kept here, so that the board can find the text among it when the thread is started.
@@ -6,7 +6,7 @@
 use kmotiondef::map::{PROGRAM_SIZE, program_base};
 use kmotiondef::{GuestAddr, ThreadId};
 
-/// What downloads have stored since the threads were last started.
+/// The memory that downloads have stored since the threads were last started.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Downloads {
     /// First address, and the one after the last.
@@ -25,13 +25,14 @@ impl Downloads {
         }
     }
 
-    /// Whether something was stored in the space of a thread.
+    /// Returns whether something was stored in the space of a thread.
     pub(crate) fn has(&self, thread: ThreadId) -> bool {
         let start = program_base(thread).get();
         self.stored.iter().any(|(stored, _)| (start..start + PROGRAM_SIZE).contains(&stored.get()))
     }
 
-    /// Where the text at the beginning of a thread's space may end: the stretches that follow each other from there.
+    /// Returns the possible ends of the text at the beginning of a thread's space: the ends of the adjacent ranges from
+    /// there.
     pub(crate) fn ends(&self, thread: ThreadId) -> Vec<GuestAddr> {
         let mut ends = Vec::new();
         let mut place = program_base(thread);

@@ -10,7 +10,7 @@ use crate::pc::directory::Directory;
 /// Bytes of a file that a program may read.
 pub const FILE_BYTES: u64 = 32 << 20;
 
-/// Why the PC does not open a file.
+/// The reason for which the PC does not open a file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FileError {
     /// There are no files at all.
@@ -25,7 +25,7 @@ pub enum FileError {
     /// The file has more names than this one, and may lie outside under another.
     #[error("`{0}` has a second name (a hard link), which may be outside the folder: it is only read")]
     HardLink(String),
-    /// What is there is no file: a folder, a device.
+    /// The path is a folder or a device, not a file.
     #[error("it is not a file")]
     NotAFile,
     /// It does not fit into memory beside everything else.
@@ -45,7 +45,7 @@ impl From<std::io::Error> for FileError {
     }
 }
 
-/// Where the PC's files are kept.
+/// The storage of the PC's files.
 pub trait HostFiles: fmt::Debug + Send {
     /// The contents of a file.
     ///
@@ -65,7 +65,7 @@ pub trait HostFiles: fmt::Debug + Send {
     /// Why it cannot grow.
     fn append(&mut self, name: &str, bytes: &[u8]) -> Result<(), FileError>;
 
-    /// Where the file of this name is looked for, if that can be said.
+    /// Returns the path at which the file of this name is looked for, if it has one.
     fn place_of(&self, name: &str) -> Option<String> {
         let _ = name;
         None
@@ -107,7 +107,7 @@ impl HostFiles for NoFiles {
 #[derive(Clone, Debug)]
 pub struct Overlay {
     below: Directory,
-    /// What was written, by the name in small letters; shared by all handles.
+    /// The written files by their lower-case names; shared by all handles.
     written: Arc<Mutex<BTreeMap<String, Vec<u8>>>>,
 }
 

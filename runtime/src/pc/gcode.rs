@@ -7,11 +7,11 @@
 
 use std::collections::BTreeMap;
 
-/// What the PC cannot do of a line.
+/// The part of a line that the PC cannot execute.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Unknown(pub(super) String);
 
-/// How deep brackets may lie in each other.
+/// The maximum nesting of brackets.
 const DEEPEST: usize = 50;
 
 /// The assignments of a line, in its order; nothing if one of them is not understood.
@@ -118,7 +118,7 @@ impl<'a> GcodeReader<'a> {
         Ok(value)
     }
 
-    /// What is in a bracket, with its end.
+    /// Reads the expression in a bracket, with its end.
     fn bracket(&mut self) -> Result<f64, Unknown> {
         let value = self.operation(0)?;
         if self.take("]") { Ok(value) } else { unknown("a bracket is not closed") }

@@ -25,7 +25,7 @@ use crate::views::Typed;
 
 /// Ticks between two polls: 0.1 s.
 const POLL_TICKS: u64 = 1111;
-/// How long a request waits for an absent PC before this is reported: 5 s.
+/// The time for which a request waits for an absent PC before this is reported: 5 s.
 const PATIENCE: Cycles = Cycles::new(5 * Cycles::PER_SECOND.get());
 /// Longest string the PC reads, in words.
 pub(super) const STRING_WORDS: u32 = 50;
@@ -38,14 +38,14 @@ const BAD_TOOL: i32 = -2;
 /// Tools of the table.
 const TOOLS: i32 = 100;
 
-/// What the PC keeps.
+/// The state of the PC.
 #[derive(Clone, Debug)]
 pub(crate) struct Host {
-    /// Whether there is a PC at all.
+    /// True if there is a PC at all.
     is_connected: bool,
     /// Ticks until it polls.
     until_poll: u64,
-    /// What it answers and holds.
+    /// Its answers and variables.
     answers: Answers,
     jog_overrides: [f32; 6],
     /// The request that is not answered and was shown.
@@ -76,7 +76,7 @@ impl Host {
         self.is_connected = is_connected;
     }
 
-    /// Whether there is a PC, which serves files too.
+    /// Returns whether there is a PC, which serves files too.
     pub(crate) const fn is_connected(&self) -> bool {
         self.is_connected
     }
@@ -101,12 +101,12 @@ impl Host {
         self.answers.silent.contains(&code)
     }
 
-    /// Whether a job runs on it when the board starts.
+    /// Returns whether a job runs on it when the board starts.
     pub(crate) const fn has_job(&self) -> bool {
         self.answers.has_job
     }
 
-    /// Whether a program waits for an answer that will come.
+    /// Returns whether a program waits for an answer that will come.
     pub(crate) fn is_asked(&self, memory: &GuestMemory) -> bool {
         let code = memory.get(data(0));
         self.is_connected && code > 0 && !self.answers.silent.contains(&code) && !self.is_for_person(code)
@@ -121,7 +121,7 @@ impl Host {
         Some(opened(memory, code))
     }
 
-    /// Whether a request opens a box, the answer to which a person still has to give.
+    /// Returns whether a request opens a box that a person still has to answer.
     pub(super) fn is_for_person(&self, code: i32) -> bool {
         let Boxes { waits, buttons, inputs } = &self.answers.boxes;
         let is_open = requests::deed(code).is_some_and(|deed| {
@@ -146,7 +146,7 @@ impl Host {
         self.answers.boxes.waits = true;
     }
 
-    /// How many ticks it leaves the board alone.
+    /// Returns how many ticks pass until it polls the board again.
     pub(crate) fn quiet_ticks(&self) -> u64 {
         if self.is_connected { self.until_poll.saturating_sub(2) } else { u64::MAX }
     }
@@ -192,7 +192,7 @@ fn doubles(memory: &GuestMemory, index: i32, count: usize) -> Option<GuestAddr> 
     named(memory, index.checked_mul(2)?, count.checked_mul(2)?)
 }
 
-/// What the PC does while the primary thread has its slice; whether it has stored an answer.
+/// Serves the primary thread's slice; returns whether an answer was stored.
 pub(crate) fn slice(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>) -> bool {
     if !host.is_connected {
         miss(host, out, context);

@@ -12,7 +12,7 @@ const ABORT: u8 = 0x03;
 /// Ends a line.
 const END: u8 = b'\r';
 
-/// Where in a line the link stands.
+/// The position of the link in a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Intake {
     /// Before its first byte.
@@ -26,7 +26,7 @@ enum Intake {
     Echoed,
 }
 
-/// What has arrived.
+/// An item that has arrived.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Arrival {
     /// 0x03: what was under way is dropped.
@@ -41,7 +41,7 @@ pub(crate) struct ByteLink {
     input: VecDeque<u8>,
     intake: Intake,
     line: Vec<u8>,
-    /// Whether nobody takes what arrives any more.
+    /// True if nobody takes the bytes any more.
     is_dead: bool,
 }
 
@@ -58,7 +58,7 @@ impl ByteLink {
         self.input.drain(..).collect()
     }
 
-    /// Whether bytes wait to be taken.
+    /// Returns whether bytes wait to be taken.
     pub(crate) fn is_busy(&self) -> bool {
         !self.input.is_empty()
     }
@@ -108,7 +108,7 @@ impl ByteLink {
         self.is_dead = true;
     }
 
-    /// Whether the board takes nothing any more.
+    /// Returns whether the board takes no more bytes.
     pub(crate) const fn is_dead(&self) -> bool {
         self.is_dead
     }

@@ -33,9 +33,9 @@ pub(crate) struct Pc {
     /// The link over USB, and the one over the UART.
     pub(crate) usb: ByteLink,
     pub(crate) uart: ByteLink,
-    /// What it has downloaded into threads.
+    /// The programs that it has downloaded into threads.
     pub(crate) downloads: Downloads,
-    /// Whether it takes console lines; if not, they wait in the queue, and then programs do.
+    /// True if it takes console lines; if not, they wait in the queue, and then programs do.
     pub(crate) is_heard: bool,
 }
 

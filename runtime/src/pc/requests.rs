@@ -1,4 +1,4 @@
-//! What programs may ask the PC for: the numbers of the requests, and how they are shown.
+//! Requests of programs to the PC: their numbers, and the text by which they are shown.
 
 /// The parameter of a request that is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,28 +15,28 @@ pub(super) enum Shown {
 
 use Shown::{Elsewhere, Nothing, Single, Whole};
 
-/// Whether a request reads what the PC has or writes it.
+/// The direction of a request: it reads a value of the PC or writes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Way {
     Get,
     Set,
 }
 
-/// Which rate a request overrides.
+/// The rate that a request overrides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Rate {
     Feed,
     Rapid,
 }
 
-/// Whether a rate is set, or multiplied.
+/// The operation on a rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Change {
     To,
     By,
 }
 
-/// What the PC does for a request.
+/// The PC's action for a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Deed {
     /// It is shown, no more.
@@ -128,7 +128,7 @@ const REQUESTS: &[(i32, &str, Shown, Deed)] = &[
     (55, "rapid override", Elsewhere, Override(Rate::Rapid, Change::By)),
 ];
 
-/// How a request is shown, by its number and first parameter; `None` if what is done shows more.
+/// Returns the text by which a request is shown, by its number and first parameter; `None` if its effect shows more.
 pub(super) fn shown(code: i32, parameter: i32) -> Option<String> {
     let Some((_, name, shown, _)) = REQUESTS.iter().find(|(number, ..)| *number == code) else {
         return Some(format!("request {code} is unknown"));
@@ -141,7 +141,7 @@ pub(super) fn shown(code: i32, parameter: i32) -> Option<String> {
     }
 }
 
-/// What is done for a request; `None` for a number that is not one.
+/// Returns the action for a request; `None` for a number that is not one.
 pub(super) fn deed(code: i32) -> Option<Deed> {
     REQUESTS.iter().find(|(number, ..)| *number == code).map(|(.., deed)| *deed)
 }

@@ -1,4 +1,4 @@
-//! What the servo keeps of guest memory so as not to compute it in every tick, and the one way to make it forget.
+//! Values derived from guest memory that the servo keeps from tick to tick, and the one way to invalidate them.
 //!
 //! Guest memory is the truth for everything that an axis is set to. Three things are derived from it: the plans of the
 //! axes, whether a tick would change anything at all, and whether the last tick left nothing to do. Whoever changes
@@ -16,7 +16,7 @@ use super::plan::AxisPlan;
 use super::still::Stillness;
 use crate::machine::wiring::Wiring;
 
-/// What has changed.
+/// The kind of change that invalidates derived values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Change {
     /// Anything may have: somebody outside of the tick has had the board.
@@ -31,24 +31,24 @@ pub(crate) enum Change {
     Thread,
 }
 
-/// What is known, until it changes.
+/// The derived values, until they are invalidated.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cache {
     plans: [AxisPlan; N_CHANNELS],
     /// The variable that says whether the derivative gain acts on the error; `None` in firmware 4.34, which has none.
     pub(crate) derivative_method: Option<GuestAddr>,
-    /// Whether the plans, and what follows from them, are what memory says.
+    /// True if the plans, and the values derived from them, agree with memory.
     has_plans: bool,
-    /// Whether an axis depends on another by them.
+    /// True if an axis depends on another by them.
     is_coupled: bool,
-    /// Whether one follows a master by them.
+    /// True if one follows a master by them.
     has_slaves: bool,
-    /// What the interrupt takes with them.
+    /// The time of the interrupt with them.
     duration: Cycles,
     /// The same as on the board, apart from the motion in progress.
     interrupt: Interrupt,
     still: Stillness,
-    /// Whether the last tick changed nothing and no thread has run since.
+    /// True if the last tick changed nothing and no thread has run since.
     is_settled: bool,
 }
 
@@ -72,29 +72,29 @@ impl Cache {
         }
     }
 
-    /// What the settings of an axis come to.
+    /// Returns the plan of an axis.
     #[inline(always)]
     pub(super) const fn plan(&self, axis: AxisId) -> &AxisPlan {
         &self.plans[axis.index()]
     }
 
-    /// Whether an axis depends on another.
+    /// Returns whether an axis depends on another.
     pub(super) const fn is_coupled(&self) -> bool {
         self.is_coupled
     }
 
-    /// Whether an axis follows a master.
+    /// Returns whether an axis follows a master.
     pub(super) const fn has_slaves(&self) -> bool {
         self.has_slaves
     }
 
-    /// What the servo interrupt takes of a tick.
+    /// Returns the time that the servo interrupt takes of a tick.
     #[inline]
     pub(crate) fn duration(&self, memory: &GuestMemory) -> Cycles {
         if self.has_plans { self.duration } else { duration(memory) }
     }
 
-    /// What it takes on the board, with the waits for memory.
+    /// Returns the time that the interrupt takes on the board, with the waits for memory.
     #[inline]
     pub(crate) fn interrupt(&self, memory: &GuestMemory, waits: WaitStates) -> Cycles {
         if self.has_plans {
@@ -122,7 +122,7 @@ impl Cache {
         );
     }
 
-    /// Whether the settings still come to what is known.
+    /// Returns whether the plans still agree with the settings.
     fn plans_hold(&self, memory: &mut GuestMemory, wiring: &Wiring) -> bool {
         AxisId::all().zip(&self.plans).all(|(axis, plan)| {
             let now = AxisPlan::of(memory, wiring, axis, self.derivative_method);
@@ -131,7 +131,8 @@ impl Cache {
         })
     }
 
-    /// Whether a tick of the axes would change nothing. Unless `is_touched`, nobody has written to the axis structures.
+    /// Returns whether a tick of the axes would change nothing. Unless `is_touched`, nobody has written to the axis
+    /// structures.
     #[inline]
     pub(super) fn is_still(&self, memory: &GuestMemory, is_touched: bool) -> bool {
         self.still.lasts(memory, is_touched)
@@ -162,7 +163,7 @@ impl Cache {
         self.is_settled = is_settled;
     }
 
-    /// Whether the last tick changed nothing and nothing has changed since.
+    /// Returns whether the last tick changed nothing and nothing has changed since.
     pub(crate) const fn is_settled(&self) -> bool {
         self.is_settled
     }

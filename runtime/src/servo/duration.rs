@@ -18,7 +18,7 @@ const IDLE: i64 = 2006;
 /// For reading its encoder.
 const ENCODER: i64 = 44;
 
-/// What the servo interrupt takes of a tick.
+/// Returns the time that the servo interrupt takes of a tick.
 pub(crate) fn duration(memory: &GuestMemory) -> Cycles {
     const SIZE: usize = Chan::SIZE as usize;
     let Some(all) = memory.block::<{ SIZE * N_CHANNELS }>(memory.locate(CHAN)) else {

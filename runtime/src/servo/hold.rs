@@ -25,7 +25,7 @@ pub(crate) fn abort_if_member(memory: &mut GuestMemory, axis: AxisId) {
     }
 }
 
-/// Whether there is something for a feedhold to stop. Nothing but its end holds a path that the spindle drives.
+/// Returns whether there is something for a feedhold to stop. A path that the spindle drives is only held at its end.
 pub(crate) fn may_stop(memory: &GuestMemory) -> bool {
     HoldState::of(memory) == HoldState::Running && !spindle::is_threading(memory)
 }

@@ -84,12 +84,12 @@ pub(crate) fn prepare(memory: &mut GuestMemory) {
     }
 }
 
-/// Whether a list is being executed.
+/// Returns whether a list is being executed.
 pub(crate) fn has_motion(memory: &GuestMemory, axis: AxisId) -> bool {
     !memory.axis(axis, Chan::PCOEFF).is_null()
 }
 
-/// Whether a motion that was called in motion has not begun: the axis keeps its speed while it is planned.
+/// Returns whether a motion that was called in motion has not begun: the axis keeps its speed while it is planned.
 pub(crate) fn is_planned(memory: &GuestMemory, axis: AxisId) -> bool {
     let first = state(memory, axis, 0);
     has_motion(memory, axis)
@@ -103,7 +103,7 @@ pub(crate) fn is_exponential(memory: &GuestMemory, axis: AxisId) -> bool {
     has_motion(memory, axis) && read(memory, memory.axis(axis, Chan::PCOEFF), 0).mode == Mode::Exponential
 }
 
-/// Whether an enabled axis executes a list.
+/// Returns whether an enabled axis executes a list.
 pub(crate) fn is_moving(memory: &GuestMemory, axis: AxisId) -> bool {
     memory.axis(axis, Chan::ENABLE) != 0 && has_motion(memory, axis)
 }
@@ -165,7 +165,7 @@ fn enter(memory: &mut GuestMemory, axis: AxisId) -> bool {
     true
 }
 
-/// What an exponential approach depends on.
+/// Returns the inputs of an exponential approach.
 fn approach(memory: &GuestMemory, axis: AxisId) -> Approach {
     Approach {
         dest: memory.axis(axis, Chan::DEST),

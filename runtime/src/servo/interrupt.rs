@@ -1,4 +1,4 @@
-//! What the servo interrupt takes on the board: settings, motion, recording and the waits for memory.
+//! The duration of the servo interrupt on the board: settings, motion, recording and the waits for memory.
 //!
 //! Measured on the released firmware (costs.md section 5): within 1 % up to eight axes. The other timing knows the
 //! settings alone ([`super::duration`]).
@@ -30,15 +30,15 @@ const ON_PATH: i64 = 116;
 const PATH_WORDS: i64 = 11;
 /// Words of SDRAM that a moving axis reads.
 const MOTION_WORDS: i64 = 11;
-/// What a motion towards its target by a time constant takes more.
+/// The additional time of a motion that approaches its target by a time constant.
 const EXPONENTIAL: i64 = 91;
 
-/// What an axis adds while it is enabled.
+/// The time that an axis adds while it is enabled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct AxisTime {
     cycles: i64,
     accesses: i64,
-    /// What it adds while it moves.
+    /// The time that it adds while it moves.
     moving: i64,
 }
 
@@ -68,7 +68,7 @@ fn input_cycles(mode: Option<InputMode>) -> i64 {
     }
 }
 
-/// What the settings of the axes come to.
+/// The duration that follows from the settings of the axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Interrupt {
     cycles: i64,
@@ -93,7 +93,7 @@ impl Interrupt {
         interrupt
     }
 
-    /// What the interrupt takes of a tick, with what goes on in it.
+    /// Returns the time that the interrupt takes of a tick, with the motions in progress.
     pub(super) fn time(&self, memory: &GuestMemory, waits: WaitStates, is_settled: bool) -> Cycles {
         let (mut cycles, mut words) = (self.cycles, 0);
         if !is_settled {

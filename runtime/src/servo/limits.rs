@@ -20,7 +20,7 @@ use crate::views::{AxisView, Typed};
 /// `LimitSwitchOptions`: take the bit numbers from their own fields.
 const EXTENDED: i32 = 1 << 8;
 
-/// What an active limit switch does.
+/// The effect of an active limit switch.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Action {
     /// Disables the axis.
@@ -61,7 +61,7 @@ const ENDS: [End; 2] = [
     },
 ];
 
-/// Whether a limit switch is watched or a soft limit is passed: only then [`check`] can do anything.
+/// Returns whether a limit switch is watched or a soft limit is passed: only then [`check`] can do anything.
 #[inline(always)]
 pub(crate) fn may_act(chan: &AxisView<'_>, plan: &AxisPlan) -> bool {
     let dest = chan.get(Chan::DEST);
@@ -101,8 +101,8 @@ pub(crate) fn check(
     memory.axis(axis, Chan::ENABLE) != 0
 }
 
-/// Why the following error of an axis has become too large, as far as what its output did to its position shows it:
-/// `response` is the sum of output times motion since the axis was enabled.
+/// Returns the cause of an excessive following error, as far as the response of the position shows it: `response` is
+/// the sum of output times motion since the axis was enabled.
 fn cause(memory: &GuestMemory, axis: AxisId, response: f64) -> Option<Message> {
     let error = memory.axis(axis, Chan::LAST_FOLLOWING_ERROR);
     let (output, velocity) = (memory.axis(axis, Chan::OUTPUT), memory.axis(axis, Chan::LAST_VEL));
@@ -137,7 +137,7 @@ fn tell(tick: &mut Tick<'_>, text: &str) {
     }
 }
 
-/// Whether the switch of an end is watched and active.
+/// Returns whether the switch of an end is watched and active.
 fn is_active(tick: &Tick<'_>, memory: &GuestMemory, axis: AxisId, end: &End) -> bool {
     active_bit(tick.io, memory, axis, end).is_some()
 }
@@ -221,7 +221,7 @@ fn check_soft(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, end: &End
     tick.servo.stop_request.ask(text, Tells::Always);
 }
 
-/// What the primary thread does for the limits in its slice; whether a stop was tried. Where no other thread is active,
+/// Acts on the limits in the primary thread's slice; returns whether a stop was tried. Where no other thread is active,
 /// it stops the first axis without being interrupted.
 pub(crate) fn slice(servo: &mut Servo, out: &mut Out, memory: &mut GuestMemory, is_alone: bool) -> bool {
     if hold::stop_next(servo, memory) {

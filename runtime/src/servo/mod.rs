@@ -105,7 +105,7 @@ fn run_generators(tick: &mut Tick<'_>, memory: &GuestMemory) -> bool {
     true
 }
 
-/// Whether the amplifiers of a KStep wait for their enable signal.
+/// Returns whether the amplifiers of a KStep wait for their enable signal.
 fn amplifiers_are_off(tick: &Tick<'_>) -> bool {
     tick.machine.needs_enable
         && !Bit::new(KSTEP_ENABLE).is_some_and(|bit| tick.io.pins.is_output(bit) && tick.io.pins.level(bit))
@@ -289,7 +289,7 @@ fn put_out(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, command:
     output::drive(tick, memory, axis, command, output);
 }
 
-/// What the servo is to follow.
+/// Returns the value that the servo follows.
 #[inline]
 fn command(chan: &AxisView<'_>) -> f64 {
     chan.get(Chan::DEST) + f64::from(chan.get(Chan::BACKLASH)) + chan.get(Chan::DEST_OFFSET)

@@ -90,8 +90,8 @@ fn stepped_to(chan: &AxisView<'_>) -> f64 {
     chan.get(Chan::DEST) + f64::from(chan.get(Chan::BACKLASH))
 }
 
-/// What drives the load of an enabled axis whose outputs somebody else has computed; `stepped` is where its step
-/// generator has got to.
+/// Returns the drive of an enabled axis whose outputs were computed elsewhere; `stepped` is the position of its step
+/// generator.
 pub(crate) fn driven(chan: &AxisView<'_>, stepped: f64) -> Drive {
     let output = chan.get(Chan::OUTPUT);
     let command = super::command(chan);
@@ -158,7 +158,7 @@ fn pwm(channel: i32, value: i32) -> i32 {
     if channel >= SNAP_AMP { current(value) } else { antiphase(value) }
 }
 
-/// Where in its electrical cycle a brushless axis is, in cycles.
+/// Returns the position of a brushless axis in its electrical cycle, in cycles.
 fn phase(chan: &AxisView<'_>) -> f64 {
     (chan.get(Chan::POSITION) + f64::from(chan.get(Chan::COMMUTATION_OFFSET)))
         * chan.get(Chan::INV_DIST_PER_CYCLE)

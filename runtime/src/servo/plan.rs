@@ -1,4 +1,4 @@
-//! What the settings of an axis come to, ready for a tick.
+//! Settings of an axis, prepared for a tick.
 //!
 //! The settings lie in guest memory, where programs write them at any time. A tick before which nobody but the
 //! servo had the board need not look at each of them: what they come to is kept from tick to tick, and worked out
@@ -14,7 +14,7 @@ use crate::machine::COUNTS_PER_TICK;
 use crate::machine::wiring::Wiring;
 use crate::views::AxisView;
 
-/// Where the position of an axis comes from.
+/// The source of an axis' position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum Input {
     /// Nowhere, or a program writes it.
@@ -41,7 +41,7 @@ pub(crate) struct Encoder {
 /// A filter's coefficients.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Filter {
-    /// Whether it passes its input on, as at power-up; most do.
+    /// True if it passes its input on unchanged, as at power-up; most do.
     pub(crate) is_plain: bool,
     pub(crate) a1: f32,
     pub(crate) a2: f32,
@@ -68,35 +68,35 @@ pub(crate) struct Gains {
     pub(crate) filters: [Filter; 3],
 }
 
-/// What the settings of an axis come to. Of a disabled axis only the input counts.
+/// The prepared settings of an axis. Of a disabled axis only the input counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct AxisPlan {
     pub(crate) input: Input,
     pub(crate) mode: Option<OutputMode>,
-    /// Whether nothing is compensated: steps and microsteps go where they are told.
+    /// True if nothing is compensated: steps and microsteps follow the command.
     pub(crate) is_open_loop: bool,
     pub(crate) is_slave: bool,
-    /// Whether a limit switch is watched.
+    /// True if a limit switch is watched.
     pub(crate) watches_switches: bool,
     pub(crate) has_backlash: bool,
     pub(crate) soft_limit_neg: f64,
     pub(crate) soft_limit_pos: f64,
     pub(crate) max_following_error: f64,
-    /// How far an encoder that follows the command gets in a tick, position units; 0 for no limit.
+    /// The distance that an encoder that follows the command covers in a tick, in position units; 0 for no limit.
     pub(crate) reach: f64,
     pub(crate) gains: Gains,
 }
 
 impl AxisPlan {
-    /// Whether what this axis does in a tick depends on what others do in it: on their motion, their load, or a step
-    /// generator that both name.
+    /// Returns whether this axis' tick depends on other axes: on their motion, their load, or a step generator that
+    /// both name.
     pub(super) fn is_coupled(&self, axis: AxisId) -> bool {
         self.is_slave
             || matches!(self.input, Input::Encoder(encoder) if encoder.turned_by != axis)
             || OutputMode::has_generator(self.mode)
     }
 
-    /// What an axis has set.
+    /// Prepares the settings of an axis.
     pub(super) fn of(
         memory: &mut GuestMemory,
         wiring: &Wiring,
@@ -126,7 +126,7 @@ impl AxisPlan {
     }
 }
 
-/// Whether an axis watches a limit switch.
+/// Returns whether an axis watches a limit switch.
 fn watches_switches(chan: &AxisView<'_>) -> bool {
     const WATCHED: i32 = 3;
     chan.get(Chan::LIMIT_SWITCH_OPTIONS) & WATCHED != 0

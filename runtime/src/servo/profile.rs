@@ -15,7 +15,7 @@ pub(crate) const FOREVER: f64 = 1e99;
 /// Entries of one axis' state list.
 pub(crate) const MAX_STATES: usize = 20;
 
-/// What a state is.
+/// The kind of a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mode {
     /// Ends the list.
@@ -49,7 +49,7 @@ impl Mode {
 /// One state: position = a·t³ + b·t² + c·t + d for `t` from 0 to its duration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MotionState {
-    /// What it is.
+    /// The kind.
     pub(crate) mode: Mode,
     /// Duration in seconds.
     pub(crate) t: f64,
@@ -252,7 +252,7 @@ struct Phases {
     cruise: f64,
     /// The acceleration that is reached.
     peak: f64,
-    /// Whether the limit of the velocity is.
+    /// True if the limit of the velocity is reached.
     is_full: bool,
 }
 
@@ -309,7 +309,7 @@ fn move_from_nowhere(to: f64, limits: &Limits) -> Vec<MotionState> {
     vec![phase, phase, phase, phase, last, MotionState::END]
 }
 
-/// How a half of a move changes its speed.
+/// The change of speed in a half of a move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ramp {
     /// With limited jerk.

@@ -9,17 +9,17 @@ use vm::memory::GuestMemory;
 
 use crate::views::Typed;
 
-/// Whether samples are being taken.
+/// Returns whether samples are being taken.
 pub(crate) fn is_recording(memory: &GuestMemory) -> bool {
     memory.get(GATHER.field(Gather::BUFPTR)) < end(memory)
 }
 
-/// Whether a recording writes somewhere else than into its buffer.
+/// Returns whether a recording also writes outside its buffer.
 fn injects(memory: &GuestMemory) -> bool {
     memory.get(GATHER.field(Gather::INJECT)) != 0
 }
 
-/// Where recording ends: at most at the end of the buffer, if it goes there.
+/// Returns the end of the recording: at most the end of the buffer, if it is written there.
 fn end(memory: &GuestMemory) -> GuestAddr {
     let limit = memory.get(GATHER_BUFFER).offset(8 * MAX_GATHER_DATA as u32);
     memory.get(GATHER.field(Gather::ENDPTR)).min(limit)

@@ -24,10 +24,10 @@ fn set<T: Scalar>(memory: &mut GuestMemory, field: Field<T>, value: T::Value) {
     memory.set(SPINDLE.field(field), value);
 }
 
-/// What a program says of its spindle.
+/// A program's description of its spindle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Setup {
-    /// Whether it has an encoder.
+    /// True if it has an encoder.
     pub(crate) has_encoder: bool,
     /// The axis whose position is that encoder.
     pub(crate) axis: AxisId,
@@ -66,7 +66,7 @@ fn position_now(memory: &GuestMemory) -> f64 {
     memory.peek::<f64>(get(memory, Spindle::P_ENCODER_POS)) * get(memory, Spindle::REVS_PER_COUNT)
 }
 
-/// Whether there is a spindle to measure.
+/// Returns whether there is a spindle to measure.
 pub(crate) fn is_measured(memory: &GuestMemory) -> bool {
     get(memory, Spindle::TYPE) == ENCODER
 }
@@ -111,7 +111,7 @@ pub(crate) fn thread(memory: &mut GuestMemory, base_speed: f32) {
     set(memory, Spindle::THREADING_ACTIVE, 1);
 }
 
-/// Whether the spindle drives the path.
+/// Returns whether the spindle drives the path.
 pub(crate) fn is_threading(memory: &GuestMemory) -> bool {
     get(memory, Spindle::THREADING_ACTIVE) != 0
 }

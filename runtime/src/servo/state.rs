@@ -14,7 +14,7 @@ use crate::io::Io;
 use crate::machine::Machine;
 use crate::out::Out;
 
-/// What the servo remembers of an axis beside its structure.
+/// The servo's state of an axis besides its structure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct AxisMemory {
     /// Destination at the end of the last tick.
@@ -26,13 +26,13 @@ pub(crate) struct AxisMemory {
     pub(super) response: f64,
     /// Change of the position in this tick.
     pub(super) moved: f64,
-    /// Whether the servo has run the axis since it was enabled.
+    /// True if the servo has run the axis since it was enabled.
     pub(super) has_run: bool,
     /// The velocity in the tick before.
     pub(super) last_velocity: f32,
     /// The analog output that the axis wrote in the last tick, and the word.
     pub(super) analog: Option<(usize, i16)>,
-    /// What kind of motion of the axis a feedhold interrupted.
+    /// The kind of motion that a feedhold interrupted.
     pub(crate) held: Option<LastMotion>,
 }
 
@@ -43,11 +43,11 @@ impl AxisMemory {
     }
 }
 
-/// What the servo remembers beside guest memory.
+/// The servo's state besides guest memory.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Servo {
     pub(crate) axes: [AxisMemory; N_CHANNELS],
-    /// What is derived from guest memory.
+    /// The values derived from guest memory.
     pub(crate) cache: Cache,
     pub(super) coordinated: Coordinated,
     pub(super) stop_request: StopRequest,
@@ -61,7 +61,7 @@ impl Servo {
         self.axes[axis.index()] = AxisMemory::rest(dest);
     }
 
-    /// Whether a path or an axis on its own moves or something is being recorded.
+    /// Returns whether a path or an axis on its own moves or something is being recorded.
     pub(crate) fn is_busy(memory: &GuestMemory) -> bool {
         recorder::is_recording(memory)
             || path::is_under_way(memory)

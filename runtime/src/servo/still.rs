@@ -15,16 +15,16 @@ const PWM_SIZE: usize = 64;
 const DAC_SIZE: usize = 16;
 const ADC_SIZE: usize = 32;
 
-/// What the axes had in memory after the last tick that was computed.
+/// The memory of the axes after the last computed tick.
 #[derive(Clone, Debug)]
 pub(crate) struct Stillness {
     chans: Box<[u8; CHANS_SIZE]>,
     pwm: [u8; PWM_SIZE],
     dac: [u8; DAC_SIZE],
     adc: [u8; ADC_SIZE],
-    /// Whether that is known.
+    /// True if it is known.
     is_known: bool,
-    /// Whether that tick began with it and changed nothing.
+    /// True if that tick began with it and changed nothing.
     is_still: bool,
     is_watching: bool,
 }
@@ -44,8 +44,8 @@ impl Default for Stillness {
 }
 
 impl Stillness {
-    /// Whether the last tick changed nothing and nobody has written anything since. Unless `is_touched`, nobody has
-    /// written to the axis structures, which are most of it.
+    /// Returns whether the last tick changed nothing and nobody has written anything since. Unless `is_touched`, nobody
+    /// has written to the axis structures, which are most of it.
     pub(super) fn lasts(&self, memory: &GuestMemory, is_touched: bool) -> bool {
         debug_assert!(
             is_touched || !self.is_still || self.has_seen_axes(memory),
@@ -88,7 +88,7 @@ impl Stillness {
         self.is_still
     }
 
-    /// Whether memory holds what was noted.
+    /// Returns whether memory is unchanged.
     fn is_seen(&self, memory: &GuestMemory) -> bool {
         self.has_seen_axes(memory) && self.has_seen_outputs(memory)
     }

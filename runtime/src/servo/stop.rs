@@ -20,7 +20,7 @@ pub(super) enum Tells {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StopRequest {
     asked: Option<(String, Tells)>,
-    /// Whether the primary thread has seen it: computing the stop takes it until its next slice.
+    /// True if the primary thread has seen it: computing the stop takes it until its next slice.
     is_seen: bool,
     /// The axes that are still to be stopped, the last one first.
     left: Vec<AxisId>,
@@ -40,12 +40,12 @@ impl StopRequest {
         self.is_seen = true;
     }
 
-    /// Whether a stop is requested.
+    /// Returns whether a stop is requested.
     pub(super) const fn is_asked(&self) -> bool {
         self.asked.is_some()
     }
 
-    /// Whether the primary thread sees it for the first time.
+    /// Returns whether the primary thread sees it for the first time.
     pub(super) const fn is_new(&mut self) -> bool {
         !std::mem::replace(&mut self.is_seen, true)
     }

@@ -8,7 +8,7 @@ use kmotiondef::limits::TIMEBASE;
 use super::dsp::{divide, root};
 use super::profile::{Mode, MotionState, Point};
 
-/// Where a motion is in its list.
+/// The position of a motion in its list.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Cursor {
     /// Index of the current state.
@@ -17,7 +17,7 @@ pub(crate) struct Cursor {
     pub(crate) t: f64,
 }
 
-/// What an exponential approach needs besides its state.
+/// The inputs of an exponential approach besides its state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Approach {
     /// Destination before this tick.
@@ -34,7 +34,7 @@ pub(crate) struct Approach {
     pub(crate) a: f64,
 }
 
-/// What one tick came to.
+/// The result of one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Step {
     /// The destination of this tick, and the place in the list where the next one begins.

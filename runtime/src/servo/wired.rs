@@ -17,7 +17,7 @@ use crate::machine::wiring::{channel_of, dac_value};
 use crate::machine::{Applied, Channel, Drive, Machine};
 use crate::views::{AxisView, Typed};
 
-/// What drives the load of an axis in this tick, if not the output of the axis itself.
+/// Returns the drive of an axis' load in this tick, if it is not the output of the axis itself.
 #[inline(always)]
 pub(crate) fn drive(machine: &Machine, io: &Io, memory: &mut GuestMemory, axis: AxisId) -> Option<Drive> {
     let wired = machine.wiring.drive(axis);
@@ -63,7 +63,8 @@ fn command(memory: &mut GuestMemory, axis: AxisId) -> f64 {
     super::command(&AxisView::of(memory, axis))
 }
 
-/// What the word of a PWM channel applies to a motor. A vector turns nothing without the angle that an axis gives it.
+/// Returns the signal of a PWM channel's word to a motor. A vector turns nothing without the angle that an axis gives
+/// it.
 fn decoded(word: i32) -> Applied {
     let within = |value: i32, limit: i32| (-limit..=limit).contains(&value).then(|| f64::from(value));
     let current = within(word.wrapping_sub(41_984), MAX_PWMC_VALUE).map(Applied::Current);
@@ -72,7 +73,7 @@ fn decoded(word: i32) -> Applied {
     current.unwrap_or_else(|| Applied::Pwm(antiphase.or(recirculate.filter(|_| word >= 0)).unwrap_or(0.0)))
 }
 
-/// Whether the steps of an axis move its own load: they are lost to it if a machine file connects the generator or the
+/// Returns whether the steps of an axis move its own load: they do not if a machine file connects the generator or the
 /// motor to something else.
 pub(crate) fn steps_are_own(machine: &Machine, memory: &GuestMemory, axis: AxisId) -> bool {
     let Some(Channel::Generator(generator)) = channel_of(memory, axis) else { return true };

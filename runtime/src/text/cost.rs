@@ -1,8 +1,8 @@
-//! What the board's formatter and converter cost, in cycles (costs.md section 4).
+//! Costs of the board's formatter and converter, in cycles (costs.md section 4).
 //!
 //! Fitted there to recorded calls: most are within 2 % of the board, the worst within 17 %.
 
-/// What a call of the formatter costs beyond its plain characters and conversions, if it has plain characters.
+/// The cost of a call of the formatter beyond its plain characters and conversions, if it has plain characters.
 pub(super) const PLAIN_TEXT: u32 = 32;
 
 /// A plain character of a format.
@@ -63,7 +63,7 @@ pub(super) fn general(precision: Option<u32>, exponent: i32) -> u32 {
     2890 + digits + 290 * steps + 55 * steps * steps + (decades - steps) * if exponent < 0 { 45 } else { 95 }
 }
 
-/// What a conversion of `sscanf` costs that used this many characters.
+/// Returns the cost of a conversion of `sscanf` that used this many characters.
 pub(super) const fn scanned(letter: u8, characters: u32) -> u32 {
     match letter {
         b'x' | b'X' | b'p' | b'i' => 520 + 400 * characters,
@@ -92,7 +92,7 @@ mod tests {
         cases.iter().filter_map(case).collect()
     }
 
-    /// How far the counted cycles are from the recorded ones, sorted, the worst last; with the cases.
+    /// Returns the relative errors of the counted cycles, sorted, the worst last; with the cases.
     fn errors(name: &str, fixed: impl Fn(&[u8]) -> u32) -> Vec<(f64, String)> {
         let mut errors = Vec::new();
         for (arguments, recorded) in cases(name) {

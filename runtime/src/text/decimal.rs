@@ -12,11 +12,11 @@
 pub(crate) struct Digits {
     /// Digits as values 0 to 9; the first is not 0 unless the value is.
     pub(crate) digits: Vec<u8>,
-    /// How many digits come before the decimal point; negative for zeros after it.
+    /// The number of digits before the decimal point; negative for zeros after it.
     pub(crate) point: i32,
 }
 
-/// Which digits are needed, and by which of the board's two ways.
+/// The digits that are needed, by the board's two algorithms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Keep {
     /// This many digits from the first that is not 0, as `%g` finds them.

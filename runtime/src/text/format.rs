@@ -9,9 +9,9 @@
 use super::decimal::{Keep, digits};
 use super::{Dialect, cost};
 
-/// Where the values of the conversions come from.
+/// The source of the values of the conversions.
 pub(crate) trait Arguments {
-    /// Why a value could not be had.
+    /// The error of a value that cannot be read.
     type Error;
     /// The next 32-bit value.
     fn word(&mut self) -> Result<u32, Self::Error>;
@@ -245,7 +245,7 @@ fn signed(spec: &Spec, value: i64, out: &mut Formatted) {
     integer(spec, sign(spec, value < 0), &value.unsigned_abs().to_string(), out);
 }
 
-/// What precedes an unsigned number or a character: a blank, if there is the flag, whatever other flags say.
+/// Returns the prefix of an unsigned number or a character: a blank, if there is the flag, whatever other flags say.
 fn blank(spec: &Spec) -> &'static [u8] {
     if spec.space { b" " } else { b"" }
 }
@@ -308,7 +308,7 @@ fn float(spec: &Spec, value: f64, letter: u8, out: &mut Formatted) {
     pad(spec, sign(spec, negative), &text, out);
 }
 
-/// What a floating-point conversion costs: the board looks for the decimal exponent step by step.
+/// Returns the cost of a floating-point conversion: the board looks for the decimal exponent step by step.
 fn float_cycles(spec: &Spec, magnitude: f64, letter: u8) -> u32 {
     let exponent = match magnitude {
         magnitude if magnitude < f64::MIN_POSITIVE => 0,
@@ -355,7 +355,7 @@ fn general(spec: &Spec, magnitude: f64, precision: usize, letter: u8) -> Vec<u8>
     found.fixed(shown, false)
 }
 
-/// How many digits are left without the zeros at the end; at least one.
+/// Returns the number of digits without the zeros at the end; at least one.
 fn significant(digits: &[u8]) -> usize {
     digits.iter().rposition(|&digit| digit != 0).map_or(1, |last| last + 1)
 }
@@ -395,7 +395,7 @@ pub(super) mod tests {
 
     struct List {
         list: std::vec::IntoIter<Argument>,
-        /// How many words were taken.
+        /// The number of words taken.
         taken: usize,
     }
 

@@ -69,7 +69,7 @@ pub(crate) fn float_prefix(text: &[u8]) -> (f64, usize) {
     (value, letter.filter(is_cut).unwrap_or(used))
 }
 
-/// Whether there is a minus sign, and how many bytes the sign takes.
+/// Returns whether there is a minus sign, and how many bytes the sign takes.
 fn sign(text: &[u8]) -> (bool, usize) {
     match text.first() {
         Some(b'-') => (true, 1),

@@ -29,9 +29,9 @@ pub(crate) enum Scanned<'t> {
     Text(&'t [u8]),
 }
 
-/// Where converted values go, one after another.
+/// The destination of converted values, one after another.
 pub(crate) trait Sink {
-    /// Why a value could not be stored.
+    /// The error of a value that cannot be stored.
     type Error;
     /// Stores a value at the next address.
     fn store(&mut self, value: Scanned<'_>) -> Result<(), Self::Error>;
@@ -61,7 +61,7 @@ pub(super) struct Spec {
     length: Length,
 }
 
-/// Whether the call continues after a directive.
+/// The continuation after a directive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Next {
     Go,
@@ -71,7 +71,7 @@ enum Next {
     Fail,
 }
 
-/// What a call came to, and what the board would have spent on it.
+/// The result of a call, and the cycles that the board would have spent on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Conversions {
     /// The number of values stored, or −1.
@@ -165,7 +165,7 @@ struct Scanner<'t> {
     at: usize,
     stored: i32,
     cycles: u32,
-    /// Whether the directive before was an ordinary character: white space then is one too.
+    /// True if the directive before was an ordinary character: white space then is one too.
     behind_character: bool,
 }
 

@@ -4,7 +4,7 @@
 //! alone is 0. Integers are computed in 40 bits. Floats are the integer of all digits times a power of ten from a
 //! table that ends at 10^32 (gather-persist-console.md section 4.2).
 
-/// What the digits of an integer mean.
+/// The base of an integer's digits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Base {
     /// `d`

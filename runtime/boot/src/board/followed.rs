@@ -15,7 +15,7 @@ use crate::bus::Hardware;
 /// Bytes from a call to its return address at most: six packets.
 const LONGEST_CALL: u32 = 6 * 32;
 
-/// Where a run to a stop has come to.
+/// The end of a run to a stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Ran {
@@ -40,7 +40,7 @@ pub struct ProgramPacket {
     pub text: String,
 }
 
-/// Where the processor is, and how it came there.
+/// The position of the processor, and the packets that led there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reached {
     /// The next packet.
@@ -89,7 +89,7 @@ impl<A: Around> BootedBoard<A> {
         Ok(Ran::Through)
     }
 
-    /// Where the processor is, and how it came there.
+    /// Returns the position of the processor, and the packets that led there.
     #[must_use]
     pub fn reached(&self) -> Reached {
         let state = &self.core.state;
@@ -167,7 +167,7 @@ fn user_thread(number: u32) -> Option<ThreadId> {
     i32::try_from(number).ok().and_then(ThreadId::new)
 }
 
-/// Whether an address is in the part of memory that programs are linked for.
+/// Returns whether an address is in the part of memory that programs are linked for.
 fn is_of_program(at: u32) -> bool {
     (PROGRAM_BASE..PROGRAM_LIMIT).contains(&at)
 }

@@ -19,7 +19,7 @@ use crate::sent::SentLines;
 
 /// Longest start: many times what any version takes.
 const LONGEST_START: u64 = 3 * SECOND;
-/// Where a board with flash starts, and its stack there.
+/// The address at which a board with flash starts, and its stack there.
 const FLASH_START: u32 = 0x1000_1000;
 const FLASH_STACK: u32 = 0x1000_0440;
 /// Flash content and where it is copied to when the board starts: offset, address, bytes.
@@ -34,7 +34,7 @@ const USER: u32 = 0x10_0000;
 /// Bytes of the flash that only the factory writes.
 const FACTORY: u32 = 0x1_0000;
 
-/// Why a board does not start from its flash.
+/// The reason for which a board does not start from its flash.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FlashError {
     /// The flash is of another firmware, or of the modelled board.
@@ -104,7 +104,7 @@ impl<A: Around> BootedBoard<A> {
         Ok(())
     }
 
-    /// What the flash holds.
+    /// Returns the contents of the flash.
     #[must_use]
     pub fn flash(&self) -> &[u8] {
         self.memory().read_bytes(FLASH.base, FLASH.size).unwrap_or_default()

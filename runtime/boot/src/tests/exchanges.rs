@@ -1,5 +1,5 @@
-//! What the firmware was recorded to answer, asked of the firmware itself: 246 replies of one session, and every script
-//! command from a fresh start (2,684 exchanges). Without the file, the test says so.
+//! Recorded answers of the firmware, compared with those of the firmware file: 246 replies of one session, and every
+//! script command from a fresh start (2,684 exchanges). Without the file, the test says so.
 
 use serde_json::Value;
 
@@ -10,7 +10,7 @@ use crate::BootedBoard;
 const TICK: u64 = 18_000;
 const QUIET: u64 = 8;
 const LONGEST: u64 = 200_000;
-/// Where the gather buffer is and how much of it commands show: the recorded boards had it cleared.
+/// The address of the gather buffer and the length that commands show: the recorded boards had it cleared.
 const GATHER: usize = 1 << 20;
 
 /// Answers that depend on when a line comes, or on what is in memory: the time it takes on the link was not recorded.
@@ -72,7 +72,7 @@ pub(super) fn exchange(board: &mut BootedBoard, line: &str) -> String {
     String::new()
 }
 
-/// Whether an answer is the recorded one, or has its shape where only that can be the same.
+/// Returns whether an answer is the recorded one, or has its form where the values differ between runs.
 fn agrees(name: &str, send: &str, found: &str, expect: &str) -> bool {
     let by_time = BY_TIME.iter().any(|(of, line)| *of == name && send.starts_with(line));
     found == expect || by_time && found.split_whitespace().count() == expect.split_whitespace().count()

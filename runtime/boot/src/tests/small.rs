@@ -10,11 +10,11 @@ use coff::{
 
 use crate::{BootedBoard, FirmwareError, FirmwareFile, FlashError, Halted, Sent};
 
-/// Where the code is, the interrupt's vector, and what the interrupt executes.
+/// The address of the code, the interrupt's vector, and the code of the interrupt.
 const START: u32 = 0x8000_0000;
 const VECTOR: u32 = 0x1000_0080;
 const HANDLER: u32 = 0x8000_1000;
-/// Where a board with flash starts.
+/// The address at which a board with flash starts.
 const FROM_FLASH: u32 = 0x1000_1000;
 
 /// Two instructions that load a constant.

@@ -6,7 +6,7 @@
 use kmotiondef::{GuestAddr, ThreadId};
 use vm::memory::GuestMemory;
 
-/// What the data of each program was when it was loaded; nothing unless that is wanted.
+/// The initial data of each program; empty unless it is to be restored.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Globals {
     is_kept: bool,

@@ -1,4 +1,4 @@
-//! What firmware functions remember from call to call.
+//! State that firmware functions keep from call to call.
 
 mod globals;
 mod heap;
@@ -20,7 +20,7 @@ pub(crate) use reading::Reading;
 pub(crate) use serial::SerialService;
 pub(crate) use waits::{Repeated, Waits};
 
-/// What a waiting call remembers until it is made again.
+/// The state of a waiting call until it is made again.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Continuation {
     /// Text that the console queue had no room for, and what the call returns.
@@ -38,28 +38,28 @@ pub(crate) enum Continuation {
     Resume(Vec<AxisId>),
 }
 
-/// What firmware functions remember.
+/// The state of firmware functions.
 #[derive(Clone, Debug)]
 pub(crate) struct Calls {
     continuations: [Option<Continuation>; ThreadId::MAX as usize + 1],
     pub(crate) serial: SerialService,
     pub(crate) heap: Heap,
-    /// What the board remembers of files on the PC.
+    /// The state of files on the PC.
     pub(crate) reading: Reading,
     pub(crate) globals: Globals,
     /// State of `rand`.
     pub(crate) seed: u32,
-    /// Where `strtok` continues.
+    /// The address at which `strtok` continues.
     pub(crate) token: GuestAddr,
     /// Ticks that a motion call plans before its motion begins.
     pub(crate) plan_ticks: u32,
     /// Motion calls in a row that each came while the one before was planned, of each axis.
     pub(crate) hurried_calls: [u8; N_CHANNELS],
-    /// What threads wait for.
+    /// The calls for which threads wait.
     pub(crate) waits: Waits,
-    /// What is worth a remark in the light of what follows.
+    /// Observations that may become remarks later.
     pub(crate) notices: Notices,
-    /// Which thread moves which axis.
+    /// The threads that move each axis.
     pub(crate) motions: Motions,
 }
 
@@ -94,7 +94,7 @@ impl Calls {
         self.continuations[slot(caller.thread)] = Some(continuation);
     }
 
-    /// What the call remembered.
+    /// Takes the state that the call left.
     pub(crate) fn take(&mut self, caller: &Caller<'_>) -> Option<Continuation> {
         self.continuations[slot(caller.thread)].take()
     }

@@ -1,4 +1,4 @@
-//! Which thread moves which axis, and which motions it has asked about.
+//! The threads that move each axis, and the motions that they have waited for.
 //!
 //! Two threads that move the same axis at once, a wait for another axis than the one that moves, and an axis that is
 //! disabled while a thread waits for it are mistakes that only several calls together show.
@@ -15,7 +15,7 @@ pub(crate) struct WrongWait {
     pub(crate) asked: AxisId,
     /// The axis that it moves.
     pub(crate) moving: AxisId,
-    /// Where it asked.
+    /// The code address of the wait.
     pub(crate) at: Option<CodeAddr>,
 }
 
@@ -26,7 +26,7 @@ pub(crate) struct EndedWait {
     pub(crate) thread: ThreadId,
     /// The axis.
     pub(crate) axis: AxisId,
-    /// Where it asked.
+    /// The code address of the wait.
     pub(crate) at: Option<CodeAddr>,
 }
 
@@ -42,7 +42,7 @@ pub(crate) struct Jogged {
     pub(crate) looked: Cycles,
 }
 
-/// What one thread has done.
+/// The history of one thread.
 #[derive(Clone, Copy, Debug, Default)]
 struct Thread {
     /// Axes that it has moved, and axes that it has found in motion; a bit for each.
@@ -53,7 +53,7 @@ struct Thread {
     ended_wait: Option<EndedWait>,
 }
 
-/// What all threads have done.
+/// The history of all threads.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Motions {
     /// The thread that last moved each axis.

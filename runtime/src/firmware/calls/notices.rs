@@ -12,7 +12,7 @@ use vm::firmware::Caller;
 
 use crate::out::{Message, Out};
 
-/// How long a level may be written before its pin becomes an output: half a second.
+/// The time for which a level may be written before its pin becomes an output: half a second.
 const PATIENCE: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 2);
 /// Levels that are followed at a time.
 const MOST: usize = 64;
@@ -48,7 +48,7 @@ struct Called {
     looked: Cycles,
 }
 
-/// What is followed.
+/// The observations in progress.
 #[derive(Clone, Debug)]
 pub(crate) struct Notices {
     latches: Vec<Latch>,

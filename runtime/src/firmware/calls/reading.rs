@@ -1,8 +1,8 @@
-//! What the board remembers of the text files that a program has open.
+//! The state of the text files that a program has open.
 
-/// What the board remembers of its files.
+/// The state of the board's files.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Reading {
-    /// Whether the last opening or reading failed or came to the end, which `feof` tells.
+    /// True if the last opening or reading failed or reached the end; `feof` returns it.
     pub(crate) has_failed: bool,
 }

@@ -17,7 +17,7 @@ pub(crate) struct SerialService {
 }
 
 impl SerialService {
-    /// Whether characters are still to be sent or received.
+    /// Returns whether characters are still to be sent or received.
     pub(crate) fn is_busy(&self, memory: &GuestMemory, uart: &Uart) -> bool {
         self.is_on
             && (uart.is_receiving()

@@ -1,4 +1,4 @@
-//! What each thread waits for: the calls that it repeats while it does nothing else.
+//! The calls for which each thread waits: those that it repeats while it does nothing else.
 //!
 //! A thread waits as long as it calls nothing but functions that look or let time pass. Any other call ends the wait.
 
@@ -16,7 +16,7 @@ pub(crate) struct Repeated {
     pub(crate) polls: Polled,
     /// Its first argument.
     pub(crate) argument: i32,
-    /// Where the call is.
+    /// The code address of the call.
     at: Option<CodeAddr>,
 }
 
@@ -29,7 +29,7 @@ pub(crate) struct Wait {
     pub(crate) looked: Cycles,
     /// The bit that it has read last.
     pub(crate) last_bit: Option<Bit>,
-    /// What it has called since.
+    /// The calls since its beginning.
     pub(crate) calls: Vec<Repeated>,
 }
 
@@ -67,12 +67,12 @@ impl Waits {
         self.axes |= 1 << axis.index();
     }
 
-    /// Whether one has.
+    /// Returns whether a thread has called a function for the axis.
     pub(crate) fn has_touched(&self, axis: AxisId) -> bool {
         self.axes >> axis.index() & 1 != 0
     }
 
-    /// What a thread waits for.
+    /// Returns the wait of a thread.
     pub(crate) fn of(&self, thread: ThreadId) -> &Wait {
         &self.threads[thread.index()]
     }

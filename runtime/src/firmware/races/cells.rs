@@ -9,12 +9,12 @@ use super::{
 };
 use crate::out::{Message, OtherPlace, Out};
 
-/// What threads have done with a cell.
+/// The accesses of threads to a cell.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cell {
     pub(super) uses: [Use; CONTEXTS],
     pub(super) writer: Option<Writer>,
-    /// How often it was stored to.
+    /// The number of stores.
     stores: u32,
     /// Its last change, and how many stores changed it.
     change: Option<CellChange>,
@@ -40,7 +40,7 @@ struct EarlyLoad {
     stored: CellChange,
 }
 
-/// What a context has done with a cell.
+/// The accesses of a context to a cell.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Use {
     pub(super) load: Option<Load>,
@@ -48,7 +48,7 @@ pub(super) struct Use {
     pub(super) update: Option<AccessMark>,
     /// Its last store after it had found 0 there.
     pub(super) claim: Option<(AccessMark, u64)>,
-    /// Whether it has stored 0 after such a store, and at all.
+    /// True if it has stored 0 after such a store, and at all.
     pub(super) releases: bool,
     pub(super) clears: bool,
     /// Its last request to the PC.
@@ -59,7 +59,7 @@ pub(super) struct Use {
     /// Stores of anything but 0.
     pub(super) posts: u32,
     pub(super) stored: Option<Cycles>,
-    /// Whether it has loaded the cell while it had no order to execute.
+    /// True if it has loaded the cell while it had no order to execute.
     pub(super) is_loaded_at_leisure: bool,
     /// The value that it had loaded before its last store of something else.
     pub(super) replaced: Option<u64>,
@@ -68,7 +68,7 @@ pub(super) struct Use {
 #[derive(Clone, Debug)]
 pub(super) struct Load {
     pub(super) at: CodeAddr,
-    /// What the context knew before, without what it has read from the cell since its last store.
+    /// The context's knowledge before the load, without the values read from the cell since its last store.
     pub(super) before: VectorClock,
     /// Its knowledge before it began to load nothing but this cell.
     pub(super) spun: VectorClock,
@@ -89,7 +89,7 @@ pub(super) struct Writer {
     pub(super) clock: VectorClock,
     pub(super) now: Cycles,
     pub(super) value: u64,
-    /// Whether it has changed both words of eight bytes.
+    /// True if it has changed both words of eight bytes.
     pub(super) tears: bool,
     pub(super) locks: Vec<u32>,
 }

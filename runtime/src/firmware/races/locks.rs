@@ -10,13 +10,13 @@ use crate::out::{Message, OtherPlace, Out};
 /// A lock.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lock {
-    /// What those knew who have freed it.
+    /// The combined knowledge of the contexts that have freed it.
     clock: VectorClock,
-    /// Whether `MutexLock` takes it.
+    /// True if `MutexLock` takes it.
     pub(super) is_mutex: bool,
 }
 
-/// Who has taken or tried a lock while holding another: the held one, the other, the context.
+/// Attempts to take a lock while another is held: the held one, the other, the context.
 pub(super) type Orders = BTreeMap<(u32, u32, usize), AccessMark>;
 
 impl Races {

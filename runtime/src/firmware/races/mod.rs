@@ -1,4 +1,4 @@
-//! What several threads do to the same memory that can go wrong on the board.
+//! Accesses of several threads to the same memory that can go wrong on the board.
 //!
 //! Not every unordered access is an error here: a word with one writer, a request that one thread sets and another
 //! clears, a last value that wins are what programs for this board are made of. So each rule looks for a loss: an
@@ -46,7 +46,7 @@ const TOGETHER: Cycles = Cycles::new(10_000_000);
 /// The most cycles from the test of a cell to the store that takes it.
 const CLAIM_TIME: Cycles = Cycles::new(18_000);
 
-/// What each context has seen of each.
+/// The latest access of each context that a context has seen.
 type VectorClock = [u32; CONTEXTS];
 
 /// Makes `clock` know what `other` knows.
@@ -73,7 +73,7 @@ struct Track {
     began: Cycles,
     /// The locks that it holds, and where it took them.
     held: Vec<(u32, CodeAddr)>,
-    /// What whoever started it knew.
+    /// The knowledge of the context that started it.
     starter: VectorClock,
     /// The order that it has read and not yet cleared: the cell, who posted it, and that one's clock then.
     order: Option<(u32, usize, u32)>,
@@ -150,7 +150,7 @@ impl Default for Races {
     }
 }
 
-/// Who does something, where and when.
+/// The context of an access, its code address and its time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Actor {
     pub(crate) thread: Option<ThreadId>,
@@ -329,7 +329,7 @@ fn conflict<'a>(
     found.find(is_conflict).map(|(other, mark)| (other, mark.at))
 }
 
-/// Whether an address is of an axis: what the servo reads, and of which it takes the newest value.
+/// Returns whether an address is in an axis structure, of which the servo reads the newest values.
 fn is_of_axis(address: u32) -> bool {
     variable_around(GuestAddr::new(address)).is_some_and(|variable| variable.address == CHAN.address())
 }

@@ -91,7 +91,7 @@ pub(crate) fn after(parts: &mut Parts, call: SharedCall, outcome: &Outcome<Value
     }
 }
 
-/// Who makes a call; `None` for nobody's program.
+/// Returns the context of a call; `None` if the code address is unknown.
 fn actor(caller: &Caller<'_>) -> Option<Actor> {
     Some(Actor { thread: caller.thread, at: caller.at?, now: caller.now() })
 }

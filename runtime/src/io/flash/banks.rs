@@ -15,7 +15,7 @@ use super::FLASH_SIZE;
 /// Bytes of a bank: 2^14 words.
 const BANK: usize = 0x8000;
 
-/// What the chip holds, and the bank that is seen.
+/// The contents of the chip, and the visible bank.
 #[derive(Clone, Debug)]
 struct Chip {
     bytes: Vec<u8>,
@@ -78,7 +78,7 @@ impl Banks {
         result
     }
 
-    /// What the chip holds, if that is not what is seen.
+    /// Returns the contents of the chip, if they differ from the visible ones.
     pub(crate) fn chip(&self) -> Option<&[u8]> {
         self.chip.as_ref().map(|chip| &*chip.bytes)
     }

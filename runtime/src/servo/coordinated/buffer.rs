@@ -15,7 +15,7 @@ use super::{rate, system};
 use crate::out::Message;
 use crate::views::Typed;
 
-/// What `ExecTime` says instead of a time of 0 when nothing is executing.
+/// The result of `ExecTime` in place of a time of 0 when nothing is executing.
 const IDLE: f64 = -0.001;
 
 /// The entry of an index, which may be any number a program has stored.
@@ -117,7 +117,7 @@ pub(crate) fn executed_time(memory: &GuestMemory) -> f64 {
     }
 }
 
-/// What `CheckDoneBuf` says: 1 done, 0 executing, -1 an axis of the coordinate system is disabled.
+/// Returns the result of `CheckDoneBuf`: 1 done, 0 executing, -1 an axis of the coordinate system is disabled.
 pub(crate) fn check_done(memory: &GuestMemory) -> i32 {
     if system::is_disabled(memory) { -1 } else { i32::from(memory.get(COORD_SYSTEM0).is_null()) }
 }

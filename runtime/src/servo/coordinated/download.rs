@@ -15,7 +15,7 @@ use super::system::{self, LETTERS};
 use crate::out::Message;
 use crate::views::Typed;
 
-/// Where the eight letters are.
+/// The positions of the eight letters.
 pub(crate) type Point = [f32; LETTERS];
 
 const AXES: [Field<u8>; LETTERS] = [
@@ -39,10 +39,10 @@ const LINEAR: [Field<TripLinear>; LETTERS - 2] = [
     ParametricCoeff::COORD_V,
 ];
 
-/// What a slot without an axis holds.
+/// The value of a slot without an axis.
 const UNUSED: u8 = 255;
 
-/// How the parameter goes with time, and for how long.
+/// The parameter as a function of time, and its duration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Timing {
     /// Coefficients of t³, t², t and 1.
@@ -82,9 +82,9 @@ pub(crate) struct Circle {
     pub(crate) centre: [f32; 2],
     /// Its radii.
     pub(crate) radii: [f32; 2],
-    /// Where it begins, radians.
+    /// The angle at which it begins, in radians.
     pub(crate) angle: f32,
-    /// How far it goes, radians.
+    /// The angle that it covers, in radians.
     pub(crate) turn: f32,
 }
 

@@ -24,14 +24,14 @@ use vm::memory::GuestMemory;
 
 /// The inputs and outputs that a path drives and waits for.
 pub(crate) trait Bits {
-    /// Whether a bit is high.
+    /// Returns whether a bit is high.
     fn is_high(&mut self, memory: &GuestMemory, bit: Bit) -> bool;
 
     /// Drives a bit.
     fn drive(&mut self, memory: &mut GuestMemory, bit: Bit, high: bool);
 }
 
-/// What coordinated motion remembers from tick to tick besides guest memory.
+/// The state of coordinated motion from tick to tick, besides guest memory.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Coordinated {
     /// The last stretch of a smoothed path, while it lasts.

@@ -18,7 +18,7 @@ use crate::views::Typed;
 /// Seconds before its end where a path is held that must not end yet.
 const HELD_SHORT: f64 = 1e-6;
 
-/// Where the path is after its commands have been carried out.
+/// The position on the path after its commands have been executed.
 #[derive(Clone, Copy, Debug)]
 enum Halt {
     /// In a stretch.
@@ -30,7 +30,7 @@ enum Halt {
 }
 
 impl Coordinated {
-    /// Whether there is no path.
+    /// Returns whether there is no path.
     #[inline]
     pub(crate) fn is_idle(&self, memory: &GuestMemory) -> bool {
         self.spline.is_none() && memory.get(COORD_SYSTEM0).is_null()
@@ -95,12 +95,12 @@ impl Coordinated {
     }
 }
 
-/// Whether a path is executing and not held.
+/// Returns whether a path is executing and not held.
 pub(crate) fn is_under_way(memory: &GuestMemory) -> bool {
     !memory.get(COORD_SYSTEM0).is_null() && HoldState::of(memory) != HoldState::PathStopped
 }
 
-/// What changes from tick to tick while a path is under way.
+/// Returns the values that change from tick to tick while a path is executing.
 fn clock(memory: &GuestMemory) -> (GuestAddr, [f64; 3], i32) {
     let times = [CS0_T, CS0_TIME_EXECUTED, CS0_TIME_BASE].map(|time| memory.get(time));
     (memory.get(COORD_SYSTEM0), times, memory.get(CS0_STOPPING_STATE))
@@ -124,7 +124,7 @@ fn run_clock(memory: &mut GuestMemory) {
     }
 }
 
-/// Whether the path waits at its end for more data.
+/// Returns whether the path waits at its end for more data.
 fn is_held_open(memory: &GuestMemory) -> bool {
     memory.get(CS0_HOLD_AT_END) != 0
 }

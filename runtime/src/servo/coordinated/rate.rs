@@ -97,7 +97,7 @@ pub(crate) fn ramp(memory: &mut GuestMemory) {
     }
 }
 
-/// What the ramp may aim at: standstill as soon as the rest of the data is needed for stopping.
+/// Returns the rate that the ramp may aim at: standstill as soon as the rest of the data is needed for stopping.
 fn aim_within_data(memory: &GuestMemory, now: f64) -> f64 {
     let desired = memory.get(CS0_TIME_BASE_DESIRED);
     let position = memory.get(CS0_TIME_EXECUTED) + memory.get(CS0_T);

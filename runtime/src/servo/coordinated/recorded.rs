@@ -79,9 +79,9 @@ struct Rig {
     desk: Desk,
     /// A motion call that waits for its caller's next slice: in this many ticks.
     waiting: Option<(u64, String, Vec<u64>)>,
-    /// How far a result may be off, relative: what goes through the board's divisions and singles is less exact.
+    /// The tolerance of a result, relative: values that pass through the board's divisions and singles are less exact.
     precision: f64,
-    /// What `CheckDoneBuf` said after the latest ticks, newest first.
+    /// The results of `CheckDoneBuf` after the latest ticks, newest first.
     done: VecDeque<i32>,
 }
 
@@ -180,7 +180,7 @@ impl Rig {
         Some(Ok(String::new()))
     }
 
-    /// What the recording did with its spindle in front of a tick.
+    /// Turns the spindle before a tick as in the recording.
     fn turn(&mut self, spindle: &Turning, tick: u64, last: u64) -> Result<(), String> {
         let axis = AxisId::new(spindle.axis).ok_or("an axis")?;
         if tick < last {
@@ -197,7 +197,7 @@ impl Rig {
         Ok(())
     }
 
-    /// What waits for the slice in front of a tick, and the tick.
+    /// Makes the call that is due before a tick, and executes the tick.
     fn tick(&mut self) {
         if let Some((ticks, name, arguments)) = self.waiting.take() {
             if ticks > 0 {
@@ -265,7 +265,8 @@ impl Rig {
         Ok(String::new())
     }
 
-    /// Whether a value is equal except for the digits that the recording leaves out and what its precision allows.
+    /// Returns whether a value is equal except for the digits that the recording leaves out and what its precision
+    /// allows.
     fn is_close(&self, column: usize, found: f64, expect: f64, [extent, path_time]: [f64; 2]) -> bool {
         let tolerance = match column {
             1 => self.precision * path_time.abs(),
@@ -277,7 +278,7 @@ impl Rig {
         (found - expect).abs() <= tolerance + 1e-12
     }
 
-    /// What differs between a recorded row and the board.
+    /// Returns the difference between a recorded row and the board.
     fn difference(&self, row: &[Json]) -> Option<String> {
         let memory = &self.desk.memory;
         let axis = |number, field| AxisId::new(number).map_or(f64::NAN, |axis| memory.axis(axis, field));

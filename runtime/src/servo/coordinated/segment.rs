@@ -27,7 +27,7 @@ const ARC_LETTERS: [(Field<u8>, Field<TripCircleLinear>); 2] = [
     (ParametricCoeff::Y_AXIS, ParametricCoeff::COORD_Y),
 ];
 
-/// What an entry is.
+/// The kind of an entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// The end of the path; so is any mode without a meaning.
@@ -92,7 +92,7 @@ impl Entry {
         Self(Place::new(address))
     }
 
-    /// Where it is.
+    /// Returns its address.
     pub(crate) const fn address(self) -> GuestAddr {
         self.0.address()
     }
@@ -102,7 +102,7 @@ impl Entry {
         self.0.field(field)
     }
 
-    /// What it is.
+    /// Returns its kind.
     pub(crate) fn kind(self, memory: &GuestMemory) -> Kind {
         let mode = i32::from(memory.get(self.field(ParametricCoeff::TRAJECTORY_MODE)));
         match TrajectoryMode::new(mode) {
@@ -129,7 +129,7 @@ impl Entry {
         }
     }
 
-    /// Where the axes of a stretch are, `t` seconds into it.
+    /// Returns the positions of the axes `t` seconds into the segment.
     pub(crate) fn positions(self, memory: &GuestMemory, t: f64) -> [Option<(AxisId, f64)>; LETTERS] {
         let Kind::Segment(shape) = self.kind(memory) else { return [None; LETTERS] };
         let p = self.parameter(memory, t);

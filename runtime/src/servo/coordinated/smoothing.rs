@@ -54,7 +54,7 @@ impl Spline {
         Some(Self { end, t: 0.0, duration, cubics })
     }
 
-    /// Whether it belongs to the path that ended at an entry.
+    /// Returns whether it belongs to the path that ended at an entry.
     pub(crate) fn ends_at(&self, end: GuestAddr) -> bool {
         self.end == end
     }

@@ -30,7 +30,7 @@ pub(crate) fn members(memory: &GuestMemory) -> impl Iterator<Item = AxisId> + us
     letters(memory).into_iter().flatten()
 }
 
-/// Whether an axis belongs to the coordinate system.
+/// Returns whether an axis belongs to the coordinate system.
 pub(crate) fn is_member(memory: &GuestMemory, axis: AxisId) -> bool {
     letters(memory).contains(&Some(axis))
 }
@@ -42,7 +42,7 @@ pub(crate) fn assign(memory: &mut GuestMemory, axes: &[i32]) {
     }
 }
 
-/// Whether an axis of the system is disabled, so that no path can run.
+/// Returns whether an axis of the system is disabled, so that no path can run.
 pub(crate) fn is_disabled(memory: &GuestMemory) -> bool {
     members(memory).any(|axis| memory.axis(axis, Chan::ENABLE) == 0)
 }
