@@ -73,7 +73,8 @@ fn check(path: &Path, is_blessed: bool) -> Result<(), Failed> {
     check_cycles(&test, is_blessed)
 }
 
-/// What a program prints as code for the real processor, at every level; what ends in a trap is for the other engines.
+/// Checks the output of a program as code for the real processor, at every level; programs that end in a trap are for
+/// the other engines.
 fn check_code(test: &FileTest) -> Result<(), Failed> {
     let Some(expected) = test.stdout_of_code() else { return Ok(()) };
     for level in ["-O0", "-O1", "-O2"] {

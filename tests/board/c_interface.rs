@@ -9,7 +9,7 @@ use std::process::Command;
 use cbindgen::{Builder, Config, DocumentationStyle, EnumConfig, ExportConfig, Language, RenameRule, Style};
 use harness::{Scratch, root, run_in};
 
-/// What the header says before its declarations.
+/// The text of the header before its declarations.
 const HEAD: &str = "\
 /* The simulated KFLOP board as a library: the operations of the host interface under their names.
 
@@ -77,7 +77,7 @@ fn library() -> PathBuf {
     own.with_file_name(format!("{DLL_PREFIX}cc67board{DLL_SUFFIX}"))
 }
 
-/// Whether there is a C compiler.
+/// Returns whether there is a C compiler.
 fn has_compiler() -> bool {
     let is_there = !cfg!(windows) && Command::new("cc").arg("--version").output().is_ok();
     if !is_there {

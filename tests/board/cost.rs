@@ -12,7 +12,7 @@ use kmotiondef::timing::{Timing, WaitStates};
 use kmotiondef::{Cycles, ThreadId, Ticks};
 use serde_json::Value as Json;
 
-/// What a thread waits for its next slice, beside thread 0: a tick and the servo interrupt of its own.
+/// The time until a thread's next slice, beside thread 0: a tick and the servo interrupt of its own.
 const ROTATION: f64 = 18_000.0 + 2446.0;
 
 /// Programs that do little but read and set bits. What a call costs includes the wait states of the bus as the firmware

@@ -1,4 +1,4 @@
-//! What a typical call of a firmware function is charged, beside what it takes on the board: `data/vectors/costs.jsonl`.
+//! Charges of typical firmware calls, compared with their times on the board: `data/vectors/costs.jsonl`.
 //!
 //! Compared is the second setting, with the wait states of the bus as the firmware programs it, for which the functions
 //! are charged. A call is what the profiling engine puts down to it, without the time that it waits. Of the recorded calls
@@ -17,7 +17,7 @@ use runtime::Board;
 use serde_json::Value as Json;
 use vm::profile::ProfilingEngine;
 
-/// How far a typical call may be off.
+/// The tolerance of a typical call, relative.
 const LIMIT: f64 = 0.1;
 
 /// Functions that are not called here, and why.
@@ -208,7 +208,7 @@ fn scanned(format: &str) -> String {
     places
 }
 
-/// What programs of calls begin with.
+/// The text before the calls.
 const HEAD: &str = "#include \"KMotionDef.h\"
 #include <stdlib.h>
 #include <string.h>
@@ -249,8 +249,8 @@ fn calls_of(session: &Session<Board<ProfilingEngine>>, name: &str) -> Vec<f64> {
     calls.into_values().collect()
 }
 
-/// What a case needs before it. The limits are those with which a move of 20,000 reaches its full speed and one of 1000
-/// does not, as recorded.
+/// Returns the code that a case needs before it. The limits are those with which a move of 20,000 reaches its full
+/// speed and one of 1000 does not, as recorded.
 fn before(case: &Case) -> &'static str {
     match case.words.ends_with("at rest") {
         true => "ch0->Vel = 40000; ch0->Accel = 4e5; ch0->Jerk = 4e6; EnableAxisDest(0, 0);\n",

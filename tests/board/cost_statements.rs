@@ -1,4 +1,4 @@
-//! What each statement of `data/vectors/costs.jsonl` is charged, beside what the vendor's code for it takes on the board.
+//! Charges of the statements of `data/vectors/costs.jsonl`, compared with the times of the vendor's code on the board.
 //!
 //! Every row is compared, for memory without wait states, with those of the bus, and with 20 cycles for SDRAM. A statement
 //! takes what a program with it takes longer than one without it, as the profiling engine counts.
@@ -13,7 +13,7 @@ use kmotiondef::{ThreadId, Ticks};
 use serde_json::Value as Json;
 use vm::profile::ProfilingEngine;
 
-/// How far a statement may be off.
+/// The tolerance of a statement, relative.
 const LIMIT: f64 = 0.1;
 
 /// Cycles that are less than the price of one access.
@@ -46,7 +46,7 @@ const BUS: &str =
     "a call is charged with the wait states of the bus as the firmware programs it, at every setting";
 const STRINGS: &str = "a call is charged without waits for strings in SDRAM";
 
-/// What the statements are about: `l…` local, `g…` global.
+/// The variables of the statements: `l…` local, `g…` global.
 const GLOBALS: &str = "#include \"KMotionDef.h\"
 typedef struct { int a; double d; int b[4]; int e; } ST; ST gst, gst2, *gsp = &gst;
 int gi = 5, gj = 7, ga[10], *gp = ga; unsigned gu; char gc, gca[10], buf[200]; short gs; double gd = 1, ge = 2;

@@ -11,15 +11,15 @@ use kmotiondef::timing::{Timing, WaitStates};
 use kmotiondef::{ThreadId, Ticks};
 use serde_json::Value as Json;
 
-/// How far a duration may be off.
+/// The tolerance of a duration, relative.
 const LIMIT: f64 = 0.1;
 
 /// Seconds that lie between two places of the same rotation: the first of a series begins wherever the code before it
 /// has ended.
 const BEGINNING: f64 = 10e-6;
 
-/// What is read of the clock within a slice is an instant and no duration: the calls before it are charged with the wait
-/// states of the bus, which the recorded ones do not have.
+/// A reading of the clock within a slice, which is an instant and no duration: the calls before it are charged with the
+/// wait states of the bus, which the recorded ones do not have.
 const INSTANT: &str = "Time_sec after WaitNextTimeSlice minus ServoTick*TIMEBASE";
 const WITHIN: f64 = 1.5e-6;
 
@@ -31,7 +31,7 @@ fn vectors() -> Vec<Json> {
     lines.filter(|row| row["kind"] == "times" && is_of_seven(row)).collect()
 }
 
-/// What `statements` in thread 1 leave in `g[]`, whose first `count` values are of interest, beside six busy threads.
+/// Returns the first `count` values that `statements` in thread 1 leave in `g[]`, beside six busy threads.
 fn times(statements: &str, count: usize, level: Level) -> Vec<f64> {
     let scratch = Scratch::new("cost-threads");
     scratch.write(

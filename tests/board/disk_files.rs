@@ -13,8 +13,8 @@ use serde_json::Value as Json;
 /// Ticks that a program of a few lines needs at most.
 const LIMIT: u64 = 20_000;
 
-/// What the recorded board prints from memory that was never written, and what is printed here: at the end of a file
-/// `fscanf` converts what its buffer holds, which on the board is no longer the last line.
+/// The recorded board's text from memory that was never written, and the one here: at the end of a file `fscanf`
+/// converts the contents of its buffer, which on the board is no longer the last line.
 const LEFT_OVER: (&str, &str) = ("\u{1b}2 6 0 1\r\n", "\u{1b}2 5 6 1\r\n");
 
 /// A board with a program, recorded without a PC of its own.

@@ -25,7 +25,7 @@ const TO_THE_END: u64 = 3000;
 /// Ticks in which a program must begin.
 const MOST_BEFORE: u64 = 2000;
 
-/// How far a position may be off, relative to the larger of it and 1.
+/// The tolerance of a position, relative to the larger of it and 1.
 const PRECISION: f64 = 1e-8;
 
 /// Beginnings of the names of recordings that cc67 does not follow, each with the reason.
@@ -48,7 +48,7 @@ const DIFFERENT: &[(&str, &str)] = &[
 /// An error of the vendor's compiler; cc67 compiles C.
 const VENDOR: &str = "the vendor's compiler takes a wrong address";
 
-/// What a column is in the words of a program; `None` for what no program can see.
+/// Returns a column as an expression of a program; `None` for values that no program can see.
 fn expression(column: &str, name: &str, checks: &mut usize) -> Option<String> {
     Some(match column {
         "CS0_t" => "CS0_t".to_owned(),
@@ -89,7 +89,7 @@ fn programs(line: &Json) -> BTreeMap<i32, String> {
     }
 }
 
-/// What a run has shown.
+/// The observations of a run.
 #[derive(Default)]
 struct Shown {
     console: String,
@@ -212,7 +212,7 @@ impl<'l> Run<'l> {
         self.session.read(expression).unwrap_or_else(|error| panic!("{}: {error}", self.line["name"]))
     }
 
-    /// Where the rows differ.
+    /// Adds the differences of the rows.
     fn check_rows(&self, found: &mut Vec<String>) {
         for row in rows(self.line) {
             let tick = row[0].as_u64().expect("a tick");
@@ -228,7 +228,7 @@ impl<'l> Run<'l> {
         }
     }
 
-    /// Where the end of the run differs.
+    /// Adds the differences at the end of the run.
     fn check_end(&self, found: &mut Vec<String>) {
         for (what, recorded) in self.line["at_end"].as_object().into_iter().flatten() {
             let value = self.value(&match what.as_str() {

@@ -59,7 +59,7 @@ fn session(name: &str) -> (Session, Scratch) {
     (setup(&scratch).session().expect("the programs fit"), scratch)
 }
 
-/// What a session has shown, and where it ends.
+/// The output of a session, and its end.
 #[derive(Debug, PartialEq)]
 struct Shown {
     lines: Vec<(Cycles, String)>,

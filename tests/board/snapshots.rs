@@ -78,8 +78,8 @@ fn load(setup: &mut Setup, number: i32, path: &Path) {
     setup.programs.push(program.started());
 }
 
-/// What a board is at an instant: guest memory, the firmware with the servo, devices, loads and the PC in words, where
-/// the threads stand, and board time.
+/// The state of a board: guest memory, the firmware with the servo, devices, loads and the PC as text, the threads, and
+/// board time.
 #[derive(PartialEq)]
 struct Seen {
     memory: GuestMemory,

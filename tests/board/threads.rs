@@ -19,8 +19,8 @@ const TICK: f64 = 90e-6;
 /// The same for the first of a series, which begins wherever the code before it ended.
 const FIRST_TOLERANCE: f64 = 10e-6;
 
-/// What is read just after thread 0 had the processor. Its slice is as long there as what the firmware finds to do,
-/// and always the same here: 13.3 µs after the tick on the board, 9.9 µs here.
+/// A reading just after thread 0 had the processor. Its slice is as long there as the firmware's work, and always the
+/// same here: 13.3 µs after the tick on the board, 9.9 µs here.
 const AFTER_THREAD_0: &str = "Time_sec after WaitNextTimeSlice minus ServoTick*TIMEBASE";
 const THREAD_0_TOLERANCE: f64 = 4e-6;
 
@@ -151,7 +151,7 @@ fn scaled(values: &[f64], factor: f64) -> Vec<f64> {
     values.iter().map(|value| value * factor).collect()
 }
 
-/// What the measured scenarios have in thread 2: a count of starts, of a global and a static, then an endless counter.
+/// The program of thread 2 in the measured scenarios: it counts starts in a global and a static, then counts endlessly.
 const SECOND: &str = "#include \"KMotionDef.h\"\nint g = 5; int s = 7;\nmain()\n{\n  g++; s++;\n  \
     persist.UserData[20] = g; persist.UserData[21] = s; persist.UserData[22] = 0;\n  persist.UserData[23]++;\n";
 

@@ -34,7 +34,7 @@ const EXCHANGE: u64 = 28;
 const TIMEBASE: f64 = 90e-6;
 /// Longer answers are shown by their first lines and a sum over all.
 const LONGEST: usize = 16;
-/// How many of those lines are shown.
+/// The number of those lines that are shown.
 const SHOWN: usize = 3;
 
 /// Prompts, and the references whose examples come after them.
@@ -45,7 +45,7 @@ fn sent(line: &str) -> Option<(&str, &'static [usize])> {
     PROMPTS.iter().find_map(|(prompt, of)| line.strip_prefix(prompt).map(|text| (text, *of)))
 }
 
-/// Whether a line of a transcript is for the player; all others are what came back.
+/// Returns whether a line of a transcript is an input; all others are outputs.
 fn is_input(line: &str) -> bool {
     let begins = ["== ", "#", "program ", "wait ", "drive ", "? "];
     line.is_empty() || sent(line).is_some() || begins.iter().any(|begin| line.starts_with(begin))
@@ -186,7 +186,7 @@ impl Player {
     }
 }
 
-/// What playing the inputs of a transcript leaves.
+/// Returns the transcript of playing the inputs of a transcript.
 fn replay(text: &str) -> String {
     let mut player = Player::new();
     for line in text.lines().filter(|line| is_input(line)) {

@@ -18,7 +18,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data/firmware")
 }
 
-/// What a program prints on the modelled board.
+/// Returns the console output of a program on the modelled board.
 fn console(path: &Path) -> String {
     let text = fs::read(path).expect("a program");
     let options = Options { timing: Timing::VENDOR, ..Options::default() };

@@ -1,4 +1,4 @@
-//! What is beside a program: its machine file, its stimulus, the options of its first line, the project file.
+//! Files beside a program: its machine file, its stimulus, the options of its first line, the project file.
 
 use std::fs;
 

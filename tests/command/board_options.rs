@@ -12,7 +12,7 @@ main()
 }
 ";
 
-/// What is requested, and what the program then prints.
+/// The options, and the output of the program with them.
 const CASES: &[(&[&str], &str)] = &[
     (&[], "0 0\n"),
     (&["--set", "persist.5=7"], "7 0\n"),

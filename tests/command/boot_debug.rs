@@ -35,7 +35,7 @@ main()
 }
 ";
 
-/// What the commands say, where there is a firmware file.
+/// Returns the output of the commands, if there is a firmware file.
 fn session(name: &str, commands: &str) -> Option<Output> {
     let Some(file) = env::var_os("CC67_FIRMWARE") else {
         println!("not run: CC67_FIRMWARE names no firmware file");

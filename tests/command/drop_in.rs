@@ -40,7 +40,7 @@ fn firmware(without: &[&str]) -> Vec<u8> {
     image.write().expect("the image has a few hundred symbols")
 }
 
-/// Where the firmware states its version.
+/// The address of the firmware's version.
 const VERSION_AT: GuestAddr = GuestAddr::new(0x1001_B958);
 
 /// The section that holds nothing but the version.

@@ -11,7 +11,7 @@ use std::time::Duration;
 use harness::Scratch;
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 
-/// How long an answer may take by the clock, on a computer that has much else to do.
+/// The time limit for an answer by the clock, on a computer under load.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// A terminal with a console on it.
@@ -19,7 +19,7 @@ struct Terminal {
     child: Child,
     keyboard: File,
     shown: Receiver<Vec<u8>>,
-    /// What was shown and not looked for yet.
+    /// The output that was not compared yet.
     text: String,
 }
 

@@ -167,7 +167,7 @@ const THE_SAME: &[(&str, &str)] = &[
     ("test --jobs", "the results are the same with any number of processes"),
 ];
 
-/// What a run leaves.
+/// The result of a run.
 #[derive(Debug, PartialEq)]
 struct Outcome {
     output: Output,

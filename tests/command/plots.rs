@@ -272,7 +272,7 @@ fn a_saved_trace_is_drawn_as_the_run_itself() {
     assert_eq!(run(&scratch, &["plot", "bad.vcd"]).render(), expect);
 }
 
-/// What a person does to the page: reads a value under the pointer, zooms in, goes back.
+/// A visitor of the page: reads a value under the pointer, zooms in, goes back.
 const VISITOR: &str = r#"
 <script>
 const seen = [];

@@ -406,7 +406,7 @@ fn a_run_in_real_time_takes_real_time_and_prints_the_same() {
     assert!(seconds >= 0.4, "0.4 s of board time took {seconds} s");
 }
 
-/// What `cargo install` leaves: one file, which brings its headers, its pages and its letters with it.
+/// Checks the result of `cargo install`: one file, which contains its headers, its pages and its letters.
 #[test]
 #[cfg(unix)]
 fn the_command_needs_no_file_but_itself() {

@@ -1,5 +1,5 @@
-//! What a newcomer does with a machine, from `init` to a homing run that is blessed, then broken, then caught; each
-//! step with no more than what the steps before have said.
+//! A newcomer's first steps with a machine, from `init` to a homing run that is blessed, then broken, then caught; each
+//! step uses no more than the output of the steps before.
 
 use std::fs;
 

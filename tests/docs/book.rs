@@ -73,7 +73,7 @@ fn programs_do_what_the_book_says() {
     assert!(count >= 3, "only {count} programs");
 }
 
-/// Whether a build without the default features has no such command.
+/// Returns whether a build without the default features has no such command.
 fn is_left_out(command: &str) -> bool {
     command == "live" && !cfg!(feature = "live")
 }
@@ -117,7 +117,7 @@ fn commands_and_options_in_the_book_exist() {
     assert!(count >= 15, "only {count} commands");
 }
 
-/// What follows each `mark` up to `end`.
+/// Returns the text after each `mark` up to `end`.
 fn behind<'a>(text: &'a str, mark: &str, end: char) -> Vec<&'a str> {
     text.split(mark).skip(1).filter_map(|rest| rest.split(end).next()).collect()
 }
@@ -213,7 +213,7 @@ fn the_chapters_of_machine_file_and_stimulus_are_the_pages_of_the_command() {
     }
 }
 
-/// Who reads the book in the repository sees its sources: nothing may be included only when it is built.
+/// Readers of the book in the repository see its sources: nothing may be included only when it is built.
 #[test]
 fn every_chapter_is_whole_in_the_repository() {
     for chapter in files(&source(), "md") {

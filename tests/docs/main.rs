@@ -1,4 +1,4 @@
-//! What people read: the book and the programs do what they say.
+//! Tests of the texts that people read: the book and the programs do what they say.
 
 mod book;
 mod commands;

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use crate::tokens::{Token, closing, tokens};
 
-/// How the constructors of a diagnostic are called, and which kind they make.
+/// The constructors of a diagnostic, and the kind that each makes.
 const KINDS: &[(&str, &str)] = &[
     ("error", "error"),
     ("global_error", "error"),
@@ -156,7 +156,7 @@ fn arguments(tokens: &[Token], at: usize) -> Vec<Vec<Token>> {
     parts
 }
 
-/// Whether an argument is the message of a value, which [`kept`] finds.
+/// Returns whether an argument is the message of a value, which [`kept`] finds.
 fn is_kept_elsewhere(argument: &[Token]) -> bool {
     let words: Vec<_> = argument.iter().map(|token| token.text.as_str()).collect();
     matches!(words[..], [_, ".", "message"] | ["self", ".", "to_string", "(", ")"])
@@ -234,7 +234,7 @@ fn unescaped(text: &str) -> String {
     plain + rest
 }
 
-/// Where the function begins that a token is in: its `fn`.
+/// Returns the index of the `fn` of the function that a token is in.
 fn function_start(tokens: &[Token], at: usize) -> usize {
     tokens[..at].iter().rposition(|token| token.text == "fn").unwrap_or(0)
 }
@@ -325,7 +325,7 @@ fn of_calls(sources: &[Source], function: &str, index: usize, depth: usize) -> V
     found
 }
 
-/// Whether a message that was shown is one of a text with arguments in braces.
+/// Returns whether a message that was shown is one of a text with arguments in braces.
 pub(crate) fn is_of(shown: &str, text: &str) -> bool {
     let mut rest = shown;
     let mut parts = text.split('{').enumerate().map(|(index, part)| match index {

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::book::check_list;
 
-/// What comes before the first mistake.
+/// The text before the first mistake.
 const HEAD: &str = "# Mistakes
 
 These programs compile, but do not do what was meant. Each is shown with the messages of `cc67`, and each is a test.

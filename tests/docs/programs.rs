@@ -81,7 +81,8 @@ fn every_program_compiles_without_messages() {
     }
 }
 
-/// Where a move from rest over 20 units stands, by the textbook: 200 units/s, 2000 units/s², 100000 units/s³.
+/// Returns the position of a move from rest over 20 units, by the textbook: 200 units/s, 2000 units/s², 100000
+/// units/s³.
 fn textbook(time: f64) -> f64 {
     const A: f64 = 2000.0;
     const J: f64 = 100_000.0;

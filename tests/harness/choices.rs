@@ -11,7 +11,7 @@ impl<'a> Choices<'a> {
         Self(bytes)
     }
 
-    /// Whether any are left.
+    /// Returns whether any are left.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.0.is_empty()

@@ -35,7 +35,7 @@ struct Remark {
     line: usize,
     /// The switch of a warning, or the severity of what has none.
     what: String,
-    /// What the message contains, or the message.
+    /// The message, or a part of it.
     text: String,
 }
 
@@ -111,21 +111,21 @@ impl FileTest {
         self.path.parent().expect("a file has a folder")
     }
 
-    /// Whether stderr as a whole is compared with a snapshot; that is up to the caller.
+    /// Returns whether the caller should compare stderr as a whole with a snapshot.
     #[must_use]
     pub fn is_snapshot(&self) -> bool {
         self.is_snapshot
     }
 
-    /// What it is to print as code for the real processor; `None` if it does something else there, or ends in a trap,
-    /// which that has not.
+    /// Returns its expected output as code for the real processor; `None` if it does something else there, or ends in a
+    /// trap, which that has not.
     #[must_use]
     pub fn stdout_of_code(&self) -> Option<&str> {
         let is_same = self.is_executed() && self.exit == 0 && !self.differs_on_processor;
         is_same.then_some(&self.stdout)
     }
 
-    /// Whether the program is executed, not only checked.
+    /// Returns whether the program is executed, not only checked.
     #[must_use]
     pub fn is_executed(&self) -> bool {
         self.arguments.first().is_none_or(|word| word != "check")
@@ -137,8 +137,8 @@ impl FileTest {
         self.cycles
     }
 
-    /// What the program spends on every engine, which must agree; `None` for programs that do not compile, or that
-    /// arguments make another run of.
+    /// Returns the cycles that the program spends on every engine, which must agree; `None` for programs that do not
+    /// compile, or whose run depends on arguments.
     ///
     /// # Panics
     /// If the engines differ.
@@ -221,7 +221,7 @@ impl FileTest {
         }
     }
 
-    /// What is wrong with a run, snapshots apart; `None` if nothing is.
+    /// Returns the failure of a run, snapshots apart; `None` if there is none.
     #[must_use]
     pub fn complaint(&self, output: &Output) -> Option<String> {
         let complain = |what: &str| Some(format!("{}: {what}\n{}", self.path.display(), output.render()));
@@ -243,7 +243,7 @@ impl FileTest {
         None
     }
 
-    /// How the diagnostics of a run differ from the annotations.
+    /// Returns the differences between the diagnostics of a run and the annotations.
     fn difference(&self, output: &Output) -> Option<String> {
         let found = diagnostics(&output.stderr);
         let missing = self.remarks.iter().filter(|remark| !found.iter().any(|found| remark.is_met_by(found)));

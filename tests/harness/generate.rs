@@ -31,7 +31,7 @@ const TYPES: &[(&str, bool)] = &[
 /// Elements of every array, a power of two.
 const ELEMENTS: usize = 8;
 
-/// How deep loops, and how deep expressions may be nested.
+/// The maximum nesting of loops, and of expressions.
 const LOOPS: usize = 2;
 const DEPTH: usize = 4;
 
@@ -51,7 +51,7 @@ pub fn program(seed: u64, prefix: &str, label: &str) -> String {
 /// Something that can be read and, unless it counts a loop, assigned.
 #[derive(Clone, Debug)]
 struct Variable {
-    /// How it is written in an expression; `@` stands for an index.
+    /// Its C expression; `@` stands for an index.
     place: String,
     is_float: bool,
     is_wide: bool,

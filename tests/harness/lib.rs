@@ -1,4 +1,4 @@
-//! What the whole-system tests share: running the command, scratch folders, program files.
+//! Shared code of the whole-system tests: running the command, scratch folders, program files.
 
 pub mod choices;
 pub mod csv;
@@ -27,7 +27,7 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package lies in the workspace")
 }
 
-/// Whether tests that have a long form take it: where `CC67_LONG` is in the environment.
+/// Returns whether tests that have a long form take it: where `CC67_LONG` is in the environment.
 #[must_use]
 pub fn is_long() -> bool {
     std::env::var_os("CC67_LONG").is_some()
@@ -47,12 +47,12 @@ pub fn node_modules(package: &str) -> Option<PathBuf> {
     None
 }
 
-/// What a run of the command left behind.
+/// The result of a run of the command.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Output {
     /// Exit code; -1 when a signal ended it.
     pub code: i32,
-    /// What programs printed.
+    /// The output of the programs.
     pub stdout: String,
     /// Everything else.
     pub stderr: String,
@@ -87,7 +87,7 @@ pub fn command() -> &'static str {
     &COMMAND
 }
 
-/// Where Cargo puts commands: one folder above the tests.
+/// Returns the folder to which Cargo writes commands: one above the tests.
 fn beside_this_process() -> PathBuf {
     let test = std::env::current_exe().expect("a running process has a file");
     let folder = test.parent().and_then(Path::parent).expect("tests are two folders below the target folder");
@@ -198,7 +198,7 @@ impl Scratch {
         Self(path)
     }
 
-    /// Where it is.
+    /// Returns its path.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.0

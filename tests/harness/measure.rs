@@ -1,4 +1,4 @@
-//! What a program spends, by the account of the profiling engine; the other engines must see the same at the same time.
+//! The cycles that a program spends, by the account of the profiling engine; the other engines must agree.
 
 use std::path::Path;
 

@@ -52,7 +52,7 @@ pub fn program(seed: u64) -> String {
     writer.text + "}\n"
 }
 
-/// What moves.
+/// The moving part.
 #[derive(PartialEq, Eq)]
 enum Moved {
     /// One axis.

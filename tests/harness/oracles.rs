@@ -1,5 +1,5 @@
-//! What must hold for any bytes whatever: the common ground of the fuzz targets, of the inputs that every test run
-//! makes, and of the replay of what once failed.
+//! Properties that must hold for any bytes: the common ground of the fuzz targets, of the inputs that every test run
+//! makes, and of the replay of earlier failures.
 //!
 //! A target turns bytes into an input and panics if that does harm: a crash, engines that differ, a message without
 //! words. Running too long and taking too much memory are found by who calls it.
@@ -60,12 +60,12 @@ fn thread_1() -> ThreadId {
     ThreadId::new(1).expect("1 is a thread")
 }
 
-/// What was seen of a run.
+/// The observations of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seen {
-    /// What happened, with board times.
+    /// The events, with board times.
     pub events: Vec<Event>,
-    /// Why it ended.
+    /// The reason for which it ended.
     pub end: RunEnd,
 }
 
@@ -591,7 +591,7 @@ pub fn commands(bytes: &[u8]) {
     assert!(answer(&mut board, b"\x1b\x01Version\r").is_some_and(|line| line.starts_with(b"KFLOP 4.34")));
 }
 
-/// What follows the name of a command.
+/// Arguments of commands.
 const ARGUMENT_PIECES: &[&str] = &[
     "0", "1", "7", "8", "-1", "99", "1e9", "0.5", "nan", "FFFFFFFF", "80050000", " ", " ", " ", "=", "=",
     ";", "\n", "\n", "\n",

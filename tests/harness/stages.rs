@@ -40,7 +40,7 @@ impl StageTest {
         }
     }
 
-    /// What the stage makes of the input, or what it says against it.
+    /// Returns the output of the stage for the input, or its diagnostics.
     fn run(&self) -> String {
         let folders: Vec<&str> = self.stage.iter().map(String::as_str).collect();
         let made = match folders[..] {

@@ -1,4 +1,4 @@
-//! What a process has used, as Linux tells it: for tests that say how much a run may take.
+//! The resources that a process has used, as Linux reports them: for tests that limit a run.
 
 use std::fs;
 use std::time::Duration;

@@ -21,7 +21,7 @@ pub enum Tool {
 pub struct Section {
     /// Its name.
     pub name: &'static str,
-    /// Where it is in the board's memory.
+    /// Its address in the board's memory.
     pub address: u32,
     /// Its flags.
     pub flags: u32,
@@ -66,7 +66,7 @@ impl Symbol {
 /// A whole file.
 #[derive(Clone, Debug)]
 pub struct File {
-    /// Who wrote it.
+    /// The tool that wrote it.
     pub tool: Tool,
     /// Unix seconds.
     pub timestamp: u32,
@@ -187,7 +187,7 @@ const FIRMWARE_SECTIONS: [(&str, u32, u32, u32); 28] = [
     (".cio", 0x1000_1040, 0, 0),
 ];
 
-/// Where the firmware file keeps its version text.
+/// The address of the firmware file's version text.
 const VERSION_AT: u32 = 0x1001_B958;
 
 /// A file like that of the firmware, `version` in place of the text of 4.34: its 28 sections and

@@ -48,7 +48,7 @@ fn images_and_objects_are_written_back_to_the_same_bytes() {
     }
 }
 
-/// What the other reader prints of the headers, symbols, lines and relocations of each file.
+/// Returns the other reader's listing of the headers, symbols, lines and relocations of each file.
 fn other_reader(folder: &Path, names: &[String]) -> Option<Vec<String>> {
     let mut command = Command::new("python3");
     command.arg(root().join("tests/data/tools/coffdump.py")).args(["-H", "-s", "-l", "-r"]);
@@ -208,7 +208,7 @@ fn a_firmware_file_is_read_and_linked_against_in_two_milliseconds() {
     assert!(best < limit, "{best} s");
 }
 
-/// What the memories hold; which parts are protected belongs to the load, not to the bytes.
+/// Returns the contents of the memories; protection belongs to the load, not to the bytes.
 fn contents(board: &Board) -> [&[u8]; 2] {
     [map::IRAM, map::SDRAM]
         .map(|region| board.memory().read_bytes(region.base, region.size).expect("it is memory"))

@@ -1,4 +1,4 @@
-//! What a board refuses to load, and that it keeps the program it had.
+//! Images that a board refuses to load, keeping the program it had.
 
 use std::path::Path;
 

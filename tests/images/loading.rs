@@ -1,4 +1,4 @@
-//! What a load writes and what a second execution finds, section 1.6 of the dialect.
+//! The memory that a load writes and that a second execution finds, section 1.6 of the dialect.
 
 use std::path::Path;
 

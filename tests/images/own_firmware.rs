@@ -17,7 +17,7 @@ use kmotiondef::map::{IRAM, SDRAM};
 const SOURCE: &str = include_str!("own_firmware.c");
 /// A function that the C calls with the number of each tick; it goes back at once.
 const SERVICE: u32 = 0x8000_2000;
-/// Where the assembled parts are, and the end of the stack.
+/// The addresses of the assembled parts, and the end of the stack.
 const START: u32 = 0x8000_0000;
 const HANDLER: u32 = 0x8000_1000;
 const VECTOR: u32 = 0x1000_0080;

@@ -32,7 +32,7 @@ fn programs() -> BTreeMap<String, usize> {
     programs
 }
 
-/// Whether a test that `tested_by` names exists.
+/// Returns whether a test that `tested_by` names exists.
 fn exists(test: &str) -> bool {
     match test.split_once("::") {
         None => harness::root().join("tests").join(test).with_extension("c").is_file(),

@@ -69,7 +69,7 @@ fn console(seed: u64, seen: Seen) -> String {
     text
 }
 
-/// What each of the programs `seeds` prints when compiled by `gcc`; `None` where that is not installed.
+/// Returns the outputs of the programs `seeds` when compiled by `gcc`; `None` where that is not installed.
 fn gcc(seeds: &[u64]) -> Option<Vec<String>> {
     let scratch = Scratch::new(&format!("differential-{}", seeds[0]));
     let mut source = String::new();

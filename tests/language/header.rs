@@ -104,7 +104,7 @@ fn structures_have_the_sizes_and_offsets_of_the_board() {
     }
 }
 
-/// Whether a line of a structure declares a field.
+/// Returns whether a line of a structure declares a field.
 fn declares(line: &str, field: &str) -> bool {
     let code = line.split("//").next().unwrap_or_default().trim_end();
     let names = code.strip_suffix(';').unwrap_or_default().split('[').next().unwrap_or_default();

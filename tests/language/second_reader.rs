@@ -56,13 +56,13 @@ const NOT_READ: &[(&str, &str)] = &[
     ("tests/filetests/lints/waiting_is_silent.c", "locals without a type"),
 ];
 
-/// What our parser knows without a declaration; its line is left out.
+/// The declarations that our parser has built in; their line is left out.
 const PRELUDE: &str = "typedef char *va_list; ";
 
 /// Stack for trees of any depth.
 const STACK: usize = 256 << 20;
 
-/// How a program was read.
+/// The result of reading a program.
 #[derive(Debug, PartialEq)]
 enum Reading {
     /// Our parser finds errors: nothing is compared.
@@ -75,7 +75,7 @@ enum Reading {
     Same(usize),
 }
 
-/// Whether an `int` is left out.
+/// Returns whether the specifiers leave `int` out.
 fn leaves_int_out(specifiers: &Specifiers) -> bool {
     specifiers.ty.is_none()
 }

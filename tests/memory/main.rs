@@ -1,4 +1,4 @@
-//! What a process holds in memory: a room of its own, because it counts every allocation of its process.
+//! Memory of a process: a test binary of its own, because it counts every allocation of its process.
 //!
 //! Its tests run one at a time, so that each counts only its own.
 

@@ -1,5 +1,5 @@
-//! What goes wrong outside: full disks, folders that cannot be written, readers that go away,
-//! names that are not text, and a command that is killed.
+//! Failures outside: full disks, folders that cannot be written, readers that go away, names that are not text, and a
+//! command that is killed.
 //!
 //! One message, the right code, and never half a file under its final name.
 

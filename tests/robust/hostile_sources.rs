@@ -33,7 +33,7 @@ const MOST_TEXT: usize = 1 << 20;
 /// Address space of the command in KiB: 1 GiB, and the 512 MiB that the stack may grow to.
 const ADDRESS_SPACE: u32 = (1 << 20) + (1 << 19);
 
-/// What is wrong with how the compiler treats an input; nothing if all is well.
+/// Returns a complaint about the compiler's treatment of an input; `None` if all is well.
 fn complaint(input: &Input) -> Option<String> {
     #[expect(clippy::disallowed_methods, reason = "the test is about time")]
     let start = Instant::now();

@@ -6,7 +6,7 @@ use harness::{Output, Scratch, cc67};
 
 /// A source that goes beyond one limit.
 struct Case {
-    /// Where the limit's description begins.
+    /// The beginning of the limit's description.
     what: &'static str,
     source: fn(usize) -> String,
 }

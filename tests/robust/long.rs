@@ -19,7 +19,7 @@ const MEMORY: u64 = 64 * 1024;
 /// The most that any run may take, as the chapter of limits says.
 const MOST: u64 = 512 * 1024;
 
-/// What may come and go between two looks at a process, in kilobytes.
+/// The fluctuation that is allowed between two measurements of a process, in kilobytes.
 const BREATH: u64 = 1024;
 
 fn start(scratch: &Scratch, arguments: &[&str]) -> Child {

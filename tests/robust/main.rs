@@ -1,4 +1,4 @@
-//! What must hold whatever happens: any bytes, any length, a full disk, a program that means harm.
+//! Properties that must hold for any bytes, any length, a full disk, and a malicious program.
 
 mod failures;
 mod hostile_sources;

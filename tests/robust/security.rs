@@ -1,4 +1,4 @@
-//! What the book promises about programs and images from strangers.
+//! The book's promises about programs and images from strangers.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -13,7 +13,7 @@ use kmotiondef::Ticks;
 /// The board time that a changed program gets.
 const LIMIT: Ticks = Ticks::new(100);
 
-/// How many changed images are tried; with `CC67_LONG=1` in the environment a hundred times as many.
+/// The number of changed images that are tried; with `CC67_LONG=1` in the environment a hundred times as many.
 const ROUNDS: u64 = 300;
 
 #[test]

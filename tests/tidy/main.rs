@@ -1,6 +1,7 @@
 //! The invariants of the source tree that neither the compiler nor clippy checks.
 
 mod citations;
+mod comments;
 mod phrases;
 
 mod arrows;

@@ -1,4 +1,4 @@
-//! How long compiling takes, each stage by itself and all together.
+//! The time of compiling, each stage by itself and all together.
 //!
 //! The stages run over a program of `c-programs/` (what a user edits, header included) and over
 //! generated text: `sequence` is 10,000 lines of ordinary statements, `table/n` is an initialiser

@@ -52,7 +52,7 @@ impl Programs {
         }
     }
 
-    /// What is known about the program in a thread.
+    /// Returns the debug information of the program in a thread.
     ///
     /// # Errors
     /// Why nothing is.
@@ -88,7 +88,7 @@ impl Programs {
         found
     }
 
-    /// How many of them there are; 1 where nothing is known.
+    /// Returns the number of functions at an address; 1 if nothing is known.
     pub(crate) fn depth(&self, address: u32) -> usize {
         self.at(address).map_or(1, |(_, _, function)| 1 + function.calls_at(address).count())
     }
@@ -98,7 +98,7 @@ impl Programs {
         self.known.iter().filter_map(|(thread, (_, model))| Some((*thread, model.as_ref().ok()?)))
     }
 
-    /// Why nothing is known about some.
+    /// Returns the reasons for which some programs have no debug information.
     pub fn unknown(&self) -> impl Iterator<Item = String> {
         self.known.keys().filter_map(|thread| self.of(*thread).err())
     }
@@ -120,8 +120,9 @@ impl Programs {
             .collect()
     }
 
-    /// Where to stop for a line of a file: in each function that has the line, and in each inlined call of it, its first
-    /// statement; without code on it, the same for the next line that has some. The second is the line that was taken.
+    /// Returns the statements at which to stop for a line of a file: in each function that has the line, and in each
+    /// inlined call of it, the first statement; for a line without code, those of the next line that has some. The
+    /// second value is the line that was taken.
     pub(crate) fn at_line(
         &self,
         file: Option<&str>,
@@ -157,7 +158,7 @@ impl Programs {
         (all, taken)
     }
 
-    /// Where a function begins, after what enters it.
+    /// Returns the beginnings of a function, after its prologue.
     pub(crate) fn at_function(&self, name: &str, thread: Option<ThreadId>) -> Vec<Statement> {
         let mut found = Vec::new();
         for (number, model) in self.all().filter(|(number, _)| thread.is_none_or(|thread| thread == *number))
@@ -181,7 +182,7 @@ impl Programs {
     }
 }
 
-/// Whether a person means a file of a program by `wanted`: its path, or the end of it.
+/// Returns whether `wanted` names a file of a program: its path, or the end of it.
 fn is_same_file(wanted: &str, file: &str, program: &Path) -> bool {
     let wanted = Path::new(wanted);
     let full = program.parent().unwrap_or(Path::new("")).join(file);

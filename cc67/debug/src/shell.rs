@@ -20,7 +20,7 @@ use crate::debugger::{BreakpointKind, DebugError, Debugger, Reason, Stop};
 use crate::early::EarlyLines;
 use crate::words::{BreakWords, LineReader, is_move, split_if};
 
-/// What comes of a command.
+/// The result of a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Said {
     /// A text to show; it may be empty.
@@ -48,7 +48,7 @@ pub struct Shell<T: Target = Board> {
     early: EarlyLines,
 }
 
-/// What receives what the board says while it runs: console lines, and words about events.
+/// The receiver of output while the board runs: console lines, and descriptions of events.
 pub type Output<'a> = &'a mut dyn FnMut(&str);
 
 impl<T: Target> Shell<T> {
@@ -442,7 +442,7 @@ impl<T: Target> Shell<T> {
         Ok(String::new())
     }
 
-    /// Why the board stands, and where, as gdb says it.
+    /// Describes the reason and the position of a stop, as gdb does.
     fn stop_text(&mut self, stop: &Stop) -> String {
         let place = self.debugger.present();
         self.listed = place.as_ref().map_or(self.listed, |place| place.line.saturating_sub(5));
@@ -557,7 +557,7 @@ impl<'a, 'b> Teller<'a, 'b> {
     }
 }
 
-/// What the breakpoints are, a line each.
+/// Lists the breakpoints, a line each.
 fn breakpoints<T: Target>(debugger: &Debugger<T>) -> String {
     let mut out = String::new();
     for breakpoint in debugger.breakpoints() {

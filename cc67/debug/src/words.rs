@@ -171,7 +171,7 @@ impl LineReader {
     }
 }
 
-/// What follows `break`: `[PLACE] [thread N] [if CONDITION]`.
+/// The arguments of `break`: `[PLACE] [thread N] [if CONDITION]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BreakWords<'a> {
     /// The place; empty for the present one.

@@ -13,7 +13,7 @@ use kmotiondef::{ThreadId, Ticks};
 
 const BEGIN: &str = "```text session";
 
-/// What a session looks like when its commands are given.
+/// Returns the transcript of a session with these commands.
 fn transcript(program: &Path, level: Level, session: &str) -> String {
     let mut setup = Setup::default();
     setup.options.level = level;

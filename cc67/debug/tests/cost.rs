@@ -1,4 +1,4 @@
-//! What it costs that one can go back: memory of a long run, and time of a run without a breakpoint.
+//! The cost of going back: memory of a long run, and time of a run without a breakpoint.
 //!
 //! The board works meanwhile: a servo axis with a motor and two more axes move, two programs run, and each move is
 //! printed. `CC67_LONG=1` takes an hour of board time.
@@ -58,7 +58,7 @@ const WATCHES: &str = r#"
     }
 "#;
 
-/// Where the programs are; a debugger reads them there.
+/// Returns the folder of the programs; a debugger reads them there.
 fn folder() -> PathBuf {
     std::env::temp_dir().join(format!("cc67-debug-cost-{}", std::process::id()))
 }
@@ -75,22 +75,22 @@ fn resident() -> u64 {
     line.split_whitespace().next().and_then(|kib| kib.parse::<u64>().ok()).expect("a number") << 10
 }
 
-/// What some work takes of a processor, whatever else the computer does meanwhile.
+/// Returns the processor time of some work, independent of other load.
 fn time(work: impl FnOnce()) -> Duration {
     let begin = on_processor();
     work();
     on_processor() - begin
 }
 
-/// How long this thread has had a processor.
+/// Returns the processor time of this thread.
 fn on_processor() -> Duration {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").expect("Linux has it");
     let nanoseconds = text.split_whitespace().next().and_then(|word| word.parse().ok());
     Duration::from_nanos(nanoseconds.expect("a number"))
 }
 
-/// How much longer runs take in a debugger without a breakpoint: the shortest of some runs over the shortest plain one,
-/// as what else the computer does only ever makes a run longer.
+/// Returns the ratio of run times with and without a debugger that has no breakpoint: the shortest of some runs each,
+/// as other load only ever makes a run longer.
 fn ratio(pairs: usize, seconds: f64) -> f64 {
     let end = tick(seconds);
     let (mut plain, mut debugged) = (Duration::MAX, Duration::MAX);
@@ -103,7 +103,7 @@ fn ratio(pairs: usize, seconds: f64) -> f64 {
     debugged.as_secs_f64() / plain.as_secs_f64()
 }
 
-/// What is measured, and what it may be. One test, as other work in the process would be measured as well.
+/// One test for all measurements, as other work in the process would be measured as well.
 #[test]
 fn hours_of_history_take_little_memory_and_time() {
     let is_long = std::env::var_os("CC67_LONG").is_some();

@@ -36,7 +36,7 @@ const PROGRAMS: &[(&str, &[&str])] = &[
     ("", &["host/variables.c"]),
 ];
 
-/// How much is tried.
+/// The extent of a trial.
 struct Extent {
     programs: usize,
     instants: u64,
@@ -152,7 +152,7 @@ fn assert_same(expect: &str, found: &str, what: &str) {
     }
 }
 
-/// How many instants within a tick were compared.
+/// Compares instants within a tick, and returns their number.
 fn compare(machine: &str, files: &[&str], extent: &Extent, numbers: &mut Numbers) -> usize {
     let (instants, lines) = forwards(&mut debugger(machine, files, extent.interval), extent, numbers);
     let mut back = debugger(machine, files, extent.interval);

@@ -1,4 +1,4 @@
-//! What targets can do, and the sentence that one cannot.
+//! Capabilities of targets, and the message that one is missing.
 
 use std::fmt;
 
@@ -47,6 +47,6 @@ impl fmt::Display for Capability {
 pub struct Unsupported {
     /// The target in words.
     pub target: &'static str,
-    /// What it cannot.
+    /// The missing capability.
     pub capability: Capability,
 }

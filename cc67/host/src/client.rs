@@ -16,12 +16,12 @@ use compiler::Options;
 const REPLY_SECONDS: f64 = 3.0;
 /// Seconds that [`Board::check_for_ready`] waits for a line.
 const READY_SECONDS: f64 = 0.1;
-/// How long the vendor's library waits for the token: twice 10⁶ ms.
+/// The time for which the vendor's library waits for the token: twice 10⁶ ms.
 const LONGEST_WAIT: Duration = Duration::from_secs(2000);
 /// The identifier of the simulated board.
 const LOCATION: i32 = 1;
 
-/// What became of a request for the token.
+/// The result of a request for the token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Lock {
@@ -33,7 +33,7 @@ pub enum Lock {
     NotConnected = 2,
 }
 
-/// What the board has said of being ready.
+/// The board's answer to the question whether it is ready.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Readiness {
@@ -47,7 +47,7 @@ pub enum Readiness {
     ReadyAfterError = 3,
 }
 
-/// What all clients of a board share.
+/// The state that all clients of a board share.
 #[derive(Debug)]
 struct Shared {
     state: Mutex<State>,
@@ -140,7 +140,7 @@ impl Board {
         Self { shared: Arc::clone(&self.shared), number, has_token: false }
     }
 
-    /// How programs are compiled.
+    /// Returns the options with which programs are compiled.
     #[must_use]
     pub fn options(&self) -> Options {
         self.state().session.options().clone()
@@ -546,7 +546,7 @@ impl Board {
         work(&mut self.state().session)
     }
 
-    /// What the simulation had to say since the last time: traps, remarks, what the PC did for programs.
+    /// Takes the remarks since the last call: traps, remarks, actions of the PC for programs.
     ///
     /// ```
     /// let mut board = cc67_host::Board::new();

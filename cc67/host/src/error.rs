@@ -1,4 +1,4 @@
-//! Why a call did not do what it is for.
+//! Errors of calls.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use vm::engine::ForeignSnapshot;
 
 use crate::capability::Unsupported;
 
-/// Why a call did not do what it is for.
+/// The reason for which a call failed.
 #[derive(Debug, thiserror::Error)]
 pub enum HostError {
     /// The connection was given up, by [`Board::failed`](crate::Board::failed) or [`Board::disconnect`](crate::Board::disconnect).
@@ -31,7 +31,7 @@ pub enum HostError {
     Read {
         /// The file.
         path: PathBuf,
-        /// Why not.
+        /// The error of the system.
         error: std::io::Error,
     },
     /// The source has errors; the text is what the compiler says.
@@ -42,7 +42,7 @@ pub enum HostError {
     Refused {
         /// The file of the program.
         program: String,
-        /// Why.
+        /// The reason.
         error: LoadError,
     },
     /// The file is another tool's.
@@ -50,7 +50,7 @@ pub enum HostError {
     Foreign {
         /// The file.
         program: String,
-        /// What it is.
+        /// The kind of file that it is.
         what: String,
     },
     /// A thread has no program that could be started.
@@ -82,7 +82,7 @@ pub enum HostError {
     Act(String),
 }
 
-/// Why a snapshot cannot be taken or restored.
+/// The reason for which a snapshot cannot be taken or restored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SnapshotError {
     /// The target has no snapshots.
@@ -96,7 +96,7 @@ pub enum SnapshotError {
     OtherTarget,
 }
 
-/// What the compiler says of a source with errors: lines of `file:line: message`.
+/// The compiler's messages about a source with errors: lines of `file:line: message`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CompileError {
     text: String,

@@ -40,7 +40,7 @@ impl fmt::Display for SourceCall {
     }
 }
 
-/// What an event says; `None` for console text, which is not ours to word.
+/// Describes an event in a sentence; `None` for console text, which is shown as it is.
 pub fn describe(event: &Event, programs: &[DebugInfo]) -> Option<String> {
     match &event.kind {
         EventKind::ConsoleLine(_)
@@ -85,7 +85,7 @@ pub fn words(remark: &Remark, programs: &[DebugInfo]) -> String {
     }
 }
 
-/// Who a remark is about, and where: "thread 1 at home.c:12:5 in `main`"; nothing for the board.
+/// Names the subject and the place of a remark: "thread 1 at home.c:12:5 in `main`"; empty for the board.
 #[must_use]
 pub fn who(remark: &Remark, programs: &[DebugInfo]) -> String {
     let who = match remark.speaker {

@@ -1,4 +1,4 @@
-//! What a session begins with.
+//! The setup of a session.
 
 use compiler::Options;
 use kmotiondef::GuestAddr;
@@ -12,7 +12,7 @@ use crate::UserProgram;
 pub struct Setup {
     /// The board and its PC: what is connected, files, answers, flash.
     pub config: Config,
-    /// How expressions, and programs that are loaded later, are compiled.
+    /// The options with which expressions, and programs that are loaded later, are compiled.
     pub options: Options,
     /// Programs that are loaded at power-up, and started if they [should be](UserProgram::started).
     pub programs: Vec<UserProgram>,
@@ -20,12 +20,12 @@ pub struct Setup {
     pub offered: Vec<UserProgram>,
     /// Bytes that are stored before the programs start, each from an address on.
     pub values: Vec<(GuestAddr, Vec<u8>)>,
-    /// What the world does, and when.
+    /// The stimulus.
     pub stimulus: Stimulus,
-    /// Whether an operator is played who moves inputs that programs wait for.
+    /// True if an operator is simulated who moves inputs that programs wait for.
     pub is_assisted: bool,
-    /// What waits on the line to the serial port; it arrives from the moment a program first looks for it.
+    /// The bytes on the line to the serial port; they arrive from the moment a program first polls for them.
     pub uart_input: Vec<u8>,
-    /// Whether every character that the serial port sends is reported as an event.
+    /// True if every character that the serial port sends is reported as an event.
     pub hears_uart: bool,
 }

@@ -17,7 +17,7 @@ pub const REPLY_BYTES: usize = 1 << 20;
 /// Remarks that are kept; older ones are dropped.
 const REMARK_LIMIT: usize = 1000;
 
-/// What receives console lines.
+/// The receiver of console lines.
 pub(super) type Callback = Box<dyn FnMut(&str) + Send>;
 
 /// The status record of the board, `MAIN_STATUS`.
@@ -59,7 +59,7 @@ pub(super) struct State {
     pub(super) is_connected: bool,
     /// Bytes of replies that are not read yet.
     incoming: VecDeque<u8>,
-    /// Whether the loss of entries was reported.
+    /// True if the loss of entries was reported.
     has_told_loss: bool,
     console: VecDeque<String>,
     callback: Option<(u64, Callback)>,
@@ -155,7 +155,7 @@ impl State {
         Some(String::from_utf8_lossy(&line).into_owned())
     }
 
-    /// Whether a part of a line is there.
+    /// Returns whether a part of a line has arrived.
     pub(super) fn has_partial_line(&self) -> bool {
         !self.incoming.is_empty()
     }
@@ -165,7 +165,7 @@ impl State {
         self.console.pop_front()
     }
 
-    /// Whether a console line waits.
+    /// Returns whether a console line waits.
     pub(super) fn has_console(&self) -> bool {
         !self.console.is_empty()
     }

@@ -42,7 +42,7 @@ pub const EXCHANGE: u64 = 28;
 /// Console lines that wait for a client; then the board waits too, or loses them.
 pub const CONSOLE_LINES: usize = 1000;
 
-/// What receives the events of a call.
+/// The receiver of the events of a call.
 pub type EventSink<'a> = &'a mut dyn FnMut(Event);
 
 /// A target as it was at an instant.
@@ -50,7 +50,7 @@ pub trait TargetSnapshot: Debug {
     /// Number of the last tick that was over.
     fn tick(&self) -> Ticks;
 
-    /// Whether a program held the tick in progress.
+    /// Returns whether a program held the tick in progress.
     fn is_held(&self) -> bool;
 
     /// Bytes of memory that this snapshot has besides those that it shares with `other`.
@@ -68,7 +68,7 @@ pub trait Target {
     /// The target in words, such as "the firmware file".
     fn name(&self) -> &'static str;
 
-    /// Whether it can do something.
+    /// Returns whether it has a capability.
     fn can(&self, capability: Capability) -> bool;
 
     /// Returns nothing where it can, and otherwise the sentence that it cannot.
@@ -98,7 +98,7 @@ pub trait Target {
     /// The run is over: sends what is still waiting, and checks what the stimulus expects at the end.
     fn finish(&mut self, events: EventSink<'_>);
 
-    /// Whether no thread is active and nothing is in progress that a program has begun.
+    /// Returns whether no thread is active and nothing is in progress that a program has begun.
     fn has_ended(&self) -> bool;
 
     /// The thread that has had the processor in the last tick.
@@ -161,7 +161,7 @@ pub trait Target {
         None
     }
 
-    /// Whether the program of a thread is code of the processor; `None` without a program.
+    /// Returns whether the program of a thread is code of the processor; `None` without a program.
     fn runs_processor_code(&self, thread: ThreadId) -> Option<bool>;
 
     /// Threads that have not ended, and what they wait for; empty where unknown.
@@ -222,7 +222,7 @@ pub trait Target {
     /// [`HostError::Unmapped`], or a connected target does not answer.
     fn write(&mut self, address: GuestAddr, bytes: &[u8]) -> Result<(), HostError>;
 
-    /// Whether an item exists on this target.
+    /// Returns whether an item exists on this target.
     fn knows(&self, item: Item) -> bool {
         let _ = item;
         true
@@ -239,10 +239,10 @@ pub trait Target {
     /// Bytes from the PC arrive on the link.
     fn receive(&mut self, bytes: &[u8]);
 
-    /// Whether bytes from the PC wait to be taken.
+    /// Returns whether bytes from the PC wait to be taken.
     fn is_receiving(&self) -> bool;
 
-    /// Whether what was received last may still be answered.
+    /// Returns whether the latest bytes may still be answered.
     fn is_answering(&self) -> bool {
         self.is_receiving()
     }
@@ -250,7 +250,7 @@ pub trait Target {
     /// Ticks that a line and its answer take at least.
     fn exchange_ticks(&self) -> u64;
 
-    /// Whether a command waits for its data lines, so that the next line is one.
+    /// Returns whether a command waits for its data lines, so that the next line is one.
     fn is_in_command(&self) -> bool;
 
     /// Says whether the PC takes console lines.
@@ -267,7 +267,7 @@ pub trait Target {
     /// Those bytes since the last time.
     fn take_wire(&mut self) -> Vec<u8>;
 
-    /// What flash memory holds, if that can be read.
+    /// Returns the contents of flash memory, if they can be read.
     fn flash(&self) -> Option<&[u8]> {
         None
     }

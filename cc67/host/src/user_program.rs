@@ -26,13 +26,13 @@ pub struct UserProgram {
     pub thread: ThreadId,
     /// The file it was made of: a source, or the image itself.
     pub path: PathBuf,
-    /// Whether that is an image rather than a source.
+    /// True if that is an image rather than a source.
     pub is_image: bool,
     /// The linked program.
     pub image: Vec<u8>,
-    /// What the compiler knows about its code besides; nothing of an image that comes from a file.
+    /// Further details of its code from the compiler; empty for an image that comes from a file.
     pub details: Arc<[CodeDetail]>,
-    /// Whether it runs as soon as it is loaded.
+    /// True if it runs as soon as it is loaded.
     pub starts: bool,
 }
 
@@ -102,7 +102,7 @@ impl UserProgram {
         prepared.map(|prepared| prepared.debug.with_details(self.details.clone())).unwrap_or_default()
     }
 
-    /// Where its functions begin and end.
+    /// Returns the beginnings and ends of its functions.
     pub(crate) fn functions(&self) -> BTreeMap<u32, u32> {
         let Ok(image) = Inspection::read(&self.image) else { return BTreeMap::new() };
         let functions = image.symbols.iter().filter(|entry| entry.kind == EntryKind::Function);
@@ -115,7 +115,7 @@ impl UserProgram {
         self.path.display().to_string()
     }
 
-    /// Why it is not loaded; of another tool's file, what it is.
+    /// Returns the error for refusing it; for another tool's file, it names the kind.
     pub(crate) fn refused(&self, error: LoadError) -> HostError {
         match (&error, files::describe(&self.image)) {
             (LoadError::NotAnImage(_), Some(what)) => HostError::Foreign { program: self.name(), what },

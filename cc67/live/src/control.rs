@@ -2,7 +2,7 @@
 
 use crate::request::PageRequest;
 
-/// What pages may do to the time of a board.
+/// The control that pages have over the time of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeControl {
     /// Stop it, let it run at any speed, go back and begin again.
@@ -16,7 +16,7 @@ pub enum TimeControl {
 }
 
 impl TimeControl {
-    /// What pages are told.
+    /// Returns the word for pages.
     pub(crate) const fn word(self) -> &'static str {
         match self {
             Self::Full => "full",
@@ -26,7 +26,7 @@ impl TimeControl {
         }
     }
 
-    /// Whether a page may ask for this; else why not.
+    /// Checks whether a page may ask for this; otherwise returns the reason.
     pub(crate) fn allows(self, request: &PageRequest) -> Result<(), String> {
         let refused = match request {
             PageRequest::Run { .. }

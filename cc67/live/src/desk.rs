@@ -1,4 +1,4 @@
-//! What connections and the board share: requests on their way in, messages and frames on their way out.
+//! The queues between connections and the board: requests on their way in, messages and frames on their way out.
 //!
 //! Requests wait in a queue of limited length; a page that asks faster than the board answers waits there itself. Each
 //! page has a [`Mailbox`]: messages wait until they are sent, of frames only one waits, so a slow page sees fewer.
@@ -20,7 +20,7 @@ const MESSAGES: usize = 4000;
 /// The number of a page.
 pub(crate) type PageId = u64;
 
-/// What comes to the board.
+/// An item in the board's queue.
 #[derive(Debug)]
 pub(crate) enum Incoming {
     /// A page has connected.
@@ -35,7 +35,7 @@ pub(crate) enum Incoming {
     Machine(Result<(), String>),
 }
 
-/// What the compiler says of a program that was saved.
+/// The result of compiling a program that was saved.
 #[derive(Debug)]
 pub(crate) struct Compiled {
     /// The program.
@@ -80,7 +80,7 @@ impl Desk {
     }
 }
 
-/// What waits for a page.
+/// The outgoing queue of a page.
 #[derive(Debug, Default)]
 pub(crate) struct Mailbox(Mutex<Waiting>);
 
@@ -91,7 +91,7 @@ struct Waiting {
     is_closed: bool,
 }
 
-/// What should be sent.
+/// An item to send.
 #[derive(Debug)]
 pub(crate) enum Outgoing {
     /// A message in JSON.
@@ -111,7 +111,7 @@ impl Mailbox {
         }
     }
 
-    /// Whether the last frame is on its way, so that there is room for another.
+    /// Returns whether the last frame has been taken, so that there is room for another.
     pub(crate) fn wants_frame(&self) -> bool {
         locked(&self.0).frame.is_none()
     }
@@ -133,7 +133,7 @@ impl Mailbox {
         locked(&self.0).is_closed = true;
     }
 
-    /// Whether the page should be disconnected.
+    /// Returns whether the page should be disconnected.
     pub(crate) fn is_closed(&self) -> bool {
         locked(&self.0).is_closed
     }

@@ -46,7 +46,7 @@ pub struct Program {
     pub thread: ThreadId,
     /// Its source, or its image.
     pub path: PathBuf,
-    /// Whether it is an image.
+    /// True if it is an image.
     pub is_image: bool,
     /// The program compiled, where it is loaded only when a page asks for it.
     pub waiting: Option<Box<UserProgram>>,
@@ -78,12 +78,12 @@ pub struct ShownMachine {
     pub can_rebuild: bool,
 }
 
-/// What a board is shown with.
+/// The options with which a board is shown.
 #[derive(Debug)]
 pub struct Show {
-    /// What the page is called: the names of the programs.
+    /// The title of the page: the names of the programs.
     pub title: String,
-    /// What is connected to the board: names and units of axes, switches.
+    /// The equipment that is connected to the board: names and units of axes, switches.
     pub machine: ShownMachine,
     /// The programs.
     pub programs: Vec<Program>,
@@ -93,15 +93,15 @@ pub struct Show {
     pub watch: String,
     /// Seconds of board time in a second; 1 is the pace of the real board.
     pub speed: f64,
-    /// Whether the board waits until a page lets it run.
+    /// True if the board waits until a page lets it run.
     pub is_paused: bool,
-    /// Whether a program that is saved without errors is loaded at once.
+    /// True if a program that is saved without errors is loaded at once.
     pub reloads: bool,
     /// The command, which runs a test that is saved.
     pub command: PathBuf,
-    /// What `cc67 run` has to be told for the same board.
+    /// The options with which `cc67 run` creates the same board.
     pub test_options: Vec<TestOption>,
-    /// What pages may do to its time.
+    /// The control that pages have over its time.
     pub time: TimeControl,
     /// Seconds of board time after which the board is closed; `None` for never.
     pub limit: Option<f64>,

@@ -25,9 +25,9 @@ const FILES: usize = 100;
 pub(crate) struct Used {
     /// The macro that names it.
     pub(crate) name: Option<String>,
-    /// Whether a program reads it.
+    /// True if a program reads it.
     pub(crate) is_read: bool,
-    /// Whether a program writes it.
+    /// True if a program writes it.
     pub(crate) is_written: bool,
     /// It is the first of a group: a program adds a variable to its name.
     pub(crate) is_base: bool,
@@ -72,7 +72,7 @@ pub(crate) fn files_of(source: &Path, include_dirs: &[PathBuf]) -> Vec<PathBuf> 
     found
 }
 
-/// What `#include "…"` names.
+/// Returns the file that an `#include "…"` names.
 fn included(line: &str) -> Option<&str> {
     let rest = line.trim_start().strip_prefix('#')?.trim_start().strip_prefix("include")?;
     rest.trim_start().strip_prefix('"')?.split('"').next()

@@ -1,4 +1,4 @@
-//! What a page may ask for: one JSON object a message.
+//! Requests of pages: one JSON object a message.
 
 use serde::Deserialize;
 
@@ -94,7 +94,7 @@ pub(crate) enum PageRequest {
     Gather {
         /// The first number of it, counted in numbers of this kind.
         from: u32,
-        /// How many numbers, at most 10,000.
+        /// The number of values, at most 10,000.
         count: u32,
         /// `double`, `float` or `int`.
         kind: String,

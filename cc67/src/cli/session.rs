@@ -72,7 +72,7 @@ enum CodeFor {
 }
 
 impl CodeFor {
-    /// How sources are compiled.
+    /// Returns the options with which sources are compiled.
     fn options(&self, compiler: &CompilerArguments) -> Result<Options> {
         match self {
             Self::Engine(engine) => engine.options(compiler),
@@ -91,7 +91,7 @@ pub(crate) fn boot(file: &Path) -> Result<BootedFirmware> {
     BootedFirmware::new(&bytes).with_context(|| format!("`--boot {}`", file.display()))
 }
 
-/// What a command does with a board, whichever target that is.
+/// The work of a command on a board of any target.
 pub(crate) trait Work {
     /// Does it.
     fn on<T: Target>(self, rig: Rig<T>) -> Result<Exit>;
@@ -284,12 +284,12 @@ impl Setup {
     }
 }
 
-/// What the options of a board and its programs come to, whatever the programs are compiled for.
+/// The board and its programs as the options describe them, for any code.
 #[derive(Debug)]
 pub(crate) struct Described {
     /// The board and its programs.
     pub(crate) session: cc67_host::Setup,
-    /// What its serial port is connected to.
+    /// The connection of its serial port.
     pub(crate) uart: UartArguments,
     /// Its flash.
     pub(crate) flash: Flash,
@@ -391,7 +391,7 @@ impl<'a> From<&'a Vec<OsString>> for Started<'a> {
     }
 }
 
-/// What starts each program after the one before it has ended, and the others after the last.
+/// Returns a stimulus that starts each program after the one before it has ended, and the others after the last.
 fn one_after_the_other(before: &[ProgramFile], others: &[ProgramFile]) -> Result<Stimulus> {
     let mut text = String::new();
     for (index, program) in before.iter().enumerate() {
@@ -425,7 +425,7 @@ pub(crate) struct Rig<T: Target> {
     uart: UartArguments,
     line: SerialLine,
     flash: Flash,
-    /// Who may stop the board.
+    /// The debugger or client that may stop the board.
     pub(crate) attendant: Option<Box<dyn Attendant<T>>>,
 }
 

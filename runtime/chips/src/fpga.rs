@@ -64,7 +64,7 @@ registers! {
     0x08, 1 => encoder_errors, clear_encoder_errors;
     /// Known to programs; here they only store.
     0x09, 5 => stored, store;
-    /// The same.
+    /// Known to programs; here it only stores.
     0x10, 1 => stored, store;
     /// Counters of the encoder inputs, eight bits each.
     0x20, 8 => encoder_counter, ignore;

@@ -1,4 +1,4 @@
-//! What was recorded of the released firmware, asked of the firmware itself: threads, motion, servo and outputs.
+//! Recorded behaviour of the released firmware, compared with the firmware itself: threads, motion, servo and outputs.
 //!
 //! The vectors were measured on it in another emulator, so what does not depend on the compiler of a program comes out to
 //! the last bit here. Where `CC67_FIRMWARE` names no file, the test says so; for firmware 5.3.2 it is `CC67_FIRMWARE_5`.
@@ -68,7 +68,7 @@ fn number(value: &Json) -> f64 {
     fraction.or(value.as_f64()).unwrap_or_else(|| panic!("{value} is a number"))
 }
 
-/// Whether a number is the recorded one to the last bit: single precision was recorded with nine digits.
+/// Returns whether a number is the recorded one to the last bit: single precision was recorded with nine digits.
 fn is_same(found: f64, expect: &Json) -> bool {
     let digits = expect.as_str().map_or(0, |text| {
         let mantissa = text.split('e').next().unwrap_or_default();
@@ -207,7 +207,7 @@ impl Released {
         self.board.memory().peek(self.address(name))
     }
 
-    /// Whether a field of an axis is what was recorded of it, to the last bit of what was written down.
+    /// Returns whether a field of an axis is the recorded one, to the last recorded digit.
     fn is(&self, axis: u8, name: &str, expect: &Json) -> bool {
         let found = self.peek_axis(axis, name);
         if expect.is_boolean() { (found != 0.0) == *expect } else { is_same(found, expect) }
@@ -264,13 +264,13 @@ impl Released {
         if self.board.run_to(end).is_err() { String::new() } else { self.said() }
     }
 
-    /// What was sent since the last time.
+    /// Takes the text sent since the last call.
     fn said(&mut self) -> String {
         let bytes: Vec<u8> = self.board.take_bytes().into_iter().map(|(_, byte)| byte).collect();
         String::from_utf8_lossy(&bytes).into_owned()
     }
 
-    /// What was written to registers since the last time, and the number of accesses.
+    /// Takes the register writes since the last call, and the number of accesses.
     fn accesses(&mut self) -> Nothing {
         let (around, _) = self.board.around_and_memory();
         std::mem::take(around.expect("it is connected"))

@@ -98,7 +98,7 @@ impl<'r> Replay<'r> {
         panic!("the program does not begin");
     }
 
-    /// What the program has noted.
+    /// Returns a value that the program has noted.
     fn noted(&self, name: &str, index: u32) -> f64 {
         self.board.board.memory().peek(self.program.variable(name).offset(8 * index))
     }
@@ -135,7 +135,7 @@ impl<'r> Replay<'r> {
     }
 }
 
-/// Where the firmware does something else than was recorded of it.
+/// Returns the differences between the firmware and its recording.
 fn differences(row: &Json, board: Released) -> Vec<String> {
     let mut replay = Replay::begin(row, board);
     let mut calls = list(&row["calls"]).iter().zip(0_u32..).peekable();

@@ -1,4 +1,4 @@
-//! What each output mode writes to the registers, tick by tick: rows of kind `output`.
+//! Register writes of each output mode, tick by tick: rows of kind `output`.
 
 use serde_json::Value as Json;
 
@@ -111,7 +111,7 @@ fn check_generator(
     tick
 }
 
-/// Where an output row differs.
+/// Returns the differences of an output row.
 pub(super) fn differences(row: &Json, board: &Released) -> Vec<String> {
     let (mut board, mut found) = (enabled(board), Vec::new());
     board.command("DisableAxis0");

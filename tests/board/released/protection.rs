@@ -18,7 +18,7 @@ fn act(board: &mut Released, action: &str) {
     }
 }
 
-/// Whether the columns after the action are as recorded.
+/// Returns the columns after the action.
 fn columns(board: &Released) -> [f64; 5] {
     let moving = f64::from(u8::from(board.peek("pcoeff") != 0.0));
     let state = f64::from(board.int("CS0_StoppingState"));
@@ -29,7 +29,7 @@ fn agree(found: &[f64; 5], values: &Json) -> bool {
     found.iter().zip(&list(values)[1..]).all(|(found, expect)| is_same(*found, expect))
 }
 
-/// Where a row differs.
+/// Returns the differences of a row.
 pub(super) fn differences(row: &Json, board: &Released) -> Vec<String> {
     let (mut board, mut found) = (board.clone(), Vec::new());
     board.poke("InputMode", 4.0);

@@ -8,7 +8,7 @@ use serde_json::Value as Json;
 
 use super::{Nothing, Released, TICK, list, number, released, report, rows, text, thread};
 
-/// What the code between two calls may take more or less than the vendor's, seconds.
+/// The tolerance for the code between two calls, relative to the vendor's, in seconds.
 const CODE: f64 = 2e-6;
 /// The same for the first of a series, which begins wherever the code before it ended.
 const FIRST: f64 = 10e-6;
@@ -35,7 +35,7 @@ fn ending(statements: &str) -> String {
 }
 
 const BUSY: &str = "main() { for (;;) ; }\n";
-/// What the scenarios have in thread 2: a count of starts, of a global and a static.
+/// The program of thread 2 in the scenarios: it counts starts in a global and a static.
 const SECOND_THREAD: &str = "int g = 5; int s = 7;\nmain()\n{\n  g++; s++;\n  persist.UserData[20] = g; \
     persist.UserData[21] = s; persist.UserData[22] = 0;\n  persist.UserData[23]++;\n";
 
@@ -58,7 +58,7 @@ fn rotation(row: &Json, mut board: Released) -> Vec<String> {
     if seen.contains(expect) { Vec::new() } else { vec![format!("{active:?}: {seen}, recorded {expect}")] }
 }
 
-/// Whether values are as recorded: counts exactly, times except for the code between calls.
+/// Returns whether values are as recorded: counts exactly, times except for the code between calls.
 fn is_time(name: &str, index: usize, found: f64, recorded: f64) -> bool {
     match name {
         "ServoTick growth over Delay_sec(0.09)" | "CurrentThread as read by thread 1" => found == recorded,
@@ -190,7 +190,8 @@ fn callback(row: &Json, mut board: Released) -> Vec<String> {
     found
 }
 
-/// What `main(a, b, c)` sees: nothing is passed, and the registers of a thread that has never run are 0.
+/// Compares the arguments of `main(a, b, c)`: nothing is passed, and the registers of a thread that has never run are
+/// 0.
 fn main_arguments(row: &Json, mut board: Released) -> Vec<String> {
     let third = thread(row["thread"].as_u64().expect("a thread"));
     let source = "main(int a, int b, int c)\n{\n  persist.UserData[1] = a; persist.UserData[2] = b; \

@@ -14,7 +14,7 @@ use tungstenite::{Message, WebSocket};
 use super::Live;
 use super::page::{PROGRAM, axis, shows};
 
-/// Where the browser may be.
+/// The possible paths of the browser.
 const PATHS: [&str; 2] = ["/usr/bin/firefox-esr", "/usr/bin/firefox"];
 
 /// A browser with one page.

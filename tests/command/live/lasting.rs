@@ -60,13 +60,13 @@ prototype.clearRect = function (...box) {
 };
 ";
 
-/// How long it is looked at, and what has to hold.
+/// The extent of a trial, and its limits.
 struct Trial {
     readings: usize,
     every: Duration,
     /// Pictures a second, over all.
     frames: f64,
-    /// How much more server and page may hold at the end than half-way, in MiB.
+    /// The allowed growth of server and page from half-way to the end, in MiB.
     growth: f64,
 }
 
@@ -77,12 +77,12 @@ const HOUR: Trial = Trial { readings: 60, every: Duration::from_secs(60), frames
 /// The part of a core that server and board may take at the pace of the real board.
 const CORE: f64 = 0.6;
 
-/// What is known at a moment.
+/// The measurements at a moment.
 struct Reading {
     at: Instant,
     painted: f64,
     server: Usage,
-    /// What the page's objects take after what nobody needs is gone, in MiB.
+    /// The heap of the page after garbage collection, in MiB.
     heap: f64,
 }
 
@@ -98,7 +98,7 @@ impl Reading {
         Self { at, painted, server, heap }
     }
 
-    /// What the server holds, in MiB.
+    /// Returns the memory of the server, in MiB.
     fn memory(&self) -> f64 {
         self.server.memory as f64 / 1024.0
     }

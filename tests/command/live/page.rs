@@ -33,7 +33,7 @@ main()
 }
 ";
 
-/// What is true when a text is in a part of the page.
+/// Returns a JavaScript condition: a part of the page contains a text.
 pub(super) fn shows(part: &str, text: &str) -> String {
     format!("document.querySelector('{part}').textContent.includes({text:?})")
 }
@@ -98,7 +98,7 @@ fn a_session_works_on_the_page() {
     assert_eq!(live.end(), "");
 }
 
-/// What was done becomes a test, and `cc67 test` passes it.
+/// Saves the actions as a test, which `cc67 test` passes.
 fn save_as_test(browser: &mut Browser, folder: &Scratch) {
     browser.value("document.querySelector('[aria-label=\"Test name\"]').value = 'homed'");
     press(browser, "Save as test");

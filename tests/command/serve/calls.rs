@@ -1,4 +1,4 @@
-//! What the vendor's server does, call by call: host-protocol.md section 9.
+//! Calls of the vendor's server, one by one: host-protocol.md section 9.
 
 use std::time::{Duration, Instant};
 

@@ -205,7 +205,7 @@ impl<S: Link> Client<S> {
         assert_eq!(self.call(RELEASE, b""), (0, Vec::new()));
     }
 
-    /// Whether the server has ended the connection.
+    /// Returns whether the server has ended the connection.
     pub(super) fn is_closed(&mut self) -> bool {
         matches!(self.stream.read(&mut [0; 1]), Ok(0) | Err(_))
     }

@@ -24,9 +24,9 @@ use client::{Client, Usual};
 pub(crate) struct Server {
     child: Child,
     scratch: Scratch,
-    /// Where it listens, in the order in which it says so.
+    /// Its addresses, in the order in which it prints them.
     pub(crate) places: Vec<String>,
-    /// What else it says.
+    /// The rest of its output.
     lines: Receiver<String>,
 }
 

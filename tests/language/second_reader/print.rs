@@ -60,7 +60,7 @@ fn static_assert(assert: &StaticAssert) -> String {
     list("static-assert", [expression(&assert.expression.node)])
 }
 
-/// What a list of specifiers says, in any order.
+/// The contents of a list of specifiers, in any order.
 #[derive(Default)]
 struct Said {
     storage: &'static str,

@@ -7,7 +7,7 @@ mod truncated;
 /// A source file that means no good.
 #[derive(Clone, Debug)]
 pub(crate) struct Input {
-    /// What it tries.
+    /// The property that it tries.
     pub(crate) name: String,
     /// The text.
     pub(crate) text: Vec<u8>,

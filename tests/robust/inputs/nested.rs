@@ -2,7 +2,7 @@
 
 use super::{Input, in_main};
 
-/// How deep.
+/// The depth of nesting.
 const DEPTH: usize = 10_000;
 
 /// Repeats of `open`, then `middle`, then as many of `close`.
@@ -10,7 +10,7 @@ fn nest(open: &str, middle: &str, close: &str) -> String {
     format!("{}{middle}{}", open.repeat(DEPTH), close.repeat(DEPTH))
 }
 
-/// What is within a function: name, opening, middle, closing, and the limit that is hit.
+/// Constructs within a function: name, opening, middle, closing, and the limit that is hit.
 const WITHIN: &[(&str, &str, &str, &str, Option<&str>)] = &[
     ("parentheses", "a = ", "(", "1", Some("640")),
     ("negations", "a = ", "!", "1", Some("640")),
@@ -44,7 +44,7 @@ const WITHIN: &[(&str, &str, &str, &str, Option<&str>)] = &[
     ("opening quotes of other languages", "a = ", "«", ";", None),
 ];
 
-/// What is at file scope: name, text before, opening, middle, closing, text after.
+/// Constructs at file scope: name, text before, opening, middle, closing, text after.
 const OUTSIDE: &[(&str, &str, &str, &str, &str, &str)] = &[
     ("declarators", "int ", "(", "x", ")", ";\nmain() { }\n"),
     ("pointers", "int ", "*", "x", "", ";\nmain() { }\n"),

@@ -4,10 +4,10 @@ use std::fmt::Write;
 
 use super::{Input, in_main};
 
-/// How often.
+/// The number of repetitions.
 const MANY: usize = 100_000;
 
-/// How long a single thing is.
+/// The length of a single item.
 const LONG: usize = 1_000_000;
 
 /// `MANY` times what a number gives.
@@ -22,7 +22,7 @@ pub(super) fn inputs() -> Vec<Input> {
     inputs
 }
 
-/// What could take much memory.
+/// Inputs that could take much memory.
 pub(super) fn heavy() -> Vec<Input> {
     vec![
         Input::new("100,000 declarations", many(|n| format!("int x{n};\n")) + "main() { }\n"),
@@ -53,7 +53,7 @@ pub(super) fn heavy() -> Vec<Input> {
     ]
 }
 
-/// What takes most memory for its tokens.
+/// The input that takes most memory for its tokens.
 fn strings() -> String {
     (0..LONG - LONG / 20).fold(String::new(), |mut text, n| {
         let _ = write!(text, "\"a{n}\";");

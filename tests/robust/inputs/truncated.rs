@@ -39,7 +39,7 @@ done:
 }
 "#;
 
-/// Where the tokens of the program end, roughly: between words, and around each sign.
+/// Returns the approximate ends of the program's tokens: between words, and around each sign.
 fn ends() -> Vec<usize> {
     let is_word = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
     let bytes = PROGRAM.as_bytes();

@@ -20,10 +20,10 @@ use super::{Herald, Server, read};
 use crate::debugger::{Debugger, Reason};
 use crate::shell::Shell;
 
-/// How long a board that is stopped waits for the next request at once.
+/// The time for which a stopped board waits for the next request.
 const PATIENCE: Duration = Duration::from_millis(10);
 
-/// Where editors attach, one after another.
+/// The port at which editors attach, one after another.
 #[derive(Debug)]
 pub struct AttachPoint {
     address: SocketAddr,
@@ -42,7 +42,7 @@ impl AttachPoint {
         Ok(Self { address, clients: editors(listener)?, visitor: None })
     }
 
-    /// Where it listens.
+    /// Returns its address.
     #[must_use]
     pub const fn address(&self) -> SocketAddr {
         self.address

@@ -91,7 +91,7 @@ fn push_option(key: &str, value: &Value, line: &mut Vec<OsString>) -> Result<(),
     Ok(())
 }
 
-/// What the server can do; `is_own` for a board that it launches, which can go back and begin again.
+/// Returns the capabilities of the server; `is_own` for a board that it launches, which can go back and begin again.
 pub(super) fn capabilities(is_own: bool) -> Value {
     json!({
         "supportsConfigurationDoneRequest": true,

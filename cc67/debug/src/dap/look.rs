@@ -19,14 +19,14 @@ const INSTRUCTION: u32 = 8;
 /// Most parts that are listed at once.
 const PARTS: u32 = 10_000;
 
-/// What a variable reference stands for.
+/// The meaning of a variable reference.
 #[derive(Clone, Debug)]
 pub(super) enum Handle {
     /// The locals of a call.
     Locals(i64),
     /// The variables of the program.
     Globals(i64),
-    /// What belongs to the board.
+    /// The items of the board.
     Board(i64),
     /// `persist.UserData`, each element in its readings.
     Persist(i64),

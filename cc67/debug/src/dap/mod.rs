@@ -42,7 +42,7 @@ const CALLBACK: i64 = 8;
 /// A response, or the message of one that failed.
 type Reply = Result<Value, DebugError>;
 
-/// What makes a debugger of what a client asks for.
+/// A function that creates a debugger from a client's launch request.
 pub type Launcher<'a, T> = &'a mut dyn FnMut(&Launch) -> Result<Debugger<T>, String>;
 
 /// Serves one client until it disconnects or vanishes.
@@ -99,9 +99,9 @@ fn read(mut input: impl BufRead + Send + 'static, interrupt: Arc<AtomicBool>) ->
 /// The state of a conversation.
 struct Server<'a, W, T: Target> {
     wire: ClientWire<W>,
-    /// What makes a debugger; none where the board is somebody else's, and the debugger is there from the beginning.
+    /// The function that creates a debugger; `None` on an existing board, which has its debugger from the beginning.
     launcher: Option<Launcher<'a, T>>,
-    /// Where the board of somebody else goes; `None` while it is stopped.
+    /// The goal of a run on an existing board; `None` while it is stopped.
     goal: Option<Goal>,
     interrupt: Arc<AtomicBool>,
     /// The debugger, with the commands of the terminal.
@@ -109,7 +109,7 @@ struct Server<'a, W, T: Target> {
     /// Lines that were reported before the board has sent them.
     early: EarlyLines,
     asked: Launch,
-    /// What the variable references of the present stop stand for.
+    /// The meanings of the variable references at the present stop.
     handles: Vec<Handle>,
     /// The breakpoints that the client has set, by what it calls the set they are in.
     set: Vec<(String, u32)>,
@@ -117,7 +117,7 @@ struct Server<'a, W, T: Target> {
     is_over: bool,
 }
 
-/// What a client lets the board do.
+/// A movement of the board that a client requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Move {
     Forward(Way),

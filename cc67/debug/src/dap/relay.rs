@@ -11,14 +11,14 @@ use serde_json::{Value, json};
 use super::wire::{self, ClientWire};
 use crate::debugger::DebugError;
 
-/// How long a board may take to greet.
+/// The time limit for a board's greeting.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// A board that can be attached to, which has been greeted.
 pub(super) struct RemoteBoard {
     stream: TcpStream,
     input: BufReader<TcpStream>,
-    /// What its debugger can do.
+    /// The capabilities of its debugger.
     capabilities: Value,
 }
 

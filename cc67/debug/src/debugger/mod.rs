@@ -27,7 +27,7 @@ use vm::engine::{ContextId, FrameView};
 
 use crate::programs::{Activation, Programs};
 
-/// Why a request is refused.
+/// The reason for which a request is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct DebugError(pub(crate) String);
@@ -56,7 +56,7 @@ impl From<&str> for DebugError {
     }
 }
 
-/// Where something is in a source.
+/// A position in a source.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CodePlace {
     /// The thread whose program it is of.
@@ -76,16 +76,16 @@ pub struct CodePlace {
 pub struct StackFrame {
     /// The instruction that is executed next; in a caller, the call.
     pub address: CodeAddr,
-    /// Where that is in the source, if that is known.
+    /// Its position in the source, if known.
     pub place: Option<CodePlace>,
     pub(crate) view: FrameView,
-    /// Which call of the machine it is part of, counted from the innermost.
+    /// The index of the machine call that it is part of, counted from the innermost.
     pub(crate) real: usize,
-    /// Which of the functions in it, counted from the innermost; all but the last are inlined.
+    /// The index of its function in that call, counted from the innermost; all but the last are inlined.
     pub(crate) level: usize,
 }
 
-/// Why the board stands.
+/// The reason for which the board is stopped.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reason {
     /// It was not run yet.
@@ -102,7 +102,7 @@ pub enum Reason {
         old: String,
         /// Its value now.
         new: String,
-        /// Who did it.
+        /// The context that did it.
         by: String,
     },
     /// An expression has become true.
@@ -138,10 +138,10 @@ pub enum Reason {
     BeginOfHistory,
 }
 
-/// Where the board stands, and why.
+/// The position at which the board is stopped, and the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stop {
-    /// Why.
+    /// The reason.
     pub reason: Reason,
     /// Whose program is about to continue, if it is one's.
     pub context: Option<ContextId>,
@@ -156,7 +156,7 @@ pub(crate) struct Position {
     pub(crate) held: Option<(ContextId, Cycles, CodeAddr)>,
 }
 
-/// What else stops the board.
+/// The events that stop the board.
 #[derive(Clone, Debug, Default)]
 pub struct Catches {
     /// Traps; they stop unless this says otherwise.
@@ -182,9 +182,9 @@ pub struct Debugger<T: Target = Board> {
     programs: Programs,
     breakpoints: Vec<Breakpoint>,
     next_id: u32,
-    /// What else stops.
+    /// The events that stop the board.
     pub catches: Catches,
-    /// Where a run ends.
+    /// The tick at which a run ends.
     pub limit: Ticks,
     thread: ThreadId,
     frame: usize,
@@ -317,13 +317,13 @@ impl<T: Target> Debugger<T> {
         self.session.snapshot()
     }
 
-    /// What is known about the programs.
+    /// Returns the debug information of the programs.
     #[must_use]
     pub const fn programs(&self) -> &Programs {
         &self.programs
     }
 
-    /// Where the board stands, and why.
+    /// Returns the position at which the board is stopped, and the reason.
     #[must_use]
     pub const fn stop(&self) -> &Stop {
         &self.stop
@@ -335,7 +335,7 @@ impl<T: Target> Debugger<T> {
         self.thread
     }
 
-    /// Which of its calls is looked at, counted from the innermost.
+    /// Returns the index of the selected call, counted from the innermost.
     #[must_use]
     pub const fn frame(&self) -> usize {
         self.frame
@@ -417,19 +417,19 @@ impl<T: Target> Debugger<T> {
         frames
     }
 
-    /// How many calls of the source are in progress.
+    /// Returns the number of source calls in progress.
     pub(crate) fn depth(&self, context: ContextId) -> usize {
         let frames = self.session.frames(context);
         frames.iter().map(|view| self.programs.depth(view.at.get())).sum()
     }
 
-    /// Where an instruction is in its source.
+    /// Returns the source position of an instruction.
     #[must_use]
     pub fn place(&self, address: u32) -> Option<CodePlace> {
         self.programs.activations(address).first().map(place_of)
     }
 
-    /// Where the call that is looked at stands.
+    /// Returns the source position of the selected call.
     #[must_use]
     pub fn present(&self) -> Option<CodePlace> {
         self.frames(self.context()).into_iter().nth(self.frame)?.place
@@ -508,7 +508,7 @@ impl Debugger<AnyTarget> {
     }
 }
 
-/// Where a function is at present.
+/// Returns the present source position of a function.
 fn place_of(activation: &Activation<'_>) -> CodePlace {
     let Activation { thread, model, around, scope, is_inlined } = *activation;
     let same = std::path::Path::new(&around.file).file_name() == model.path.file_name();
@@ -531,5 +531,5 @@ pub(crate) fn file_name(path: &str) -> &str {
     path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
 
-/// What receives events while the board runs.
+/// The receiver of events while the board runs.
 pub(crate) type Events<'a> = &'a mut dyn FnMut(&Event);

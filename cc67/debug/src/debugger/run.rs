@@ -15,7 +15,7 @@ const IN_TICK: &str = "a program or the board in the last tick";
 /// The writer of a value that no program writes.
 const BY_SERVO: &str = "the servo or the firmware";
 
-/// What ends a run besides breakpoints.
+/// The goal at which a run ends, besides breakpoints.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Goal {
     /// Nothing.
@@ -55,7 +55,7 @@ impl<T: Target> Debugger<T> {
         self.run(&Goal::None, events)
     }
 
-    /// What ends a run that goes a way.
+    /// Returns the goal of a movement.
     ///
     /// # Errors
     /// Why it cannot go that way.
@@ -191,7 +191,7 @@ impl<T: Target> Debugger<T> {
         Ok(Goal::Line { context, line: place.map_or(0, |place| place.line), depth: frames.len(), into })
     }
 
-    /// Where contexts are held for breakpoints and a goal.
+    /// Sets the addresses at which contexts are held for breakpoints and a goal.
     pub(super) fn arm(&mut self, goal: &Goal, also: Option<CodeAddr>) {
         let mut addresses: Vec<u32> = also.map(CodeAddr::get).into_iter().collect();
         let mut ranges: Vec<(GuestAddr, u32)> = Vec::new();
@@ -300,7 +300,7 @@ impl<T: Target> Debugger<T> {
         }
     }
 
-    /// Whether somebody has asked it to stop since the last time; once for each time.
+    /// Returns whether a stop was requested since the last call.
     fn is_interrupted(&self) -> bool {
         // To exchange a value takes a processor much longer than to read it, and this is asked every tick.
         self.interrupt.load(Ordering::Relaxed) && self.interrupt.swap(false, Ordering::Relaxed)
@@ -323,7 +323,7 @@ impl<T: Target> Debugger<T> {
         self.catches.bits.iter().map(|bit| Bit::new(*bit).is_some_and(|bit| self.session.bit(bit))).collect()
     }
 
-    /// What is to stop at the end of a tick; with the threads that were and are active.
+    /// Returns the reason to stop at the end of a tick, if there is one; takes the threads that were and are active.
     fn between_ticks(&mut self, goal: &Goal, (before, now): (u8, u8), bits: &[bool]) -> Option<Reason> {
         if let Some(reason) = self.judge_tick(true) {
             return Some(reason);
@@ -380,7 +380,8 @@ impl<T: Target> Debugger<T> {
         })
     }
 
-    /// Whether a context that is held has to stop there, and why; `counts` for a run that is not a search of the past.
+    /// Returns the reason for which a held context has to stop, if it has to; `counts` for a run that is not a search
+    /// of the past.
     pub(super) fn judge(&mut self, hold: Hold, goal: &Goal, counts: bool) -> Option<Reason> {
         match hold.reason {
             HoldReason::Step => (*goal == Goal::Instruction(hold.context)).then_some(Reason::Step),
@@ -467,7 +468,8 @@ impl<T: Target> Debugger<T> {
         (!ids.is_empty()).then_some(Reason::Breakpoint(ids))
     }
 
-    /// Whether a breakpoint that is met stops: its condition holds, it was passed as often as needed, it is not a log point.
+    /// Returns whether a breakpoint that is met stops: its condition holds, it was passed as often as needed, it is not
+    /// a log point.
     fn is_to_stop(&mut self, index: usize, context: ContextId, counts: bool) -> bool {
         if self.breakpoints[index].condition.is_some() {
             match self.holds(context, &self.breakpoints[index].conditions) {
@@ -525,7 +527,7 @@ const fn bit_of(thread: ThreadId) -> u8 {
     1 << (thread.get() - 1)
 }
 
-/// Whether an event is to stop the board, and whose it is.
+/// Returns the reason for which an event stops the board, if it does, and its context.
 pub(super) fn catch(
     event: &Event,
     catches: &super::Catches,

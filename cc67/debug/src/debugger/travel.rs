@@ -17,10 +17,10 @@ use super::{DebugError, Debugger, Position, Reason, Stop};
 const WINDOW: u64 = 2;
 const WIDER: u64 = 6;
 
-/// Why a board without a past does not go there.
+/// The reason for which a board without a past refuses to go back.
 pub(crate) const ONLY_FORWARD: &str = "others use this board: it does not go back";
 
-/// What is wanted of the past.
+/// The position that a search of the past looks for.
 #[derive(Clone, Debug)]
 enum Wanted {
     /// The last stop of a breakpoint or the like.
@@ -44,13 +44,14 @@ impl Wanted {
         }
     }
 
-    /// Whether user breakpoints count.
+    /// Returns whether user breakpoints count.
     const fn is_stop(&self) -> bool {
         matches!(self, Self::Stop)
     }
 }
 
-/// What was found on the first way: which hold it is, counted from 1, and whether more of the past is needed to be sure.
+/// The result of the first pass: the number of the hold, counted from 1, and whether more of the past is needed to be
+/// sure.
 #[derive(Clone, Copy, Debug, Default)]
 struct Found {
     number: u64,
@@ -313,7 +314,7 @@ impl<T: Target> Debugger<T> {
     }
 }
 
-/// Whether one position lies before another.
+/// Returns whether one position lies before another.
 fn is_before(one: &Position, other: &Position) -> bool {
     match (one.held, other.held) {
         (None, None) => one.tick < other.tick,

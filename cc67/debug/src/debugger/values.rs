@@ -22,11 +22,11 @@ pub struct ShownVariable {
     pub ty: String,
     /// Its value in one line.
     pub text: String,
-    /// How C names it.
+    /// The C expression for it.
     pub expression: String,
-    /// How many parts it has.
+    /// The number of its parts.
     pub parts: u32,
-    /// Where it is in memory.
+    /// Its address in memory.
     pub address: Option<u32>,
 }
 
@@ -419,7 +419,7 @@ impl<T: Target> Debugger<T> {
         Some(prepared.probe.shown(&at).text(&value))
     }
 
-    /// What is watched has its present values, however it came to them.
+    /// Updates the values of watched expressions after any kind of change.
     pub(super) fn refresh_watches(&mut self) {
         for index in 0..self.breakpoints.len() {
             let text =

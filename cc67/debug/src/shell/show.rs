@@ -16,7 +16,7 @@ use crate::words::LineReader;
 const LINES: u32 = 10;
 /// Most registers in a line.
 const COLUMNS: usize = 8;
-/// Why there are none.
+/// The message that there are none.
 const NO_LOCALS: &str = "where locals are in code for the processor is not noted; `info registers` shows the \
                          registers, and variables outside of functions have names";
 
@@ -267,7 +267,7 @@ fn disassembly<T: Target>(
     })
 }
 
-/// Why the board stands, and where.
+/// Describes the reason and the position of a stop.
 pub(super) fn stop<T: Target>(debugger: &Debugger<T>, stop: &Stop) -> String {
     let at = format!("{:.6} s", seconds(stop.at));
     let who = match stop.context.map(ContextId::thread) {
@@ -374,7 +374,7 @@ fn registers<T: Target>(debugger: &Debugger<T>) -> Result<String, DebugError> {
     Ok(rows.collect())
 }
 
-/// What a thread is doing, in words.
+/// Describes the state of a thread.
 pub(crate) fn state<T: Target>(debugger: &Debugger<T>, thread: ThreadId) -> Option<String> {
     Some(match debugger.session().thread(thread) {
         ThreadState::Empty => return None,

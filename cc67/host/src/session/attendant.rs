@@ -9,7 +9,7 @@ use runtime::Event;
 
 use super::Session;
 
-/// What is done while an attendant stops the board; whether it may stop it any longer.
+/// The work that is done while an attendant holds the board; returns whether it may go on holding it.
 pub type Idle<'a, T> = &'a mut dyn FnMut(&mut Session<T>) -> ControlFlow<()>;
 
 /// Somebody through whom the owner of a session lets time pass, and who may stop it: a debugger that an editor attaches.

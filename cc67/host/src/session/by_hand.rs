@@ -19,10 +19,10 @@ use super::{Input, Session, UserProgram};
 use crate::HostError;
 use crate::capability::Capability;
 
-/// What messages call the text of a statement.
+/// The name of the statement's text in messages.
 const SOURCE: &str = "by hand";
 
-/// What was done by hand in a session.
+/// The actions by hand in a session.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Recording {
     text: String,
@@ -39,13 +39,13 @@ impl Recording {
         &self.text
     }
 
-    /// Whether the text is all that was done, so that a run with it is the same.
+    /// Returns whether the text has all actions, so that a run with it is the same.
     #[must_use]
     pub const fn is_complete(&self) -> bool {
         !self.is_incomplete
     }
 
-    /// Whether no account is kept.
+    /// Returns whether recording is off.
     pub(super) const fn is_off(&self) -> bool {
         self.is_off
     }
@@ -91,7 +91,7 @@ fn statement(tick: Ticks, action: &str) -> String {
     format!("at {}us {action}", (tick.get() + 1).saturating_mul(us.unsigned_abs()))
 }
 
-/// What a statement without a moment does at the beginning of the tick after this one, in the words of these programs.
+/// Reads an action as a statement for the beginning of the tick after this one, with the names of these programs.
 ///
 /// # Errors
 /// What is wrong with it, and at which character.
@@ -122,7 +122,7 @@ fn quoted(bytes: &[u8]) -> String {
 }
 
 impl<T: Target> Session<T> {
-    /// What was done by hand so far.
+    /// Returns the actions by hand so far.
     #[must_use]
     pub const fn recording(&self) -> &Recording {
         &self.recording

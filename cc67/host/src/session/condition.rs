@@ -5,7 +5,7 @@
 
 use kmotiondef::variables::variable_named;
 
-/// How many lines before a place its loop may begin.
+/// The number of lines before an address in which its loop may begin.
 const LINES: usize = 8;
 /// Most characters of a condition that is shown.
 const LONGEST: usize = 60;
@@ -30,7 +30,7 @@ impl WaitCondition {
         })
     }
 
-    /// What is between the parentheses.
+    /// Returns the text between the parentheses.
     pub(super) fn text(&self) -> &str {
         &self.0
     }
@@ -57,7 +57,7 @@ impl WaitCondition {
         (!is_call && !text.contains('(')).then_some(&rest[..end])
     }
 
-    /// Whether a text stores anything in a variable, or passes its address on.
+    /// Returns whether a text stores to a variable, or passes its address on.
     pub(super) fn writes(text: &str, name: &str) -> bool {
         let base = name.split(['[', '.', '-']).next().unwrap_or(name);
         // What the firmware or the PC changes.
@@ -87,7 +87,7 @@ impl WaitCondition {
     }
 }
 
-/// What follows an index, a member or nothing.
+/// Returns the text after an index, if there is one: a member or nothing.
 fn after_index(text: &str) -> &str {
     match text.strip_prefix('[') {
         Some(rest) => rest.split_once(']').map_or("", |(_, after)| after_index(after.trim_start())),
@@ -95,12 +95,12 @@ fn after_index(text: &str) -> &str {
     }
 }
 
-/// Whether a condition is always true, as in `while (1)`.
+/// Returns whether a condition is always true, as in `while (1)`.
 fn is_endless(text: &str) -> bool {
     matches!(text, "1" | "TRUE" | "true" | "")
 }
 
-/// Where a word is in a text, not as a part of a longer one.
+/// Returns the offset of a word in a text, where it is not a part of a longer one.
 fn find_word(text: &str, word: &str) -> Option<usize> {
     let is_letter = |c: Option<char>| c.is_some_and(|c| c.is_ascii_alphanumeric() || c == '_');
     let mut from = 0;
@@ -114,7 +114,7 @@ fn find_word(text: &str, word: &str) -> Option<usize> {
     None
 }
 
-/// What is between the parenthesis at the beginning and the one that closes it.
+/// Returns the text between the parenthesis at the beginning and the one that closes it.
 fn balanced(text: &str) -> Option<&str> {
     let mut depth = 0_u32;
     for (at, c) in text.char_indices() {

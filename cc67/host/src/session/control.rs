@@ -1,4 +1,4 @@
-//! How far time goes: to a tick, to an end, to a condition, or a step.
+//! Running the board: to a tick, to an end, to a condition, or by a step.
 //!
 //! Every call takes the receiver of what happens meanwhile. A step of the board goes to the next tick in which something
 //! can happen; nothing is seen in between, as there is nothing to see.
@@ -15,7 +15,7 @@ use super::until::Heard;
 use super::{Session, Until};
 use crate::target::EventSink;
 
-/// Why a run came back.
+/// The reason for which a run returned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum End {
@@ -37,7 +37,7 @@ impl Interrupter {
         self.0.store(true, Ordering::Relaxed);
     }
 
-    /// Whether somebody has interrupted the run; said once.
+    /// Returns whether the run was interrupted since the last call.
     #[must_use]
     pub fn take(&self) -> bool {
         self.0.load(Ordering::Relaxed) && self.0.swap(false, Ordering::Relaxed)
@@ -45,7 +45,7 @@ impl Interrupter {
 }
 
 impl<T: Target> Session<T> {
-    /// What ends a [run](Self::run) from elsewhere.
+    /// Returns the handle that ends a [run](Self::run) from elsewhere.
     #[must_use]
     pub fn interrupter(&self) -> Interrupter {
         self.interrupter.clone()

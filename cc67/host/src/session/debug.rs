@@ -1,4 +1,4 @@
-//! What a debugger asks of a session: to be held between two instructions, and the calls in progress.
+//! Access for debuggers: holding a context between two instructions, and the calls in progress.
 
 use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 use runtime::trace::Item;
@@ -35,7 +35,7 @@ impl<T: Target> Session<T> {
         &self.programs
     }
 
-    /// What names an item of the board in an expression, such as `bit46`: its value.
+    /// Returns the value of an item of the board by its name in expressions, such as `bit46`.
     #[must_use]
     pub fn item(&self, name: &str) -> Option<f64> {
         Item::new(name).ok().map(|item| self.target.value(item))
@@ -56,12 +56,12 @@ impl<T: Target> Session<T> {
         self.target.set_watched(ranges);
     }
 
-    /// Which of the watched bytes have changed between two instructions; said once.
+    /// Takes the index of a watched byte that has changed between two instructions.
     pub fn take_change(&mut self) -> Option<usize> {
         self.target.take_change()
     }
 
-    /// Which context was held last, and why; said once.
+    /// Takes the context that was held last, with the reason.
     pub fn take_hold(&mut self) -> Option<Hold> {
         self.target.take_hold()
     }

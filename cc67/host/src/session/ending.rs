@@ -28,9 +28,9 @@ pub struct EndingThread {
     pub thread: ThreadId,
     /// `computing`, `waiting`, `paused` or `idle`.
     pub state: &'static str,
-    /// Where it is, then the calls that led there, innermost first.
+    /// The source position, then those of the calls that led there, innermost first.
     pub calls: Vec<SourceCall>,
-    /// What it waits for, one text each.
+    /// The reasons for which it waits, one text each.
     pub waits_for: Vec<String>,
     /// When it last did anything but look and wait, in seconds of board time.
     pub since: f64,
@@ -41,22 +41,22 @@ pub struct EndingThread {
 pub struct EndingAxis {
     /// Its number.
     pub axis: AxisId,
-    /// What the machine file calls it; empty for nothing.
+    /// Its name in the machine file; empty if it has none.
     pub name: String,
-    /// Whether it is enabled.
+    /// True if it is enabled.
     pub enabled: bool,
     /// Its commanded position.
     pub dest: f64,
     /// Its measured position.
     pub position: f64,
-    /// How fast the command moves, units a second.
+    /// The commanded velocity, in units a second.
     pub velocity: f64,
-    /// Why it does not move, or what it does.
+    /// The reasons for which it does not move, or its movements.
     pub why: Vec<String>,
 }
 
 impl Ending {
-    /// Whether no thread is left but those that were paused.
+    /// Returns whether no thread is left but those that were paused.
     #[must_use]
     pub fn has_all_ended(&self) -> bool {
         self.threads.iter().all(|thread| thread.state == "paused")
@@ -124,7 +124,7 @@ fn number(value: f64) -> String {
 }
 
 impl<T: Target> Session<T> {
-    /// How things are now: which threads have not ended and what they wait for, what the axes do.
+    /// Returns the present state: the threads that have not ended with the reasons for which they wait, and the axes.
     #[must_use]
     pub fn ending(&self) -> Ending {
         let threads = self.target.standing_threads().into_iter().map(|thread| self.ending_thread(thread));
@@ -187,7 +187,7 @@ fn source_text(program: &Path, file: &str) -> Option<String> {
     Some(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// What a thread waits for that looks at nothing.
+/// Describes the wait of a thread that polls nothing.
 fn plain_wait(state: Standing) -> Option<String> {
     match state {
         Standing::Until(time) => Some(format!("{:.3} s", seconds(time))),

@@ -25,16 +25,16 @@ use runtime::trace::{Formula, Item, Quantity, RecordedCell, UnknownItem, View};
 
 use super::{Input, Session, UserProgram};
 
-/// How the compiler's message on an unknown name ends if no other is near.
+/// The end of the compiler's message on an unknown name if no other is similar.
 const NOT_DECLARED: &str = "is not declared";
 
-/// What is known without a declaration.
+/// The addition to that message: the names that need no declaration.
 const KNOWN: &str = ", nor is it an item of the board, such as axis0, bit46, persist.5, adc0";
 
 /// Most characters of an expression.
 const MOST: usize = 500;
 
-/// Why something cannot be watched.
+/// The reason for which something cannot be watched.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WatchError {
     /// The number of an item is too high.
@@ -51,7 +51,7 @@ pub enum WatchError {
     Wrong {
         /// The expression.
         expression: String,
-        /// What is wrong with it.
+        /// The message.
         message: String,
     },
     /// It has a value, but no place where another one can be stored.
@@ -121,7 +121,7 @@ impl<T: Target> Session<T> {
         watch(text, &self.programs, &self.options)
     }
 
-    /// What a list names, commas in between, for a [recording](Self::record): `axis0` is all of an axis.
+    /// Reads a list of names for a [recording](Self::record), separated by commas: `axis0` is all of an axis.
     ///
     /// # Errors
     /// What is wrong with one of them.
@@ -200,7 +200,8 @@ fn watch(text: &str, programs: &[UserProgram], options: &Options) -> Result<Watc
     }
 }
 
-/// What a list names in the words of these programs, commas in between, for a recording: `axis0` is all of an axis.
+/// Reads a list of names for a recording with the declarations of these programs, separated by commas: `axis0` is all
+/// of an axis.
 ///
 /// # Errors
 /// What is wrong with one of them.
@@ -288,7 +289,7 @@ fn formula(text: &str, programs: &[UserProgram], options: &Options) -> Result<Wa
     Err(WatchError::Wrong { expression: text.to_owned(), message })
 }
 
-/// What computes an expression of a stimulus, in the words of its programs.
+/// Compiles an expression of a stimulus with the declarations of its programs.
 pub(super) fn for_stimulus(
     text: &str,
     programs: &[UserProgram],
@@ -325,13 +326,13 @@ struct Compiled {
     items: Vec<Item>,
 }
 
-/// What expressions may name.
+/// The names that expressions may use.
 struct Vocabulary<'a> {
     /// The file beside which includes are looked for.
     path: &'a Path,
     /// Declarations.
     text: Vec<u8>,
-    /// Where the variables are.
+    /// The addresses of the variables.
     symbols: BTreeMap<String, GuestAddr>,
 }
 
@@ -400,7 +401,7 @@ fn declarations(inspection: &Inspection) -> String {
     text
 }
 
-/// What looks like a name.
+/// Returns the parts of a text that have the form of a name.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|character: char| !(character.is_ascii_alphanumeric() || character == '_'))
 }

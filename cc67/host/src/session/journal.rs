@@ -1,4 +1,4 @@
-//! What was done to a session, each with the tick after which it was done, so that it can be done again.
+//! A journal of the inputs to a session, each with the tick after which it was made, so that they can be repeated.
 
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ pub enum Input {
     Start(ThreadId),
     /// A thread is stopped.
     Stop(ThreadId),
-    /// Whether the PC takes console lines.
+    /// Sets whether the PC takes console lines.
     Listen(bool),
     /// A program is loaded.
     Load(Box<UserProgram>),
@@ -47,7 +47,7 @@ impl Journal {
         Arc::make_mut(&mut self.entries).push((tick, input));
     }
 
-    /// Whether the PC takes console lines.
+    /// Returns whether the PC takes console lines.
     pub(super) const fn listens(&self) -> bool {
         !self.is_deaf
     }

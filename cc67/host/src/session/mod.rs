@@ -119,7 +119,7 @@ use signals::Signals;
 #[derive(Debug)]
 pub struct Session<T = Board> {
     target: T,
-    /// How programs and expressions are compiled.
+    /// The options with which programs and expressions are compiled.
     options: Options,
     /// The programs in the threads: expressions are in their words.
     programs: Arc<Vec<UserProgram>>,
@@ -131,7 +131,7 @@ pub struct Session<T = Board> {
     interrupter: Interrupter,
 }
 
-/// What the session is, and what the board shows at the present instant.
+/// The session, and the present state of its board.
 impl<T: Target> Session<T> {
     /// A session with a target whose programs are loaded.
     #[must_use]
@@ -175,7 +175,7 @@ impl<T: Target> Session<T> {
         &self.target
     }
 
-    /// Whether the target can do something.
+    /// Returns whether the target has a capability.
     #[must_use]
     pub fn can(&self, capability: Capability) -> bool {
         self.target.can(capability)
@@ -250,7 +250,7 @@ impl<T: Target> Session<T> {
         self.target.thread(thread)
     }
 
-    /// Whether no thread is active and nothing is under way that a program has begun.
+    /// Returns whether no thread is active and nothing is in progress that a program has begun.
     #[must_use]
     pub fn has_ended(&self) -> bool {
         self.target.has_ended()
@@ -270,14 +270,14 @@ impl<T: Target> Session<T> {
             .then(|| self.peek_object::<u32>(data.element(index).address()).cast_signed())
     }
 
-    /// What is known about the programs that are loaded, each with its thread.
+    /// Returns the debug information of the loaded programs, each with its thread.
     #[must_use]
     pub fn debug(&self) -> Vec<(ThreadId, DebugInfo)> {
         let known = |thread| Some((thread, self.target.debug(thread).cloned()?));
         ThreadId::all().filter_map(known).collect()
     }
 
-    /// What is known about the programs that a stimulus may load, each with its thread and the name it goes by.
+    /// Returns the debug information of the programs that a stimulus may load, each with its thread and its name.
     #[must_use]
     pub fn offered(&self) -> Vec<(ThreadId, String, DebugInfo)> {
         let row =
@@ -296,7 +296,7 @@ impl<T: Target> Session<T> {
         self.options = options;
     }
 
-    /// How programs and expressions are compiled.
+    /// Returns the options with which programs and expressions are compiled.
     #[must_use]
     pub const fn options(&self) -> &Options {
         &self.options

@@ -14,7 +14,7 @@ use super::{Session, Watch};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SubscriptionId(u64);
 
-/// What receives samples: the tick, and the values in the order of the subscription.
+/// The receiver of samples: the tick, and the values in the order of the subscription.
 type Receiver = Box<dyn FnMut(Ticks, &[f64]) + Send>;
 
 struct Subscription {
@@ -28,7 +28,7 @@ struct Subscription {
 #[derive(Default)]
 pub(super) struct Signals {
     subscriptions: Vec<Subscription>,
-    /// How many there have been.
+    /// The number of subscriptions so far.
     count: u64,
     /// The tick that was looked at last.
     last: Ticks,
@@ -41,7 +41,7 @@ impl fmt::Debug for Signals {
 }
 
 impl Signals {
-    /// How far the board may go before something is sampled.
+    /// Returns the tick up to which the board may run before something is sampled.
     pub(super) fn next_sample(&self, tick: Ticks, limit: Ticks) -> Ticks {
         let next = |subscription: &Subscription| (tick.get() / subscription.every + 1) * subscription.every;
         let next = self.subscriptions.iter().map(next).min();

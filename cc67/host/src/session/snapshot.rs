@@ -25,7 +25,7 @@ impl<T: Target> Snapshot<T> {
         self.target.tick()
     }
 
-    /// Whether a program holds the tick in progress.
+    /// Returns whether a program holds the tick in progress.
     #[must_use]
     pub fn is_held(&self) -> bool {
         self.target.is_held()

@@ -23,7 +23,7 @@ const PARTS: u64 = 8;
 /// Most snapshots; each has a few hundred KiB besides pages of memory that differ.
 const MOST: usize = 256;
 
-/// Why a session cannot be taken to a tick.
+/// The reason for which a session cannot be taken to a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TimelineError {
     /// The timeline begins later.
@@ -34,7 +34,7 @@ pub enum TimelineError {
     Snapshot(#[from] SnapshotError),
 }
 
-/// Whether the present belongs to the history that was known.
+/// The relation of the present to the recorded history.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum History {
@@ -95,9 +95,9 @@ pub struct Branch<T: Target> {
 pub struct Timeline<T: Target> {
     /// In the order of time; there is one at least.
     marks: Vec<Mark<T>>,
-    /// What was done on this line.
+    /// The inputs on this line.
     journal: Vec<(Ticks, Input)>,
-    /// How much of the journal the session has done.
+    /// The number of inputs of the journal that the session has had.
     done: usize,
     end: Ticks,
     /// The session's work, and its place on the line, when it was last put somewhere.
@@ -359,7 +359,7 @@ impl<T: Target> Timeline<T> {
         }
     }
 
-    /// How many snapshots there are.
+    /// Returns the number of snapshots.
     #[must_use]
     pub fn len(&self) -> usize {
         self.marks.len()
@@ -393,12 +393,12 @@ impl<T: Target> Timeline<T> {
         history
     }
 
-    /// Where the session is on the line.
+    /// Returns the position of the session on the line.
     fn place(&self, session: &Session<T>) -> u64 {
         self.base.1 + (session.work() - self.base.0)
     }
 
-    /// Whether the line continues after a place.
+    /// Returns whether the line continues after a position.
     fn is_known(&self, place: u64) -> bool {
         self.marks.last().is_some_and(|mark| mark.place > place)
     }

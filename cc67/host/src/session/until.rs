@@ -1,4 +1,4 @@
-//! What a run may be waiting for.
+//! Conditions that end a run.
 
 use crate::target::Target;
 use kmotiondef::ThreadId;
@@ -21,7 +21,7 @@ pub enum Until {
     Any(Vec<Until>),
 }
 
-/// What happened in a step that conditions are about.
+/// The events of a step that conditions are about.
 #[derive(Debug, Default)]
 pub(super) struct Heard {
     lines: Vec<Vec<u8>>,
@@ -29,7 +29,7 @@ pub(super) struct Heard {
 }
 
 impl Until {
-    /// Whether a step of several ticks might go past the moment in which it is met.
+    /// Returns whether a step of several ticks might miss the moment in which it is met.
     pub(super) fn needs_every_tick(&self) -> bool {
         match self {
             Self::True(_) => true,
@@ -47,7 +47,7 @@ impl Until {
         }
     }
 
-    /// Whether console lines matter.
+    /// Returns whether console lines matter.
     fn listens(&self) -> bool {
         match self {
             Self::Printed(_) => true,
@@ -56,7 +56,7 @@ impl Until {
         }
     }
 
-    /// Whether it is met.
+    /// Returns whether it is met.
     pub(super) fn is_met<T: Target>(&self, session: &Session<T>, heard: &Heard) -> bool {
         match self {
             Self::True(watch) => session.value(watch) != 0.0,

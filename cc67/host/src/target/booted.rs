@@ -56,14 +56,14 @@ const QUIET: u32 = 22;
 const ANSWER: u64 = 2 * SECOND;
 /// Longest time that a command takes: `Flash` 6.4 s; one of many lines sends all the while.
 const COMMAND: u64 = 10 * SECOND;
-/// How much more work of the computer a packet is than an instruction of bytecode.
+/// The work of the computer for a packet, relative to an instruction of bytecode.
 const PACKET_WORK: u64 = 8;
 
-/// How long nothing has happened.
+/// The time for which nothing has happened.
 #[derive(Clone, Copy, Debug, Default)]
 struct Silence {
     ticks: u32,
-    /// How often the firmware had looked for the PC when it began.
+    /// The number of times the firmware had polled for the PC when it began.
     looks: u64,
 }
 
@@ -76,7 +76,7 @@ impl Silence {
         }
     }
 
-    /// Whether nothing more is to come: nothing came for long, and the firmware obeys no command.
+    /// Returns whether nothing more is to come: nothing came for long, and the firmware executes no command.
     const fn is_over(&self, looks: u64) -> bool {
         self.ticks >= QUIET && looks > self.looks
     }
@@ -90,7 +90,7 @@ struct LoadedProgram {
     functions: BTreeMap<u32, u32>,
 }
 
-/// What a target is besides its board: all of it goes back with the board.
+/// The state of a target besides its board: all of it is restored with the board.
 #[derive(Clone, Debug)]
 struct State {
     loaded: [Option<Arc<LoadedProgram>>; ThreadId::MAX as usize],
@@ -104,7 +104,7 @@ struct State {
     answer: Silence,
     /// The cycle until which an answer is waited for.
     answer_until: u64,
-    /// Where the axes are commanded to be, as bits.
+    /// The commanded positions of the axes, as bits.
     commands: [u64; 8],
     /// Console lines are discarded.
     is_deaf: bool,
@@ -154,13 +154,13 @@ impl BootedTarget {
         self.board.file()
     }
 
-    /// Whether a pin is an output, and whether it is high.
+    /// Returns whether a pin is an output, and whether it is high.
     #[must_use]
     pub fn pin(&self, pin: usize) -> (bool, bool) {
         (self.board.is_output(pin), self.board.is_high(pin))
     }
 
-    /// Where the axes are commanded to be, and where they are, if this firmware says so.
+    /// Returns the commanded and the measured positions of the axes, if this firmware has the variables.
     #[must_use]
     pub fn axes(&self) -> Vec<(f64, f64)> {
         AxisId::all().filter_map(|axis| self.board.axis(axis)).collect()
@@ -171,7 +171,7 @@ impl BootedTarget {
         self.observers.sample(self.board.cycle());
     }
 
-    /// What the processor was seen doing, each with the time that its samples stand for.
+    /// Returns the sampled states of the processor, each with the time that its samples represent.
     pub fn sampled(&self) -> impl Iterator<Item = (&Doing, Cycles)> {
         self.observers.sampled()
     }
@@ -302,13 +302,13 @@ impl BootedTarget {
         self.state.rest.note(is_busy, looks);
     }
 
-    /// Whether something is still to come from around the board.
+    /// Returns whether something is still to come from the surroundings of the board.
     fn is_awaited(&self) -> bool {
         let memory = self.board.memory();
         self.board.around().is_some_and(|attached| attached.surroundings.is_busy(memory))
     }
 
-    /// Where the axes are commanded to be, as bits, to see whether they move.
+    /// Returns the commanded positions of the axes, as bits, to see whether they move.
     fn commands(&self) -> [u64; 8] {
         std::array::from_fn(|axis| {
             let place = AxisId::new(axis as i32).and_then(|axis| self.board.axis(axis));

@@ -40,12 +40,12 @@ impl Clock {
         Self { speed, is_running, since: (moment, tick), measured: (moment, tick, 0.0) }
     }
 
-    /// What it is set to.
+    /// Returns its speed.
     pub(super) const fn speed(&self) -> f64 {
         self.speed
     }
 
-    /// Whether it runs.
+    /// Returns whether it runs.
     pub(super) const fn is_running(&self) -> bool {
         self.is_running
     }

@@ -21,19 +21,19 @@ use runtime::trace::Item;
 
 use super::samples::Samples;
 
-/// What the layout is called.
+/// The version of the layout.
 const VERSION: u32 = 1;
-/// Where the samples begin.
+/// The offset of the samples.
 const SAMPLES: usize = 1728;
 /// Bits that have a direction.
 const PINS: u16 = 64;
 
-/// What a frame says beside what the board shows.
+/// The state of a frame besides the board's.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moment {
-    /// Whether the clock runs.
+    /// True if the clock runs.
     pub(super) is_running: bool,
-    /// Whether the board is shown as it was, and continued from there.
+    /// True if the board is shown at an earlier time, and continues from there.
     pub(super) is_past: bool,
     /// The last tick of the run.
     pub(super) end: Ticks,

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 /// Most numbers at a time.
 const NUMBERS: u32 = 10_000;
 
-/// What the numbers of the buffer are.
+/// The type of the buffer's numbers.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     Double,

@@ -1,4 +1,4 @@
-//! What a page has to know before the first frame: axes, bits, programs, and their sources.
+//! The data that a page needs before the first frame: axes, bits, programs, and their sources.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -38,7 +38,7 @@ pub(super) fn sources(show: &Show) -> Value {
     json!({ "kind": "sources", "sources": sources })
 }
 
-/// What does not change while the board runs, and what the programs call their bits.
+/// Returns the data that does not change while the board runs, and the programs' names of their bits.
 pub(super) fn hello(show: &Show) -> Value {
     let axes = AxisId::all().zip(&show.machine.file.axes).map(|(axis, described)| {
         let name = if described.name.is_empty() { format!("Axis {axis}") } else { described.name.clone() };
@@ -115,7 +115,7 @@ fn bits(show: &Show) -> Vec<Value> {
     used.into_iter().map(row).collect()
 }
 
-/// What is at a bit according to the machine file, in words.
+/// Describes the equipment at each bit of the machine file.
 fn places(show: &Show) -> BTreeMap<Bit, String> {
     let axis_name = |axis: AxisId| {
         let name = show.machine.file.axes.get(axis.index()).map_or("", |axis| &axis.name);

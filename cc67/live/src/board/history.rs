@@ -21,7 +21,7 @@ impl<T: Target> Stage<T> {
         }
     }
 
-    /// Whether the board is shown as it was, and continued from there.
+    /// Returns whether the board is shown at an earlier time, and continues from there.
     pub(super) fn is_past(&self, session: &Session<T>) -> bool {
         session.tick() < self.end(session)
     }
@@ -48,7 +48,7 @@ impl<T: Target> Stage<T> {
         }
     }
 
-    /// What was later than the present moment is gone.
+    /// Discards everything later than the present moment.
     fn cut(&mut self, session: &Session<T>) {
         self.note_branches();
         let tick = session.tick();
@@ -74,7 +74,7 @@ impl<T: Target> Stage<T> {
         Ok(())
     }
 
-    /// Why a run with what was done by hand alone would not be the same; `None` if it would.
+    /// Returns the reason for which a run with the actions by hand alone would not be the same; `None` if it would.
     fn obstacle(&self, session: &Session<T>) -> Option<String> {
         let loads = session.journal().iter().filter_map(|(tick, input)| match input {
             Input::Load(program) => Some((tick.get(), program.name())),

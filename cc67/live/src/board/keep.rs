@@ -20,7 +20,7 @@ const LONGEST: usize = 64;
 /// A test to be written.
 #[derive(Debug)]
 pub(super) struct Kept {
-    /// Where, without an ending.
+    /// The path, without an extension.
     path: PathBuf,
     source: String,
     stimulus: String,
@@ -29,14 +29,14 @@ pub(super) struct Kept {
     command: PathBuf,
 }
 
-/// What a test is made of.
+/// The parts of a test.
 #[derive(Debug)]
 pub(super) struct Run<'a> {
-    /// What was done by hand.
+    /// The actions by hand.
     pub(super) stimulus: &'a str,
-    /// How long, in seconds of board time.
+    /// The duration, in seconds of board time.
     pub(super) seconds: f64,
-    /// What the page has shown.
+    /// The console of the page.
     pub(super) console: Option<String>,
 }
 

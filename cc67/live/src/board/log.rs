@@ -12,7 +12,7 @@ use crate::names::decoded;
 /// Entries that are kept.
 const KEPT: usize = 5000;
 
-/// Who says something.
+/// The speaker of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Voice {
@@ -37,7 +37,7 @@ pub(super) struct LogEntry {
     seconds: f64,
     voice: Voice,
     text: String,
-    /// Where in the source.
+    /// The source file.
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -48,7 +48,7 @@ pub(super) struct LogEntry {
 #[derive(Debug, Default)]
 pub(super) struct Log {
     entries: VecDeque<LogEntry>,
-    /// How many of the last ones no page has.
+    /// The number of the latest ones that no page has.
     fresh: usize,
     /// The entries of each line of history that was left, as they were then.
     pub(super) left: BTreeMap<BranchId, Vec<LogEntry>>,
@@ -124,7 +124,7 @@ impl Log {
         self.entries.iter().filter(|entry| entry.tick > tick.get()).collect()
     }
 
-    /// What programs have printed until a tick, as `cc67 run --time` shows it; `None` if some of it is not kept.
+    /// Returns the console output until a tick, as `cc67 run --time` shows it; `None` if some of it is not kept.
     pub(super) fn console(&self, until: Ticks) -> Option<String> {
         let is_printed = |entry: &&LogEntry| entry.voice == Voice::Console && entry.tick <= until.get();
         let printed = self.entries.iter().filter(is_printed);

@@ -48,9 +48,9 @@ use samples::Samples;
 use threads::ThreadRow;
 use turns::Turns;
 
-/// How often the board is brought up to the clock.
+/// The interval at which the board is run up to the clock.
 const BEAT: Duration = Duration::from_millis(8);
-/// How long it may run in one beat, so that it still listens when it cannot keep up.
+/// The time for which it may run in one interval, so that it still responds when it cannot keep up.
 const STRETCH: Duration = Duration::from_millis(25);
 /// Ticks between two looks at how long it has run.
 const TICKS_AT_ONCE: u64 = 500;
@@ -58,7 +58,7 @@ const TICKS_AT_ONCE: u64 = 500;
 const REQUESTS_AT_ONCE: usize = 256;
 /// Most frames a second.
 const FRAMES: f64 = 60.0;
-/// How often pages receive what threads do.
+/// The interval at which pages receive the state of the threads.
 const THREADS: Duration = Duration::from_millis(100);
 /// Signals that are followed where nobody asks for others.
 const SIGNALS: &str = "dest0,dest1,dest2";
@@ -140,7 +140,7 @@ struct Told {
     open_box: Option<OpenBox>,
 }
 
-/// What belongs to showing a session.
+/// The state of a shown session, besides the session.
 #[derive(Debug)]
 struct Stage<T: Target> {
     show: Show,
@@ -153,11 +153,11 @@ struct Stage<T: Target> {
     pages: BTreeMap<PageId, Page>,
     /// The last messages to pages.
     told: Told,
-    /// Which thread had each of the last ticks.
+    /// The thread that had the processor in each of the last ticks.
     turns: Turns,
     /// For whoever else runs the session.
     wishes: Wishes,
-    /// Who else is with the board.
+    /// The other users of the board.
     company: Company<T>,
     /// The jogs of pages, and their rights over a connected controller.
     access: PageAccess,
@@ -472,7 +472,7 @@ impl<T: Target> Stage<T> {
         }
     }
 
-    /// Whether somebody else runs the session.
+    /// Returns whether the session is run elsewhere.
     fn is_guest(&self) -> bool {
         match self.show.time {
             TimeControl::Full | TimeControl::Real => false,

@@ -17,7 +17,7 @@ use crate::{Program, Show};
 pub(super) struct Programs {
     programs: Vec<Program>,
     options: Options,
-    /// Whether one that is saved is loaded at once.
+    /// True if a program that is saved is loaded at once.
     reloads: bool,
     /// Those that were saved without errors and are not loaded yet.
     waiting: BTreeMap<ThreadId, UserProgram>,
@@ -54,7 +54,7 @@ impl Programs {
         if self.reloads && may_load { self.take() } else { Vec::new() }
     }
 
-    /// What should be loaded: what waits; where nothing does, every program again.
+    /// Returns the programs to load: those that wait, or every program again if none does.
     pub(super) fn reload(&mut self) -> Vec<UserProgram> {
         if self.waiting.is_empty() {
             for program in self.programs.clone() {
@@ -95,7 +95,7 @@ impl Programs {
         Some(format!("{name} is not loaded: {first}{more}; the errors are at their lines in Source"))
     }
 
-    /// What pages are told: which programs have changed, and what is wrong with which.
+    /// Returns the message for pages: the programs that have changed, and the errors of each.
     pub(super) fn message(&self) -> Value {
         let waiting: Vec<_> = self.waiting.keys().map(|thread| thread.get()).collect();
         let error = |thread: ThreadId, error: &CompileMessage| {

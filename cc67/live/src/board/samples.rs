@@ -186,7 +186,7 @@ fn unquoted(text: &str) -> &str {
     inner.filter(|inner| !inner.contains('\'')).unwrap_or(text).trim_matches('"').trim()
 }
 
-/// What a name of a list stands for: `axis0` is where an axis is sent, where it is and what drives it.
+/// Returns the items of a name in a list: `axis0` is the commanded position, the position and the output of an axis.
 fn parts(name: &str) -> Vec<String> {
     match name.strip_prefix("axis").filter(|number| number.parse::<u8>().is_ok()) {
         Some(number) => ["dest", "pos", "out"].map(|kind| format!("{kind}{number}")).to_vec(),

@@ -11,9 +11,9 @@ use vm::wake::Wake;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct ThreadRow {
     thread: u8,
-    /// What it does, in one word: `empty`, `ready`, `running`, `waiting`, `paused`, `trapped`.
+    /// Its state, in one word: `empty`, `ready`, `running`, `waiting`, `paused`, `trapped`.
     state: &'static str,
-    /// What it waits for.
+    /// The reason for which it waits.
     waits: String,
     /// The most bytes of its stack in use so far, and those that the board has.
     stack_used: u32,
@@ -66,7 +66,7 @@ fn row<T: Target>(session: &Session<T>, thread: ThreadId) -> ThreadRow {
     ThreadRow { thread: thread.get(), state, waits, stack_used, stack_size: BOARD_STACK_USABLE, stack }
 }
 
-/// What a wake is, in words.
+/// Describes a wake.
 fn wait(wake: Wake) -> String {
     match wake {
         Wake::At(at) => format!("{:.3} s", at.get() as f64 / Cycles::PER_SECOND.get() as f64),

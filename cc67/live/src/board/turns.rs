@@ -1,4 +1,4 @@
-//! Which thread had the processor in each of the last ticks: some rotations of all threads.
+//! The thread that had the processor in each of the last ticks: some rotations of all threads.
 
 use std::collections::VecDeque;
 

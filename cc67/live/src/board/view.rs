@@ -16,10 +16,10 @@ pub struct LiveView<T: Target> {
     requests: Receiver<Incoming>,
 }
 
-/// What pages want of whoever runs the session.
+/// The requests of pages to the owner of the session.
 #[derive(Debug, Default)]
 pub struct Wishes {
-    /// What happened in ticks that a page has let pass.
+    /// The events of the ticks that a page has run.
     pub events: Vec<Event>,
     /// Lines of script commands to be sent to the board.
     pub commands: Vec<String>,

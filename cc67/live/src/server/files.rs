@@ -4,9 +4,9 @@
 #[derive(Debug)]
 pub(super) struct File {
     path: &'static str,
-    /// What kind it is, for the browser.
+    /// The MIME type, for the browser.
     pub(super) mime: &'static str,
-    /// What it holds.
+    /// The contents.
     pub(super) text: &'static str,
 }
 

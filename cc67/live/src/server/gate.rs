@@ -16,14 +16,14 @@ fn is_token(text: &str) -> bool {
     text.len() == TOKEN && text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
 }
 
-/// What a client has to show.
+/// The credentials that a client needs.
 #[derive(Debug)]
 pub(super) struct Gate {
     address: SocketAddr,
     token: String,
 }
 
-/// Why a client is not let in.
+/// The reason for which a client is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Refusal {
     /// It asks for another host.
@@ -77,7 +77,7 @@ impl Gate {
         format!("http://{address}/?token={}", self.token)
     }
 
-    /// Whether a request is answered.
+    /// Checks whether a request is answered.
     pub(super) fn check(&self, head: &Head) -> Result<(), Refusal> {
         let host = head.header("host").unwrap_or_default();
         if !self.is_ours(host) {
@@ -96,8 +96,8 @@ impl Gate {
         Ok(())
     }
 
-    /// Whether a host is this server. One that listens for other computers cannot know what they call it, but that it
-    /// is a number keeps renamed sites out.
+    /// Returns whether a host is this server. One that listens for other computers cannot know their name for it, but
+    /// requiring a number keeps renamed sites out.
     fn is_ours(&self, host: &str) -> bool {
         let port = self.address.port();
         let name = host.strip_suffix(&format!(":{port}")).unwrap_or(if port == 80 { host } else { "" });
@@ -119,7 +119,7 @@ fn is_same(one: &[u8], other: &[u8]) -> bool {
 mod tests {
     use super::*;
 
-    /// What a gate says to a request; `TOKEN` is the right one.
+    /// Checks a request at a gate; `TOKEN` is the right one.
     fn check(path: &str, headers: &str) -> Result<(), Refusal> {
         let gate = Gate::new("127.0.0.1:8067".parse().expect("an address"), None).expect("random numbers");
         let path = path.replace("TOKEN", &gate.token);

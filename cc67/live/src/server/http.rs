@@ -69,7 +69,7 @@ impl Head {
         found.next().is_none().then_some(value)
     }
 
-    /// What a client that asks for a socket has to have back.
+    /// Returns the key of a client that asks for a socket, to be answered.
     pub(super) fn websocket_key(&self) -> Option<&str> {
         let wants = self.header("upgrade")?.eq_ignore_ascii_case("websocket");
         let is_known = self.header("sec-websocket-version") == Some("13");
@@ -91,7 +91,7 @@ impl HttpAnswer {
         Self { status: "200 OK", mime: file.mime, body: file.text.as_bytes().to_vec() }
     }
 
-    /// Why there is none.
+    /// Creates an answer that reports an error.
     pub(super) fn problem(code: u16, why: &str) -> Self {
         let status = match code {
             400 => "400 Bad Request",

@@ -23,12 +23,12 @@ use http::{Head, HttpAnswer};
 
 /// Connections at a time.
 const CONNECTIONS: usize = 64;
-/// How long a client may take to say what it wants, and to take what it gets.
+/// The time limit for a client's request, and for taking the answer.
 const PATIENCE: Duration = Duration::from_secs(5);
 /// The pause after a connection that could not be taken.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// Why there is no server.
+/// The reason for which there is no server.
 #[derive(Debug, thiserror::Error)]
 pub enum ListenError {
     /// The address cannot be listened on.
@@ -36,7 +36,7 @@ pub enum ListenError {
     Address {
         /// The address.
         address: SocketAddr,
-        /// Why not.
+        /// The error of the system.
         error: io::Error,
     },
     /// The computer has no random numbers for the token.

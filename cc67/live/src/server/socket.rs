@@ -16,7 +16,7 @@ use tungstenite::{Bytes, Message, Utf8Bytes, WebSocket};
 use crate::desk::{Desk, Incoming, Mailbox, Outgoing, PageId};
 use crate::request::{LONGEST, PageRequest};
 
-/// How long it waits for what comes before it sends what waits.
+/// The time for which it waits for incoming messages before it sends the outgoing ones.
 const TURN: Duration = Duration::from_millis(5);
 /// Messages that are read before something is sent.
 const MESSAGES_AT_ONCE: usize = 32;
@@ -52,7 +52,7 @@ struct Connection<'a> {
     mailbox: &'a Mailbox,
 }
 
-/// Why a connection ends.
+/// The reason for which a connection ends.
 enum Gone {
     /// It is closed, or lost.
     Closed,

@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::cli::io::terminal;
 
-/// Whether editors may attach a debugger.
+/// Options for attaching an editor's debugger.
 #[derive(Debug, Args)]
 pub(crate) struct AttachArguments {
     /// Let an editor attach its debugger at this port (0: a free one); programs are then interpreted
@@ -15,7 +15,7 @@ pub(crate) struct AttachArguments {
 }
 
 impl AttachArguments {
-    /// Where editors attach, if they may, which is printed.
+    /// Opens the port at which editors attach, if they may, and prints it.
     pub(crate) fn open(&self) -> Result<Option<AttachPoint>> {
         let Some(port) = self.debug else { return Ok(None) };
         let point =

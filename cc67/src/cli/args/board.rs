@@ -18,7 +18,7 @@ use super::pc::PcArguments;
 use super::uart::UartArguments;
 use crate::cli::io::input::read;
 
-/// How close to the board a run is.
+/// The form of a run: fast, or closer to the board.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum RunForm {
     /// Threads are switched between statements only
@@ -29,7 +29,7 @@ pub(crate) enum RunForm {
 }
 
 impl RunForm {
-    /// Where threads lose the processor.
+    /// Returns the points at which threads lose the processor.
     pub(crate) const fn preemption(self) -> Preemption {
         match self {
             Self::Fast => Preemption::Segments,
@@ -42,7 +42,7 @@ impl RunForm {
 #[derive(Debug, Args)]
 #[command(next_help_heading = heading::BOARD)]
 pub(crate) struct BoardArguments {
-    /// How closely the board is simulated; `--as firmware FILE` executes your own firmware file
+    /// Simulate the board this closely; `--as firmware FILE` executes your own firmware file
     #[arg(long = "as", value_name = "HOW", value_enum, default_value_t, overrides_with = "form")]
     pub(crate) form: RunForm,
     /// Describe what is connected to the board, such as motors, switches, probes, encoders: a machine file (TOML)
@@ -87,7 +87,7 @@ pub(crate) struct BoardArguments {
     /// Simulate every tick and every wait in full; slower, with the same results
     #[arg(long, help_heading = heading::EXPERTS)]
     no_shortcuts: bool,
-    /// Whether what programs write to files is only seen by them.
+    /// True if files that programs write are only visible to them.
     #[arg(skip)]
     pub(crate) keeps_files: bool,
     #[command(flatten)]
@@ -168,7 +168,7 @@ impl BoardArguments {
         Ok(())
     }
 
-    /// What is connected to the board, and which of its remarks are shown.
+    /// Reads the machine file, and sets which remarks are shown.
     pub(crate) fn machine_file(&self) -> Result<MachineFile> {
         let mut machine = self.described()?;
         for switch in &self.remarks {
@@ -187,7 +187,7 @@ impl BoardArguments {
         Ok(machine)
     }
 
-    /// What the machine file describes.
+    /// Reads the machine file.
     fn described(&self) -> Result<MachineFile> {
         let Some(path) = self.machine.as_deref() else { return Ok(MachineFile::default()) };
         let bytes = read(path)?;
@@ -199,7 +199,8 @@ impl BoardArguments {
         Ok(machine)
     }
 
-    /// Where the PC's files are: in the folder that is named here, in that of the machine file, or in the usual one.
+    /// Returns the PC's files: those of the folder that is named here, of the machine file's folder, or of the default
+    /// one.
     pub(crate) fn files(&self, machine: &MachineFile) -> Box<dyn HostFiles> {
         let folder = self.files.as_deref().or(machine.pc.disk_root.as_deref().map(Path::new));
         let folder = folder.unwrap_or(Path::new("cc67-files"));

@@ -1,4 +1,4 @@
-//! What executes the programs, by name.
+//! Engines that execute programs, by name.
 
 use anyhow::{Result, ensure};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -27,7 +27,7 @@ impl Default for EngineName {
 }
 
 impl EngineName {
-    /// How sources are compiled for it.
+    /// Returns the options with which sources are compiled for it.
     pub(crate) fn options(self, compiler: &CompilerArguments) -> Result<Options> {
         let options = compiler.resolve()?;
         if self != Self::Dsp {

@@ -42,12 +42,12 @@ impl PcArguments {
         &self.answer
     }
 
-    /// Whether a file of the flash is named here.
+    /// Returns whether a file of the flash is named here.
     pub(crate) const fn has_flash(&self) -> bool {
         self.flash.is_some()
     }
 
-    /// What the PC answers: what the machine file says, and then these.
+    /// Returns the PC's answers: those of the machine file, overridden by these.
     pub(crate) fn answers(&self, machine: &MachineFile) -> Result<Option<Answers>> {
         let mut answers = machine.pc.answers.clone();
         if let Some(path) = self.host.as_ref().filter(|_| self.address().is_none()) {
@@ -65,7 +65,7 @@ impl PcArguments {
         Ok(Some(answers))
     }
 
-    /// What an M code stores before its program starts.
+    /// Returns the values that an M code stores before its program starts.
     pub(crate) fn mcode(&self) -> Result<Vec<Setting>> {
         self.mcode
             .as_deref()

@@ -16,7 +16,7 @@ pub(crate) struct ProgramFile {
 }
 
 impl ProgramFile {
-    /// Whether the file is an image rather than a source, by its name.
+    /// Returns whether the file is an image rather than a source, by its name.
     pub(crate) fn is_image(&self) -> bool {
         self.path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("out"))
     }

@@ -12,9 +12,9 @@ const USER_DATA: u32 = 200;
 /// Bytes to store before the programs start.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Setting {
-    /// Where.
+    /// The address.
     pub(crate) address: GuestAddr,
-    /// What, little endian.
+    /// The value, little endian.
     pub(crate) bytes: Vec<u8>,
 }
 
@@ -88,7 +88,7 @@ fn bytes(value: &str) -> Result<Vec<u8>> {
     Ok((number as u32).to_le_bytes().into())
 }
 
-/// What to write in place of a value that is none.
+/// Suggests a valid spelling in place of an invalid value.
 fn wanted(value: &str) -> String {
     let plain = value.trim_start_matches("f:").trim_start_matches("d:").replace(',', ".");
     match plain.parse::<f64>() {

@@ -9,7 +9,7 @@ use runtime::stimulus::Stimulus;
 use super::program::ProgramFile;
 use crate::cli::io::input::read as read_file;
 
-/// What messages call statements that are on the command line.
+/// The name of the command line's statements in messages.
 const OPTION: &str = "--stim";
 
 /// Reads all stimuli, one after another.

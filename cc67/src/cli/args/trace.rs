@@ -1,4 +1,4 @@
-//! What of a run is recorded, and into which files.
+//! Options for recording a run: the values and the files.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use kmotiondef::ThreadId;
 
 use super::heading;
 
-/// What to trace.
+/// Options for recording a run.
 #[derive(Debug, Args)]
 #[command(next_help_heading = heading::TRACES)]
 pub(crate) struct TraceArguments {
@@ -32,7 +32,7 @@ pub(crate) struct TraceArguments {
     pub(crate) trace_every: u64,
 }
 
-/// Where packets are written to, and whose.
+/// The file for packets, and the thread whose packets it gets.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct PacketFile {
     /// The thread; all if there is none.
@@ -57,7 +57,7 @@ fn is_number(text: &str) -> bool {
 }
 
 impl TraceArguments {
-    /// Whether nothing should be written.
+    /// Returns whether no file is requested.
     pub(crate) const fn is_unwritten(&self) -> bool {
         self.trace.is_empty() && self.trace_bits.is_none() && self.plot.is_empty()
     }

@@ -1,4 +1,4 @@
-//! What the serial port of the board is connected to: `--uart` and related options.
+//! The board's serial port: `--uart` and related options.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use runtime::MachineFile;
 
 use super::heading;
 
-/// What the serial port is connected to.
+/// The connection of the serial port.
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = heading::PC)]
 pub(crate) struct UartArguments {

@@ -66,10 +66,10 @@ pub(super) struct CompareArguments {
 /// Ticks in which axes of the firmware come to rest after the model has ended.
 const REST: u64 = 22;
 
-/// How a run ends that is cut off by its limit.
+/// The end of a run that the time limit cut off.
 const STILL_RUNNING: &str = "still running";
 
-/// How a program compares.
+/// The result of comparing a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Verdict {
     Equal,

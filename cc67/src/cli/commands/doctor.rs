@@ -41,7 +41,7 @@ pub(super) fn doctor(arguments: &DoctorArguments) -> Result<Exit> {
     Ok(Exit::Success)
 }
 
-/// What `cc67 --version --verbose` prints: the version, and how this command was built.
+/// Returns the text of `cc67 --version --verbose`: the version, and how this command was built.
 pub(super) fn version() -> String {
     let mut text = format!("cc67 {VERSION}\n");
     let file = env::current_exe().map_or_else(|error| error.to_string(), |path| path.display().to_string());

@@ -76,12 +76,12 @@ fn list() -> String {
     text
 }
 
-/// How many examples there are.
+/// Returns the number of examples.
 pub(super) fn count() -> usize {
     FILES.iter().filter(|(path, _)| is_program(path)).count()
 }
 
-/// Whether a file is a program with a golden.
+/// Returns whether a file is a program with a golden.
 fn is_program(path: &str) -> bool {
     path.strip_suffix(".c").is_some_and(|stem| content(&format!("{stem}.expected")).is_some())
 }

@@ -79,7 +79,7 @@ fn answer(name: &str) -> Option<String> {
     })
 }
 
-/// What lists the rows of a table.
+/// Returns a list of the rows of a table.
 fn list(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
     const LISTS: &[List] = &[
         ("warnings", warnings),
@@ -94,7 +94,7 @@ fn list(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
     LISTS.iter().find(|(name, _)| is_meant(name)).map(|(_, text)| text())
 }
 
-/// What can be explained: topics, lists, and the kinds of names.
+/// Lists all that can be explained: topics, lists, and the kinds of names.
 fn everything() -> String {
     let mut text = "Topics:\n".to_owned();
     for entry in topics::entries() {

@@ -27,22 +27,22 @@ use runtime::stimulus::MOST_PLANNED as STIMULUS_PLANS;
 /// A limit.
 #[derive(Clone, Copy, Debug)]
 pub struct Limit {
-    /// What is counted.
+    /// The counted items.
     pub what: &'static str,
     /// The most that is accepted.
     pub number: u64,
-    /// What happens beyond it.
+    /// The behaviour beyond it.
     pub beyond: &'static str,
 }
 
-/// What most limits of the compiler lead to.
+/// The consequence of most limits of the compiler.
 const ERROR: &str = "an error with this number";
 
 const fn limit(what: &'static str, number: u64, beyond: &'static str) -> Limit {
     Limit { what, number, beyond }
 }
 
-/// What the compiler refuses to go beyond.
+/// Limits of the compiler.
 pub const COMPILER: &[Limit] = &[
     limit("nested includes", pp::INCLUDE_DEPTH as u64, ERROR),
     limit("files included by one compilation, counting each inclusion", pp::INCLUDES as u64, ERROR),
@@ -62,7 +62,7 @@ pub const COMPILER: &[Limit] = &[
     limit("errors in one stage", MAX_ERRORS as u64, "the rest of the program is not checked, with a message"),
 ];
 
-/// What a program meets on the board.
+/// Limits of the board for a program.
 pub const BOARD: &[Limit] = &[
     limit("user threads, each with one program", ThreadId::MAX as u64, "the command line is refused"),
     limit(
@@ -81,7 +81,7 @@ pub const BOARD: &[Limit] = &[
     limit("files open for writing", 1, "`fopen` closes the earlier one"),
 ];
 
-/// What waits for a client of the board, see [`cc67_host`].
+/// Limits for clients of the board, see [`cc67_host`].
 pub const CLIENTS: &[Limit] = &[
     limit("console lines that no client has taken", CONSOLE_LINES as u64, "the board's own queue fills"),
     limit(
@@ -116,7 +116,7 @@ pub const CLIENTS: &[Limit] = &[
     ),
 ];
 
-/// What is read and drawn.
+/// Limits of files and pictures.
 pub const FILES: &[Limit] = &[
     limit("bytes of an image, a machine file or another input", FILE_BYTES, "the file is refused"),
     limit("bytes of saved data that `cc67 plot` draws", DATA_BYTES, "the file is refused"),

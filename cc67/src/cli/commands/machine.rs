@@ -26,7 +26,7 @@ enum Rule {
     Servo(Servo),
 }
 
-/// What the data sheets of a servo say.
+/// The data sheet of a servo.
 #[derive(Clone, Copy, Debug, Args)]
 struct Servo {
     /// Axis of the machine file

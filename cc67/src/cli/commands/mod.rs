@@ -240,7 +240,7 @@ fn command(arguments: Vec<OsString>) -> ExitCode {
         .into()
 }
 
-/// Whether the arguments are `--version` and `--verbose`, in either order.
+/// Returns whether the arguments are `--version` and `--verbose`, in either order.
 fn asks_for_version_in_full(words: &[OsString]) -> bool {
     let [_, options @ ..] = words else { return false };
     let has = |names: [&str; 2]| options.iter().any(|option| names.iter().any(|name| option == name));
@@ -292,7 +292,7 @@ impl Arguments {
     }
 }
 
-/// Whether a subcommand has an option, by its long or short name.
+/// Returns whether a subcommand has an option, by its long or short name.
 fn knows(subcommand: &str, option: &str) -> bool {
     description().find_subcommand(subcommand).is_some_and(|subcommand| has_option(subcommand, option))
 }

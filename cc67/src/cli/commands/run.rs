@@ -227,7 +227,7 @@ impl RunArguments {
         ));
     }
 
-    /// How the run is shown.
+    /// Returns the style in which the run is shown.
     fn style(&self) -> Style {
         // The console of a controller is shown as it comes.
         let is_live = self.realtime || self.board.controller.on.is_some();
@@ -241,7 +241,7 @@ fn active<T: Target>(session: &Session<T>) -> Vec<u8> {
     ThreadId::all().filter(is_active).map(ThreadId::get).collect()
 }
 
-/// How a run ended that has left something undone: which threads are still there and what they wait for.
+/// Describes the end of a run that has left something undone: the threads that are still active and what they wait for.
 fn how_it_ended<T: Target>(exit: Exit, session: &Session<T>, ending: &Ending) -> Option<String> {
     let moving = session.target().moving();
     let is_over = ending.has_all_ended() && moving.is_empty();
@@ -261,7 +261,7 @@ fn seconds_of<T: Target>(session: &Session<T>) -> f64 {
     session.tick().get() as f64 * TIMEBASE
 }
 
-/// Why a run has not ended by the usual limit, and what can be done.
+/// Explains that a run has not ended by the default limit, and what can be done.
 fn still_running(active: &[u8], moving: &[AxisId]) -> String {
     let after = format!("after {DEFAULT_LIMIT} s of board time");
     let (Some(first), []) = (moving.first(), active) else {

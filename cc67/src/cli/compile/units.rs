@@ -31,7 +31,7 @@ pub(crate) fn unit(path: &Path, bytes: Vec<u8>, options: &Options) -> Result<Com
     })
 }
 
-/// Whether a file is an object by its name.
+/// Returns whether a file is an object by its name.
 pub(crate) fn is_object_name(path: &Path) -> bool {
     let extension = path.extension().unwrap_or_default();
     extension.eq_ignore_ascii_case("o") || extension.eq_ignore_ascii_case("obj")

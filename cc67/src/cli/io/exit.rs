@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-/// What the command's exit code says.
+/// The exit code of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
     /// The programs ended, or the given time has passed.

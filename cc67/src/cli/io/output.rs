@@ -96,7 +96,7 @@ impl Write for Draft {
     }
 }
 
-/// What is written first and read once, for a file whose head is known last.
+/// A temporary file that is written first and read once, for a file whose head is known last.
 #[derive(Debug)]
 pub(crate) struct Scratch {
     writer: BufWriter<File>,

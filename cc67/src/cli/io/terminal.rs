@@ -41,7 +41,7 @@ pub(crate) fn aside(text: &str) {
     write(text);
 }
 
-/// Whether a stream shows colours.
+/// Returns whether a stream shows colours.
 pub(crate) fn color(stream: &impl IsTerminal) -> Color {
     let shown = stream.is_terminal() && std::env::var_os("NO_COLOR").is_none();
     if shown { Color::Always } else { Color::Never }

@@ -1,4 +1,4 @@
-//! What the compiler says of a program, on stderr.
+//! The compiler's messages about a program, on stderr.
 
 use std::io;
 
@@ -14,7 +14,7 @@ pub(crate) fn report_all(units: &[Compilation], levels: &Levels, format: Format)
     units.iter().filter(|unit| report(unit, levels, format)).count() > 0
 }
 
-/// How many warnings of a unit are shown.
+/// Returns the number of a unit's warnings that are shown.
 pub(crate) fn warnings(unit: &Compilation, levels: &Levels) -> usize {
     let shown = unit.diagnostics().into_iter().filter_map(|diagnostic| levels.apply(diagnostic));
     shown.filter(|diagnostic| diagnostic.severity == Severity::Warning).count()

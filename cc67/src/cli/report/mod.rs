@@ -1,4 +1,4 @@
-//! What commands show: the screen of a run, diagnostics, traces, plots, profiles.
+//! Output of commands: the screen of a run, diagnostics, traces, plots, profiles.
 
 pub(crate) mod diagnostics;
 pub(crate) mod numbers;

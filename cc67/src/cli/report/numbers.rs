@@ -57,7 +57,7 @@ impl Deviation {
         Self { seconds: self.seconds.max(other.seconds), number: self.number.max(other.number) }
     }
 
-    /// Whether nothing differs.
+    /// Returns whether nothing differs.
     pub(crate) fn is_none(self) -> bool {
         self == Self::default()
     }
@@ -121,7 +121,7 @@ fn unit(text: &str) -> Option<f64> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Printed {
     value: f64,
-    /// What its last digit is worth.
+    /// The value of one unit in its last digit.
     digit: f64,
 }
 
@@ -129,7 +129,7 @@ struct Printed {
 #[derive(Debug, Default, PartialEq)]
 struct Pieces<'a> {
     numbers: Vec<Printed>,
-    /// What is before, between and after them.
+    /// The texts before, between and after them.
     words: Vec<&'a str>,
 }
 
@@ -154,7 +154,7 @@ impl<'a> Pieces<'a> {
     }
 }
 
-/// Where the next number is, with its sign; digits after a letter belong to a word.
+/// Returns the range of the next number, with its sign; digits after a letter belong to a word.
 fn next_number(text: &str, from: usize) -> Option<std::ops::Range<usize>> {
     let bytes = text.as_bytes();
     let mut at = from;

@@ -2,15 +2,15 @@
 
 use std::collections::BTreeMap;
 
-/// How many different remarks are shown.
+/// The maximum number of different remarks that are shown.
 pub(crate) const MOST: usize = 1000;
 
 /// The remarks so far.
 #[derive(Debug, Default)]
 pub(crate) struct Repeats {
-    /// How often each was made again.
+    /// The number of repetitions of each.
     again: BTreeMap<String, u64>,
-    /// How many there were that differed from all that are shown, when no more were.
+    /// The number of further different remarks, once no more were shown.
     left_out: u64,
 }
 
@@ -29,7 +29,7 @@ impl Repeats {
         true
     }
 
-    /// What should be reported of those that were not shown.
+    /// Returns lines about the remarks that were not shown.
     pub(crate) fn summary(&self) -> Vec<String> {
         let repeated = self.again.iter().filter(|(_, again)| **again > 0);
         let mut lines: Vec<_> = repeated

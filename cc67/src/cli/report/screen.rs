@@ -1,4 +1,4 @@
-//! What a run shows, and where: console lines on stdout and everything else on stderr, or all of it as JSON on stdout.
+//! Output of a run: console lines on stdout and everything else on stderr, or all of it as JSON on stdout.
 //!
 //! With `--json` each line is an object with a `type`, and the last one, of type `end`, sums the run up. Texts that are
 //! not UTF-8 have the replacement character where they are not.
@@ -18,7 +18,7 @@ use crate::cli::io::exit::Exit;
 use crate::cli::io::terminal;
 use cc67_host::{Ending, EndingAxis, EndingThread, SourceCall, remark};
 
-/// How a run is shown.
+/// The style in which a run is shown.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Style {
     /// The board time comes before each console line.
@@ -55,7 +55,7 @@ enum JsonLine<'a> {
         seconds: f64,
         #[serde(skip_serializing_if = "Option::is_none")]
         code: Option<&'static str>,
-        /// Where the call is, if it is one of a program.
+        /// The location of the call, if a program made it.
         #[serde(flatten)]
         place: Option<CallLeft<'a>>,
         text: &'a str,
@@ -92,7 +92,7 @@ impl<'a> From<&'a Scene> for SceneLeft<'a> {
     }
 }
 
-/// What a run came to.
+/// The summary of a run.
 #[derive(Clone, Debug, Serialize)]
 struct Summary<'a> {
     /// `ended`, `limit`, `still running`, `trapped` or `unmet`.
@@ -102,7 +102,7 @@ struct Summary<'a> {
     /// Board time.
     seconds: f64,
     ticks: u64,
-    /// How many lines, traps and remarks there were.
+    /// The number of lines, traps and remarks.
     console_lines: u64,
     traps: u64,
     remarks: u64,
@@ -196,11 +196,11 @@ impl<'a> From<&'a EndingAxis> for AxisLeft<'a> {
 /// A program that a stimulus may load: its thread, its name, and what is known about it.
 pub(crate) type Offered = (ThreadId, String, DebugInfo);
 
-/// Where events go.
+/// The destination of events.
 pub(crate) struct Screen<W: Write> {
     out: W,
     style: Style,
-    /// What is known about the programs, and the thread of each.
+    /// Debug information of the programs, and the thread of each.
     programs: Vec<DebugInfo>,
     threads: Vec<ThreadId>,
     offered: Vec<Offered>,
@@ -208,7 +208,7 @@ pub(crate) struct Screen<W: Write> {
     traps: u64,
     remarks: u64,
     repeats: Repeats,
-    /// Who has read which inputs that nothing drives: told together when the run is over.
+    /// Inputs that nothing drives, with their readers: reported together when the run is over.
     undriven: Vec<(String, Bit, u8)>,
     error: Option<io::Error>,
 }
@@ -400,7 +400,7 @@ impl<W: Write> Screen<W> {
     }
 }
 
-/// Whether somebody reads what is shown.
+/// The presence of a reader of the output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub(crate) enum Audience {

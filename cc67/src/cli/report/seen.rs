@@ -1,11 +1,11 @@
-//! What of a run decides on the exit code.
+//! Events of a run that determine the exit code.
 
 use cc67_host::End;
 use runtime::{Event, EventKind};
 
 use crate::cli::io::exit::Exit;
 
-/// Whether something went wrong so far.
+/// The failures so far.
 #[derive(Debug, Default)]
 pub(crate) struct Seen {
     trapped: bool,

@@ -12,24 +12,24 @@ use crate::cli::io::{output, terminal};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Flash {
     path: Option<PathBuf>,
-    /// What it held at the start, or was written to it since; nothing if it was not there.
+    /// The contents at the start, or as last written; `None` if there was no file.
     before: Option<Vec<u8>>,
-    /// Whether what was written last could not be kept.
+    /// True if the last contents could not be written.
     is_lost: bool,
 }
 
 /// The reply of the board to a command that writes flash.
 const COMPLETE: &[u8] = b"Program Flash Image Complete";
-/// What it prints after that.
+/// The message that it prints after that.
 const VERIFIED: &[u8] = b"Verify Complete";
 
 /// Events that wait until the file has what the first of them acknowledges.
 #[derive(Debug, Default)]
 pub(super) struct Unacknowledged {
     events: Vec<Event>,
-    /// Whether there is a file to wait for.
+    /// True if there is a file to wait for.
     is_kept: bool,
-    /// Whether what was written last could not be kept.
+    /// True if the last contents could not be written.
     is_lost: bool,
 }
 
@@ -73,7 +73,7 @@ impl Flash {
         Ok(Self { path: Some(path), before, is_lost: false })
     }
 
-    /// What holds the events that come next.
+    /// Creates the queue for the next events.
     pub(super) fn held(&self) -> Unacknowledged {
         Unacknowledged { events: Vec::new(), is_kept: self.path.is_some(), is_lost: self.is_lost }
     }
@@ -93,7 +93,7 @@ impl Flash {
         held.hand_on(kept.is_ok(), sink);
     }
 
-    /// What a board begins with.
+    /// Returns the initial contents for a board.
     pub(super) fn contents(&self) -> Option<Vec<u8>> {
         self.before.clone()
     }

@@ -34,14 +34,14 @@ const PART_TIME: Duration = Duration::from_millis(10);
 #[derive(Debug)]
 struct Peer {
     name: String,
-    /// What it has sent; ends when it goes away.
+    /// The bytes that it has sent; ends when it goes away.
     incoming: Receiver<Vec<u8>>,
     outgoing: Outgoing,
     /// A program is waited for when the run is over.
     child: Option<Child>,
 }
 
-/// Where characters for the peer go.
+/// The destination of characters for the peer.
 struct Outgoing(Box<dyn Write>);
 
 impl std::fmt::Debug for Outgoing {
@@ -123,13 +123,13 @@ type PartRunner<'a, T> = &'a mut dyn FnMut(&mut Session<T>, Ticks, &mut dyn FnMu
 pub(super) struct SerialLine {
     peer: Option<Peer>,
     output: Option<Draft>,
-    /// Why a character could not be written.
+    /// The error that stopped writing.
     failed: Option<io::Error>,
-    /// What the board has sent and the peer has not been given.
+    /// The characters from the board that the peer has not been given.
     fresh: Vec<u8>,
-    /// Whether the loss of the peer was reported.
+    /// True if the loss of the peer was reported.
     is_told: bool,
-    /// How long a part of a run waits for the peer.
+    /// The time for which a part of a run waits for the peer.
     patience: Duration,
 }
 

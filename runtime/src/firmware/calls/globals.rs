@@ -6,7 +6,7 @@
 use kmotiondef::{GuestAddr, ThreadId};
 use vm::memory::GuestMemory;
 
-/// The initial data of each program; empty unless it is to be restored.
+/// The initial data of each program; empty unless programs get fresh globals when they are started again.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Globals {
     is_kept: bool,

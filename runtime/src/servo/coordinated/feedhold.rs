@@ -12,7 +12,7 @@ use crate::views::Typed;
 /// Seconds that stopping a path takes at least.
 const LEAST_STOPPING_TIME: f32 = 1e-6;
 
-/// How far a feedhold has come.
+/// The progress of a feedhold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum HoldState {
     /// None.

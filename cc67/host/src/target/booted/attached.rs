@@ -7,7 +7,7 @@ use runtime::surroundings::{Instant, Surroundings};
 /// Surroundings whose time begins when the programs start.
 #[derive(Clone, Debug)]
 pub(super) struct Attached {
-    /// What is around the board.
+    /// The surroundings of the board.
     pub(super) surroundings: Surroundings,
     /// The cycle, since power-up, that is their instant 0.
     pub(super) origin: u64,

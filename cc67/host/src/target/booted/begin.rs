@@ -162,7 +162,7 @@ fn load<A: boot::Around>(
     Ok(Arc::new(LoadedProgram { debug: program.debug_info(), functions: program.functions() }))
 }
 
-/// What a machine file describes, around this board.
+/// Creates the surroundings of this board from a machine file.
 fn surroundings(board: &BootedBoard, mut config: Config, machine: &MachineFile) -> Surroundings {
     config.machine_file = machine.clone();
     Surroundings::new(config, board.file().address("ThreadActive").unwrap_or_default())

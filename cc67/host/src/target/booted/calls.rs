@@ -17,7 +17,7 @@ pub(super) struct Entered {
     pub(super) code: Range<u32>,
     /// The packet that has called it, or one near it; `None` where the firmware has.
     pub(super) call: Option<u32>,
-    /// Where it returns to.
+    /// The return address.
     pub(super) back: u32,
     /// The stack pointer at its first packet.
     pub(super) stack: u32,
@@ -28,11 +28,11 @@ pub(super) struct Entered {
 struct ContextCalls {
     /// Outermost first.
     entered: Vec<Entered>,
-    /// Where its program was seen last.
+    /// The last known position of its program.
     last: Option<LastSeen>,
 }
 
-/// Where a program was seen last.
+/// The last known position of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct LastSeen {
     /// The packet.
@@ -75,7 +75,7 @@ impl OpenCalls {
         self.0[context.index()].entered.iter().rev()
     }
 
-    /// Where the program of a context was seen last.
+    /// Returns the last known position of a context's program.
     pub(super) fn last(&self, context: ContextId) -> Option<LastSeen> {
         self.0[context.index()].last
     }
@@ -95,7 +95,7 @@ pub(super) fn context(arrival: &Reached) -> Option<ContextId> {
     is_callback.then_some(ContextId::CALLBACK)
 }
 
-/// Whether an address is in the part of memory that programs are linked for.
+/// Returns whether an address is in the part of memory that programs are linked for.
 pub(super) fn is_of_program(at: u32) -> bool {
     (PROGRAM_BASE..PROGRAM_LIMIT).contains(&at)
 }

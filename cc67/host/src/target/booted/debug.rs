@@ -29,7 +29,7 @@ impl WatchedBytes {
     }
 }
 
-/// What a debugger has asked for, and where programs are.
+/// The requests of a debugger, and the positions of programs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Debugging {
     /// Calls are followed.

@@ -8,7 +8,7 @@ use compiler::Options;
 use compiler::firmware::{Firmware, FirmwareFile as Symbols};
 use compiler::target::Target as CodeTarget;
 
-/// Why a firmware file cannot be used.
+/// The reason for which a firmware file cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum FirmwareError {
     /// It cannot be read.
@@ -61,7 +61,7 @@ impl BootedFirmware {
         Self::new(&bytes)
     }
 
-    /// How programs for this firmware are compiled: for the processor, against its symbols.
+    /// Returns the options for programs of this firmware: for the processor, against its symbols.
     #[must_use]
     pub fn options(&self, options: Options) -> Options {
         Options { target: CodeTarget::C67x, firmware: self.symbols.clone(), ..options }

@@ -14,7 +14,7 @@ use super::attached::Attached;
 /// Cycles between two samples: a prime, so that no loop and no tick keeps step with them.
 const PERIOD: u64 = 997;
 
-/// How often the processor was seen at each place.
+/// The number of samples of each state of the processor.
 #[derive(Debug)]
 struct Samples {
     /// The cycle of the next sample.
@@ -28,7 +28,7 @@ pub(super) struct Observers {
     samples: Option<Samples>,
     /// The functions of the firmware by address, where calls are reported to the surroundings.
     functions: BTreeMap<u32, &'static str>,
-    /// Where a debugger stops.
+    /// The addresses at which a debugger stops.
     stops: BTreeSet<u32>,
 }
 
@@ -38,7 +38,7 @@ impl Observers {
         self.samples = Some(Samples { next: now + PERIOD, seen: BTreeMap::new() });
     }
 
-    /// What the processor was seen doing, each with the time that its samples stand for.
+    /// Returns the sampled states of the processor, each with the time that its samples represent.
     pub(super) fn sampled(&self) -> impl Iterator<Item = (&Doing, Cycles)> {
         let seen = self.samples.iter().flat_map(|samples| &samples.seen);
         seen.map(|(doing, count)| (doing, Cycles::new(count * PERIOD as i64)))

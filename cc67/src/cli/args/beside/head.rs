@@ -7,10 +7,10 @@ use anyhow::{Context, Result, bail};
 use super::words::split;
 use crate::cli::io::input::read;
 
-/// What the first line of a program begins with that says how it is run.
+/// The beginning of a program's first line that says how it is run.
 const HEAD: &str = "// cc67: ";
 
-/// What the first line of a program says.
+/// The first line of a program.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Head {
     /// `// cc67: run OPTION … also N:FILE …`
@@ -22,7 +22,7 @@ pub(crate) enum Head {
 }
 
 impl Head {
-    /// What the first line of a file says.
+    /// Reads the first line of a file.
     ///
     /// # Errors
     /// It is not understood, or cannot be read.
@@ -33,7 +33,7 @@ impl Head {
         Self::parse(line.trim_end()).with_context(|| format!("{}, line 1", path.display()))
     }
 
-    /// What a line says.
+    /// Parses a first line.
     ///
     /// # Errors
     /// It is not understood.

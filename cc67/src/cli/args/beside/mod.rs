@@ -40,7 +40,7 @@ const FILES: &[&str] = &[
     "--plot",
 ];
 
-/// Which programs come first, and whether what is beside them is used.
+/// Options for the files beside a program.
 #[derive(Debug, Args)]
 #[command(next_help_heading = heading::PROGRAMS)]
 pub(crate) struct BesideArguments {
@@ -52,20 +52,20 @@ pub(crate) struct BesideArguments {
     pub(crate) no_sidecar: bool,
 }
 
-/// What was found.
+/// The files and options found beside a program.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(crate) struct Beside {
     /// Options to put before those of the command line.
     pub(crate) options: Vec<OsString>,
     /// Programs to put after those of the command line.
     pub(crate) also: Vec<OsString>,
-    /// What was taken, for the line that says so.
+    /// The files that were used, for the line that names them.
     said: Vec<String>,
 }
 
 impl Beside {
-    /// What is beside the first program of a command, whose arguments are `given`; of the first line what the command
-    /// knows.
+    /// Looks for files beside the first program of a command whose arguments are `given`; of the first line, only
+    /// options that the command has are taken.
     ///
     /// # Errors
     /// What is wrong with the first line or the project file.
@@ -109,7 +109,7 @@ impl Beside {
         Ok(beside)
     }
 
-    /// Whether there is nothing.
+    /// Returns whether there is nothing.
     pub(crate) fn is_empty(&self) -> bool {
         self.options.is_empty() && self.also.is_empty()
     }
@@ -160,7 +160,7 @@ fn known(options: Vec<String>, knows: impl Fn(&str) -> bool) -> Vec<String> {
     options.into_iter().filter(take).collect()
 }
 
-/// Whether an option is among arguments.
+/// Returns whether an option is among arguments.
 fn names(arguments: &[OsString], option: &str) -> bool {
     arguments.iter().filter_map(|argument| argument.to_str()).any(|argument| {
         argument.strip_prefix(option).is_some_and(|rest| rest.is_empty() || rest.starts_with('='))

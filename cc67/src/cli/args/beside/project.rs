@@ -45,7 +45,7 @@ const COMMANDS: &[&str] = &["run", "test", "live", "debug"];
 /// A project file.
 #[derive(Debug)]
 pub(crate) struct Project {
-    /// Where it is.
+    /// Its path.
     pub(crate) path: PathBuf,
     /// Options of every command.
     common: Vec<OsString>,

@@ -57,7 +57,7 @@ pub(super) struct BuildArguments {
     target: TargetArguments,
 }
 
-/// What can be written.
+/// A form of output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Emit {
     /// The linked program, FILE(N).out
@@ -109,7 +109,7 @@ impl BuildArguments {
         self.target.named().unwrap_or(Target::C67x)
     }
 
-    /// What the controller's code cannot be made into.
+    /// Refuses forms of output that code for the controller does not have.
     fn check_target(&self, emit: &[Emit]) -> Result<()> {
         if self.target() == Target::Sim {
             ensure!(
@@ -221,7 +221,7 @@ impl BuildArguments {
     }
 }
 
-/// How many warnings the user has seen.
+/// Returns how many warnings were shown.
 fn warnings(units: &[Compilation], levels: &Levels) -> usize {
     units.iter().map(|unit| diagnostics::warnings(unit, levels)).sum()
 }
@@ -252,7 +252,7 @@ fn sizes(linked: &Linked, warnings: usize) -> String {
     format!("No Errors, {warnings}, text={text}, bss={}, data={data}, total={total}", linked.bss.size)
 }
 
-/// Whether a path has one of the given extensions, in any letter case.
+/// Returns whether a path has one of the given extensions, in any letter case.
 fn has_extension(path: &Path, extensions: &[&str]) -> bool {
     let own = path.extension().unwrap_or_default();
     extensions.iter().any(|extension| own.eq_ignore_ascii_case(extension))

@@ -20,40 +20,40 @@ const KSTEP_PINS: std::ops::Range<usize> = 2..4;
 /// Digits of positions that are compared: a thousandth.
 const POSITION: f64 = 1e-3;
 
-/// What a line is.
+/// The kind of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LineKind {
     Console,
     Reply,
-    /// What the PC does.
+    /// An action of the PC.
     Host,
     /// An expectation of the stimulus that is not met.
     Unmet,
 }
 
-/// What a run came to, on either board.
+/// The outcome of a run, on either board.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Outcome {
     /// Board time in seconds, what it is, text.
     pub(super) lines: Vec<(f64, LineKind, String)>,
-    /// How it ended.
+    /// The end of the run.
     pub(super) end: String,
     /// When it ended.
     pub(super) ticks: Ticks,
-    /// What the serial port has sent, if somebody listens.
+    /// The characters that the serial port has sent, if it is recorded.
     serial: Vec<u8>,
     user_data: Vec<u32>,
     /// The state before the run, of a board that was not reset.
     before: Before,
     /// Commanded and measured position of each axis.
     pub(super) axes: Vec<(f64, f64)>,
-    /// How far each axis is commanded within the tolerance of time, where it is still moving.
+    /// The command's movement of each axis within the tolerance of time, if it is still moving.
     pub(super) reach: Vec<f64>,
-    /// Where the axes are at its very end: what came to rest a little later.
+    /// The positions of the axes at the very end: those that came to rest a little later.
     pub(super) last_axes: Vec<(f64, f64)>,
     /// The pins at the end.
     pins: Vec<Pin>,
-    /// Whether a KStep is there.
+    /// True if there is a KStep.
     has_kstep: bool,
 }
 
@@ -111,7 +111,7 @@ impl Outcome {
         self.pins = pins(session);
     }
 
-    /// What the board with the firmware file is left with.
+    /// Reads the final state of the board with the firmware file.
     pub(super) fn look_at_firmware(&mut self, session: &Session<BootedTarget>) {
         let target = session.target();
         if let Some(persist) = target.file().address("persist") {
@@ -130,7 +130,7 @@ impl Outcome {
         pairs.map(|(one, two)| (one.0 - two.0).abs()).fold(0.0, f64::max)
     }
 
-    /// What differs, in the order in which it is met, and what is near enough.
+    /// Returns the differences, in the order in which they occur, and the values within tolerance.
     pub(super) fn differences(&self, firmware: &Self, allowed: Option<Tolerance>) -> (Vec<Difference>, Near) {
         let mut near = Near::default();
         let mut found = self.lines_that_differ(firmware, allowed, &mut near);

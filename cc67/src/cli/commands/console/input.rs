@@ -1,4 +1,4 @@
-//! Where lines come from: the keyboard, with history and completion, or a script.
+//! Input lines: from the keyboard, with history and completion, or from a script.
 
 use std::borrow::Cow;
 use std::io;
@@ -19,7 +19,7 @@ use rustyline::{Context, Editor, Helper};
 use super::screen::Printer;
 use super::words;
 
-/// What a person does.
+/// An input.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Input {
     /// A line.
@@ -99,7 +99,7 @@ pub(super) fn script_beside() -> Lines {
 /// Completes words, and hints at what a command takes.
 struct Guide;
 
-/// What the word at the cursor may become: where it begins, and the names.
+/// Returns the completions of the word at the cursor: its start, and the names.
 fn candidates(line: &str, cursor: usize) -> (usize, Vec<String>) {
     let before = line.get(..cursor).unwrap_or(line);
     let part = before.rfind(';').map_or(0, |at| at + 1);

@@ -39,7 +39,7 @@ use crate::cli::report::seen::Seen;
 use crate::cli::report::trace::{self, Trace};
 use crate::cli::session::{Rig, Setup, Work};
 
-/// How often a board that keeps pace with the clock is brought up to it.
+/// The interval at which a board that keeps pace with the clock is run.
 const BEAT: Duration = Duration::from_millis(10);
 /// Ticks that a board which does not keep pace runs before the next look at the keyboard.
 const STRETCH: u64 = 1111;
@@ -94,7 +94,7 @@ pub(super) fn console(arguments: &ConsoleArguments) -> Result<Exit> {
 }
 
 impl ConsoleArguments {
-    /// How the board is served to programs of the PC.
+    /// Returns the terms on which the board is served to programs of the PC.
     fn terms(&self, address: &str) -> Terms<'_> {
         Terms {
             addresses: vec![address.to_owned()],
@@ -118,7 +118,7 @@ impl Work for &ConsoleArguments {
     }
 }
 
-/// Whether there is more to come.
+/// The control flow after a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 enum Flow {
@@ -359,10 +359,10 @@ impl<'a, T: Target> Console<'a, T> {
     }
 }
 
-/// Where the events of the board go.
+/// The destinations of the board's events.
 struct Shown<'a> {
     screen: Screen,
-    /// What they mean for the exit code.
+    /// The events that matter for the exit code.
     seen: Seen,
     trace: Option<Trace>,
     arguments: &'a ConsoleArguments,

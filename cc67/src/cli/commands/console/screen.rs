@@ -1,4 +1,4 @@
-//! What the console shows, and where.
+//! Output of the console.
 //!
 //! At a terminal everything goes through the line editor, which keeps the line being typed below it. Else lines of the
 //! board go to stdout, and what the simulation reports to stderr.
@@ -16,15 +16,15 @@ use cc67_host::remark;
 /// The printer of a line editor.
 pub(super) type Printer = Box<dyn ExternalPrinter + Send>;
 
-/// Where lines go.
+/// The destination of lines.
 pub(super) struct Screen {
     time: bool,
     printer: Option<Printer>,
     error: Option<io::Error>,
-    /// Whether inputs that nothing drives are told together at the end; then those that were read.
+    /// True if inputs that nothing drives are reported together at the end; then those that were read.
     groups: bool,
     undriven: Vec<(String, Bit, u8)>,
-    /// What is known about the loaded programs.
+    /// Debug information of the loaded programs.
     pub(super) programs: Vec<DebugInfo>,
 }
 
@@ -40,12 +40,12 @@ impl Screen {
         self.printer = Some(printer);
     }
 
-    /// Whether nobody reads what is shown any more.
+    /// Returns whether the reader of the output is gone.
     pub(super) const fn is_closed(&self) -> bool {
         self.error.is_some()
     }
 
-    /// What went wrong with writing; a reader that has seen enough, as `head` has, is not a failure.
+    /// Returns the first error of writing; a reader that closes early, as `head` does, is not a failure.
     pub(super) fn finish(&mut self) -> io::Result<()> {
         if !self.undriven.is_empty() {
             self.note(&remark::undriven(&self.undriven));

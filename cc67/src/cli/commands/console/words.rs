@@ -10,7 +10,7 @@ use runtime::stimulus::Stimulus;
 use crate::cli::args::time::seconds;
 use compiler::words::suggest;
 
-/// What a line of the console's own asks for.
+/// A command of the console itself.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Word {
     /// Explain everything, or a word, command or firmware function.

@@ -79,7 +79,7 @@ struct LaunchArguments {
 }
 
 impl LaunchArguments {
-    /// What the words say, and the files beside the first program, as on a command line.
+    /// Parses the words, and adds the files beside the first program, as on a command line.
     fn with_sidecars(words: &[OsString]) -> Result<Self> {
         let arguments = Self::try_parse_from(words)?;
         let Some(programs) = arguments.debug.with_sidecars() else { return Ok(arguments) };

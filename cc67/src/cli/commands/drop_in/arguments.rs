@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use compiler::pp::Standard;
 
-/// What is shown when there is nothing to compile.
+/// The text that is shown when there is nothing to compile.
 pub(super) const HELP: &str = "\
 usage: tcc67 [options] program.c firmware.out
 
@@ -25,24 +25,24 @@ usage: tcc67 [options] program.c firmware.out
 This is cc67 in place of the vendor's compiler; `cc67 --help` shows its own commands.
 ";
 
-/// Where a program goes unless an address is given.
+/// The default address of a program.
 pub(super) const DEFAULT_TEXT: u32 = 0x400;
 
 /// The text begins at a multiple of this.
 const FETCH_PACKET: u32 = 32;
 
-/// What a command line asks for.
+/// The meaning of a command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Invocation {
     /// To compile.
     Compile(Box<CompileRequest>),
     /// Nothing; help is due.
     Help,
-    /// Where the compiler looks for its files.
+    /// Print the directories in which the compiler looks for its files.
     SearchDirectories,
 }
 
-/// What should be compiled, and how.
+/// A request to compile a program.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct CompileRequest {
     /// The source file.
@@ -57,7 +57,7 @@ pub(super) struct CompileRequest {
     pub(super) data: Option<u32>,
     /// Address of the uninitialised data, if not after the initialised.
     pub(super) bss: Option<u32>,
-    /// Whether symbols and line numbers are written.
+    /// True if symbols and line numbers are written.
     pub(super) has_symbols: bool,
     /// Directories of included files.
     pub(super) include_dirs: Vec<PathBuf>,
@@ -65,11 +65,11 @@ pub(super) struct CompileRequest {
     pub(super) defines: Vec<(String, Option<String>)>,
     /// Macros to undefine.
     pub(super) undefines: Vec<String>,
-    /// Which C the program is written in.
+    /// The C standard of the program.
     pub(super) standard: Standard,
 }
 
-/// How an option takes its argument.
+/// The way in which an option takes its argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Takes {
     /// It has none.
@@ -82,7 +82,7 @@ enum Takes {
     Rest,
 }
 
-/// What an option means.
+/// The meaning of an option.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum OptionMeaning {
     Text,
@@ -97,7 +97,7 @@ enum OptionMeaning {
     SearchDirectories,
     /// Options of the linker, some of which matter.
     Linker,
-    /// Which C the program is written in.
+    /// The C standard of the program.
     Standard,
     /// Accepted for old command lines; nothing follows from it here.
     Nothing,

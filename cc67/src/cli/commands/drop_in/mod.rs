@@ -36,7 +36,7 @@ use compiler::{Compilation, Options, files, image};
 /// The name under which programs expect the vendor's compiler.
 const NAME: &str = "tcc67";
 
-/// Whether the arguments of a process, the program's name first, are meant for the vendor's compiler.
+/// Returns whether the arguments of a process, the program's name first, are meant for the vendor's compiler.
 pub(super) fn is_meant(arguments: &[OsString]) -> bool {
     let Some((program, rest)) = arguments.split_first() else { return false };
     let stem = Path::new(program).file_stem().unwrap_or_default();
@@ -110,7 +110,7 @@ fn compile(request: &CompileRequest) -> Result<(), String> {
 
 /// The name of the firmware file of the older board.
 const OTHER_FIRMWARE: &str = "DSPKMotion";
-/// Why a program is compiled for the older board, when it is not meant (host-protocol.md section 9, item 7).
+/// The reason for which a program is compiled for the older board by mistake (host-protocol.md section 9, item 7).
 const MISTAKEN: &str =
     "the KMotion library takes a board that is in use by another client for the older KMotion: try again";
 
@@ -171,7 +171,7 @@ fn thread(text: u32) -> Option<ThreadId> {
     own.or_else(|| ThreadId::all().next())
 }
 
-/// What there is to say about a compilation, if it has errors.
+/// Returns the errors of a compilation as text, if it has any.
 fn silent_without_errors(compilation: &Compilation) -> Result<(), String> {
     let mut levels = Levels::default();
     levels.show(Lint::Vendor);

@@ -15,7 +15,7 @@ pub(super) fn list() -> String {
     })
 }
 
-/// What a bit is, if the name is one of a bit.
+/// Explains a bit, if the name is one of a bit.
 pub(super) fn answer(name: &str) -> Result<Option<String>> {
     let lower = name.to_lowercase();
     let digits = lower.strip_prefix("bit").unwrap_or(&lower).trim();
@@ -41,7 +41,7 @@ pub(super) fn answer(name: &str) -> Result<Option<String>> {
     )))
 }
 
-/// How a program uses it.
+/// Describes its use by a program.
 fn use_of(range: &BitRange, number: u32) -> String {
     match range.direction {
         BitDirection::Programmable => format!(
@@ -70,7 +70,7 @@ fn use_of(range: &BitRange, number: u32) -> String {
     }
 }
 
-/// What has to be there for it, and how the simulated machine drives it.
+/// Describes the hardware that it needs, and how the simulated machine drives it.
 fn outside(range: &BitRange, number: u32) -> String {
     let board = match range.kind {
         BitKind::KanalogInput

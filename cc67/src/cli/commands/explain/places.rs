@@ -33,7 +33,7 @@ pub(super) fn variables() -> String {
     })
 }
 
-/// What variables, structures, fields and constants of a name are.
+/// Explains variables, structures, fields and constants of a name.
 pub(super) fn answer(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
     let mut parts = Vec::new();
     for row in FIRMWARE_VARIABLES.iter().filter(|row| is_meant(row.name)) {
@@ -125,7 +125,7 @@ fn modes_of_input() -> Vec<&'static str> {
     names
 }
 
-/// Which field takes a mode.
+/// Returns the field that takes a mode.
 fn used_by(name: &str) -> String {
     ["InputMode", "OutputMode", "BacklashMode"]
         .into_iter()

@@ -189,7 +189,7 @@ impl Work for LivePage<'_> {
     }
 }
 
-/// What a page shows beside a board: the programs, and what is connected.
+/// Collects the contents of a page besides the board: the programs, and the equipment that is connected.
 pub(super) fn show(
     programs: &[OsString],
     board: &BoardArguments,
@@ -281,7 +281,7 @@ impl LiveArguments {
         Setup::new(started, &self.board, &self.compiler)
     }
 
-    /// What the page shows beside the board.
+    /// Returns the options of the page.
     fn show(&self) -> Result<Show> {
         Ok(Show {
             watch: self.watch.clone(),
@@ -294,7 +294,7 @@ impl LiveArguments {
         })
     }
 
-    /// What `cc67 run` has to be told for the same board.
+    /// Returns the options with which `cc67 run` creates the same board.
     fn test_options(&self) -> Vec<TestOption> {
         let text = |option: &str, value: &str| TestOption::Text(format!("{option}={value}"));
         let board = &self.board;

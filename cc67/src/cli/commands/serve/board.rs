@@ -28,15 +28,15 @@ pub(super) struct ServedBoard<'a, T: Target> {
     board: Served<T>,
     terms: &'a Terms<'a>,
     pub(super) link: Unread,
-    /// Whether a client is the console.
+    /// True if a client receives the console.
     pub(super) is_heard: bool,
     log: Option<ExchangeLog>,
     seen: Seen,
     trace: Option<Trace>,
     has_told_replies: bool,
-    /// Whether what the board answers is for a page.
+    /// True if the board's answers are for a page.
     is_for_page: bool,
-    /// Whether programs that print wait, as too much waits for the console.
+    /// True if programs that print wait, as too much output is unread.
     is_held_back: bool,
     /// The wire to the one client that has the link to itself, if the board is served so.
     pub(super) wire: Option<WireEnd>,
@@ -72,7 +72,7 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         self.board.tick()
     }
 
-    /// Whether a debugger may be attached, or is.
+    /// Returns whether a debugger may be attached, or is.
     pub(super) fn is_attended(&self) -> bool {
         self.board.is_attended()
     }
@@ -154,7 +154,7 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         }
     }
 
-    /// Whether a command waits for data lines.
+    /// Returns whether a command waits for data lines.
     pub(super) fn is_in_command(&self) -> bool {
         self.board.is_in_command()
     }
@@ -189,7 +189,7 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         }
     }
 
-    /// Whether there is a log.
+    /// Returns whether there is a log.
     pub(super) const fn is_logged(&self) -> bool {
         self.log.is_some()
     }

@@ -1,4 +1,4 @@
-//! What each call does, as the vendor's server does it. Source: host-protocol.md sections 7 to 9.
+//! Calls of the vendor's server. Source: host-protocol.md sections 7 to 9.
 
 use std::time::{Duration, Instant};
 
@@ -13,9 +13,9 @@ use crate::cli::io::terminal;
 
 /// Before a line that is not echoed.
 pub(super) const SILENT: &[u8] = b"\x1b\x01";
-/// How long the answer to a line is waited for, in milliseconds.
+/// The time limit for the answer to a line, in milliseconds.
 const ANSWER_WITHIN: u32 = 3000;
-/// How long each line is waited for until `Ready` comes.
+/// The time limit for each line before `Ready`, in milliseconds.
 const READY_WITHIN: u32 = 100;
 /// The identifiers of the boards: there is one.
 pub(super) const LOCATIONS: [i32; 1] = [1];
@@ -23,7 +23,7 @@ pub(super) const LOCATIONS: [i32; 1] = [1];
 const FIRMWARE: i32 = 2;
 /// The result of a line that does not come in time.
 const TIMEOUT: i32 = 2;
-/// What a client hears of when it gives up the link.
+/// The error that a client receives when it gives up the link.
 const FAILED: &str = "Read Failed - Auto Disconnect";
 
 impl<T: Target> Desk<'_, T> {

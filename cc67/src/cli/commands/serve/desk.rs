@@ -23,7 +23,7 @@ use crate::cli::io::exit::Exit;
 use crate::cli::io::pace::{Pace, now};
 use crate::cli::io::terminal;
 
-/// How often a board at the pace of a clock is brought up to it while nobody asks anything.
+/// The interval at which a board at the pace of a clock is run while there is no request.
 const BEAT: Duration = Duration::from_millis(10);
 /// The same while somebody waits for the board, or for the clock.
 const SHORT_BEAT: Duration = Duration::from_millis(1);
@@ -31,18 +31,18 @@ const SHORT_BEAT: Duration = Duration::from_millis(1);
 const STRETCH: u64 = 111;
 /// Ticks that the board may be ahead of a clock at the board's own pace, before requests wait for the clock: 1 ms.
 const AHEAD: f64 = 11.0;
-/// How long the board runs at once until it is looked whether a client asks something.
+/// The time for which the board runs before requests are polled again.
 const AT_ONCE: Duration = Duration::from_millis(25);
 /// The same while a request waits.
 const BEFORE_ANSWER: Duration = Duration::from_millis(5);
 /// Seconds of the clock by which a board may be late; one that is later does not catch up.
 const PATIENCE: f64 = 0.25;
-/// How long a command from a page waits for a token that a client has.
+/// The time for which a command from a page waits for a token that a client holds.
 const TOKEN_PATIENCE: Duration = Duration::from_millis(500);
 /// Console lines that are sent before one reply at most.
 const LINES_AT_ONCE: usize = 10;
 
-/// What comes to the desk.
+/// A message to the desk.
 #[derive(Debug)]
 pub(super) enum Note {
     /// A client, and where its answers go.
@@ -63,7 +63,7 @@ pub(super) enum Note {
     End,
 }
 
-/// Whether there is more to come.
+/// The control flow after a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 enum Course {
@@ -71,7 +71,7 @@ enum Course {
     Leave,
 }
 
-/// What a client waits for.
+/// A reply that a client waits for.
 #[derive(Clone, Debug)]
 pub(super) enum Wanted {
     /// A line of a reply, without its end.
@@ -98,11 +98,11 @@ pub(super) struct Waiting {
 pub(super) struct Token {
     /// The client that has taken it last.
     pub(super) taken_by: Option<u64>,
-    /// Whether it was reported that this client waits for itself.
+    /// True if it was reported that this client waits for itself.
     pub(super) has_told: bool,
 }
 
-/// Who receives the console.
+/// The receiver of the console.
 #[derive(Debug, Default)]
 pub(super) struct ConsoleClient {
     /// The client, if one has registered.
@@ -114,9 +114,9 @@ pub(super) struct ConsoleClient {
 /// The link to the board, as clients find it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LinkState {
-    /// Whether it is open.
+    /// True if it is open.
     pub(super) is_open: bool,
-    /// Whether its loss was reported since something was read.
+    /// True if its loss was reported since the last read.
     pub(super) has_told_failure: bool,
 }
 
@@ -127,7 +127,7 @@ pub(super) struct Desk<'a, T: Target> {
     /// The clock, if the board keeps pace with one, and its speed.
     clock: Option<(Pace, f64)>,
     inbox: Receiver<Note>,
-    /// What has come and is not taken yet.
+    /// The messages that have arrived and are not taken yet.
     notes: VecDeque<Note>,
     clients: BTreeMap<u64, Sender<Vec<Vec<u8>>>>,
     waiting: Vec<Waiting>,
@@ -139,7 +139,7 @@ pub(super) struct Desk<'a, T: Target> {
     pub(super) page: PageState,
 }
 
-/// What pages have done, and wish.
+/// The actions and requests of pages.
 #[derive(Debug, Default)]
 pub(super) struct PageState {
     /// Since when the clock is stopped.
@@ -192,7 +192,7 @@ impl<'a, T: Target> Desk<'a, T> {
         self.board.finish()
     }
 
-    /// What comes next; nothing if it is time to look at the board.
+    /// Takes the next message; `None` if it is time to run the board.
     fn next_note(&mut self) -> Option<Note> {
         if let Some(note) = self.notes.pop_front() {
             return Some(note);
@@ -438,13 +438,14 @@ impl<'a, T: Target> Desk<'a, T> {
         if self.is_clocked() { 0 } else { (length.as_secs_f64() / TIMEBASE).round() as u64 }
     }
 
-    /// Whether the time of a wait has passed: on the clock; or on the board, and for ReadLineTimeOut on both.
+    /// Returns whether the time limit of a wait has passed: on the clock; or on the board, and for ReadLineTimeOut on
+    /// both.
     pub(super) fn has_passed(&self, waiting: &Waiting, time: Instant) -> bool {
         let is_timed = self.is_clocked() || matches!(waiting.wanted, Wanted::Line);
         waiting.left == 0 && (!is_timed || time >= waiting.until)
     }
 
-    /// Whether the board keeps pace with a clock.
+    /// Returns whether the board keeps pace with a clock.
     pub(super) const fn is_clocked(&self) -> bool {
         self.clock.is_some()
     }

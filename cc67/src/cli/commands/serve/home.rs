@@ -31,7 +31,7 @@ const VARIABLES: &str = "Data/emc.var";
 const OURS: [&str; 2] = ["--home", "--mcodes"];
 /// Programs that M codes start.
 const PROGRAMS: &str = "MCodes";
-/// What the server was last to serve: the folder of that command line, and its words, one a line.
+/// The name of the file with the last command line of the server: its folder, and its words, one a line.
 const OPTIONS: &str = "serve.options";
 /// The file with the output of a server that the library has started: on Windows nobody reads it, and a full pipe would stop the server.
 const SAID: &str = "server.log";
@@ -71,7 +71,7 @@ pub(super) fn make(folder: &Path, programs: Option<&Path>) -> Result<PathBuf> {
     Ok(folder)
 }
 
-/// What a person types so that a program uses the folder.
+/// Returns the shell commands that make a program use the folder.
 pub(super) fn lines(folder: &Path) -> String {
     if cfg!(windows) {
         let binaries = folder.join(BINARIES);
@@ -126,7 +126,7 @@ pub(super) fn remember(folder: &Path, words: impl Iterator<Item = OsString>) -> 
     output::write(&folder.join(OPTIONS), text.as_encoded_bytes())
 }
 
-/// Whether a word is an option of this name, alone or with its value.
+/// Returns whether a word is an option of this name, alone or with its value.
 fn is_option(word: &str, name: &str) -> bool {
     word.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('='))
 }

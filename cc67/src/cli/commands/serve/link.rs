@@ -23,7 +23,7 @@ pub(super) enum LinkLine {
     Console(Vec<u8>),
 }
 
-/// What is new, and what nobody has read yet.
+/// The unread lines.
 #[derive(Debug, Default)]
 pub(super) struct Unread {
     /// Each line with its number in the order of all.
@@ -70,17 +70,17 @@ impl Unread {
         self.console.push_back((self.lines, line));
     }
 
-    /// How many console lines wait.
+    /// Returns the number of waiting console lines.
     pub(super) fn console_lines(&self) -> usize {
         self.console.len()
     }
 
-    /// Whether any line waits.
+    /// Returns whether any line waits.
     pub(super) fn has_line(&self) -> bool {
         !self.replies.is_empty() || !self.console.is_empty()
     }
 
-    /// Whether a line has begun.
+    /// Returns whether a line has begun.
     pub(super) fn has_partial_line(&self) -> bool {
         !self.partial.is_empty()
     }
@@ -104,7 +104,7 @@ impl Unread {
         self.reply_bytes = 0;
     }
 
-    /// Whether replies were lost that nobody reads; says so once.
+    /// Returns, once, whether unread replies were lost.
     pub(super) fn take_lost_replies(&mut self) -> bool {
         mem::take(&mut self.lost_replies)
     }

@@ -1,4 +1,4 @@
-//! Where clients come in: sockets and ports, and a thread for each connection.
+//! Listeners: sockets and ports, and a thread for each connection.
 //!
 //! A connection reads requests, hands them to the [desk](super::desk) and sends what it answers. It alone waits for its
 //! client: one that sends half a message, or reads no reply, keeps nobody else from the board. At a pseudo-terminal and
@@ -28,7 +28,7 @@ use crate::cli::io::terminal;
 pub(in crate::cli::commands) const MOST_CLIENTS: usize = 200;
 /// The pause after a connection that the system has no descriptor for.
 const PAUSE: Duration = Duration::from_millis(100);
-/// What somebody reads who sends text.
+/// The reply to a client that sends text.
 const NO_TEXT: &[u8] =
     b"cc67: a board is served here to programs that use the KMotion client library (4.34), not as text; to type commands: cc67 console\r\n";
 /// The address of a pseudo-terminal, and how the addresses of ports begin that carry the board's own bytes.

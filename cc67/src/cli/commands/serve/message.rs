@@ -13,7 +13,7 @@ const CONSOLE: u8 = 1;
 /// Begins an error text.
 const ERROR: u8 = 2;
 
-/// What is requested.
+/// The requested call.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Call {
     WriteLineReadLine(Vec<u8>),
@@ -101,7 +101,7 @@ impl Request {
         }
     }
 
-    /// Whether it is for the first of the boards that are connected, the only one there is.
+    /// Returns whether it is for the first of the connected boards, the only one there is.
     pub(super) fn is_for(&self, locations: &[i32]) -> bool {
         self.board == 0 || locations.first() == Some(&self.board)
     }
@@ -117,7 +117,7 @@ fn text(bytes: &[u8]) -> Vec<u8> {
     bytes.split(|byte| *byte == 0).next().unwrap_or_default().to_vec()
 }
 
-/// What a request is answered.
+/// The reply to a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Reply(Vec<u8>);
 

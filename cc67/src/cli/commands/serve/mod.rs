@@ -61,7 +61,7 @@ pub(super) use listen::MOST_CLIENTS;
 use served::Served;
 pub(super) use wire::{LOST_BYTES, UNREAD_BYTES};
 
-/// Where the vendor's server listens.
+/// The default addresses of the vendor's server.
 const USUAL: &[&str] =
     if cfg!(windows) { &["pipe", "tcp:57777"] } else { &["/tmp/kmotionsocket", "tcp:57777"] };
 
@@ -108,7 +108,7 @@ pub(super) struct ServeArguments {
     compiler: CompilerArguments,
 }
 
-/// How fast board time passes.
+/// The speed of board time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum PaceName {
     /// This many times as fast as a clock.
@@ -125,21 +125,21 @@ fn pace(text: &str) -> Result<PaceName, String> {
     factor.map(PaceName::Clock).ok_or_else(|| "expected a number from 0.01 to 1000, or `fast`".to_owned())
 }
 
-/// How a board is served.
+/// The terms on which a board is served.
 #[derive(Debug)]
 pub(super) struct Terms<'a> {
-    /// Where clients come in, and the option that says so.
+    /// The addresses of the listeners, and the option that names them.
     pub(super) addresses: Vec<String>,
     pub(super) option: &'static str,
-    /// How many times as fast as a clock board time passes; without it, it passes in exchanges only.
+    /// The speed of board time relative to the clock; without it, board time only passes in exchanges.
     pub(super) pace: Option<f64>,
-    /// Whether the last client ends it.
+    /// True if the server ends with the last client.
     pub(super) once: bool,
     /// The board time that ends it, in seconds.
     pub(super) limit: Option<f64>,
     /// The log of the exchanges.
     pub(super) log: Option<&'a Path>,
-    /// What of the board is recorded, and the title of pictures.
+    /// The recording, and the title of pictures.
     pub(super) trace: &'a TraceArguments,
     pub(super) title: String,
     /// The page that shows it.

@@ -8,7 +8,7 @@ use clap::Args;
 use super::super::live;
 use super::ServeArguments;
 
-/// Whether there is a page, and where.
+/// Options for a page in the browser.
 #[derive(Debug, Args)]
 pub(super) struct PageArguments {
     /// Also show the board on a page in the browser

@@ -17,14 +17,14 @@ use crate::cli::session::Rig;
 
 use super::Terms;
 
-/// What pages wish of the desk.
+/// The requests of pages to the desk.
 #[derive(Debug, Default)]
 pub(super) struct PageWishes {
-    /// What happened in ticks that a page has let pass.
+    /// The events of the ticks that a page has run.
     pub(super) events: Vec<Event>,
     /// Lines of script commands.
     pub(super) commands: Vec<String>,
-    /// What a page has done to the world, as statements.
+    /// The actions of a page on the world, as statements.
     pub(super) acts: Vec<String>,
     /// Seconds of board time in a second; `None` while the clock is stopped.
     pub(super) speed: Option<f64>,
@@ -91,7 +91,7 @@ impl<T: Target> Served<T> {
         });
     }
 
-    /// Whether a debugger may be attached, or is.
+    /// Returns whether a debugger may be attached, or is.
     pub(super) fn is_attended(&self) -> bool {
         self.rig.attendant.is_some()
     }
@@ -118,12 +118,12 @@ impl<T: Target> Served<T> {
         self.rig.session.take_wire()
     }
 
-    /// Whether it has not taken all of them.
+    /// Returns whether some bytes are still to be taken.
     pub(super) fn is_receiving(&self) -> bool {
         self.rig.session.target().is_receiving()
     }
 
-    /// Whether a command waits for data lines.
+    /// Returns whether a command waits for data lines.
     pub(super) fn is_in_command(&self) -> bool {
         self.rig.session.target().is_in_command()
     }
@@ -133,7 +133,7 @@ impl<T: Target> Served<T> {
         self.rig.session.listen(listens);
     }
 
-    /// What is known about its programs.
+    /// Returns the debug information of its programs.
     pub(super) fn programs(&self) -> Vec<DebugInfo> {
         self.rig.session.debug().into_iter().map(|(_, debug)| debug).collect()
     }

@@ -1,4 +1,4 @@
-//! Which programs are tests, and how each wants to be run.
+//! Test programs, and the options of each.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use crate::cli::io::input::read;
 pub(super) struct Case {
     /// The program.
     pub(super) source: PathBuf,
-    /// What it should show, or nothing if that was never written down.
+    /// The expected output, if there is a golden.
     pub(super) expected: Option<String>,
     /// Arguments of `cc67 run` in front of the program.
     pub(super) options: Vec<String>,
@@ -22,7 +22,7 @@ pub(super) struct Case {
 }
 
 impl Case {
-    /// Where the expected console stands.
+    /// Returns the path of its golden.
     pub(super) fn golden(&self) -> PathBuf {
         self.source.with_extension("expected")
     }

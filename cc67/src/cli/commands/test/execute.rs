@@ -41,7 +41,7 @@ pub(super) fn all(
     Ok((cases.iter().map(of_case).collect::<Result<_>>()?, took))
 }
 
-/// What every run shows, in their order.
+/// Executes all runs and returns their output in order.
 fn execute(runs: &[Run<'_>], jobs: usize) -> Result<Vec<Shown>> {
     let bar = ProgressBar::new(runs.len() as u64);
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
@@ -68,7 +68,7 @@ fn execute(runs: &[Run<'_>], jobs: usize) -> Result<Vec<Shown>> {
     slots.into_iter().map(|slot| slot.into_inner().ok().flatten().context("a test was not run")?).collect()
 }
 
-/// What the runs of a case say, the first engine first.
+/// Judges the runs of a case, the first engine first.
 fn verdict<'a>(
     case: &Case,
     runs: impl Iterator<Item = (&'a Executor, Shown)>,

@@ -9,7 +9,7 @@ use super::near::is_near;
 use super::verdict::Verdict;
 use crate::cli::io::exit::Exit;
 
-/// How `cc67 run` refuses an option.
+/// The end of the message with which `cc67 run` refuses an option.
 const REFUSED: &str = " does not work with `--boot`";
 
 /// Keeps of what a test expects what a firmware file can show.
@@ -17,7 +17,7 @@ pub(super) fn reduce(case: &mut Case) {
     case.expected = case.expected.as_deref().map(golden::without_notes);
 }
 
-/// What a run on the firmware says.
+/// Judges a run on the firmware.
 pub(super) fn verdict(case: &Case, shown: Shown) -> Verdict {
     let Some(expected) = &case.expected else { return Verdict::Unknown };
     let first = shown.notes().lines().find(|line| line.contains(REFUSED));

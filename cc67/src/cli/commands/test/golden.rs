@@ -2,21 +2,21 @@
 
 use std::time::Duration;
 
-/// What a run showed.
+/// The output of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Shown {
     /// The golden text: console, notes of the board, exit code.
     pub(super) golden: String,
-    /// What else stood on stderr: the messages of the compiler.
+    /// The rest of stderr: the messages of the compiler.
     pub(super) messages: String,
     /// The exit code; `None` of a process that was killed.
     pub(super) code: Option<i32>,
-    /// How long it took on the clock.
+    /// The time it took on the clock.
     pub(super) took: Duration,
 }
 
 impl Shown {
-    /// What the golden holds beside a console: remarks of the board, traps, what is not as expected.
+    /// Returns the part of the golden after the console: remarks of the board, traps, unmet expectations.
     pub(super) fn notes(&self) -> &str {
         let marks = ["---- notes\n", "---- exit ", "---- killed\n"];
         let first = marks.iter().filter_map(|mark| find(&self.golden, mark)).min();
@@ -24,7 +24,7 @@ impl Shown {
     }
 }
 
-/// How the board words a fault on the console.
+/// The board's messages about faults on the console.
 const FAULTS: &[&str] = &[
     "Following Error Disabled Axis",
     "Limit Disabled Axis",
@@ -33,12 +33,12 @@ const FAULTS: &[&str] = &[
     "Fatal Error",
 ];
 
-/// How the message of a run begins that is cut off while threads are still active.
+/// The beginnings of the message about a run that is cut off while threads are still active.
 const CUT_OFF: &[&str] = &["cc67: still running after ", "cc67: at the end, after "];
 
 impl Shown {
-    /// What a person should look at before it is expected from now on: traps, remarks, what is not as expected, and
-    /// faults that the board prints on the console. That a thread has not ended is none of these.
+    /// Returns the parts that a person should review before they become the expected output: traps, remarks, unmet
+    /// expectations, and faults that the board prints on the console. Threads that have not ended are none of these.
     pub(super) fn doubts(&self) -> String {
         let (console, notes) = self.golden.split_at(self.golden.len() - self.notes().len());
         let faults = console.lines().filter(|line| FAULTS.iter().any(|fault| line.contains(fault)));
@@ -60,7 +60,7 @@ pub(super) fn without_notes(golden: &str) -> String {
     console.to_owned() + end.and_then(|at| rest.get(at..)).unwrap_or_default()
 }
 
-/// Where the line that begins with a mark is.
+/// Returns the offset of the line that begins with a mark.
 fn find(text: &str, mark: &str) -> Option<usize> {
     match text.starts_with(mark) {
         true => Some(0),

@@ -1,4 +1,4 @@
-//! What a plot shows: panels of lines over time, and strips of levels below them.
+//! Contents of a plot: panels of lines over time, and strips of levels below them.
 
 /// Values over time; each holds until the next.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub(in crate::cli) struct Line {
 /// Lines that share an axis of values.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::cli) struct Panel {
-    /// What is shown.
+    /// The title.
     pub(in crate::cli) title: String,
     /// The unit of the values; empty for mere numbers.
     pub(in crate::cli) unit: String,
@@ -23,7 +23,7 @@ pub(in crate::cli) struct Panel {
 /// Spans in which something is so: a bit is high, a thread has the processor.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::cli) struct Strip {
-    /// What is so.
+    /// The name of the level.
     pub(in crate::cli) name: String,
     /// Beginnings and ends in seconds, ascending.
     pub(in crate::cli) spans: Vec<(f64, f64)>,
@@ -34,7 +34,7 @@ pub(in crate::cli) struct Strip {
 pub(in crate::cli) struct Chart {
     /// The headline.
     pub(in crate::cli) title: String,
-    /// What the horizontal axis is, with its unit.
+    /// The label of the horizontal axis, with its unit.
     pub(in crate::cli) abscissa: String,
     /// Panels from top to bottom.
     pub(in crate::cli) panels: Vec<Panel>,

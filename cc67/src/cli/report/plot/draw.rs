@@ -45,7 +45,7 @@ pub(super) fn svg(chart: &Chart) -> Result<Vec<u8>> {
     Ok(text.into_bytes())
 }
 
-/// Who draws the lines of the panels.
+/// The drawing of the lines of the panels.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Curves {
     /// The same code as all else, to whole pixels.
@@ -197,7 +197,7 @@ pub(super) fn number(value: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Where an instant lies across the picture.
+/// Returns the horizontal position of an instant.
 fn across(chart: &Chart, time: f64) -> i32 {
     place(chart, time) as i32
 }

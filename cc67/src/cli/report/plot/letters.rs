@@ -82,7 +82,7 @@ impl<'a> DrawingBackend for Pixels<'a> {
     }
 }
 
-/// How far below the top of a text its letters stand, as part of its size.
+/// The distance of the baseline from the top of a text, as part of its size.
 const BASELINE: f32 = 0.75;
 
 impl<'a> Pixels<'a> {
@@ -117,7 +117,7 @@ fn places(text: &str, size: f32) -> Vec<(ab_glyph::GlyphId, f32)> {
     text.chars().map(place).collect()
 }
 
-/// How wide a text is, in pixels.
+/// Returns the width of a text, in pixels.
 fn width(text: &str, size: f32) -> f32 {
     let last = places(text, size).pop();
     last.map_or(0.0, |(letter, along)| along + FONT.as_scaled(size).h_advance(letter))

@@ -42,14 +42,14 @@ pub(in crate::cli) struct Samples {
     pub(in crate::cli) axes: BTreeMap<usize, PlottedAxis>,
 }
 
-/// What pictures say of an axis.
+/// The labels of an axis in pictures.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(in crate::cli) struct PlottedAxis {
-    /// What it is called; empty for its number.
+    /// Its name; empty for its number.
     pub(in crate::cli) name: String,
-    /// What its unit is called; empty for `units`.
+    /// The name of its unit; empty for `units`.
     pub(in crate::cli) units: String,
-    /// Whether its position is measured: if not, where its load is says where it is.
+    /// True if its position is measured: if not, the position of its load is shown.
     pub(in crate::cli) is_measured: bool,
 }
 

@@ -77,7 +77,7 @@ fn spaced(name: &str) -> String {
     name.to_owned()
 }
 
-/// What kind of values a variable has.
+/// The kind of a variable's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum VariableKind {
     Wire,

@@ -22,7 +22,7 @@ use vm::profile::{ProfilingEngine, Site, Spent, segment};
 
 use crate::cli::io::output;
 
-/// Where a profile is written to.
+/// The form and file of a profile.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum ProfileOutput {
     /// A table after the run.
@@ -85,7 +85,7 @@ struct ProfilePlace {
     firmware: Option<String>,
 }
 
-/// What was spent where.
+/// The time spent at each place.
 type Account = BTreeMap<ProfilePlace, Spent>;
 
 /// Turns addresses into places; a segment becomes its lines.

@@ -12,10 +12,10 @@ use vm::engine::ContextId;
 
 use super::{Account, ProfileFrame, ProfileOutput, ProfilePlace, Whose, finish};
 
-/// What was looked at: the programs, and the firmware.
+/// The sampled board: the programs, and the firmware.
 pub(crate) struct Sampled<'a> {
     target: &'a BootedTarget,
-    /// What is known about the programs in the threads.
+    /// Debug information of the programs in the threads.
     known: Vec<DebugInfo>,
 }
 

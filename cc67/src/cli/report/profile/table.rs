@@ -11,7 +11,7 @@ use super::{Account, ProfilePlace, Whose};
 /// Rows of a table; what is after them took less.
 const ROWS: usize = 15;
 
-/// What a function took by itself, and with all that it called.
+/// The time of a function by itself, and with all that it called.
 #[derive(Clone, Copy, Default)]
 struct FunctionTimes {
     own: Spent,

@@ -31,7 +31,7 @@ struct Event {
     ts: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     dur: Option<f64>,
-    /// How far a mark reaches.
+    /// The scope of a mark.
     #[serde(skip_serializing_if = "Option::is_none")]
     s: Option<&'static str>,
     #[serde(skip_serializing_if = "Map::is_empty")]
@@ -70,12 +70,12 @@ fn microseconds(at: Cycles) -> f64 {
 pub(super) struct Events {
     draft: Draft,
     columns: Columns,
-    /// Whether an event precedes, after which a comma belongs.
+    /// True if an event precedes, after which a comma belongs.
     has_any: bool,
     threads: BTreeSet<ThreadId>,
     bits: BTreeSet<Bit>,
     has_sent: bool,
-    /// What the counters of the items show, by their place in a sample.
+    /// The latest values of the counters, by index in a sample.
     shown: BTreeMap<usize, f64>,
 }
 

@@ -1,4 +1,4 @@
-//! What a trace shows: what was requested, or else the items of axes that have been enabled.
+//! Columns of a trace: the requested items, or else those of axes that have been enabled.
 //!
 //! A picture of an axis whose position nobody measures shows where its load is; for that the loads are recorded as well.
 
@@ -8,14 +8,14 @@ use runtime::trace::{Item, Quantity, TraceRequest};
 #[derive(Clone, Debug)]
 pub(super) struct Columns {
     quantities: Vec<Quantity>,
-    /// Whether these are the items of all axes, of which only the enabled ones are shown, with their loads in pictures.
+    /// True if these are the items of all axes, of which only the enabled ones are shown, with their loads in pictures.
     is_default: bool,
     /// Axes that were enabled at some time.
     enabled: u8,
 }
 
 impl Columns {
-    /// What is recorded for pictures where nothing else is requested.
+    /// Returns the items that are recorded for pictures by default.
     pub(super) fn of_pictures() -> Vec<Item> {
         [Item::of_axes(), Item::of_loads()].concat()
     }

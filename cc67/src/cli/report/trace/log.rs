@@ -1,4 +1,4 @@
-//! What pictures are made of: what was recorded, in memory.
+//! The recording in memory from which pictures are made.
 //!
 //! A picture is no larger because a run was longer, and neither is this: when there is too much, of every two samples
 //! the later one is kept, and spans with little between them become one.
@@ -16,7 +16,7 @@ pub(crate) const SAMPLES: usize = 200_000;
 /// Most spans of bits, and as many of threads.
 const SPANS: usize = 500_000;
 
-/// What was recorded.
+/// A recording in memory.
 #[derive(Debug)]
 pub(super) struct Log {
     columns: Columns,
@@ -87,7 +87,8 @@ impl Log {
         }
     }
 
-    /// What to show, and where each is in a sample; of axes that are not measured the load.
+    /// Returns the quantities to show, each with its index in a sample; for axes that are not measured, those of the
+    /// load.
     pub(super) fn columns(&self, is_measured: impl Fn(usize) -> bool) -> Vec<(usize, &Quantity)> {
         self.columns.pictured(is_measured)
     }
@@ -103,7 +104,7 @@ impl Log {
         self.bits.of(bit).chain(last).collect()
     }
 
-    /// Whether a bit has changed.
+    /// Returns whether a bit has changed.
     pub(super) fn has_changed(&self, bit: Bit) -> bool {
         self.changed.contains(&bit)
     }

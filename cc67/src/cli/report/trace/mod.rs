@@ -36,7 +36,7 @@ use log::Log;
 pub(crate) use log::SAMPLES;
 use order::Order;
 
-/// What a session is to record; `None` if nothing is traced.
+/// Returns the recording that a session should make; `None` if nothing is traced.
 ///
 /// # Errors
 /// Something is wrong with what is requested, or the target does not have it.
@@ -142,7 +142,7 @@ enum TraceEntry {
 }
 
 impl TraceEntry {
-    /// What an event shows, if it belongs to a trace.
+    /// Converts an event, if it belongs to a trace.
     fn of(event: &Event) -> Option<Self> {
         Some(match &event.kind {
             EventKind::Trace(Record::Bit { bit, level, thread }) => {
@@ -181,13 +181,13 @@ pub(crate) struct Trace {
     order: Order,
     sinks: Vec<Box<dyn Sink>>,
     log: Option<Log>,
-    /// What pictures say of axes.
+    /// The labels of axes in pictures.
     axes: BTreeMap<usize, PlottedAxis>,
     /// The first file that could not be written, and why.
     failed: Option<(PathBuf, io::Error)>,
 }
 
-/// Why something is not recorded, as a message of the option.
+/// Explains why something is not recorded, as a message of the option.
 fn refused(error: WatchError) -> anyhow::Error {
     match error {
         WatchError::Missing => {

@@ -6,7 +6,7 @@ use kmotiondef::Cycles;
 
 use super::TraceEntry;
 
-/// How much later than others something may be told.
+/// The largest delay with which an event may be reported.
 const WINDOW: Cycles = Cycles::new(4 * Cycles::PER_TICK.get());
 
 /// Entries that wait for those before them.

@@ -4,7 +4,7 @@ use kmotiondef::structs::{Chan, StructureField};
 use kmotiondef::variables::FIRMWARE_VARIABLES;
 use runtime::trace::{Item, Quantity};
 
-/// How a meaning ends, and the unit that stands for.
+/// The ends of descriptions, and the unit of each.
 const UNITS: &[(&str, &str)] = &[
     (", position units.", "units"),
     (", units/s.", "units/s"),

@@ -16,7 +16,7 @@ use super::columns::Columns;
 use super::{Sink, TraceEntry, nanoseconds};
 use crate::cli::io::output::{Draft, Scratch};
 
-/// What a variable shows; the head names them in this order.
+/// The signal of a variable; the head names them in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Signal {
     Bit(Bit),
@@ -57,7 +57,7 @@ impl Dump {
         Ok(dump)
     }
 
-    /// What stands for a signal, which begins with this value.
+    /// Declares a signal, which begins with this value, and returns its identifier.
     fn declare(&mut self, signal: Signal, start: &str) -> String {
         let number = self.variables.len() as u32;
         let variable = self.variables.entry(signal);
