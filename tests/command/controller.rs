@@ -417,6 +417,40 @@ fn a_recording_ends_where_the_buffer_is_full() {
 }
 
 #[test]
+fn flash_holds_what_a_controller_starts_with() {
+    let scratch = Scratch::new("controller-flash");
+    scratch.write("init.c", "#include \"KMotionDef.h\"\nmain() { persist.UserData[9]++; printf(\"started %d\\n\", persist.UserData[9]); }\n");
+    let kept = scratch.path().join("flash.bin");
+    let (server, place) = served("controller-flash-board", &["--flash", kept.to_str().expect("text")]);
+
+    let console =
+        |typed: &str| cc67_with_input(&scratch, ["console", "--yes", "--for=1", "--on", &place], typed);
+    console("Execute7\n");
+    let output = on(&scratch, &["flash"], &place, &["2:init.c", "--startup", "2"]);
+    assert_eq!(output.code, 2, "{output:?}");
+    assert!(output.stderr.contains("active threads (7)") && output.stderr.contains("Kill7"), "{output:?}");
+
+    let output = console("Kill7\nEnableAxis3\nSetPersistDec 9 40\nFlash\n");
+    assert!(output.stderr.contains("`cc67 flash --on` saves to it"), "{output:?}");
+    let output = on(&scratch, &["flash"], &place, &["2:init.c"]);
+    assert!(
+        output.stderr.contains("enabled axes (3)") && output.stderr.contains("DisableAxis3"),
+        "{output:?}"
+    );
+    console("DisableAxis3\n");
+
+    let output = cc67(&scratch, ["flash", "--on", &place, "--yes", "2:init.c", "--startup", "2"]);
+    assert_eq!(output.code, 0, "{output:?}");
+    assert!(output.stderr.contains("thread 2    init.c, loaded now"), "{output:?}");
+    assert!(output.stderr.contains("compared it with its memory"), "{output:?}");
+    let output = console("Reboot!\n");
+    assert_eq!(output.stdout, "started 41\n", "{output:?}");
+    drop(server);
+    let output = cc67(&scratch, ["run", "--for", "1", "--flash", "flash.bin"]);
+    assert_eq!(output.stdout, "started 41\n", "{output:?}");
+}
+
+#[test]
 fn the_monitor_needs_a_free_thread() {
     let scratch = Scratch::new("controller-monitor");
     scratch.write("a.c", NAMED);

@@ -45,6 +45,7 @@ const COMMANDS: &[(&str, &[&str], &str)] = &[
 /// Commands without trials, each with the reason.
 const WITHOUT_TRIALS: &[(&str, &str)] = &[
     ("boards", "what it shows depends on the computer; `command/controller.rs` tests it"),
+    ("flash", "it needs a controller; `command/controller.rs` tests it"),
     ("live", "what it shows is in a browser; `command/live` tests it there"),
     ("serve", "what it shows is on a socket; `command/serve` tests it there"),
     ("compare", "it needs a firmware file; `command/boot.rs` tests it"),

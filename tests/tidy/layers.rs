@@ -146,7 +146,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
     (
         "cc67/controller",
         &[
-            ("connections", &["connection"]),
+            ("connections", &["connection", "saving"]),
             ("target", &["controller"]),
             ("recordings", &["recording"]),
             ("the monitor", &["monitor"]),

@@ -10,7 +10,7 @@ use crate::terms::LoadTerms;
 
 /// A controller that answers, before it is given programs.
 #[derive(Debug)]
-pub struct ControllerLink(Client);
+pub struct ControllerLink(pub(crate) Client);
 
 impl ControllerLink {
     /// Connects to the controller at an address.

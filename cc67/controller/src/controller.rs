@@ -219,7 +219,7 @@ impl Controller {
 }
 
 /// The error of a link, for sessions.
-fn link(error: WireError) -> HostError {
+pub(crate) fn link(error: WireError) -> HostError {
     HostError::Link(error.to_string())
 }
 

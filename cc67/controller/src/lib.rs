@@ -6,6 +6,7 @@
 //!
 //! ```text
 //! connection  a controller that answers, before it is given programs
+//! saving      saving to flash
 //! controller  the target: load, start, stop, status
 //! commands    what a PC does for the requests of programs
 //! monitor     a program in a free thread, for what no command does
@@ -28,7 +29,7 @@
 //! Invariants:
 //!
 //! - **Nothing moves by itself**: connecting sends no command that starts or moves anything.
-//! - **Flash and firmware are never written.**
+//! - **Flash is written by [`ControllerLink::save`] alone, firmware never.**
 //! - **A lost link is reported once**, and nothing that was read before is shown as present after it.
 //! - Threads that were active before the connection are neither waited for nor stopped.
 //!
@@ -44,6 +45,7 @@ mod files;
 mod image;
 mod monitor;
 mod recording;
+mod saving;
 mod seen;
 mod terms;
 mod threads;
@@ -51,6 +53,7 @@ mod threads;
 pub use cc67_wire::{Address, AddressError, Client, FoundBoard, Progress, WireError, boards};
 pub use connection::ControllerLink;
 pub use controller::Controller;
+pub use saving::Unsettled;
 pub use terms::{LoadTerms, ProgramStart};
 
 /// The facts that a person should know before the first connection of a project.

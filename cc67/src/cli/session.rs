@@ -106,7 +106,7 @@ impl Setup {
     ) -> Result<Option<Self>> {
         if let Some(address) = &board.controller.on {
             board.refuse_with_controller()?;
-            let connection = controller::connect(address, &board.controller)?;
+            let connection = controller::connect(address, board.controller.yes)?;
             let firmware = controller::firmware(&connection, compiler.resolve()?.firmware, compiler)?;
             let setup = Self::compiled(started, board, compiler, CodeFor::Controller(firmware))?;
             let connected = Connected { connection, terms: board.controller.terms() };

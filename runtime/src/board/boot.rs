@@ -76,6 +76,7 @@ impl<E: Engine> Board<E> {
 
     /// Saves programs and settings in flash.
     pub(super) fn save(&mut self) {
+        self.take_downloads();
         let texts: Vec<_> =
             ThreadId::all().map(|thread| self.machine.loaded(thread).map(Code::code)).collect();
         let (kernel, context) = self.machine.firmware_mut();
@@ -85,6 +86,20 @@ impl<E: Engine> Board<E> {
         let programs = self.programs_mut();
         let known = |loaded: &Option<Loaded>| loaded.as_ref().map(|loaded| loaded.debug.clone());
         programs.flashed = programs.loaded.each_ref().map(known);
+    }
+
+    /// Makes programs of what was downloaded into threads that have not been started since.
+    fn take_downloads(&mut self) {
+        for thread in ThreadId::all() {
+            if self.machine.threads().state(thread).is_active() {
+                continue;
+            }
+            if let Err(error) = self.take_download(thread) {
+                let (kernel, context) = self.machine.firmware_mut();
+                let message = Message::NotFlashed { thread, error: error.to_string() };
+                kernel.parts.out.remark(context.now, message);
+            }
+        }
     }
 
     /// Restarts from flash. Time continues: it counts from the first power-up.

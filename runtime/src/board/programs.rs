@@ -208,27 +208,33 @@ impl<E: Engine> Board<E> {
 
     /// Makes a program of what was downloaded into a thread that was started.
     pub(super) fn adopt(&mut self, thread: ThreadId) {
-        let entry = self.machine.threads().entry(thread);
-        let (kernel, _) = self.machine.firmware_mut();
-        let ends = kernel.parts.pc.downloads.ends(thread);
-        kernel.parts.pc.downloads.forget(thread);
-        let error = match self.downloaded(thread, &ends) {
-            Ok(Some(code)) => {
-                self.programs_mut().loaded[thread.index()] = None;
-                self.machine.firmware_mut().0.parts.calls.globals.forget(thread);
-                self.hand_over(thread, code, entry);
+        let error = match self.take_download(thread) {
+            Ok(true) => {
                 let started = self.machine.start(thread);
                 debug_assert!(started.is_ok(), "a program was loaded");
                 return;
             }
             // Only the entry point is new.
-            Ok(None) if self.machine.loaded(thread).is_some() => return,
-            Ok(None) => "nothing was downloaded to the beginning of its space".to_owned(),
+            Ok(false) if self.machine.loaded(thread).is_some() => return,
+            Ok(false) => "nothing was downloaded to the beginning of its space".to_owned(),
             Err(error) => error.to_string(),
         };
         self.machine.unload_program(thread);
         let (kernel, context) = self.machine.firmware_mut();
         kernel.parts.out.remark(context.now, Message::NotStarted { thread, error });
+    }
+
+    /// Makes a program of what was downloaded into a thread; returns whether anything was.
+    pub(super) fn take_download(&mut self, thread: ThreadId) -> Result<bool, VerifyError> {
+        let entry = self.machine.threads().entry(thread);
+        let (kernel, _) = self.machine.firmware_mut();
+        let ends = kernel.parts.pc.downloads.ends(thread);
+        kernel.parts.pc.downloads.forget(thread);
+        let Some(code) = self.downloaded(thread, &ends)? else { return Ok(false) };
+        self.programs_mut().loaded[thread.index()] = None;
+        self.machine.firmware_mut().0.parts.calls.globals.forget(thread);
+        self.hand_over(thread, code, entry);
+        Ok(true)
     }
 
     /// The program whose text ends at one of some places; `None` if nothing was downloaded.

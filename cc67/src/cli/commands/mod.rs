@@ -16,6 +16,7 @@ mod drop_in;
 mod examples;
 mod explain;
 mod firmware;
+mod flash;
 mod init;
 mod inspect;
 pub mod limits;
@@ -117,6 +118,8 @@ subcommands! {
     "Boards and PCs" {
         /// List the controllers that are connected to this computer
         Boards(boards::BoardsArguments) as arguments => boards::boards(arguments);
+        /// Save programs and settings to the flash of a controller, which starts with them
+        Flash(flash::FlashArguments) as arguments => flash::flash(arguments);
         /// Send script commands to a simulated board, interactively or from a script
         Console(console::ConsoleArguments) as arguments => console::console(arguments);
         /// Serve a simulated board to programs that use the vendor's client library

@@ -11,12 +11,11 @@ use compiler::firmware::Firmware;
 use kmotiondef::ThreadId;
 
 use crate::cli::args::compiler::CompilerArguments;
-use crate::cli::args::controller::ControllerArguments;
 use crate::cli::io::{state, terminal};
 
 /// Connects to the controller at an address, after a person has agreed.
-pub(super) fn connect(address: &Address, arguments: &ControllerArguments) -> Result<ControllerLink> {
-    agree_unless(arguments.yes)?;
+pub(crate) fn connect(address: &Address, is_agreed: bool) -> Result<ControllerLink> {
+    agree_unless(is_agreed)?;
     let connection = ControllerLink::open(address)?;
     terminal::note(&format!("connected to {}: {}", connection.place(), connection.version().trim_end()));
     Ok(connection)
@@ -37,10 +36,7 @@ fn agree() -> Result<()> {
         return Ok(());
     }
     terminal::aside(FIRST_TIME);
-    if !(io::stdin().is_terminal() && io::stderr().is_terminal()) {
-        bail!("nobody is here to agree to that: `--yes` does");
-    }
-    if !agrees_to("Connect?")? {
+    if !agrees("Connect?")? {
         bail!("not connected");
     }
     let Some(path) = record else { return Ok(()) };
@@ -50,6 +46,14 @@ fn agree() -> Result<()> {
         terminal::note(&format!("the answer cannot be kept in {}: {error}", path.display()));
     }
     Ok(())
+}
+
+/// Asks the person at the terminal a question; nobody there is no.
+pub(crate) fn agrees(question: &str) -> Result<bool> {
+    if !(io::stdin().is_terminal() && io::stderr().is_terminal()) {
+        bail!("nobody is here to agree to that: `--yes` does");
+    }
+    agrees_to(question)
 }
 
 /// Asks the person at the terminal a question; returns whether the answer is yes.
@@ -66,7 +70,7 @@ fn record() -> Option<PathBuf> {
 }
 
 /// Returns what programs for a controller are linked against: what the options name, or else its own firmware.
-pub(super) fn firmware(
+pub(crate) fn firmware(
     connection: &ControllerLink,
     named: Firmware,
     compiler: &CompilerArguments,
@@ -85,7 +89,7 @@ pub(super) fn firmware(
 }
 
 /// Returns what reports the progress of downloads.
-pub(super) fn progress() -> impl FnMut(ThreadId, Progress) + Send + 'static {
+pub(crate) fn progress() -> impl FnMut(ThreadId, Progress) + Send + 'static {
     |thread, Progress { done, total }| {
         let is_shown = io::stderr().is_terminal();
         if is_shown && total > 0 {

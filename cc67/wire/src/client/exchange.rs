@@ -14,6 +14,10 @@ const FENCE: &str = "Version";
 const WORDS_PER_LINE: u32 = 8;
 /// Commands that take more lines, which cannot be typed one by one.
 const MULTI_LINE: [&str; 4] = ["LOADDATA", "LOADFLASH", "SETGATHERHEX", "READDISKDATA"];
+/// Part of the names of all commands that write flash.
+const FLASH: &str = "FLASH";
+/// The command that restarts the board; the board drops the rest of the line.
+const RESTART: &str = "REBOOT!";
 
 impl Client {
     /// Executes a command that gives no reply.
@@ -50,7 +54,7 @@ impl Client {
     /// Executes a command line and returns all lines of its reply.
     ///
     /// # Errors
-    /// The board refuses the line, or does not answer.
+    /// The board refuses the line, or does not answer; the line writes flash, or needs more lines.
     pub fn send_line(&mut self, line: &str) -> Result<Vec<String>, WireError> {
         let upper = line.to_ascii_uppercase();
         if let Some(command) = MULTI_LINE.iter().find(|command| upper.contains(**command)) {
@@ -59,13 +63,34 @@ impl Client {
                 reason: format!("`{command}` needs further lines, which cannot be sent by hand"),
             });
         }
+        if upper.contains(FLASH) {
+            return Err(WireError::NotBuilt {
+                place: self.place().to_owned(),
+                reason: format!(
+                    "`{line}` writes flash: `cc67 flash --on` saves to it, after it has shown what"
+                ),
+            });
+        }
         if line.contains(['\r', '\n', '\x03']) {
             return Err(self.unexpected(line, "a command is one line"));
+        }
+        if upper.contains(RESTART) {
+            self.restart(line)?;
+            return Ok(Vec::new());
         }
         self.link.claim(ANSWER_WITHIN)?;
         let result = self.exchange(&[format!("{line};{FENCE}").into_bytes()], line, ANSWER_WITHIN);
         self.link.release();
         result
+    }
+
+    /// Restarts the board, and waits until it answers again.
+    fn restart(&mut self, line: &str) -> Result<(), WireError> {
+        self.link.claim(ANSWER_WITHIN)?;
+        let sent = self.write(&[line.as_bytes().to_vec()]);
+        self.link.release();
+        sent?;
+        self.handshake()
     }
 
     /// Reads words of the gather buffer.

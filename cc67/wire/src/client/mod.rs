@@ -5,6 +5,7 @@
 
 mod connect;
 mod exchange;
+mod flash;
 mod load;
 mod refusals;
 mod status;

@@ -1,0 +1,77 @@
+//! Saving to flash: what the controller starts with at its next power-up.
+
+use cc67_host::{HostError, UserProgram};
+use cc67_wire::{Progress, Status, WireError};
+use kmotiondef::{AxisId, ThreadId};
+
+use crate::connection::ControllerLink;
+use crate::controller::link;
+use crate::image;
+
+/// Whatever would be saved in a state that nobody wants at power-up.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Unsettled {
+    /// Threads that are active: their variables would be saved as they are in the middle of their work.
+    pub threads: Vec<ThreadId>,
+    /// Axes that are enabled: they are saved as enabled.
+    pub axes: Vec<AxisId>,
+}
+
+impl Unsettled {
+    fn of(status: &Status) -> Self {
+        Self {
+            threads: ThreadId::all().filter(|thread| status.is_active(*thread)).collect(),
+            axes: AxisId::all().filter(|axis| status.is_enabled(*axis)).collect(),
+        }
+    }
+
+    /// Returns whether nothing is in the way.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.threads.is_empty() && self.axes.is_empty()
+    }
+
+    /// Returns the script commands that settle the controller.
+    #[must_use]
+    pub fn commands(&self) -> Vec<String> {
+        let threads = self.threads.iter().map(|thread| format!("Kill{thread}"));
+        threads.chain(self.axes.iter().map(|axis| format!("DisableAxis{axis}"))).collect()
+    }
+}
+
+impl ControllerLink {
+    /// Returns the threads and axes that have to rest before memory is saved.
+    ///
+    /// # Errors
+    /// The controller does not answer.
+    pub fn unsettled(&mut self) -> Result<Unsettled, WireError> {
+        Ok(Unsettled::of(&self.0.status()?))
+    }
+
+    /// Loads a program that was linked for the firmware `linked_for`, and does not start it.
+    ///
+    /// # Errors
+    /// The program is refused, or the link fails.
+    pub fn load(
+        &mut self,
+        program: &UserProgram,
+        linked_for: &str,
+        is_forced: bool,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<(), HostError> {
+        let image = image::of_program(program, linked_for, self.version().trim_end())?;
+        self.0.load(&image, is_forced, progress).map_err(link)
+    }
+
+    /// Saves programs, `persist`, axes and coordinate system to the flash that the controller starts from. Of the threads
+    /// those of `startup` start by themselves then; `None` leaves that as it is. Takes about 7 s.
+    ///
+    /// # Errors
+    /// The controller does not answer, or does not say that flash holds what memory holds.
+    pub fn save(&mut self, startup: Option<&[ThreadId]>) -> Result<(), WireError> {
+        for thread in ThreadId::all().filter(|_| startup.is_some()) {
+            self.0.set_startup(thread, startup.is_some_and(|threads| threads.contains(&thread)))?;
+        }
+        self.0.save_to_flash()
+    }
+}
