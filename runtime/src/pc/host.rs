@@ -15,7 +15,7 @@ use vm::memory::GuestMemory;
 
 use super::answers::{self, AnswerError, Answers, Boxes};
 use super::boxes::OpenBox;
-use super::requests::{Change, Deed, Rate, Way};
+use super::requests::{Change, Direction, PcAction, Rate};
 use super::{gcode, requests};
 use crate::out::{EventKind, Message, Out};
 use crate::servo::coordinated::rate;
@@ -124,8 +124,9 @@ impl Host {
     /// Returns whether a request opens a box that a person still has to answer.
     pub(super) fn is_for_person(&self, code: i32) -> bool {
         let Boxes { waits, buttons, inputs } = &self.answers.boxes;
-        let is_open = requests::deed(code).is_some_and(|deed| {
-            (deed == Deed::MessageBox && buttons.is_empty()) || (deed == Deed::InputBox && inputs.is_empty())
+        let is_open = requests::action(code).is_some_and(|action| {
+            (action == PcAction::MessageBox && buttons.is_empty())
+                || (action == PcAction::InputBox && inputs.is_empty())
         });
         *waits && is_open && !self.answers.results.contains_key(&code)
     }
@@ -230,7 +231,7 @@ pub(crate) fn slice(host: &mut Host, out: &mut Out, context: &mut TickContext<'_
 /// The box that a request opens.
 fn opened(memory: &GuestMemory, code: i32) -> OpenBox {
     let text = string(memory, memory.get(data(1)));
-    if requests::deed(code) == Some(Deed::InputBox) {
+    if requests::action(code) == Some(PcAction::InputBox) {
         OpenBox::Input { text }
     } else {
         OpenBox::message(text, memory.get(data(2)))
@@ -261,31 +262,31 @@ pub(super) fn answer(host: &mut Host, out: &mut Out, context: &mut TickContext<'
     }
     let number = f32::from_bits(parameters[0] as u32);
     let memory = &mut *context.memory;
-    match requests::deed(code) {
+    match requests::action(code) {
         None => return INVALID,
-        Some(Deed::Show) => {}
-        Some(Deed::EmergencyStop) => emergency_stop(context),
-        Some(Deed::EndJob) => set_job(memory, false),
-        Some(Deed::BeginJob) if host.answers.has_job => set_job(memory, true),
-        Some(Deed::BeginJob) => {}
-        Some(Deed::Override(Rate::Feed, Change::To)) if !(0.001..=1000.0).contains(&number) => {
+        Some(PcAction::Show) => {}
+        Some(PcAction::EmergencyStop) => emergency_stop(context),
+        Some(PcAction::EndJob) => set_job(memory, false),
+        Some(PcAction::BeginJob) if host.answers.has_job => set_job(memory, true),
+        Some(PcAction::BeginJob) => {}
+        Some(PcAction::Override(Rate::Feed, Change::To)) if !(0.001..=1000.0).contains(&number) => {
             return INVALID;
         }
-        Some(Deed::Override(rate, change)) => set_override(out, context, (rate, change), number),
-        Some(Deed::Display(axis)) => host.answers.dros[axis] = f64::from(number),
-        Some(Deed::MessageBox) => message_box(host, out, context, parameters),
-        Some(Deed::Variables(way)) => return variables(host, memory, way, parameters),
-        Some(Deed::Mdi) => mdi(host, out, context, parameters[0]),
-        Some(Deed::Resolutions) => return store_floats(memory, parameters[0], &host.answers.resolutions),
-        Some(Deed::Tool(kind, way)) => return tool(host, memory, (kind, way), parameters),
-        Some(Deed::Settings) => return store_words(memory, parameters[0], &host.answers.setup),
-        Some(Deed::Displays) => return store_doubles(memory, parameters[0], &host.answers.dros),
-        Some(Deed::InputBox) => input_box(host, out, context, parameters[0]),
-        Some(Deed::JogOverride(axis, Way::Get)) => {
+        Some(PcAction::Override(rate, change)) => set_override(out, context, (rate, change), number),
+        Some(PcAction::Display(axis)) => host.answers.dros[axis] = f64::from(number),
+        Some(PcAction::MessageBox) => message_box(host, out, context, parameters),
+        Some(PcAction::Variables(direction)) => return variables(host, memory, direction, parameters),
+        Some(PcAction::Mdi) => mdi(host, out, context, parameters[0]),
+        Some(PcAction::Resolutions) => return store_floats(memory, parameters[0], &host.answers.resolutions),
+        Some(PcAction::Tool(kind, direction)) => return tool(host, memory, (kind, direction), parameters),
+        Some(PcAction::Settings) => return store_words(memory, parameters[0], &host.answers.setup),
+        Some(PcAction::Displays) => return store_doubles(memory, parameters[0], &host.answers.dros),
+        Some(PcAction::InputBox) => input_box(host, out, context, parameters[0]),
+        Some(PcAction::JogOverride(axis, Direction::Get)) => {
             memory.set(data(1), host.jog_overrides[axis].to_bits() as i32);
         }
-        Some(Deed::JogOverride(axis, Way::Set)) => host.jog_overrides[axis] = number,
-        Some(Deed::Cell) => return edit_cell(host, memory, parameters[0]),
+        Some(PcAction::JogOverride(axis, Direction::Set)) => host.jog_overrides[axis] = number,
+        Some(PcAction::Cell) => return edit_cell(host, memory, parameters[0]),
     }
     DONE
 }
@@ -386,17 +387,22 @@ fn mdi(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, offset: i3
 }
 
 /// Copies #variables to or from `UserData`.
-fn variables(host: &mut Host, memory: &mut GuestMemory, way: Way, [first, count, index]: [i32; 3]) -> i32 {
+fn variables(
+    host: &mut Host,
+    memory: &mut GuestMemory,
+    direction: Direction,
+    [first, count, index]: [i32; 3],
+) -> i32 {
     let Some(place) = usize::try_from(count).ok().and_then(|count| doubles(memory, index, count)) else {
         return INVALID;
     };
     for (number, offset) in (first..first.saturating_add(count)).zip((0..).step_by(8)) {
         let place = place.offset(offset);
-        match way {
-            Way::Set => {
+        match direction {
+            Direction::Set => {
                 host.answers.variables.insert(number, memory.peek(place));
             }
-            Way::Get => memory.poke(place, host.answers.variables.get(&number).copied().unwrap_or(0.0)),
+            Direction::Get => memory.poke(place, host.answers.variables.get(&number).copied().unwrap_or(0.0)),
         }
     }
     DONE
@@ -406,18 +412,18 @@ fn variables(host: &mut Host, memory: &mut GuestMemory, way: Way, [first, count,
 fn tool(
     host: &mut Host,
     memory: &mut GuestMemory,
-    (kind, way): (i32, Way),
+    (kind, direction): (i32, Direction),
     [tool, index, _]: [i32; 3],
 ) -> i32 {
     if !(0..TOOLS).contains(&tool) {
         return BAD_TOOL;
     }
     let Some(place) = doubles(memory, index, 1) else { return INVALID };
-    match way {
-        Way::Set => {
+    match direction {
+        Direction::Set => {
             host.answers.tools.insert((kind, tool), memory.peek(place));
         }
-        Way::Get => memory.poke(place, host.answers.tools.get(&(kind, tool)).copied().unwrap_or(0.0)),
+        Direction::Get => memory.poke(place, host.answers.tools.get(&(kind, tool)).copied().unwrap_or(0.0)),
     }
     DONE
 }

@@ -16,7 +16,7 @@ use vm::thread::Threads;
 use super::OpenBox;
 use super::answers::{AnswerError, Answers};
 use super::host::{self, Host, STRING_WORDS};
-use super::requests::{self, Deed, Way};
+use super::requests::{self, Direction, PcAction};
 use crate::out::{EventKind, Out};
 use crate::views::Typed;
 
@@ -165,13 +165,13 @@ impl RequestServer {
     fn named(&self, code: i32, parameters: &[i32; 7]) -> Range<usize> {
         let [first, second, third, ..] = *parameters;
         let answers = self.host.answers();
-        let (start, count) = match requests::deed(code) {
-            Some(Deed::Variables(_)) => (third.checked_mul(2), second.checked_mul(2)),
-            Some(Deed::Tool(..)) => (second.checked_mul(2), Some(2)),
-            Some(Deed::Cell) => (Some(first), Some(1)),
-            Some(Deed::Resolutions) => (Some(first), i32::try_from(answers.resolutions.len()).ok()),
-            Some(Deed::Settings) => (Some(first), i32::try_from(answers.setup.len()).ok()),
-            Some(Deed::Displays) => (first.checked_mul(2), i32::try_from(2 * answers.dros.len()).ok()),
+        let (start, count) = match requests::action(code) {
+            Some(PcAction::Variables(_)) => (third.checked_mul(2), second.checked_mul(2)),
+            Some(PcAction::Tool(..)) => (second.checked_mul(2), Some(2)),
+            Some(PcAction::Cell) => (Some(first), Some(1)),
+            Some(PcAction::Resolutions) => (Some(first), i32::try_from(answers.resolutions.len()).ok()),
+            Some(PcAction::Settings) => (Some(first), i32::try_from(answers.setup.len()).ok()),
+            Some(PcAction::Displays) => (first.checked_mul(2), i32::try_from(2 * answers.dros.len()).ok()),
             _ => return 0..0,
         };
         let index = |number: Option<i32>| number.and_then(|number| usize::try_from(number).ok());
@@ -188,8 +188,8 @@ impl RequestServer {
         code: i32,
         parameters: &[i32; 7],
     ) -> Result<(), B::Error> {
-        match requests::deed(code) {
-            Some(Deed::MessageBox | Deed::Mdi | Deed::InputBox) => {
+        match requests::action(code) {
+            Some(PcAction::MessageBox | PcAction::Mdi | PcAction::InputBox) => {
                 let Ok(offset) = u32::try_from(parameters[0]) else { return Ok(()) };
                 let count = STRING_WORDS.min(GATHER_WORDS.saturating_sub(offset));
                 if count > 0 {
@@ -197,7 +197,9 @@ impl RequestServer {
                     self.poke_gather(offset, &words);
                 }
             }
-            Some(Deed::Variables(Way::Set) | Deed::Tool(_, Way::Set) | Deed::Cell) => {
+            Some(
+                PcAction::Variables(Direction::Set) | PcAction::Tool(_, Direction::Set) | PcAction::Cell,
+            ) => {
                 let range = self.named(code, parameters);
                 let words = board.user_data(range.start, range.len())?;
                 for (index, word) in range.zip(words) {
@@ -211,21 +213,23 @@ impl RequestServer {
 
     /// Stores on the board what the answer has changed.
     fn store<B: RemoteBoard>(&mut self, board: &mut B, code: i32, before: &Before) -> Result<(), B::Error> {
-        let is_read =
-            matches!(requests::deed(code), Some(Deed::Variables(Way::Set) | Deed::Tool(_, Way::Set)));
+        let is_read = matches!(
+            requests::action(code),
+            Some(PcAction::Variables(Direction::Set) | PcAction::Tool(_, Direction::Set))
+        );
         for (index, (old, new)) in before.user_data.iter().zip(self.user_data()).enumerate() {
             // What the board has there now is not known unless it was read.
             if *old != new || !is_read && before.named.contains(&index) {
                 board.set_user_data(index, new)?;
             }
         }
-        match requests::deed(code) {
-            Some(Deed::EmergencyStop) => {
+        match requests::action(code) {
+            Some(PcAction::EmergencyStop) => {
                 for thread in ThreadId::all().skip(1) {
                     board.command(&format!("Kill{thread}"))?;
                 }
             }
-            Some(Deed::Override(..)) => {
+            Some(PcAction::Override(..)) => {
                 let now = self.overrides();
                 for (name, (old, new)) in
                     ["SetFRO", "SetRapidFRO"].iter().zip(before.overrides.iter().zip(now))
@@ -235,7 +239,7 @@ impl RequestServer {
                     }
                 }
             }
-            Some(Deed::Cell) => {
+            Some(PcAction::Cell) => {
                 let variable = self.memory.peek::<u32>(element(PC_COMM_PERSIST + 1)) as usize;
                 let offset =
                     if variable < N_USER_DATA_VARS { self.memory.peek(element(variable)) } else { 0 };

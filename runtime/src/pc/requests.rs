@@ -17,7 +17,7 @@ use Shown::{Elsewhere, Nothing, Single, Whole};
 
 /// The direction of a request: it reads a value of the PC or writes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
+pub(super) enum Direction {
     Get,
     Set,
 }
@@ -38,7 +38,7 @@ pub(super) enum Change {
 
 /// The PC's action for a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Deed {
+pub(super) enum PcAction {
     /// It is shown, no more.
     Show,
     /// Threads 2 to 7 and the path stop.
@@ -50,27 +50,27 @@ pub(super) enum Deed {
     Display(usize),
     MessageBox,
     /// Copies #variables.
-    Variables(Way),
+    Variables(Direction),
     Mdi,
     Resolutions,
     /// An entry of the tool table; its kind is the number of the request that gets it.
-    Tool(i32, Way),
+    Tool(i32, Direction),
     Settings,
     Displays,
     InputBox,
     /// The jog override of an axis.
-    JogOverride(usize, Way),
+    JogOverride(usize, Direction),
     /// The text of a screen cell.
     Cell,
 }
 
-use Deed::{
+use PcAction::{
     BeginJob, Cell, Display, Displays, EmergencyStop, EndJob, InputBox, JogOverride, Mdi, MessageBox,
     Override, Resolutions, Settings, Show, Tool, Variables,
 };
 
-/// Number, name, shown parameter and deed of every request. Source: gather-persist-console.md section 8.
-const REQUESTS: &[(i32, &str, Shown, Deed)] = &[
+/// Number, name, shown parameter and action of every request. Source: gather-persist-console.md section 8.
+const REQUESTS: &[(i32, &str, Shown, PcAction)] = &[
     (1, "emergency stop", Nothing, EmergencyStop),
     (2, "halt the job", Nothing, EndJob),
     (3, "execute the job", Nothing, BeginJob),
@@ -86,42 +86,42 @@ const REQUESTS: &[(i32, &str, Shown, Deed)] = &[
     (13, "user button", Whole, Show),
     (14, "M code", Whole, Show),
     (15, "message box", Elsewhere, MessageBox),
-    (16, "get G-code variables from", Whole, Variables(Way::Get)),
-    (17, "set G-code variables from", Whole, Variables(Way::Set)),
+    (16, "get G-code variables from", Whole, Variables(Direction::Get)),
+    (17, "set G-code variables from", Whole, Variables(Direction::Set)),
     (18, "MDI", Elsewhere, Mdi),
     (19, "get resolutions", Nothing, Resolutions),
     (20, "restart the job", Nothing, Show),
     (21, "set spindle override", Single, Show),
     (22, "change spindle override by", Single, Show),
-    (23, "get length of tool", Whole, Tool(23, Way::Get)),
-    (24, "set length of tool", Whole, Tool(23, Way::Set)),
+    (23, "get length of tool", Whole, Tool(23, Direction::Get)),
+    (24, "set length of tool", Whole, Tool(23, Direction::Set)),
     (25, "get settings", Nothing, Settings),
     (26, "get machine coordinates", Nothing, Displays),
     (27, "get displays", Nothing, Displays),
     (28, "update fixture", Nothing, Show),
     (29, "input box", Elsewhere, InputBox),
-    (30, "get diameter of tool", Whole, Tool(30, Way::Get)),
-    (31, "set diameter of tool", Whole, Tool(30, Way::Set)),
-    (32, "get X offset of tool", Whole, Tool(32, Way::Get)),
-    (33, "set X offset of tool", Whole, Tool(32, Way::Set)),
-    (34, "get Y offset of tool", Whole, Tool(34, Way::Get)),
-    (35, "set Y offset of tool", Whole, Tool(34, Way::Set)),
+    (30, "get diameter of tool", Whole, Tool(30, Direction::Get)),
+    (31, "set diameter of tool", Whole, Tool(30, Direction::Set)),
+    (32, "get X offset of tool", Whole, Tool(32, Direction::Get)),
+    (33, "set X offset of tool", Whole, Tool(32, Direction::Set)),
+    (34, "get Y offset of tool", Whole, Tool(34, Direction::Get)),
+    (35, "set Y offset of tool", Whole, Tool(34, Direction::Set)),
     (36, "halt at the next line", Nothing, Show),
     (37, "enable jog keys", Nothing, Show),
     (38, "disable jog keys", Nothing, Show),
     (39, "reload geometric correction", Nothing, Show),
-    (40, "get jog override X", Nothing, JogOverride(0, Way::Get)),
-    (41, "get jog override Y", Nothing, JogOverride(1, Way::Get)),
-    (42, "get jog override Z", Nothing, JogOverride(2, Way::Get)),
-    (43, "get jog override A", Nothing, JogOverride(3, Way::Get)),
-    (44, "get jog override B", Nothing, JogOverride(4, Way::Get)),
-    (45, "get jog override C", Nothing, JogOverride(5, Way::Get)),
-    (46, "set jog override X", Single, JogOverride(0, Way::Set)),
-    (47, "set jog override Y", Single, JogOverride(1, Way::Set)),
-    (48, "set jog override Z", Single, JogOverride(2, Way::Set)),
-    (49, "set jog override A", Single, JogOverride(3, Way::Set)),
-    (50, "set jog override B", Single, JogOverride(4, Way::Set)),
-    (51, "set jog override C", Single, JogOverride(5, Way::Set)),
+    (40, "get jog override X", Nothing, JogOverride(0, Direction::Get)),
+    (41, "get jog override Y", Nothing, JogOverride(1, Direction::Get)),
+    (42, "get jog override Z", Nothing, JogOverride(2, Direction::Get)),
+    (43, "get jog override A", Nothing, JogOverride(3, Direction::Get)),
+    (44, "get jog override B", Nothing, JogOverride(4, Direction::Get)),
+    (45, "get jog override C", Nothing, JogOverride(5, Direction::Get)),
+    (46, "set jog override X", Single, JogOverride(0, Direction::Set)),
+    (47, "set jog override Y", Single, JogOverride(1, Direction::Set)),
+    (48, "set jog override Z", Single, JogOverride(2, Direction::Set)),
+    (49, "set jog override A", Single, JogOverride(3, Direction::Set)),
+    (50, "set jog override B", Single, JogOverride(4, Direction::Set)),
+    (51, "set jog override C", Single, JogOverride(5, Direction::Set)),
     (52, "recreate the dialog", Nothing, Show),
     (53, "get the text of cell", Whole, Cell),
     (54, "rapid override", Elsewhere, Override(Rate::Rapid, Change::To)),
@@ -142,8 +142,8 @@ pub(super) fn shown(code: i32, parameter: i32) -> Option<String> {
 }
 
 /// Returns the action for a request; `None` for a number that is not one.
-pub(super) fn deed(code: i32) -> Option<Deed> {
-    REQUESTS.iter().find(|(number, ..)| *number == code).map(|(.., deed)| *deed)
+pub(super) fn action(code: i32) -> Option<PcAction> {
+    REQUESTS.iter().find(|(number, ..)| *number == code).map(|(.., action)| *action)
 }
 
 #[cfg(test)]
