@@ -41,7 +41,7 @@ use cranelift_module::{FuncId, Module};
 
 use kmotiondef::GuestAddr;
 
-use self::parts::{CallParts, Flags, FrameParts, Registers, Twice, WaitParts};
+use self::parts::{CallParts, Flags, FrameParts, Registers, UnrollState, WaitParts};
 use self::turns::Plan;
 use super::request::{Reason, Request};
 use super::state::{BYTES_PER_CALL, State};
@@ -204,7 +204,7 @@ pub(super) fn translate(
     translator.builder.finalize(module.target_config());
 }
 
-/// Translates the way from Rust to a thunk into `ir`, whose signature is set.
+/// Translates the entry from Rust to a thunk into `ir`, whose signature is set.
 pub(super) fn translate_begin(
     ir: &mut IrFunction,
     context: &mut FunctionBuilderContext,
@@ -227,7 +227,7 @@ pub(super) fn translate_begin(
     builder.finalize(module.target_config());
 }
 
-/// Translates the way into functions with `parameters` into `ir`, whose signature is set: the state holds
+/// Translates the entry to functions with `parameters` into `ir`, whose signature is set: the state holds
 /// the function and the arguments.
 ///
 /// So a call through a pointer need not know the function's parameters.
@@ -297,7 +297,7 @@ struct Translator<'a, 'b> {
     calls: CallParts,
     /// Blocks at the words that branches go to or that follow a conditional one.
     blocks: BTreeMap<usize, Block>,
-    twice: Twice,
+    unroll: UnrollState,
     flags: Flags,
     frame: FrameParts,
     waits: WaitParts,
@@ -342,7 +342,7 @@ impl<'a, 'b> Translator<'a, 'b> {
                 result: None,
             },
             blocks: BTreeMap::new(),
-            twice: Twice::default(),
+            unroll: UnrollState::default(),
             flags: Flags { state: state_flags, guest: guest_flags },
             frame: FrameParts {
                 state: parameters[0],
@@ -426,7 +426,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         let mut body = self.translation.function.body.clone();
         self.find_blocks();
         while let Some(at) = body.next() {
-            let plan = self.twice.plans.remove(&at);
+            let plan = self.unroll.plans.remove(&at);
             let entry = plan.as_ref().map_or(at, Plan::entry);
             if let Some(block) = self.blocks.get(&entry).copied() {
                 self.begin(block);
@@ -477,7 +477,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         let is_here = |polling: &&PollingLoop| function.body.contains(&polling.first);
         self.waits.loops = loops.iter().filter(is_here).cloned().collect();
         let waits = |at: usize| self.waits.loops.iter().any(|polling| polling.words.contains(&at));
-        self.twice.plans = turns::plans(program, function, &begins, &waits, &|op| self.cost_in_turns(op));
+        self.unroll.plans = turns::plans(program, function, &begins, &waits, &|op| self.cost_in_turns(op));
         self.blocks = begins.into_iter().map(|at| (at, self.builder.create_block())).collect();
     }
 
@@ -510,7 +510,7 @@ impl<'a, 'b> Translator<'a, 'b> {
 
     /// Goes on in `block`, all of whose predecessors are known.
     fn enter(&mut self, block: Block) {
-        if self.twice.is_rare {
+        if self.unroll.is_rare {
             self.builder.set_cold_block(block);
         }
         self.builder.switch_to_block(block);

@@ -72,8 +72,8 @@ pub(super) struct Level {
     pub(super) next: u32,
 }
 
-/// The values that a list has given so far.
-struct Given {
+/// The part of an aggregate that a list has initialised so far.
+struct InitializedRange {
     /// The number of its first leaf.
     first: usize,
     /// Number of leaves that `end` covers.
@@ -317,9 +317,9 @@ impl Sema<'_> {
         let mut stack = vec![level];
         let mut reach = 0;
         let mut is_sound = true;
-        let mut given = Given { first: leaves.len(), seen: leaves.len(), end: 0 };
+        let mut initialized = InitializedRange { first: leaves.len(), seen: leaves.len(), end: 0 };
         for item in items {
-            is_sound &= self.fill_item(leaves, &mut stack, item, &mut given).is_some();
+            is_sound &= self.fill_item(leaves, &mut stack, item, &mut initialized).is_some();
             reach = reach.max(stack.first().map_or(0, |level| level.next));
         }
         is_sound.then_some(())?;
@@ -369,7 +369,7 @@ impl Sema<'_> {
         leaves: &mut Vec<Leaf>,
         stack: &mut Vec<Level>,
         item: &InitializerItem,
-        given: &mut Given,
+        initialized: &mut InitializedRange,
     ) -> Option<()> {
         let mut times = 1;
         if !item.designators.is_empty() {
@@ -386,10 +386,10 @@ impl Sema<'_> {
                     if let Some(level) = stack.last_mut() {
                         level.advance();
                     }
-                    self.replace(leaves, slot, given);
+                    self.replace(leaves, slot, initialized);
                     self.fill_list(leaves, slot, items, *span)?;
                 }
-                Initializer::Expression(value) => self.fill_expression(leaves, stack, value, given)?,
+                Initializer::Expression(value) => self.fill_expression(leaves, stack, value, initialized)?,
             }
             if times > 1 {
                 stack.truncate(depth);
@@ -401,21 +401,21 @@ impl Sema<'_> {
 
     /// Drops the values that the list gave to parts of an aggregate before: another initialiser of the whole replaces
     /// them all (C17 6.7.9, 19).
-    fn replace(&self, leaves: &mut Vec<Leaf>, slot: Slot, given: &mut Given) {
-        for leaf in leaves.iter().skip(given.seen) {
-            given.end = given.end.max(leaf.offset.saturating_add(1));
+    fn replace(&self, leaves: &mut Vec<Leaf>, slot: Slot, initialized: &mut InitializedRange) {
+        for leaf in leaves.iter().skip(initialized.seen) {
+            initialized.end = initialized.end.max(leaf.offset.saturating_add(1));
         }
-        given.seen = leaves.len();
-        if slot.offset >= given.end {
+        initialized.seen = leaves.len();
+        if slot.offset >= initialized.end {
             return;
         }
         let end = slot.offset.saturating_add(self.types.size_of(slot.ty.ty).unwrap_or(0));
         let mut index = 0;
         leaves.retain(|leaf| {
             index += 1;
-            index <= given.first || !(slot.offset..end).contains(&leaf.offset)
+            index <= initialized.first || !(slot.offset..end).contains(&leaf.offset)
         });
-        given.seen = leaves.len();
+        initialized.seen = leaves.len();
     }
 
     /// The value of a range is computed for its first part only and kept for the others.
@@ -458,7 +458,7 @@ impl Sema<'_> {
         leaves: &mut Vec<Leaf>,
         stack: &mut Vec<Level>,
         value: &Expression,
-        given: &mut Given,
+        initialized: &mut InitializedRange,
     ) -> Option<()> {
         let text = text_of(value);
         let mut operand = None;
@@ -479,7 +479,7 @@ impl Sema<'_> {
                 return self.fill_whole(leaves, slot, operand, value.span);
             };
             if let Some((ty, items)) = self.literal_for(slot.ty, value)? {
-                self.replace(leaves, slot, given);
+                self.replace(leaves, slot, initialized);
                 return self.fill_list(leaves, Slot { ty, ..slot }, items, value.span).map(|_| ());
             }
             if text.is_none() && matches!(level.shape, Shape::Record { .. }) {

@@ -8,7 +8,7 @@ use kmotiondef::map::{IRAM, SDRAM};
 
 use super::super::decode::{AFTER, Micro, NEGATIVE, UPDATES, ZERO};
 use super::super::work::Work;
-use super::packet::Doing;
+use super::packet::PacketState;
 use super::region::{Stopped, Translator, offset};
 use crate::native::{Handover, MARK_BITS};
 
@@ -16,7 +16,7 @@ impl Translator<'_, '_> {
     /// The address of an access; the base changes. The sources are the base, the base with the constant, the offset.
     pub(super) fn address(
         &mut self,
-        doing: &mut Doing,
+        packet_state: &mut PacketState,
         m: &Micro,
         [base, constant, register]: [Value; 3],
     ) -> Result<Value, Stopped> {
@@ -29,14 +29,19 @@ impl Translator<'_, '_> {
         if m.flags & UPDATES == 0 {
             return Ok(sum);
         }
-        self.give(doing, m, m.a, sum)?;
+        self.give(packet_state, m, m.a, sum)?;
         Ok(if m.flags & AFTER == 0 { sum } else { base })
     }
 
     /// Loads into a register or a pair.
-    pub(super) fn load(&mut self, doing: &mut Doing, m: &Micro, address: Value) -> Result<(), Stopped> {
+    pub(super) fn load(
+        &mut self,
+        packet_state: &mut PacketState,
+        m: &Micro,
+        address: Value,
+    ) -> Result<(), Stopped> {
         let address = self.align(address, m.extra);
-        let pointer = self.pointer(doing, address, false);
+        let pointer = self.pointer(packet_state, address, false);
         let guest = self.guest;
         let ins = self.builder.ins();
         let value = match m.work {
@@ -48,17 +53,17 @@ impl Translator<'_, '_> {
             _ => ins.load(types::I32, guest, pointer, 0),
         };
         if m.work == Work::Lddw {
-            return self.push_pair(doing, [5, 5], m.dst, value);
+            return self.push_pair(packet_state, [5, 5], m.dst, value);
         }
-        self.push(doing, 5, m.dst, value)
+        self.push(packet_state, 5, m.dst, value)
     }
 
     /// Stores a register, at the end of the packet.
-    pub(super) fn store(&mut self, doing: &mut Doing, m: &Micro, address: Value) {
-        let value = self.read(doing, m.dst);
+    pub(super) fn store(&mut self, packet_state: &mut PacketState, m: &Micro, address: Value) {
+        let value = self.read(packet_state, m.dst);
         let address = self.align(address, m.extra);
-        let pointer = self.pointer(doing, address, true);
-        doing.stores.push((pointer, value, 1 << m.extra));
+        let pointer = self.pointer(packet_state, address, true);
+        packet_state.stores.push((pointer, value, 1 << m.extra));
     }
 
     /// The low bits of an address do not count.
@@ -67,17 +72,17 @@ impl Translator<'_, '_> {
     }
 
     /// Emits the host address of a guest address; for an access that is not made, the address of a scratch word.
-    fn pointer(&mut self, doing: &mut Doing, address: Value, is_store: bool) -> Value {
+    fn pointer(&mut self, packet_state: &mut PacketState, address: Value, is_store: bool) -> Value {
         let after = self.builder.create_block();
         self.builder.append_block_param(after, types::I64);
-        if let Some(condition) = doing.condition {
+        if let Some(condition) = packet_state.condition {
             let place = i64::try_from(offset_of!(Handover, scratch)).unwrap_or(0);
             let scratch = self.builder.ins().iadd_imm_s(self.pointers.handover, place);
             let made = self.builder.create_block();
             self.builder.ins().brif(condition, made, &[], after, &[scratch.into()]);
             self.continue_in(made);
         }
-        let (elsewhere, side) = (self.cold(), self.side(doing));
+        let (elsewhere, side) = (self.cold(), self.side(packet_state));
         self.in_region(
             address,
             [SDRAM.base.get(), SDRAM.size],

@@ -6,7 +6,7 @@ use cranelift_codegen::ir::{InstBuilder, Value, types};
 use super::super::decode::{LONG1, LONG2, Micro, UNSIGNED};
 use super::super::product::Halves;
 use super::super::work::Work;
-use super::packet::Doing;
+use super::packet::PacketState;
 use super::region::{PairWord, Stopped, Translator};
 
 /// Bits of a long.
@@ -14,10 +14,10 @@ const LONG: i64 = 40;
 
 impl Translator<'_, '_> {
     /// An instruction whose condition is known.
-    pub(super) fn micro(&mut self, doing: &mut Doing, m: &Micro) -> Result<(), Stopped> {
-        let base = self.read(doing, m.a);
+    pub(super) fn micro(&mut self, packet_state: &mut PacketState, m: &Micro) -> Result<(), Stopped> {
+        let base = self.read(packet_state, m.a);
         let s1 = if m.imm == 0 { base } else { self.builder.ins().iadd_imm_s(base, signed(m.imm)) };
-        let s2 = self.read(doing, m.b);
+        let s2 = self.read(packet_state, m.b);
         match m.work {
             Work::Add
             | Work::Sub
@@ -49,61 +49,61 @@ impl Translator<'_, '_> {
             | Work::Sshl
             | Work::Mvk
             | Work::Mvkh => {
-                let value = self.word(doing, m, s1, s2)?;
-                self.give(doing, m, m.dst, value)
+                let value = self.word(packet_state, m, s1, s2)?;
+                self.give(packet_state, m, m.dst, value)
             }
             Work::AddLong | Work::SubLong | Work::ShlLong | Work::ShrLong | Work::ShruLong => {
-                let value = self.long(doing, m, s1)?;
-                self.give_long(doing, m, value)
+                let value = self.long(packet_state, m, s1)?;
+                self.give_long(packet_state, m, value)
             }
             Work::CmpeqLong | Work::CmpgtLong | Work::CmpltLong | Work::CmpgtuLong | Work::CmpltuLong => {
-                let value = self.compare_long(doing, m);
-                self.give(doing, m, m.dst, value)
+                let value = self.compare_long(packet_state, m);
+                self.give(packet_state, m, m.dst, value)
             }
             Work::Product => {
                 let value = self.product(m.extra, s1, s2);
-                self.push(doing, 2, m.dst, value)
+                self.push(packet_state, 2, m.dst, value)
             }
             Work::Mpyi => {
                 let value = self.builder.ins().imul(s1, s2);
-                self.push(doing, 9, m.dst, value)
+                self.push(packet_state, 9, m.dst, value)
             }
             Work::Mpyid => {
                 let (wide1, wide2) = (self.sign(s1), self.sign(s2));
                 let value = self.builder.ins().imul(wide1, wide2);
-                self.push_pair(doing, [9, 10], m.dst, value)
+                self.push_pair(packet_state, [9, 10], m.dst, value)
             }
             Work::Addsp | Work::Subsp | Work::Mpysp => {
                 let value = self.single(m.work, s1, s2);
-                self.push(doing, 4, m.dst, value)
+                self.push(packet_state, 4, m.dst, value)
             }
             Work::Intsp | Work::Intspu | Work::Sptrunc | Work::Dptrunc | Work::Dpsp => {
-                let value = self.converted(doing, m, s2);
-                self.push(doing, 4, m.dst, value)
+                let value = self.converted(packet_state, m, s2);
+                self.push(packet_state, 4, m.dst, value)
             }
             Work::Intdp | Work::Intdpu => {
                 let value = self.double_of_integer(m.work, s2);
-                self.push_pair(doing, [4, 5], m.dst, value)
+                self.push_pair(packet_state, [4, 5], m.dst, value)
             }
             Work::Mpysp2dp => {
                 let value = self.double_product_of_singles(s1, s2);
-                self.push_pair(doing, [4, 5], m.dst, value)
+                self.push_pair(packet_state, [4, 5], m.dst, value)
             }
             Work::Spdp | Work::Absdp | Work::Rcpdp => {
-                let value = self.double_at_once(doing, m, s2);
-                self.give_double(doing, m, value)
+                let value = self.double_at_once(packet_state, m, s2);
+                self.give_double(packet_state, m, value)
             }
             Work::Abssp => {
                 let value = self.builder.ins().band_imm_u(s2, 0x7FFF_FFFF);
-                self.give(doing, m, m.dst, value)
+                self.give(packet_state, m, m.dst, value)
             }
             Work::Cmpeqsp | Work::Cmpgtsp | Work::Cmpltsp => {
                 let value = self.compare_singles(m.work, s1, s2);
-                self.give(doing, m, m.dst, value)
+                self.give(packet_state, m, m.dst, value)
             }
             Work::Rcpsp => {
                 let value = self.reciprocal_single(s2);
-                self.give(doing, m, m.dst, value)
+                self.give(packet_state, m, m.dst, value)
             }
             Work::Adddp
             | Work::Subdp
@@ -112,20 +112,20 @@ impl Translator<'_, '_> {
             | Work::Cmpltdp
             | Work::Mpydp
             | Work::Mpyspdp => {
-                self.start_double(doing, m, [s1, s2]);
+                self.start_double(packet_state, m, [s1, s2]);
                 Ok(())
             }
             Work::Ldbu | Work::Ldb | Work::Ldhu | Work::Ldh | Work::Ldw | Work::Lddw => {
-                let address = self.address(doing, m, [base, s1, s2])?;
-                self.load(doing, m, address)
+                let address = self.address(packet_state, m, [base, s1, s2])?;
+                self.load(packet_state, m, address)
             }
             Work::Stb | Work::Sth | Work::Stw => {
-                let address = self.address(doing, m, [base, s1, s2])?;
-                self.store(doing, m, address);
+                let address = self.address(packet_state, m, [base, s1, s2])?;
+                self.store(packet_state, m, address);
                 Ok(())
             }
-            Work::BranchTo => self.branch(doing, Ok(m.imm)),
-            Work::BranchRegister => self.branch(doing, Err(s2)),
+            Work::BranchTo => self.branch(packet_state, Ok(m.imm)),
+            Work::BranchRegister => self.branch(packet_state, Err(s2)),
             Work::Nop => Ok(()),
             // Control registers, and what programs hardly do.
             Work::SaddLong
@@ -146,7 +146,13 @@ impl Translator<'_, '_> {
     }
 
     /// A word that is there in the first stage.
-    fn word(&mut self, doing: &Doing, m: &Micro, s1: Value, s2: Value) -> Result<Value, Stopped> {
+    fn word(
+        &mut self,
+        packet_state: &PacketState,
+        m: &Micro,
+        s1: Value,
+        s2: Value,
+    ) -> Result<Value, Stopped> {
         let builder = &mut self.builder;
         Ok(match m.work {
             Work::Add => builder.ins().iadd(s1, s2),
@@ -194,7 +200,7 @@ impl Translator<'_, '_> {
             Work::Shl | Work::Shr | Work::Shru | Work::Sshl => self.shift(m.work, s1, s2),
             Work::Mvk => builder.ins().iconst(types::I32, i64::from(m.imm)),
             Work::Mvkh => {
-                let low = self.read(doing, m.dst);
+                let low = self.read(packet_state, m.dst);
                 let low = self.builder.ins().band_imm_u(low, 0xFFFF);
                 self.builder.ins().bor_imm_u(low, i64::from(m.imm))
             }
@@ -316,10 +322,17 @@ impl Translator<'_, '_> {
     }
 
     /// A source of 40-bit arithmetic, sign-extended to 64 bits.
-    fn long_source(&mut self, doing: &Doing, m: &Micro, reg: u8, is_pair: bool, imm: u32) -> Value {
-        let low = self.read(doing, reg);
+    fn long_source(
+        &mut self,
+        packet_state: &PacketState,
+        m: &Micro,
+        reg: u8,
+        is_pair: bool,
+        imm: u32,
+    ) -> Value {
+        let low = self.read(packet_state, reg);
         if is_pair {
-            let high = self.read(doing, reg | 1);
+            let high = self.read(packet_state, reg | 1);
             let whole = self.join(low, high);
             let up = self.builder.ins().ishl_imm_u(whole, 64 - LONG);
             return self.builder.ins().sshr_imm_u(up, 64 - LONG);
@@ -329,13 +342,13 @@ impl Translator<'_, '_> {
     }
 
     /// Returns both sources.
-    fn long_sources(&mut self, doing: &Doing, m: &Micro) -> [Value; 2] {
-        let one = self.long_source(doing, m, m.a, m.flags & LONG1 != 0, m.imm);
-        [one, self.long_source(doing, m, m.b, m.flags & LONG2 != 0, 0)]
+    fn long_sources(&mut self, packet_state: &PacketState, m: &Micro) -> [Value; 2] {
+        let one = self.long_source(packet_state, m, m.a, m.flags & LONG1 != 0, m.imm);
+        [one, self.long_source(packet_state, m, m.b, m.flags & LONG2 != 0, 0)]
     }
 
-    fn long(&mut self, doing: &Doing, m: &Micro, s1: Value) -> Result<Value, Stopped> {
-        let [one, two] = self.long_sources(doing, m);
+    fn long(&mut self, packet_state: &PacketState, m: &Micro, s1: Value) -> Result<Value, Stopped> {
+        let [one, two] = self.long_sources(packet_state, m);
         let count = self.builder.ins().band_imm_u(s1, 63);
         let count = self.builder.ins().uextend(types::I64, count);
         Ok(match m.work {
@@ -353,8 +366,8 @@ impl Translator<'_, '_> {
         })
     }
 
-    fn compare_long(&mut self, doing: &Doing, m: &Micro) -> Value {
-        let sources = self.long_sources(doing, m);
+    fn compare_long(&mut self, packet_state: &PacketState, m: &Micro) -> Value {
+        let sources = self.long_sources(packet_state, m);
         // The order of 40 bits without sign is that of their upper places.
         let [one, two] = sources.map(|source| self.builder.ins().ishl_imm_u(source, 64 - LONG));
         let condition = match m.work {
@@ -368,31 +381,36 @@ impl Translator<'_, '_> {
     }
 
     /// A 40-bit result of the first stage.
-    fn give_long(&mut self, doing: &mut Doing, m: &Micro, value: Value) -> Result<(), Stopped> {
+    fn give_long(&mut self, packet_state: &mut PacketState, m: &Micro, value: Value) -> Result<(), Stopped> {
         let (low, high) = self.split(value);
         let high = self.builder.ins().band_imm_u(high, 0xFF);
-        self.give(doing, m, m.dst, low)?;
-        self.give(doing, m, m.dst | 1, high)
+        self.give(packet_state, m, m.dst, low)?;
+        self.give(packet_state, m, m.dst | 1, high)
     }
 
     /// A double whose low word is there in the first stage, the high one in the second.
-    fn give_double(&mut self, doing: &mut Doing, m: &Micro, value: Value) -> Result<(), Stopped> {
+    fn give_double(
+        &mut self,
+        packet_state: &mut PacketState,
+        m: &Micro,
+        value: Value,
+    ) -> Result<(), Stopped> {
         let (low, high) = self.split(value);
-        self.give(doing, m, m.dst, low)?;
-        self.push(doing, 2, m.dst | 1, high)
+        self.give(packet_state, m, m.dst, low)?;
+        self.push(packet_state, 2, m.dst | 1, high)
     }
 
     /// Two words that land.
     pub(super) fn push_pair(
         &mut self,
-        doing: &mut Doing,
+        packet_state: &mut PacketState,
         due: [u8; 2],
         reg: u8,
         value: Value,
     ) -> Result<(), Stopped> {
         let (low, high) = self.split(value);
-        self.push(doing, due[0], reg, low)?;
-        self.push(doing, due[1], reg | 1, high)
+        self.push(packet_state, due[0], reg, low)?;
+        self.push(packet_state, due[1], reg | 1, high)
     }
 
     /// The words of 64 bits.

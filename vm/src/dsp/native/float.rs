@@ -6,7 +6,7 @@ use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Type, Value, types};
 use super::super::decode::Micro;
 use super::super::float::SUM_EXPONENT;
 use super::super::work::Work;
-use super::packet::Doing;
+use super::packet::PacketState;
 use super::region::{Stopped, Translator};
 
 const EXPONENT_SINGLE: i64 = 0x7F80_0000;
@@ -84,13 +84,13 @@ impl Translator<'_, '_> {
     }
 
     /// The double in the second source.
-    fn second(&mut self, doing: &Doing, m: &Micro, low: Value) -> Value {
-        let high = self.read(doing, m.b | 1);
+    fn second(&mut self, packet_state: &PacketState, m: &Micro, low: Value) -> Value {
+        let high = self.read(packet_state, m.b | 1);
         self.join(low, high)
     }
 
     /// A conversion to a word.
-    pub(super) fn converted(&mut self, doing: &Doing, m: &Micro, s2: Value) -> Value {
+    pub(super) fn converted(&mut self, packet_state: &PacketState, m: &Micro, s2: Value) -> Value {
         match m.work {
             Work::Intsp | Work::Intspu => {
                 // Through a double that holds it exactly: rounded once.
@@ -106,13 +106,13 @@ impl Translator<'_, '_> {
                 self.truncated(value, s2)
             }
             Work::Dptrunc => {
-                let bits = self.second(doing, m, s2);
-                let high = self.read(doing, m.b | 1);
+                let bits = self.second(packet_state, m, s2);
+                let high = self.read(packet_state, m.b | 1);
                 let value = self.double_source(bits);
                 self.truncated(value, high)
             }
             _ => {
-                let bits = self.second(doing, m, s2);
+                let bits = self.second(packet_state, m, s2);
                 let value = self.double_source(bits);
                 let value = self.builder.ins().fdemote(types::F32, value);
                 self.float_result(value)
@@ -150,13 +150,13 @@ impl Translator<'_, '_> {
     }
 
     /// The bits of a double that is there in the first two stages.
-    pub(super) fn double_at_once(&mut self, doing: &Doing, m: &Micro, s2: Value) -> Value {
+    pub(super) fn double_at_once(&mut self, packet_state: &PacketState, m: &Micro, s2: Value) -> Value {
         if m.work == Work::Spdp {
             let value = self.single_source(s2);
             let value = self.builder.ins().fpromote(types::F64, value);
             return self.float_result(value);
         }
-        let bits = self.second(doing, m, s2);
+        let bits = self.second(packet_state, m, s2);
         if m.work == Work::Absdp {
             let rest = self.constant(types::I64, NAN_DOUBLE);
             return self.builder.ins().band(bits, rest);
@@ -180,7 +180,7 @@ impl Translator<'_, '_> {
     /// A double instruction with all of its words, low and high each.
     pub(super) fn finish_double(
         &mut self,
-        doing: &mut Doing,
+        packet_state: &mut PacketState,
         m: &Micro,
         s1: [Value; 2],
         s2: [Value; 2],
@@ -189,7 +189,7 @@ impl Translator<'_, '_> {
         if is_sum || m.work == Work::Mpydp {
             let value = self.arithmetic(m.work, s1, s2);
             let due = if is_sum { [5, 6] } else { [7, 8] };
-            return self.push_pair(doing, due, m.dst, value);
+            return self.push_pair(packet_state, due, m.dst, value);
         }
         let bits2 = self.join(s2[0], s2[1]);
         let two = self.double_source(bits2);
@@ -204,13 +204,13 @@ impl Translator<'_, '_> {
             let one = self.double_source(bits1);
             let truth = self.builder.ins().fcmp(condition, one, two);
             let truth = self.builder.ins().uextend(types::I32, truth);
-            return self.push(doing, 1, m.dst, truth);
+            return self.push(packet_state, 1, m.dst, truth);
         }
         let one = self.single_source(s1[0]);
         let one = self.builder.ins().fpromote(types::F64, one);
         let value = self.builder.ins().fmul(one, two);
         let value = self.float_result(value);
-        self.push_pair(doing, [5, 6], m.dst, value)
+        self.push_pair(packet_state, [5, 6], m.dst, value)
     }
 
     /// A sum, a difference or a product. Where zeros, denormal numbers or NaNs may be involved, it is

@@ -20,7 +20,7 @@ const BRANCH: u8 = 6;
 
 /// The state of translating one packet.
 #[derive(Default)]
-pub(super) struct Doing {
+pub(super) struct PacketState {
     /// Registers that have their new values at the end of this cycle.
     pub(super) now: BTreeMap<u8, Value>,
     /// The effects in flight, from before and from this packet.
@@ -45,56 +45,56 @@ impl Translator<'_, '_> {
         if packet.is_idle {
             return Err(Stopped::Here);
         }
-        let mut doing = Doing { flights: border.flights.clone(), ..Doing::default() };
+        let mut packet_state = PacketState { flights: border.flights.clone(), ..PacketState::default() };
         let done = micros.iter().try_for_each(|micro| {
-            doing.condition = self.condition(&doing, micro);
-            self.micro(&mut doing, micro)
+            packet_state.condition = self.condition(&packet_state, micro);
+            self.micro(&mut packet_state, micro)
         });
         if done.is_ok() && packet.moves_stack {
-            self.check_stack(&mut doing);
+            self.check_stack(&mut packet_state);
         }
-        if let Some(side) = doing.side {
+        if let Some(side) = packet_state.side {
             self.builder.seal_block(side);
             self.sides.push((side, border.clone()));
         }
         done?;
-        self.commit(&doing, border, packet.has_branch);
+        self.commit(&packet_state, border, packet.has_branch);
         border.packets += 1;
-        border.flights = doing.flights;
+        border.flights = packet_state.flights;
         let goes_on = self.advance(border, packet.cycles)?;
         border.pc = packet.end;
         Ok(goes_on)
     }
 
     /// The block where everything ends that is not to be done here.
-    pub(super) fn side(&mut self, doing: &mut Doing) -> Block {
-        *doing.side.get_or_insert_with(|| self.cold())
+    pub(super) fn side(&mut self, packet_state: &mut PacketState) -> Block {
+        *packet_state.side.get_or_insert_with(|| self.cold())
     }
 
     /// Leaves the packet to the interpreter if `is_wrong`.
-    pub(super) fn refuse_if(&mut self, doing: &mut Doing, is_wrong: Value) {
-        let (side, inside) = (self.side(doing), self.builder.create_block());
+    pub(super) fn refuse_if(&mut self, packet_state: &mut PacketState, is_wrong: Value) {
+        let (side, inside) = (self.side(packet_state), self.builder.create_block());
         self.builder.ins().brif(is_wrong, side, &[], inside, &[]);
         self.continue_in(inside);
     }
 
     /// The value that says if an instruction is executed; `None` if it always is.
-    fn condition(&mut self, doing: &Doing, micro: &Micro) -> Option<Value> {
+    fn condition(&mut self, packet_state: &PacketState, micro: &Micro) -> Option<Value> {
         if micro.pred == TRUE {
             return None;
         }
-        let value = self.read(doing, micro.pred);
+        let value = self.read(packet_state, micro.pred);
         let condition = if micro.inverted { IntCC::Equal } else { IntCC::NotEqual };
         Some(self.builder.ins().icmp_imm_u(condition, value, 0))
     }
 
     /// A register as the instruction sees it.
-    pub(super) fn read(&mut self, doing: &Doing, reg: u8) -> Value {
+    pub(super) fn read(&mut self, packet_state: &PacketState, reg: u8) -> Value {
         match reg {
             ZERO => self.builder.ins().iconst(types::I32, 0),
             TRUE => self.builder.ins().iconst(types::I32, 1),
             _ => {
-                let known = doing.now.get(&reg).copied();
+                let known = packet_state.now.get(&reg).copied();
                 known.unwrap_or_else(|| self.builder.use_var(self.regs[usize::from(reg & 63)]))
             }
         }
@@ -103,92 +103,104 @@ impl Translator<'_, '_> {
     /// A result of the first stage.
     pub(super) fn give(
         &mut self,
-        doing: &mut Doing,
+        packet_state: &mut PacketState,
         micro: &Micro,
         reg: u8,
         value: Value,
     ) -> Result<(), Stopped> {
         if micro.flags & DEFERRED != 0 {
-            return self.push(doing, 1, reg, value);
+            return self.push(packet_state, 1, reg, value);
         }
-        let arriving = doing.flights.iter().find(|flight| flight.flying == strip(flight.flying, 1, reg));
+        let arriving =
+            packet_state.flights.iter().find(|flight| flight.flying == strip(flight.flying, 1, reg));
         if let Some(other) = arriving.map(|flight| flight.condition) {
-            self.refuse_both(doing, other)?;
+            self.refuse_both(packet_state, other)?;
         }
-        let new = match doing.condition {
+        let new = match packet_state.condition {
             Some(condition) => {
-                let old = self.read(doing, reg);
+                let old = self.read(packet_state, reg);
                 self.builder.ins().select(condition, value, old)
             }
             None => value,
         };
-        doing.now.insert(reg, new);
+        packet_state.now.insert(reg, new);
         Ok(())
     }
 
     /// Two results for one register: certain, or only if both conditions hold.
-    fn refuse_both(&mut self, doing: &mut Doing, other: Option<Value>) -> Result<(), Stopped> {
-        let both = match (doing.condition, other) {
+    fn refuse_both(&mut self, packet_state: &mut PacketState, other: Option<Value>) -> Result<(), Stopped> {
+        let both = match (packet_state.condition, other) {
             (None, None) => return Err(Stopped::Here),
             (Some(one), None) | (None, Some(one)) => one,
             (Some(one), Some(two)) => self.builder.ins().band(one, two),
         };
-        self.refuse_if(doing, both);
+        self.refuse_if(packet_state, both);
         Ok(())
     }
 
     /// A result that lands in `due` cycles.
-    pub(super) fn push(&mut self, doing: &mut Doing, due: u8, reg: u8, value: Value) -> Result<(), Stopped> {
-        let index = doing.flights.iter().position(|flight| flight.flying == strip(flight.flying, due, reg));
+    pub(super) fn push(
+        &mut self,
+        packet_state: &mut PacketState,
+        due: u8,
+        reg: u8,
+        value: Value,
+    ) -> Result<(), Stopped> {
+        let index =
+            packet_state.flights.iter().position(|flight| flight.flying == strip(flight.flying, due, reg));
         let Some(index) = index else {
-            let condition = doing.condition;
-            doing.flights.push(fly(result(due, reg), condition, vec![value]));
+            let condition = packet_state.condition;
+            packet_state.flights.push(fly(result(due, reg), condition, vec![value]));
             return Ok(());
         };
-        let (other, old) = (doing.flights[index].condition, doing.flights[index].values[0]);
-        self.refuse_both(doing, other)?;
+        let (other, old) = (packet_state.flights[index].condition, packet_state.flights[index].values[0]);
+        self.refuse_both(packet_state, other)?;
         // Not both: where there are two conditions it is the result of the one that holds.
-        let (condition, value) = match (doing.condition, other) {
+        let (condition, value) = match (packet_state.condition, other) {
             (Some(one), Some(two)) => {
                 (Some(self.builder.ins().bor(one, two)), self.builder.ins().select(one, value, old))
             }
             (Some(_) | None, None) => (None, old),
             (None, Some(_)) => (None, value),
         };
-        doing.flights[index] = fly(result(due, reg), condition, vec![value]);
+        packet_state.flights[index] = fly(result(due, reg), condition, vec![value]);
         Ok(())
     }
 
     /// A branch, to an address or to a value.
-    pub(super) fn branch(&mut self, doing: &mut Doing, target: Result<u32, Value>) -> Result<(), Stopped> {
+    pub(super) fn branch(
+        &mut self,
+        packet_state: &mut PacketState,
+        target: Result<u32, Value>,
+    ) -> Result<(), Stopped> {
         let (known, values) = match target {
             Ok(address) => (Some(address), Vec::new()),
             Err(value) => (None, vec![value]),
         };
-        let others: Vec<Option<Value>> = doing
+        let others: Vec<Option<Value>> = packet_state
             .flights
             .iter()
             .filter(|flight| flight.flying.due == BRANCH && matches!(flight.flying.what, Arriving::Branch(_)))
             .map(|flight| flight.condition)
             .collect();
         for other in others {
-            self.refuse_both(doing, other)?;
+            self.refuse_both(packet_state, other)?;
         }
         let flying = Flying { due: BRANCH, is_conditional: false, what: Arriving::Branch(known) };
-        doing.flights.push(fly(flying, doing.condition, values));
-        doing.branches.push(doing.condition);
+        packet_state.flights.push(fly(flying, packet_state.condition, values));
+        packet_state.branches.push(packet_state.condition);
         Ok(())
     }
 
     /// A double instruction that reads its high words later.
-    pub(super) fn start_double(&mut self, doing: &mut Doing, micro: &Micro, low: [Value; 2]) {
+    pub(super) fn start_double(&mut self, packet_state: &mut PacketState, micro: &Micro, low: [Value; 2]) {
         let flying = Flying { due: 1, is_conditional: false, what: Arriving::Start(*micro) };
-        doing.flights.push(fly(flying, doing.condition, low.to_vec()));
+        packet_state.flights.push(fly(flying, packet_state.condition, low.to_vec()));
     }
 
     /// Leaves the packet to the interpreter where the stack pointer leaves its bounds.
-    fn check_stack(&mut self, doing: &mut Doing) {
-        let pointer = self.read(doing, STACK);
+    fn check_stack(&mut self, packet_state: &mut PacketState) {
+        let pointer = self.read(packet_state, STACK);
         let handover = self.pointers.handover;
         let mut bound = |field| self.builder.ins().load(types::I32, self.own, handover, offset(field));
         let limit = bound(offset_of!(Handover, stack.limit));
@@ -196,7 +208,7 @@ impl Translator<'_, '_> {
         let under = self.builder.ins().icmp(IntCC::UnsignedLessThan, pointer, limit);
         let over = self.builder.ins().icmp(IntCC::UnsignedGreaterThan, pointer, top);
         let outside = self.builder.ins().bor(under, over);
-        self.refuse_if(doing, outside);
+        self.refuse_if(packet_state, outside);
         let field = offset(offset_of!(Handover, stack.lowest));
         let lowest = self.builder.ins().load(types::I32, self.own, handover, field);
         let lowest = self.builder.ins().umin(lowest, pointer);
@@ -204,22 +216,22 @@ impl Translator<'_, '_> {
     }
 
     /// Makes everything true that the packet does in its first cycle.
-    fn commit(&mut self, doing: &Doing, border: &Border, has_branch: bool) {
-        for (pointer, value, bytes) in &doing.stores {
+    fn commit(&mut self, packet_state: &PacketState, border: &Border, has_branch: bool) {
+        for (pointer, value, bytes) in &packet_state.stores {
             match bytes {
                 1 => self.builder.ins().istore8(self.guest, *value, *pointer, 0),
                 2 => self.builder.ins().istore16(self.guest, *value, *pointer, 0),
                 _ => self.builder.ins().store(self.guest, *value, *pointer, 0),
             };
         }
-        for (reg, value) in &doing.now {
+        for (reg, value) in &packet_state.now {
             self.set(*reg, *value);
         }
         if has_branch {
             let shadow = self.cycle(border.cycles + u32::from(BRANCH));
             self.builder.def_var(self.counters.shadow, shadow);
         }
-        for condition in &doing.branches {
+        for condition in &packet_state.branches {
             let [last, before] = self.counters.branched_at;
             let at = self.builder.ins().iconst(types::I32, i64::from(border.pc));
             let (old, older) = (self.builder.use_var(last), self.builder.use_var(before));
@@ -255,15 +267,16 @@ impl Translator<'_, '_> {
                     self.land(reg, flight.condition, flight.values[0]);
                 }
             }
-            let mut doing = Doing { flights: std::mem::take(&mut rest), ..Doing::default() };
+            let mut packet_state =
+                PacketState { flights: std::mem::take(&mut rest), ..PacketState::default() };
             for flight in &arrived {
                 // A second result for a register is found by the interpreter at the next packet: not here.
-                self.read_late(&mut doing, flight).map_err(|_| Stopped::Unusual)?;
+                self.read_late(&mut packet_state, flight).map_err(|_| Stopped::Unusual)?;
             }
-            if doing.side.is_some() {
+            if packet_state.side.is_some() {
                 return Err(Stopped::Unusual);
             }
-            border.flights = doing.flights;
+            border.flights = packet_state.flights;
             sort(&mut border.flights);
             for flight in &arrived {
                 if self.arrive(border, flight) {
@@ -286,22 +299,22 @@ impl Translator<'_, '_> {
     }
 
     /// The next read of a double instruction.
-    fn read_late(&mut self, doing: &mut Doing, flight: &Flight) -> Result<(), Stopped> {
-        doing.condition = flight.condition;
+    fn read_late(&mut self, packet_state: &mut PacketState, flight: &Flight) -> Result<(), Stopped> {
+        packet_state.condition = flight.condition;
         let (micro, high2) = match flight.flying.what {
             Arriving::Start(micro) => (micro, None),
             Arriving::Product(micro) => (micro, Some(flight.values[2])),
             Arriving::Result(_) | Arriving::Branch(_) => return Ok(()),
         };
         let [low1, low2] = [flight.values[0], flight.values[1]];
-        let high1 = self.read(doing, micro.a | 1);
-        let own2 = self.read(doing, micro.b | 1);
+        let high1 = self.read(packet_state, micro.a | 1);
+        let own2 = self.read(packet_state, micro.b | 1);
         if micro.work == Work::Mpydp && high2.is_none() {
             let flying = Flying { due: 1, is_conditional: false, what: Arriving::Product(micro) };
-            doing.flights.push(fly(flying, flight.condition, vec![low1, low2, own2]));
+            packet_state.flights.push(fly(flying, flight.condition, vec![low1, low2, own2]));
             return Ok(());
         }
-        self.finish_double(doing, &micro, [low1, high1], [low2, high2.unwrap_or(own2)])
+        self.finish_double(packet_state, &micro, [low1, high1], [low2, high2.unwrap_or(own2)])
     }
 
     /// Emits a branch that arrives; reports whether it is certainly taken.

@@ -35,8 +35,8 @@ pub(super) struct Fast {
     bails: BTreeMap<usize, Block>,
 }
 
-/// A way between two blocks on which the budget is made exact.
-pub(super) struct Way {
+/// An edge between two blocks on which the budget is made exact.
+pub(super) struct BudgetEdge {
     block: Block,
     to: Block,
     cycles: u32,
@@ -59,7 +59,7 @@ impl Translator<'_, '_> {
             self.builder.ins().brif(covered, fast, &[], ordinary, &[]);
         }
         self.reachable = false;
-        self.twice.fast = Some(self.fast_blocks(plan, fast));
+        self.unroll.fast = Some(self.fast_blocks(plan, fast));
         for turn in 0..turns.max(1) {
             for at in &order {
                 self.fast_word(turn, *at);
@@ -71,13 +71,13 @@ impl Translator<'_, '_> {
         if self.reachable {
             self.settle();
         }
-        let bails = self.twice.fast.take().map(|fast| fast.bails).unwrap_or_default();
+        let bails = self.unroll.fast.take().map(|fast| fast.bails).unwrap_or_default();
         let behind = self.reachable.then(|| self.builder.create_block());
         if let Some(behind) = behind {
             self.builder.ins().jump(behind, &[]);
             self.reachable = false;
         }
-        self.twice.is_rare = true;
+        self.unroll.is_rare = true;
         for at in words {
             if at == entry && is_tested {
                 if self.reachable {
@@ -93,7 +93,7 @@ impl Translator<'_, '_> {
             }
             self.word(at);
         }
-        self.twice.is_rare = false;
+        self.unroll.is_rare = false;
         if let Some(behind) = behind {
             self.begin(behind);
         }
@@ -116,13 +116,13 @@ impl Translator<'_, '_> {
 
     /// Translates one word of one iteration.
     fn fast_word(&mut self, turn: usize, at: usize) {
-        let Some(fast) = &mut self.twice.fast else { return };
+        let Some(fast) = &mut self.unroll.fast else { return };
         if let Some(block) = fast.blocks.get(&(turn, at)).copied() {
             if self.reachable {
                 self.go_to(at);
             }
             self.begin(block);
-            if let Some(fast) = &mut self.twice.fast {
+            if let Some(fast) = &mut self.unroll.fast {
                 fast.spent = fast.plan.entries.get(&(turn, at)).copied().unwrap_or(0);
                 fast.checked = fast.arriving.remove(&(turn, at)).unwrap_or_default();
                 fast.turn = turn;
@@ -133,12 +133,12 @@ impl Translator<'_, '_> {
 
     /// Defers a charge to the end of the fast iterations; `false` outside of them, where it must be taken at once.
     pub(super) fn defer(&mut self, cycles: u32) -> bool {
-        self.twice.fast.as_mut().map(|fast| fast.spent += cycles).is_some()
+        self.unroll.fast.as_mut().map(|fast| fast.spent += cycles).is_some()
     }
 
     /// Makes the budget exact at an exit of the fast iterations.
     pub(super) fn settle(&mut self) {
-        if let Some(fast) = &mut self.twice.fast {
+        if let Some(fast) = &mut self.unroll.fast {
             let cycles = take(&mut fast.spent);
             self.spend(cycles);
         }
@@ -154,7 +154,7 @@ impl Translator<'_, '_> {
 
     /// The block to branch to in order to get to the word `to`; [`finish_edges`](Self::finish_edges) must follow.
     pub(super) fn edge(&mut self, to: usize) -> Block {
-        let Some(fast) = &mut self.twice.fast else { return self.block_of(to) };
+        let Some(fast) = &mut self.unroll.fast else { return self.block_of(to) };
         let (block, kept, is_rare) = match fast.plan.target(fast.turn, to) {
             Some(place) => {
                 let checked = &fast.checked;
@@ -166,31 +166,31 @@ impl Translator<'_, '_> {
             None => (self.blocks[&to], 0, fast.plan.is_counted && to != fast.plan.entry()),
         };
         let cycles = fast.spent - kept;
-        self.way(block, cycles, is_rare)
+        self.edge(block, cycles, is_rare)
     }
 
     /// The block to branch to if the ordinary loop must execute the instruction; `None` outside of fast iterations.
     ///
     /// [`finish_edges`](Self::finish_edges) must follow.
     pub(super) fn bail(&mut self) -> Option<Block> {
-        let fast = self.twice.fast.as_mut()?;
+        let fast = self.unroll.fast.as_mut()?;
         let cycles = fast.spent;
         let block = *fast.bails.entry(self.at).or_insert_with(|| self.builder.create_block());
-        Some(self.way(block, cycles, true))
+        Some(self.edge(block, cycles, true))
     }
 
-    fn way(&mut self, to: Block, cycles: u32, is_rare: bool) -> Block {
+    fn edge(&mut self, to: Block, cycles: u32, is_rare: bool) -> Block {
         if cycles == 0 {
             return to;
         }
         let block = self.builder.create_block();
-        self.twice.ways.push(Way { block, to, cycles, is_rare });
+        self.unroll.edges.push(BudgetEdge { block, to, cycles, is_rare });
         block
     }
 
-    /// Translates the ways that the branch just written takes.
+    /// Translates the edges that the branch just written takes.
     pub(super) fn finish_edges(&mut self) {
-        for Way { block, to, cycles, is_rare } in take(&mut self.twice.ways) {
+        for BudgetEdge { block, to, cycles, is_rare } in take(&mut self.unroll.edges) {
             if is_rare {
                 self.builder.set_cold_block(block);
             }
@@ -216,7 +216,7 @@ impl Translator<'_, '_> {
         width: Width,
         is_store: bool,
     ) -> Option<(Value, i32)> {
-        let fast = self.twice.fast.as_ref()?;
+        let fast = self.unroll.fast.as_ref()?;
         let access = *fast.plan.accesses.get(&(fast.turn, self.at))?;
         let shared = fast.plan.groups.get(&access.root).copied();
         let shared = shared.filter(|group| group.covers(access.at, width, is_store));
@@ -240,7 +240,7 @@ impl Translator<'_, '_> {
             let sdram = self.load_pointer(offset_of!(State, ram.sdram));
             self.builder.ins().iadd(sdram, place)
         };
-        if let (Some(_), Some(fast)) = (shared, &mut self.twice.fast) {
+        if let (Some(_), Some(fast)) = (shared, &mut self.unroll.fast) {
             fast.checked.insert(access.root, pointer);
         }
         Some((pointer, access.at - group.first))

@@ -177,7 +177,7 @@ impl Translator<'_, '_> {
     /// Code for the rare case does so in the same place: what is moved out of a loop takes a register all through it.
     fn load_marks(&mut self) -> Value {
         let field = offset_of!(State, ram.protected);
-        if self.twice.is_rare { self.load_state(types::I64, field) } else { self.load_pointer(field) }
+        if self.unroll.is_rare { self.load_state(types::I64, field) } else { self.load_pointer(field) }
     }
 
     fn store_at<R: Register>(&mut self, src: R, addr: Addr, width: Width) {
@@ -196,7 +196,7 @@ impl Translator<'_, '_> {
         }
         let marks = self.load_pointer(offset_of!(State, ram.protected));
         let mark = self.builder.ins().uload8(types::I32, self.flags.state, marks, place >> BLOCK_BITS);
-        if self.twice.fast.is_some() {
+        if self.unroll.fast.is_some() {
             self.bail_if(mark);
             let base = self.load_pointer(field);
             return self.store_guest(value, base, place, width);

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use cranelift_codegen::ir::{Block, FuncRef, MemFlagsData, SigRef, Value};
 use cranelift_frontend::Variable;
 
-use super::fast::{Fast, Way};
+use super::fast::{BudgetEdge, Fast};
 use super::shortcut::{Attempt, ShortcutWords};
 use super::turns::Plan;
 use crate::polling::PollingLoop;
@@ -36,16 +36,16 @@ pub(super) struct CallParts {
     pub(super) result: Option<Value>,
 }
 
-/// The state for words that are translated a second time.
+/// The state for loops that are unrolled: their words are translated a second time.
 #[derive(Default)]
-pub(super) struct Twice {
+pub(super) struct UnrollState {
     /// The loops that are translated in several iterations at once, by their first word, and the current one.
     pub(super) plans: BTreeMap<usize, Plan>,
     pub(super) fast: Option<Fast>,
     /// True while code is translated for the rare case that fast iterations cannot continue.
     pub(super) is_rare: bool,
-    /// The targets of branches that are still to be translated.
-    pub(super) ways: Vec<Way>,
+    /// The edges that are still to be translated.
+    pub(super) edges: Vec<BudgetEdge>,
 }
 
 /// The loops that may only wait.

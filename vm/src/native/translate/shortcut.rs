@@ -121,7 +121,7 @@ impl<'a> Translator<'a, '_> {
     /// The path to a return of the function with the given index, if callers attempt it.
     fn shortcut_of(&mut self, index: usize) -> Option<ShortcutWords> {
         // Code for the rare case stays small.
-        if self.twice.is_rare || self.calls.attempts == MAX_ATTEMPTS {
+        if self.unroll.is_rare || self.calls.attempts == MAX_ATTEMPTS {
             return None;
         }
         let program = self.translation.program;

@@ -38,11 +38,11 @@ impl Translator<'_, '_> {
         self.builder.ins().brif(overdrawn, steps, &[], go_on, &[]);
         self.enter_cold(steps);
         let (at, budget) = (self.at, self.builder.use_var(self.registers.budget));
-        let is_rare = replace(&mut self.twice.is_rare, true);
+        let is_rare = replace(&mut self.unroll.is_rare, true);
         let raw = take(&mut self.registers.raw);
         self.steps(at);
         self.registers.raw = raw;
-        self.twice.is_rare = is_rare;
+        self.unroll.is_rare = is_rare;
         self.at = at;
         self.reachable = true;
         self.enter(go_on);

@@ -2,7 +2,7 @@
 //!
 //! An innermost loop without calls may run for several iterations as soon as the budget covers the most that they can
 //! cost: no charge in them could end the slice, so the charges are only added up, and the sum is taken where the fast
-//! iterations are left. The budget is exact wherever it can be observed. An acyclic region is treated in the same way,
+//! iterations are left. The budget is exact wherever it can be observed. An acyclic region is treated alike,
 //! as one iteration.
 //!
 //! The same region of code reaches memory through few registers that move by constants. The [`Plan`] follows them: an

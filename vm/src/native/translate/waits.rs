@@ -28,7 +28,7 @@ impl Translator<'_, '_> {
 
     /// Translates the iterations of the loops whose branches have been met.
     pub(super) fn waiting_loops(&mut self) {
-        let is_rare = replace(&mut self.twice.is_rare, true);
+        let is_rare = replace(&mut self.unroll.is_rare, true);
         // Each may meet the branches of others.
         let mut open: Vec<PollingLoop> = self.waits.loops.clone();
         while let Some(next) = open.iter().position(|polling| self.waits.entries.contains_key(&polling.first))
@@ -36,7 +36,7 @@ impl Translator<'_, '_> {
             let polling = open.swap_remove(next);
             self.waiting_loop(&polling);
         }
-        self.twice.is_rare = is_rare;
+        self.unroll.is_rare = is_rare;
     }
 
     fn waiting_loop(&mut self, polling: &PollingLoop) {
