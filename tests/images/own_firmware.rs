@@ -202,7 +202,7 @@ fn stops_do_not_change_a_run() {
     board.set_stops([tick, SERVICE]);
     let (mut ticks, mut calls) = (Vec::new(), Vec::new());
     while board.run_to_stop(begin + 25 * TICK).unwrap_or_else(|halted| panic!("{halted}")) == Ran::ToStop {
-        match board.doing().pc {
+        match board.processor_state().pc {
             SERVICE => calls.extend(board.program_call()),
             pc => {
                 assert_eq!(pc, tick);

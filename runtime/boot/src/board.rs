@@ -43,7 +43,7 @@ const NO_ECHO: u8 = 1;
 
 /// The state of the processor before its next packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Doing {
+pub struct ProcessorState {
     /// The address of the next packet.
     pub pc: u32,
     /// The thread that has the processor, 0 for the firmware's own; `None` if the firmware does not say.
@@ -171,10 +171,10 @@ impl<A: Around> BootedBoard<A> {
 
     /// Returns the state of the processor before its next packet.
     #[must_use]
-    pub fn doing(&self) -> Doing {
+    pub fn processor_state(&self) -> ProcessorState {
         let thread = self.file.address("CurrentThread").map(|at| self.hardware.memory.peek::<u32>(at));
         let is_masked = self.core.state.control(Control::Csr) & GIE == 0;
-        Doing { pc: self.core.state.pc(), thread, is_masked }
+        ProcessorState { pc: self.core.state.pc(), thread, is_masked }
     }
 
     /// Memory.

@@ -36,7 +36,7 @@ mod window;
 
 pub use around::{Around, AtMatch};
 pub use board::{
-    BootedBoard, BootedSnapshot, Doing, FlashError, Halted, ProgramCall, ProgramPacket, Ran, Reached,
+    BootedBoard, BootedSnapshot, FlashError, Halted, ProcessorState, ProgramCall, ProgramPacket, Ran, Reached,
 };
 pub use crash::Crash;
 pub use file::{FirmwareError, FirmwareFile};

@@ -25,7 +25,9 @@ pub use firmware::{BootedFirmware, FirmwareError};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use boot::{BootedBoard, BootedSnapshot, Doing, FirmwareFile, Halted, ProgramPacket, Ran, Sent, SentLine};
+use boot::{
+    BootedBoard, BootedSnapshot, FirmwareFile, Halted, ProcessorState, ProgramPacket, Ran, Sent, SentLine,
+};
 use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
 use runtime::stimulus::Stimulus;
@@ -172,7 +174,7 @@ impl BootedTarget {
     }
 
     /// Returns the sampled states of the processor, each with the time that its samples represent.
-    pub fn sampled(&self) -> impl Iterator<Item = (&Doing, Cycles)> {
+    pub fn sampled(&self) -> impl Iterator<Item = (&ProcessorState, Cycles)> {
         self.observers.sampled()
     }
 
@@ -283,7 +285,7 @@ impl BootedTarget {
                 self.state.debugging.end(thread);
             }
         }
-        let number = self.board.doing().thread.and_then(|thread| i32::try_from(thread).ok());
+        let number = self.board.processor_state().thread.and_then(|thread| i32::try_from(thread).ok());
         self.state.turn = number.and_then(ThreadId::new).map_or(Turn::Primary, Turn::User);
     }
 

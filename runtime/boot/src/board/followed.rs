@@ -8,7 +8,7 @@ use kmotiondef::ThreadId;
 use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT};
 use vm::dsp::{Halt, State, packet_text};
 
-use super::{BootedBoard, Doing, GIE, Halted};
+use super::{BootedBoard, GIE, Halted, ProcessorState};
 use crate::around::Around;
 use crate::bus::Hardware;
 
@@ -96,7 +96,7 @@ impl<A: Around> BootedBoard<A> {
         let back = state.reg(LINK);
         let [last, before] = state.branched_at();
         let is_call = |at: &u32| back.wrapping_sub(*at) <= LONGEST_CALL;
-        let Doing { pc, thread, is_masked } = self.doing();
+        let ProcessorState { pc, thread, is_masked } = self.processor_state();
         Reached {
             pc,
             thread: thread.and_then(user_thread),

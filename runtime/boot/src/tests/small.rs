@@ -207,10 +207,10 @@ fn a_board_starts_from_its_flash_only_if_it_holds_this_firmware() {
 #[test]
 fn processor_activity_is_visible_inside_and_outside_the_interrupt() {
     let mut board = booted();
-    let outside = board.doing();
+    let outside = board.processor_state();
     assert!(!outside.is_masked && outside.pc < HANDLER, "{outside:?}");
     board.run_to(board.next_tick() + 40).expect("it runs");
-    let inside = board.doing();
+    let inside = board.processor_state();
     assert!(inside.is_masked && inside.thread.is_none(), "{inside:?}");
     let looks = board.looks();
     board.run_to(board.cycle() + 1000).expect("it runs");
@@ -257,7 +257,7 @@ fn functions_in_rom_are_computed_and_interrupts_stay_on_time() {
     assert!((700..950).contains(&register("A10")), "{} calls", register("A10"));
     for _ in 0..20 {
         board.run_to(board.next_tick() + 40).expect("it runs");
-        assert!(board.doing().is_masked, "the interrupt waits for no function");
+        assert!(board.processor_state().is_masked, "the interrupt waits for no function");
     }
 }
 

@@ -147,7 +147,7 @@ impl BootedTarget {
         loop {
             let debugging = &self.state.debugging;
             let is_slow = debugging.stepping.is_some() || !debugging.watched.is_empty();
-            let before = (self.board.doing().pc, self.board.packets());
+            let before = (self.board.processor_state().pc, self.board.packets());
             let part = if is_slow { end.min(self.board.cycle() + 1) } else { end };
             let ran = self.observers.run(&mut self.board, part)?;
             if is_slow && let Some(ran) = self.after_packet(before) {
@@ -158,7 +158,7 @@ impl BootedTarget {
                 Ran::Through => {}
                 Ran::ToStop => {
                     let context = self.arrive();
-                    let pc = self.board.doing().pc;
+                    let pc = self.board.processor_state().pc;
                     if let Some(context) = context.filter(|_| self.state.debugging.breakpoints.contains(&pc))
                     {
                         return Ok(self.state.debugging.hold(context, HoldReason::Breakpoint));

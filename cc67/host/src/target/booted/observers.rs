@@ -4,7 +4,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use boot::{BootedBoard, Doing, Halted, Ran};
+use boot::{BootedBoard, Halted, ProcessorState, Ran};
 use kmotiondef::firmware::FIRMWARE_FUNCTIONS;
 use kmotiondef::{CodeAddr, Cycles};
 use runtime::surroundings::ProgramCall;
@@ -19,7 +19,7 @@ const PERIOD: u64 = 997;
 struct Samples {
     /// The cycle of the next sample.
     next: u64,
-    seen: BTreeMap<Doing, i64>,
+    seen: BTreeMap<ProcessorState, i64>,
 }
 
 /// Observers of the processor.
@@ -39,9 +39,9 @@ impl Observers {
     }
 
     /// Returns the sampled states of the processor, each with the time that its samples represent.
-    pub(super) fn sampled(&self) -> impl Iterator<Item = (&Doing, Cycles)> {
+    pub(super) fn sampled(&self) -> impl Iterator<Item = (&ProcessorState, Cycles)> {
         let seen = self.samples.iter().flat_map(|samples| &samples.seen);
-        seen.map(|(doing, count)| (doing, Cycles::new(count * PERIOD as i64)))
+        seen.map(|(state, count)| (state, Cycles::new(count * PERIOD as i64)))
     }
 
     /// Reports every call of the firmware by a program to the surroundings, from now on.
@@ -72,7 +72,7 @@ impl Observers {
                 return Ok(Ran::ToStop);
             }
             if let Some(samples) = &mut self.samples {
-                *samples.seen.entry(board.doing()).or_default() += 1;
+                *samples.seen.entry(board.processor_state()).or_default() += 1;
                 samples.next += PERIOD;
             }
         }
@@ -82,7 +82,7 @@ impl Observers {
     fn run_calls(&self, board: &mut BootedBoard<Attached>, end: u64) -> Result<Ran, Halted> {
         while board.run_to_stop(end)? == Ran::ToStop {
             self.report_call(board);
-            if self.stops.contains(&board.doing().pc) {
+            if self.stops.contains(&board.processor_state().pc) {
                 return Ok(Ran::ToStop);
             }
         }

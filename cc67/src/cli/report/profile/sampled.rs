@@ -4,7 +4,7 @@
 //! again and again whether it may continue, so that its time is computing.
 
 use anyhow::Result;
-use boot::Doing;
+use boot::ProcessorState;
 use cc67_host::{BootedTarget, Session, Target as _, UserProgram};
 use kmotiondef::{CodeAddr, ThreadId};
 use runtime::debug::DebugInfo;
@@ -29,17 +29,17 @@ impl<'a> Sampled<'a> {
     /// Writes the flame graph, if one is wanted, and gives the table.
     pub(crate) fn report(&self, output: &ProfileOutput) -> Result<String> {
         let mut account = Account::new();
-        for (doing, time) in self.target.sampled() {
-            account.entry(self.place(doing)).or_default().computing += time;
+        for (state, time) in self.target.sampled() {
+            account.entry(self.place(state)).or_default().computing += time;
         }
         finish(&account, self.target.now(), output)
     }
 
-    fn place(&self, doing: &Doing) -> ProfilePlace {
-        let address = CodeAddr::new(doing.pc);
+    fn place(&self, state: &ProcessorState) -> ProfilePlace {
+        let address = CodeAddr::new(state.pc);
         let source = address.and_then(|address| self.known.iter().find_map(|names| names.place(address)));
-        let thread = doing.thread.and_then(|thread| i32::try_from(thread).ok()).and_then(ThreadId::new);
-        let whose = match (doing.is_masked, &source, thread) {
+        let thread = state.thread.and_then(|thread| i32::try_from(thread).ok()).and_then(ThreadId::new);
+        let whose = match (state.is_masked, &source, thread) {
             (true, Some(_), _) => Whose::Program(ContextId::CALLBACK),
             (true, None, _) => Whose::Interrupt,
             (false, _, Some(thread)) => Whose::Program(ContextId::of(thread)),
@@ -50,10 +50,10 @@ impl<'a> Sampled<'a> {
             file: place.file.to_owned(),
             line: place.line,
         });
-        let unknown = || format!("0x{:08X}", doing.pc);
+        let unknown = || format!("0x{:08X}", state.pc);
         let firmware = frame
             .is_none()
-            .then(|| self.target.file().function_at(doing.pc).map_or_else(unknown, |(name, _)| name));
+            .then(|| self.target.file().function_at(state.pc).map_or_else(unknown, |(name, _)| name));
         ProfilePlace { whose, frames: frame.into_iter().collect(), firmware }
     }
 }
