@@ -99,7 +99,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
             ("board", &["board"]),
             ("addresses", &["bus", "loads"]),
             ("registers", &["window"]),
-            ("surroundings", &["around"]),
+            ("surroundings", &["external"]),
             ("devices", &["control", "flash", "link", "sent", "timer"]),
             ("files and reports", &["file", "crash"]),
             ("functions in ROM", &["rom"]),

@@ -18,9 +18,9 @@ use vm::dsp::{Core, Halt};
 use vm::memory::GuestMemory;
 use vm::memory::snapshot::MemorySnapshot;
 
-use super::around::{Around, AtMatch};
 use super::bus::Hardware;
 use super::crash::Crash;
+use super::external::{ExternalHardware, TimerMatch};
 use super::file::{FirmwareError, FirmwareFile};
 use super::loads::Loads;
 use super::rom::RomFunction;
@@ -87,7 +87,7 @@ pub struct BootedSnapshot<A = ()> {
     memory: MemorySnapshot,
 }
 
-impl<A: Around> BootedSnapshot<A> {
+impl<A: ExternalHardware> BootedSnapshot<A> {
     /// The cycle in which it was taken.
     #[must_use]
     pub const fn cycle(&self) -> u64 {
@@ -109,7 +109,7 @@ impl<A: Around> BootedSnapshot<A> {
     }
 }
 
-impl<A: Around> BootedBoard<A> {
+impl<A: ExternalHardware> BootedBoard<A> {
     /// Sets whether loops that wait are skipped in one step, which is the default; nothing observable changes.
     pub const fn skip_waits(&mut self, whether: bool) {
         self.core.skip_waits(whether);
@@ -257,10 +257,10 @@ impl<A: Around> BootedBoard<A> {
         let now = self.hardware.timer.next_match();
         let Hardware { memory, window, .. } = &mut self.hardware;
         let steps = std::array::from_fn(|number| window.steps(number, now).0);
-        let Window { around, chips, kstep, .. } = window;
-        if let Some(around) = around {
+        let Window { external, chips, kstep, .. } = window;
+        if let Some(external) = external {
             let mut encoders = std::array::from_fn(|channel| chips.encoders.counter(channel));
-            around.tick(&mut AtMatch { memory, now, steps, encoders: &mut encoders, kstep });
+            external.tick(&mut TimerMatch { memory, now, steps, encoders: &mut encoders, kstep });
             encoders.iter().enumerate().for_each(|(channel, count)| chips.encoders.set(channel, *count));
         } else if let Some(chan) = self.file.address("chan") {
             self.loads.tick(chan, memory, window, now);
@@ -442,24 +442,24 @@ impl<A: Around> BootedBoard<A> {
         self.hardware.window.chips.pins.changes.take()
     }
 
-    /// The same board with this around it, which is shown what was written to the registers so far.
+    /// The same board with this hardware connected, which is shown what was written to the registers so far.
     #[must_use]
-    pub fn connect<B: Around>(self, around: Option<B>) -> BootedBoard<B> {
+    pub fn connect<B: ExternalHardware>(self, external: Option<B>) -> BootedBoard<B> {
         let Self { file, core, hardware, sent, waits_since, loads, skips, packets, crash } = self;
-        let hardware = hardware.connect(around, core.state.cycle());
+        let hardware = hardware.connect(external, core.state.cycle());
         BootedBoard { file, core, hardware, sent, waits_since, loads, skips, packets, crash }
     }
 
     /// Returns the surroundings that [were connected](Self::connect).
     #[must_use]
-    pub const fn around(&self) -> Option<&A> {
-        self.hardware.window.around.as_ref()
+    pub const fn external(&self) -> Option<&A> {
+        self.hardware.window.external.as_ref()
     }
 
     /// The same to change it, and memory, data only.
-    pub const fn around_and_memory(&mut self) -> (Option<&mut A>, &mut GuestMemory) {
+    pub const fn external_and_memory(&mut self) -> (Option<&mut A>, &mut GuestMemory) {
         let Hardware { memory, window, .. } = &mut self.hardware;
-        (window.around.as_mut(), memory)
+        (window.external.as_mut(), memory)
     }
 
     /// The cycle of the next match of the timer.

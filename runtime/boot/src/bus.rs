@@ -7,8 +7,8 @@ use vm::dsp::{Clock, Memory};
 use vm::memory::GuestMemory;
 use vm::trap::{Access, TrapKind};
 
-use super::around::Around;
 use super::control::Control;
+use super::external::ExternalHardware;
 use super::flash;
 use super::timer::Timer;
 use super::window::Window;
@@ -48,11 +48,11 @@ impl<A> Default for Hardware<A> {
     }
 }
 
-impl<A: Around> Hardware<A> {
-    /// The same with this around it.
-    pub(super) fn connect<B: Around>(self, around: Option<B>, now: u64) -> Hardware<B> {
+impl<A: ExternalHardware> Hardware<A> {
+    /// The same with this hardware connected.
+    pub(super) fn connect<B: ExternalHardware>(self, external: Option<B>, now: u64) -> Hardware<B> {
         let Self { memory, timer, window, control, chip, first_look, forgives, touches } = self;
-        let window = window.connect(around, now);
+        let window = window.connect(external, now);
         Hardware { memory, timer, window, control, chip, first_look, forgives, touches }
     }
 
@@ -134,7 +134,7 @@ const fn unmapped(addr: u32, access: Access) -> TrapKind {
     TrapKind::Unmapped { addr: GuestAddr::new(addr), access }
 }
 
-impl<A: Around> Memory for Hardware<A> {
+impl<A: ExternalHardware> Memory for Hardware<A> {
     fn touches(&self) -> u64 {
         self.touches
     }

@@ -18,11 +18,11 @@
 
 #![forbid(unsafe_code)]
 
-mod around;
 mod board;
 mod bus;
 mod control;
 mod crash;
+mod external;
 mod file;
 mod flash;
 mod link;
@@ -34,10 +34,10 @@ mod tests;
 mod timer;
 mod window;
 
-pub use around::{Around, AtMatch};
 pub use board::{
     BootedBoard, BootedSnapshot, FlashError, Halted, ProcessorState, ProgramCall, ProgramPacket, Ran, Reached,
 };
 pub use crash::Crash;
+pub use external::{ExternalHardware, TimerMatch};
 pub use file::{FirmwareError, FirmwareFile};
 pub use sent::{Sent, SentLine};

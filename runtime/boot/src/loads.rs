@@ -10,7 +10,7 @@ use kmotiondef::structs::Chan;
 use kmotiondef::{Field, GuestAddr};
 use vm::memory::GuestMemory;
 
-use super::around::Around;
+use super::external::ExternalHardware;
 use super::window::Window;
 
 /// Lag of a closed loop, seconds.
@@ -55,7 +55,7 @@ impl Axis<'_> {
 
 impl Loads {
     /// Moves all loads by what the last tick output, and shows them to the encoders.
-    pub(super) fn tick<A: Around>(
+    pub(super) fn tick<A: ExternalHardware>(
         &mut self,
         chan: GuestAddr,
         memory: &GuestMemory,
@@ -78,7 +78,7 @@ impl Loads {
 }
 
 impl Load {
-    fn advance<A: Around>(&mut self, axis: &Axis<'_>, window: &mut Window<A>, now: u64) {
+    fn advance<A: ExternalHardware>(&mut self, axis: &Axis<'_>, window: &mut Window<A>, now: u64) {
         let is_enabled = axis.int(Chan::ENABLE) != 0;
         let mode = OutputMode::new(axis.int(Chan::OUTPUT_MODE));
         match mode {
@@ -97,7 +97,7 @@ impl Load {
     }
 
     /// By the steps that the generator has made since the last tick.
-    fn step<A: Around>(&mut self, axis: &Axis<'_>, window: &mut Window<A>, now: u64) {
+    fn step<A: ExternalHardware>(&mut self, axis: &Axis<'_>, window: &mut Window<A>, now: u64) {
         let (steps, _) = window.steps(generator_of(axis.int(Chan::OUTPUT_CHAN0)), now);
         let made = steps - self.steps.replace(steps).unwrap_or(steps);
         let gain = axis.single(Chan::OUTPUT_GAIN);

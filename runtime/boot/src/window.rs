@@ -4,7 +4,7 @@ use chips::Chips;
 use chips::fpga::{REGISTER_COUNT, register_address, register_at};
 use kmotiondef::{AccessSize, Bit, Cycles};
 
-use super::around::Around;
+use super::external::ExternalHardware;
 use super::link::Link;
 
 /// Registers of the link: status and data. The transmitter (0x008, bit 0) is never full.
@@ -29,14 +29,14 @@ pub(super) struct Window<A = ()> {
     /// Inputs of a KStep, if there is one: a bit is set while current flows.
     pub(super) kstep: Option<u16>,
     /// The connected surroundings, if there are any.
-    pub(super) around: Option<A>,
+    pub(super) external: Option<A>,
     /// The number of accesses to anything but the status of the link.
     touches: u64,
 }
 
 impl<A> Default for Window<A> {
     fn default() -> Self {
-        Self { chips: Chips::at_power_up(), link: Link::default(), kstep: None, around: None, touches: 0 }
+        Self { chips: Chips::at_power_up(), link: Link::default(), kstep: None, external: None, touches: 0 }
     }
 }
 
@@ -59,30 +59,30 @@ fn reached(offset: u32, bytes: u32) -> Option<u32> {
     register_at(offset % (REGISTER_COUNT * 4)).filter(|_| bytes <= 2)
 }
 
-impl<A: Around> Window<A> {
+impl<A: ExternalHardware> Window<A> {
     /// As at power-up, except for the link and what is connected.
     pub(super) fn reset(&mut self) {
         let old = std::mem::take(self);
         let chips = Chips { encoders: old.chips.encoders, ..Chips::at_power_up() };
-        *self = Self { chips, link: old.link, kstep: old.kstep, around: old.around, touches: 0 };
+        *self = Self { chips, link: old.link, kstep: old.kstep, external: old.external, touches: 0 };
     }
 
-    /// The same with this around the board: it finds directions and latches as they are.
-    pub(super) fn connect<B: Around>(self, mut around: Option<B>, now: u64) -> Window<B> {
+    /// The same with this hardware connected: it finds directions and latches as they are.
+    pub(super) fn connect<B: ExternalHardware>(self, mut external: Option<B>, now: u64) -> Window<B> {
         let Self { chips, link, kstep, touches, .. } = self;
-        if let Some(around) = &mut around {
+        if let Some(external) = &mut external {
             let Chips { fpga, pins, .. } = &chips;
             for register in SETTINGS {
-                around.write(register as usize, false, fpga.cell(register), now);
+                external.write(register as usize, false, fpga.cell(register), now);
             }
             for group in 0..GROUPS {
                 let latch = u16::from(pins.latch_group(group));
-                around.write((KEEP + group) as usize, true, latch, now);
-                around.write((SET + group) as usize, true, latch, now);
-                around.write((DIRECT + group) as usize, true, pins.direction_group(group).into(), now);
+                external.write((KEEP + group) as usize, true, latch, now);
+                external.write((SET + group) as usize, true, latch, now);
+                external.write((DIRECT + group) as usize, true, pins.direction_group(group).into(), now);
             }
         }
-        Window { chips, link, kstep, around, touches }
+        Window { chips, link, kstep, external, touches }
     }
 
     /// Steps that a generator has made up to a cycle, and steps a second.
@@ -106,7 +106,8 @@ impl<A: Around> Window<A> {
         }
         self.touches += 1;
         let is_byte = bytes == 1;
-        let answered = self.around.as_mut().and_then(|around| around.read(register as usize, is_byte, now));
+        let answered =
+            self.external.as_mut().and_then(|external| external.read(register as usize, is_byte, now));
         let value = answered.unwrap_or_else(|| self.value(register, size(bytes), now));
         let value = if register == READ { self.with_kstep(value) } else { value };
         u32::from(if is_byte { value & 0xFF } else { value })
@@ -138,8 +139,8 @@ impl<A: Around> Window<A> {
         if register == LINK_STATUS {
             return self.link.put(value as u8, now);
         }
-        if let Some(around) = &mut self.around {
-            around.write(register as usize, bytes == 1, value, now);
+        if let Some(external) = &mut self.external {
+            external.write(register as usize, bytes == 1, value, now);
         }
         let (fpga, behind) = self.chips.registers(instant(now));
         // The firmware knows its registers: a notice concerns programs.

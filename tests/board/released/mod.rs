@@ -14,7 +14,7 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock};
 use std::{env, fs};
 
-use boot::{Around, AtMatch, BootedBoard, FirmwareFile};
+use boot::{BootedBoard, ExternalHardware, FirmwareFile, TimerMatch};
 use coff::{Image, Symbol};
 use compiler::firmware::{Firmware, FirmwareFile as Symbols};
 use compiler::target::Target;
@@ -98,7 +98,7 @@ struct Nothing {
     accesses: u64,
 }
 
-impl Around for Nothing {
+impl ExternalHardware for Nothing {
     fn read(&mut self, _: usize, _: bool, _: u64) -> Option<u16> {
         self.accesses += 1;
         None
@@ -109,7 +109,7 @@ impl Around for Nothing {
         self.writes.push((register, value));
     }
 
-    fn tick(&mut self, _: &mut AtMatch<'_>) {}
+    fn tick(&mut self, _: &mut TimerMatch<'_>) {}
 }
 
 /// A board with the released firmware, and what programs for it are linked against.
@@ -165,7 +165,7 @@ impl Released {
 
     /// Memory, data only.
     fn memory(&mut self) -> &mut GuestMemory {
-        self.board.around_and_memory().1
+        self.board.external_and_memory().1
     }
 
     fn peek_axis(&self, axis: u8, name: &str) -> f64 {
@@ -272,8 +272,8 @@ impl Released {
 
     /// Takes the register writes since the last call, and the number of accesses.
     fn accesses(&mut self) -> Nothing {
-        let (around, _) = self.board.around_and_memory();
-        std::mem::take(around.expect("it is connected"))
+        let (external, _) = self.board.external_and_memory();
+        std::mem::take(external.expect("it is connected"))
     }
 
     /// The image of a program for a thread.

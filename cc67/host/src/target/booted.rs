@@ -183,7 +183,7 @@ impl BootedTarget {
     }
 
     fn surroundings(&mut self) -> Option<&mut Surroundings> {
-        let (attached, _) = self.board.around_and_memory();
+        let (attached, _) = self.board.external_and_memory();
         attached.map(|attached| &mut attached.surroundings)
     }
 
@@ -307,7 +307,7 @@ impl BootedTarget {
     /// Returns whether something is still to come from the surroundings of the board.
     fn is_awaited(&self) -> bool {
         let memory = self.board.memory();
-        self.board.around().is_some_and(|attached| attached.surroundings.is_busy(memory))
+        self.board.external().is_some_and(|attached| attached.surroundings.is_busy(memory))
     }
 
     /// Returns the commanded positions of the axes, as bits, to see whether they move.
@@ -348,7 +348,7 @@ impl Target for BootedTarget {
             | Capability::Breakpoints
             | Capability::Watchpoints
             | Capability::ProcessorCode => true,
-            Capability::Surroundings | Capability::Recordings => self.board.around().is_some(),
+            Capability::Surroundings | Capability::Recordings => self.board.external().is_some(),
             Capability::Answers | Capability::Pauses => false,
         }
     }
@@ -373,7 +373,7 @@ impl Target for BootedTarget {
 
     fn finish(&mut self, events: EventSink<'_>) {
         let now = self.now();
-        if let (Some(attached), memory) = self.board.around_and_memory() {
+        if let (Some(attached), memory) = self.board.external_and_memory() {
             attached.surroundings.finish(memory, now);
         }
         self.deliver(events);
@@ -447,7 +447,7 @@ impl Target for BootedTarget {
 
     fn value(&self, item: Item) -> f64 {
         let memory = self.board.memory();
-        self.board.around().map_or(0.0, |attached| attached.surroundings.value(item, memory))
+        self.board.external().map_or(0.0, |attached| attached.surroundings.value(item, memory))
     }
 
     fn receive(&mut self, bytes: &[u8]) {
@@ -493,7 +493,7 @@ impl Target for BootedTarget {
 
     fn play(&mut self, stimulus: Stimulus) {
         let now = self.now();
-        if let (Some(attached), memory) = self.board.around_and_memory() {
+        if let (Some(attached), memory) = self.board.external_and_memory() {
             attached.surroundings.play(stimulus, memory, now);
         }
     }
@@ -513,12 +513,12 @@ impl Target for BootedTarget {
     }
 
     fn uart_backlog(&self) -> usize {
-        self.board.around().map_or(0, |attached| attached.surroundings.uart_backlog())
+        self.board.external().map_or(0, |attached| attached.surroundings.uart_backlog())
     }
 
     fn record(&mut self, request: TraceRequest) {
         self.board.keep_packets(request.packets.is_some());
-        if let (Some(attached), memory) = self.board.around_and_memory() {
+        if let (Some(attached), memory) = self.board.external_and_memory() {
             attached.surroundings.record(request, memory);
         }
     }

@@ -9,8 +9,8 @@ use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT};
 use vm::dsp::{Halt, State, packet_text};
 
 use super::{BootedBoard, GIE, Halted, ProcessorState};
-use crate::around::Around;
 use crate::bus::Hardware;
+use crate::external::ExternalHardware;
 
 /// Bytes from a call to its return address at most: six packets.
 const LONGEST_CALL: u32 = 6 * 32;
@@ -70,7 +70,7 @@ pub struct ProgramCall {
     pub argument: i32,
 }
 
-impl<A: Around> BootedBoard<A> {
+impl<A: ExternalHardware> BootedBoard<A> {
     /// Stops [`run_to_stop`](Self::run_to_stop) before the packets at these addresses, and before no others.
     pub fn set_stops(&mut self, addresses: impl IntoIterator<Item = u32>) {
         self.core.set_stops(addresses);

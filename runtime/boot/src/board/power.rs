@@ -11,8 +11,8 @@ use vm::dsp::Core;
 use vm::memory::GuestMemory;
 
 use super::{BootedBoard, Halted, SECOND};
-use crate::around::Around;
 use crate::bus::Hardware;
+use crate::external::ExternalHardware;
 use crate::file::FirmwareFile;
 use crate::loads::Loads;
 use crate::sent::SentLines;
@@ -88,7 +88,7 @@ impl BootedBoard {
     }
 }
 
-impl<A: Around> BootedBoard<A> {
+impl<A: ExternalHardware> BootedBoard<A> {
     /// Runs until the firmware first looks for what the PC sends.
     ///
     /// # Errors

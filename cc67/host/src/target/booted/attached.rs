@@ -1,6 +1,6 @@
 //! The surroundings of a modelled board, attached to the registers of one that runs a firmware file.
 
-use boot::{Around, AtMatch};
+use boot::{ExternalHardware, TimerMatch};
 use kmotiondef::{Cycles, Ticks};
 use runtime::surroundings::{Instant, Surroundings};
 
@@ -20,7 +20,7 @@ impl Attached {
     }
 }
 
-impl Around for Attached {
+impl ExternalHardware for Attached {
     fn read(&mut self, register: usize, is_byte: bool, now: u64) -> Option<u16> {
         let now = self.since(now);
         self.surroundings.read(register, is_byte, now)
@@ -31,7 +31,7 @@ impl Around for Attached {
         self.surroundings.write(register, is_byte, value, now);
     }
 
-    fn tick(&mut self, at_match: &mut AtMatch<'_>) {
+    fn tick(&mut self, at_match: &mut TimerMatch<'_>) {
         let now = self.since(at_match.now);
         let ticks = u64::try_from(now.get() / Cycles::PER_TICK.get()).unwrap_or(0);
         self.surroundings.tick(&mut Instant {

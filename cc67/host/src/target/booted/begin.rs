@@ -140,7 +140,7 @@ impl Beginning {
 }
 
 /// Stops a thread that is active: another program is to come into it.
-fn stop<A: boot::Around>(board: &mut BootedBoard<A>, thread: ThreadId) -> Result<(), HostError> {
+fn stop<A: boot::ExternalHardware>(board: &mut BootedBoard<A>, thread: ThreadId) -> Result<(), HostError> {
     let is_active = |board: &BootedBoard<A>| board.is_active(thread).unwrap_or(false);
     if is_active(board) {
         board.send_line(format!("Kill{thread}").as_bytes());
@@ -153,7 +153,7 @@ fn stop<A: boot::Around>(board: &mut BootedBoard<A>, thread: ThreadId) -> Result
 }
 
 /// Puts a program into memory.
-fn load<A: boot::Around>(
+fn load<A: boot::ExternalHardware>(
     board: &mut BootedBoard<A>,
     program: &UserProgram,
 ) -> Result<Arc<LoadedProgram>, HostError> {

@@ -91,7 +91,7 @@ impl Observers {
 
     fn report_call(&self, board: &mut BootedBoard<Attached>) {
         let (call, now) = (board.program_call(), board.cycle());
-        let (Some(attached), memory) = board.around_and_memory() else { return };
+        let (Some(attached), memory) = board.external_and_memory() else { return };
         if let Some(call) = call
             && let Some(function) = self.functions.get(&call.function)
         {

@@ -11,7 +11,7 @@ use vm::memory::GuestMemory;
 
 /// The state that can be read and changed at a match of the timer.
 #[derive(Debug)]
-pub struct AtMatch<'a> {
+pub struct TimerMatch<'a> {
     /// Memory, data only.
     pub memory: &'a mut GuestMemory,
     /// The cycle of the match, since power-up.
@@ -24,8 +24,8 @@ pub struct AtMatch<'a> {
     pub kstep: &'a mut Option<u16>,
 }
 
-/// Something around the board. Cycles are counted since power-up; a clone is the same in the same state.
-pub trait Around: Clone + Debug {
+/// Hardware outside the board. Cycles are counted since power-up; a clone is the same in the same state.
+pub trait ExternalHardware: Clone + Debug {
     /// Returns the value of a register that the firmware reads; `None` where the board itself answers.
     fn read(&mut self, register: usize, is_byte: bool, now: u64) -> Option<u16>;
 
@@ -33,16 +33,16 @@ pub trait Around: Clone + Debug {
     fn write(&mut self, register: usize, is_byte: bool, value: u16, now: u64);
 
     /// The timer matches.
-    fn tick(&mut self, turn: &mut AtMatch<'_>);
+    fn tick(&mut self, at: &mut TimerMatch<'_>);
 }
 
 /// Nothing: every register is the board's own.
-impl Around for () {
+impl ExternalHardware for () {
     fn read(&mut self, _: usize, _: bool, _: u64) -> Option<u16> {
         None
     }
 
     fn write(&mut self, _: usize, _: bool, _: u16, _: u64) {}
 
-    fn tick(&mut self, _: &mut AtMatch<'_>) {}
+    fn tick(&mut self, _: &mut TimerMatch<'_>) {}
 }
