@@ -120,8 +120,8 @@ impl<A: ExternalHardware> Window<A> {
         if SNAP_BUS.contains(&register) {
             return 0;
         }
-        let (fpga, behind) = self.chips.registers(instant(now));
-        fpga.read(behind, register_address(register), size) as u16
+        let (fpga, chips) = self.chips.registers(instant(now));
+        fpga.read(chips, register_address(register), size) as u16
     }
 
     /// Pins 0 to 7; a KStep turns four of them among its inputs as latches 2 and 3 select.
@@ -142,8 +142,8 @@ impl<A: ExternalHardware> Window<A> {
         if let Some(external) = &mut self.external {
             external.write(register as usize, bytes == 1, value, now);
         }
-        let (fpga, behind) = self.chips.registers(instant(now));
+        let (fpga, chips) = self.chips.registers(instant(now));
         // The firmware knows its registers: a notice concerns programs.
-        let _ = fpga.write(behind, register_address(register), size(bytes), value.into());
+        let _ = fpga.write(chips, register_address(register), size(bytes), value.into());
     }
 }

@@ -28,9 +28,9 @@ const GROUPS: u32 = PINS as u32 / 8;
 struct Registers {
     first: u32,
     last: u32,
-    reads: fn(&mut Fpga, &mut Behind<'_>, RegisterAccess) -> u32,
+    reads: fn(&mut Fpga, &mut RegisterChips<'_>, RegisterAccess) -> u32,
     /// A notice comes back where writing is in vain.
-    writes: fn(&mut Fpga, &mut Behind<'_>, RegisterAccess, u32) -> Option<Notice>,
+    writes: fn(&mut Fpga, &mut RegisterChips<'_>, RegisterAccess, u32) -> Option<Notice>,
 }
 
 /// An access of a register.
@@ -131,7 +131,7 @@ const JP7_PINS: u16 = 16;
 
 /// The chips that the registers act on, and the instant of an access.
 #[derive(Debug)]
-pub struct Behind<'a> {
+pub struct RegisterChips<'a> {
     /// Pins and option outputs.
     pub pins: &'a mut Pins,
     /// The serial port.
@@ -232,9 +232,9 @@ impl Fpga {
     }
 
     /// Reads a register.
-    pub fn read(&mut self, mut behind: Behind<'_>, address: GuestAddr, size: AccessSize) -> u32 {
+    pub fn read(&mut self, mut chips: RegisterChips<'_>, address: GuestAddr, size: AccessSize) -> u32 {
         match register(address).1 {
-            Some((range, index)) => (range.reads)(self, &mut behind, RegisterAccess { address, size, index }),
+            Some((range, index)) => (range.reads)(self, &mut chips, RegisterAccess { address, size, index }),
             None => self.at(address, size),
         }
     }
@@ -242,14 +242,14 @@ impl Fpga {
     /// Writes a register; a notice comes back when that is in vain.
     pub fn write(
         &mut self,
-        mut behind: Behind<'_>,
+        mut chips: RegisterChips<'_>,
         address: GuestAddr,
         size: AccessSize,
         value: u32,
     ) -> Option<Notice> {
         match register(address) {
             (_, Some((range, index))) => {
-                (range.writes)(self, &mut behind, RegisterAccess { address, size, index }, value)
+                (range.writes)(self, &mut chips, RegisterAccess { address, size, index }, value)
             }
             (number, None) => {
                 self.put(address, size, value);
@@ -258,159 +258,189 @@ impl Fpga {
         }
     }
 
-    fn stored(&mut self, _: &mut Behind<'_>, access: RegisterAccess) -> u32 {
+    fn stored(&mut self, _: &mut RegisterChips<'_>, access: RegisterAccess) -> u32 {
         self.at(access.address, access.size)
     }
 
-    fn store(&mut self, _: &mut Behind<'_>, access: RegisterAccess, value: u32) -> Option<Notice> {
+    fn store(&mut self, _: &mut RegisterChips<'_>, access: RegisterAccess, value: u32) -> Option<Notice> {
         self.put(access.address, access.size, value);
         None
     }
 
-    fn ignore(&mut self, _: &mut Behind<'_>, _: RegisterAccess, _: u32) -> Option<Notice> {
+    fn ignore(&mut self, _: &mut RegisterChips<'_>, _: RegisterAccess, _: u32) -> Option<Notice> {
         None
     }
 
-    fn levels(&mut self, behind: &mut Behind<'_>, access: RegisterAccess) -> u32 {
-        behind.pins.level_group(access.index).into()
+    fn levels(&mut self, chips: &mut RegisterChips<'_>, access: RegisterAccess) -> u32 {
+        chips.pins.level_group(access.index).into()
     }
 
-    fn set_bits(&mut self, behind: &mut Behind<'_>, access: RegisterAccess, value: u32) -> Option<Notice> {
-        behind.pins.set_group(access.index, value as u8, behind.now);
+    fn set_bits(
+        &mut self,
+        chips: &mut RegisterChips<'_>,
+        access: RegisterAccess,
+        value: u32,
+    ) -> Option<Notice> {
+        chips.pins.set_group(access.index, value as u8, chips.now);
         None
     }
 
-    fn clear_bits(&mut self, behind: &mut Behind<'_>, access: RegisterAccess, value: u32) -> Option<Notice> {
-        behind.pins.clear_group(access.index, value as u8, behind.now);
+    fn clear_bits(
+        &mut self,
+        chips: &mut RegisterChips<'_>,
+        access: RegisterAccess,
+        value: u32,
+    ) -> Option<Notice> {
+        chips.pins.clear_group(access.index, value as u8, chips.now);
         None
     }
 
-    fn directions(&mut self, behind: &mut Behind<'_>, access: RegisterAccess) -> u32 {
-        behind.pins.direction_group(access.index).into()
+    fn directions(&mut self, chips: &mut RegisterChips<'_>, access: RegisterAccess) -> u32 {
+        chips.pins.direction_group(access.index).into()
     }
 
     fn set_directions(
         &mut self,
-        behind: &mut Behind<'_>,
+        chips: &mut RegisterChips<'_>,
         access: RegisterAccess,
         value: u32,
     ) -> Option<Notice> {
         let group = access.index;
-        let new = value as u8 & !behind.pins.direction_group(group);
-        behind.pins.set_direction_group(group, value as u8, behind.now);
+        let new = value as u8 & !chips.pins.direction_group(group);
+        chips.pins.set_direction_group(group, value as u8, chips.now);
         let first = Bit::new((8 * group + new.trailing_zeros()) as i32).filter(|_| new != 0);
         first.filter(|_| self.serves_kanalog()).and_then(kanalog_pin)
     }
 
-    fn uart_data(&mut self, behind: &mut Behind<'_>, _: RegisterAccess) -> u32 {
-        behind.uart.read(behind.now).into()
+    fn uart_data(&mut self, chips: &mut RegisterChips<'_>, _: RegisterAccess) -> u32 {
+        chips.uart.read(chips.now).into()
     }
 
-    fn send_to_uart(&mut self, behind: &mut Behind<'_>, _: RegisterAccess, value: u32) -> Option<Notice> {
-        behind.uart.send(value as u8, behind.now);
+    fn send_to_uart(
+        &mut self,
+        chips: &mut RegisterChips<'_>,
+        _: RegisterAccess,
+        value: u32,
+    ) -> Option<Notice> {
+        chips.uart.send(value as u8, chips.now);
         (!self.has_uart_pins()).then_some(Notice::UartUnconnected)
     }
 
-    fn uart_status(&mut self, behind: &mut Behind<'_>, _: RegisterAccess) -> u32 {
-        behind.uart.status(behind.now).into()
+    fn uart_status(&mut self, chips: &mut RegisterChips<'_>, _: RegisterAccess) -> u32 {
+        chips.uart.status(chips.now).into()
     }
 
-    fn set_uart_divisor(&mut self, behind: &mut Behind<'_>, _: RegisterAccess, value: u32) -> Option<Notice> {
-        behind.uart.set_divisor(value as u8);
+    fn set_uart_divisor(
+        &mut self,
+        chips: &mut RegisterChips<'_>,
+        _: RegisterAccess,
+        value: u32,
+    ) -> Option<Notice> {
+        chips.uart.set_divisor(value as u8);
         None
     }
 
-    fn encoder_counter(&mut self, behind: &mut Behind<'_>, access: RegisterAccess) -> u32 {
-        behind.encoders.counter(access.index as usize).into()
+    fn encoder_counter(&mut self, chips: &mut RegisterChips<'_>, access: RegisterAccess) -> u32 {
+        chips.encoders.counter(access.index as usize).into()
     }
 
-    fn encoder_errors(&mut self, behind: &mut Behind<'_>, _: RegisterAccess) -> u32 {
-        behind.encoders.errors().into()
+    fn encoder_errors(&mut self, chips: &mut RegisterChips<'_>, _: RegisterAccess) -> u32 {
+        chips.encoders.errors().into()
     }
 
-    fn clear_encoder_errors(&mut self, behind: &mut Behind<'_>, _: RegisterAccess, _: u32) -> Option<Notice> {
-        behind.encoders.clear_errors();
+    fn clear_encoder_errors(
+        &mut self,
+        chips: &mut RegisterChips<'_>,
+        _: RegisterAccess,
+        _: u32,
+    ) -> Option<Notice> {
+        chips.encoders.clear_errors();
         None
     }
 
     fn set_encoder_filter(
         &mut self,
-        behind: &mut Behind<'_>,
+        chips: &mut RegisterChips<'_>,
         access: RegisterAccess,
         value: u32,
     ) -> Option<Notice> {
         self.put(access.address, access.size, value);
         let filter = [ENCODER_FILTER * STRIDE + LANE, ENCODER_FILTER * STRIDE + LANE + 1];
         let filter = filter.map(|at| self.bytes.get(at as usize).copied().unwrap_or_default());
-        behind.encoders.set_filter(u16::from_le_bytes(filter), behind.pins, behind.now);
+        chips.encoders.set_filter(u16::from_le_bytes(filter), chips.pins, chips.now);
         None
     }
 
     fn set_step_pulse(
         &mut self,
-        behind: &mut Behind<'_>,
+        chips: &mut RegisterChips<'_>,
         access: RegisterAccess,
         value: u32,
     ) -> Option<Notice> {
         self.put(access.address, access.size, value);
-        behind.stepgens.set_up(value as u8, behind.pins, behind.now);
+        chips.stepgens.set_up(value as u8, chips.pins, chips.now);
         None
     }
 
     fn set_step_rate(
         &mut self,
-        behind: &mut Behind<'_>,
+        chips: &mut RegisterChips<'_>,
         access: RegisterAccess,
         value: u32,
     ) -> Option<Notice> {
         self.put(access.address, access.size, value);
         if access.index == 3 {
             let word: [u8; 4] = std::array::from_fn(|index| self.byte(STEP_RATE + index as u32));
-            behind.stepgens.command(u32::from_le_bytes(word), behind.pins, behind.now);
+            chips.stepgens.command(u32::from_le_bytes(word), chips.pins, chips.now);
         }
         None
     }
 
-    fn step_position(&mut self, behind: &mut Behind<'_>, access: RegisterAccess) -> u32 {
+    fn step_position(&mut self, chips: &mut RegisterChips<'_>, access: RegisterAccess) -> u32 {
         let generator = (access.index / 2) as usize;
         if access.index % 2 == 1 {
-            return behind.stepgens.upper(generator).into();
+            return chips.stepgens.upper(generator).into();
         }
-        cut(behind.stepgens.read(generator, behind.now).into(), access.size)
+        cut(chips.stepgens.read(generator, chips.now).into(), access.size)
     }
 
-    fn set_pwm(&mut self, behind: &mut Behind<'_>, access: RegisterAccess, value: u32) -> Option<Notice> {
-        self.tell_pwm(behind.pins, behind.now);
+    fn set_pwm(
+        &mut self,
+        chips: &mut RegisterChips<'_>,
+        access: RegisterAccess,
+        value: u32,
+    ) -> Option<Notice> {
+        self.tell_pwm(chips.pins, chips.now);
         self.put(access.address, access.size, value);
-        self.drive_pwm_pins(behind.pins, behind.now);
-        self.tell_pwm(behind.pins, behind.now);
-        self.kstep.drive(self.moved_pwm(), behind.now);
+        self.drive_pwm_pins(chips.pins, chips.now);
+        self.tell_pwm(chips.pins, chips.now);
+        self.kstep.drive(self.moved_pwm(), chips.now);
         None
     }
 
-    fn kanalog_outputs(&mut self, behind: &mut Behind<'_>, access: RegisterAccess) -> u32 {
+    fn kanalog_outputs(&mut self, chips: &mut RegisterChips<'_>, access: RegisterAccess) -> u32 {
         let outputs = reached_outputs(access.index, AccessSize::Half);
-        cut(word(outputs.map(|bit| behind.pins.written(bit))), access.size)
+        cut(word(outputs.map(|bit| chips.pins.written(bit))), access.size)
     }
 
     fn set_kanalog_outputs(
         &mut self,
-        behind: &mut Behind<'_>,
+        chips: &mut RegisterChips<'_>,
         access: RegisterAccess,
         value: u32,
     ) -> Option<Notice> {
         for (at, bit) in reached_outputs(access.index, access.size).enumerate() {
-            behind.pins.write(bit, value >> at & 1 != 0, behind.now);
+            chips.pins.write(bit, value >> at & 1 != 0, chips.now);
         }
         None
     }
 
-    fn kanalog_inputs(&mut self, behind: &mut Behind<'_>, access: RegisterAccess) -> u32 {
-        cut(word(bits(KANALOG_INPUTS, 16).map(|bit| behind.pins.input(bit))), access.size)
+    fn kanalog_inputs(&mut self, chips: &mut RegisterChips<'_>, access: RegisterAccess) -> u32 {
+        cut(word(bits(KANALOG_INPUTS, 16).map(|bit| chips.pins.input(bit))), access.size)
     }
 
-    fn kanalog_conversion(&mut self, behind: &mut Behind<'_>, access: RegisterAccess) -> u32 {
-        cut(behind.kanalog.conversion(access.index as usize), access.size)
+    fn kanalog_conversion(&mut self, chips: &mut RegisterChips<'_>, access: RegisterAccess) -> u32 {
+        cut(chips.kanalog.conversion(access.index as usize), access.size)
     }
 
     /// Connects the UART to its pins.
@@ -472,8 +502,8 @@ mod tests {
     }
 
     impl Bench {
-        fn parts(&mut self) -> (&mut Fpga, Behind<'_>) {
-            let behind = Behind {
+        fn parts(&mut self) -> (&mut Fpga, RegisterChips<'_>) {
+            let chips = RegisterChips {
                 pins: &mut self.pins,
                 uart: &mut self.uart,
                 kanalog: &self.kanalog,
@@ -481,17 +511,17 @@ mod tests {
                 stepgens: &mut self.stepgens,
                 now: self.now,
             };
-            (&mut self.fpga, behind)
+            (&mut self.fpga, chips)
         }
 
         pub(super) fn read(&mut self, register: u32, size: AccessSize) -> u32 {
-            let (fpga, behind) = self.parts();
-            fpga.read(behind, register_address(register), size)
+            let (fpga, chips) = self.parts();
+            fpga.read(chips, register_address(register), size)
         }
 
         pub(super) fn write(&mut self, register: u32, size: AccessSize, value: u32) -> Option<Notice> {
-            let (fpga, behind) = self.parts();
-            fpga.write(behind, register_address(register), size, value)
+            let (fpga, chips) = self.parts();
+            fpga.write(chips, register_address(register), size, value)
         }
     }
 

@@ -34,7 +34,7 @@ pub mod uart;
 use kmotiondef::Cycles;
 
 use crate::encoder::Encoders;
-use crate::fpga::{Behind, Fpga};
+use crate::fpga::{Fpga, RegisterChips};
 use crate::kanalog::Kanalog;
 use crate::pins::Pins;
 use crate::stepgen::StepGenerators;
@@ -74,8 +74,8 @@ impl Chips {
     }
 
     /// The registers, and the chips that they act on at an instant.
-    pub fn registers(&mut self, now: Cycles) -> (&mut Fpga, Behind<'_>) {
+    pub fn registers(&mut self, now: Cycles) -> (&mut Fpga, RegisterChips<'_>) {
         let Self { fpga, pins, uart, kanalog, encoders, stepgens } = self;
-        (fpga, Behind { pins, uart, kanalog, encoders, stepgens, now })
+        (fpga, RegisterChips { pins, uart, kanalog, encoders, stepgens, now })
     }
 }

@@ -242,9 +242,9 @@ impl Surroundings {
 
     /// The firmware writes a register.
     pub fn write(&mut self, register: usize, is_byte: bool, value: u16, now: Cycles) {
-        let (fpga, behind) = self.parts.io.registers(now);
+        let (fpga, chips) = self.parts.io.registers(now);
         // The firmware knows its registers: what there would be to say concerns programs.
-        let _ = fpga.write(behind, register_address(register as u32), size(is_byte), value.into());
+        let _ = fpga.write(chips, register_address(register as u32), size(is_byte), value.into());
         self.parts.lines(now).settle();
     }
 

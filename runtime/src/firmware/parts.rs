@@ -116,14 +116,14 @@ impl Parts {
 
     /// Reads a register of the FPGA.
     pub(crate) fn read_register(&mut self, address: GuestAddr, size: AccessSize, now: Cycles) -> u32 {
-        let (fpga, behind) = self.io.registers(now);
-        fpga.read(behind, address, size)
+        let (fpga, chips) = self.io.registers(now);
+        fpga.read(chips, address, size)
     }
 
     /// Writes a register of the FPGA.
     pub(crate) fn write_register(&mut self, address: GuestAddr, size: AccessSize, value: u32, now: Cycles) {
-        let (fpga, behind) = self.io.registers(now);
-        if let Some(notice) = fpga.write(behind, address, size, value) {
+        let (fpga, chips) = self.io.registers(now);
+        if let Some(notice) = fpga.write(chips, address, size, value) {
             self.out.remark(now, remark_on(notice));
         }
         self.lines(now).settle();

@@ -14,7 +14,7 @@ pub(crate) mod snapamp;
 pub(crate) mod timer;
 
 use chips::encoder::Encoders;
-use chips::fpga::{Behind, Fpga, Notice};
+use chips::fpga::{Fpga, Notice, RegisterChips};
 use chips::kanalog::Kanalog;
 use chips::pins::Pins;
 use chips::stepgen::StepGenerators;
@@ -43,8 +43,8 @@ pub(crate) struct Io {
 
 impl Io {
     /// The registers and what they act on.
-    pub(crate) fn registers(&mut self, now: Cycles) -> (&mut Fpga, Behind<'_>) {
-        let behind = Behind {
+    pub(crate) fn registers(&mut self, now: Cycles) -> (&mut Fpga, RegisterChips<'_>) {
+        let chips = RegisterChips {
             pins: &mut self.pins,
             uart: &mut self.uart,
             kanalog: &self.kanalog,
@@ -52,7 +52,7 @@ impl Io {
             stepgens: &mut self.stepgens,
             now,
         };
-        (&mut self.fpga, behind)
+        (&mut self.fpga, chips)
     }
 }
 
