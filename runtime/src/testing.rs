@@ -1,4 +1,4 @@
-//! A desk for tests of firmware functions: a kernel, memory and threads without a machine.
+//! A bench for tests of firmware functions: a kernel, memory and threads without a machine.
 
 use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_named};
 use kmotiondef::limits::VERSION;
@@ -16,7 +16,7 @@ use crate::out::{EventKind, Severity};
 use crate::pc::files::NoFiles;
 
 /// A board that calls come to by hand, from thread 1.
-pub(crate) struct Desk {
+pub(crate) struct TestBench {
     pub(crate) kernel: Kernel,
     pub(crate) memory: GuestMemory,
     pub(crate) threads: Threads,
@@ -31,7 +31,7 @@ pub(crate) fn powered_memory() -> GuestMemory {
     memory
 }
 
-impl Desk {
+impl TestBench {
     pub(crate) fn new() -> Self {
         let kernel = Kernel::new(Box::new(NoFiles));
         Self {

@@ -7,7 +7,7 @@ use kmotiondef::limits::TIMEBASE;
 use serde_json::Value as Json;
 
 use super::COMMANDS;
-use crate::testing::Desk;
+use crate::testing::TestBench;
 use crate::text::vectors::rows;
 
 /// Answers that depend on when a line came, or on what is connected: only their form is compared.
@@ -47,21 +47,21 @@ fn form(text: &str) -> String {
 
 /// A board and its link, as bytes.
 struct Wire {
-    desk: Desk,
+    bench: TestBench,
 }
 
 impl Wire {
     fn new() -> Self {
-        Self { desk: Desk::new() }
+        Self { bench: TestBench::new() }
     }
 
     /// Sends bytes and returns what comes back.
     fn send(&mut self, bytes: &[u8]) -> String {
-        self.desk.kernel.parts.pc.usb.receive(bytes);
-        while self.desk.kernel.parts.pc.usb.is_busy() {
-            self.desk.run(2);
+        self.bench.kernel.parts.pc.usb.receive(bytes);
+        while self.bench.kernel.parts.pc.usb.is_busy() {
+            self.bench.run(2);
         }
-        self.desk.kernel.parts.out.take_events().into_iter().map(wire).collect()
+        self.bench.kernel.parts.out.take_events().into_iter().map(wire).collect()
     }
 
     /// Sends a recorded line, or does what is in its place in parentheses.
@@ -73,11 +73,11 @@ impl Wire {
         match words[..] {
             ["run", seconds] => {
                 let seconds: f64 = seconds.parse().expect("seconds");
-                self.desk.run((seconds / TIMEBASE) as u64);
+                self.bench.run((seconds / TIMEBASE) as u64);
             }
             ["bit", bit, level] => {
                 let bit = bit.parse().ok().and_then(Bit::new).expect("a bit");
-                self.desk.kernel.parts.io.pins.drive(bit, level == "1", kmotiondef::Cycles::default());
+                self.bench.kernel.parts.io.pins.drive(bit, level == "1", kmotiondef::Cycles::default());
             }
             _ => panic!("{line}"),
         }

@@ -346,48 +346,48 @@ pub(crate) fn sscanf(
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
 
     #[test]
     fn printf_returns_the_full_length_and_prints_128_characters() {
-        let mut desk = Desk::new();
+        let mut bench = TestBench::new();
         let long = vec![b'x'; 200];
-        let (pattern, string) = (desk.put_text(0, b"%s\n"), desk.put_text(64, &long));
-        let values = desk.put_words(400, &[string as u32]);
-        assert_eq!(desk.call_i32("printf", &[pattern, values]), 201);
-        assert_eq!(desk.printed(), ["x".repeat(125), "xxx".to_owned()]);
+        let (pattern, string) = (bench.put_text(0, b"%s\n"), bench.put_text(64, &long));
+        let values = bench.put_words(400, &[string as u32]);
+        assert_eq!(bench.call_i32("printf", &[pattern, values]), 201);
+        assert_eq!(bench.printed(), ["x".repeat(125), "xxx".to_owned()]);
     }
 
     #[test]
     fn doubles_are_aligned_in_the_argument_list() {
-        let mut desk = Desk::new();
+        let mut bench = TestBench::new();
         let double = 1.5_f64.to_bits();
-        let pattern = desk.put_text(0, b"%d %f %d\n");
-        let values = desk.put_words(64, &[7, 0, double as u32, (double >> 32) as u32, 8]);
-        desk.call_i32("printf", &[pattern, values]);
-        assert_eq!(desk.printed(), ["7 1.500000 8"]);
+        let pattern = bench.put_text(0, b"%d %f %d\n");
+        let values = bench.put_words(64, &[7, 0, double as u32, (double >> 32) as u32, 8]);
+        bench.call_i32("printf", &[pattern, values]);
+        assert_eq!(bench.printed(), ["7 1.500000 8"]);
     }
 
     #[test]
     fn a_full_queue_makes_the_caller_wait() {
-        let mut desk = Desk::new();
-        let pattern = desk.put_text(0, b"x\n");
+        let mut bench = TestBench::new();
+        let pattern = bench.put_text(0, b"x\n");
         for _ in 0..255 {
-            desk.call_i32("printf", &[pattern, 0]);
+            bench.call_i32("printf", &[pattern, 0]);
         }
-        assert!(!desk.is_done("printf", &[pattern, 0]));
-        desk.kernel.parts.out.console.send();
-        assert_eq!(desk.wake_i32("printf", &[pattern, 0]), 2);
-        assert_eq!(desk.printed().len(), 255);
+        assert!(!bench.is_done("printf", &[pattern, 0]));
+        bench.kernel.parts.out.console.send();
+        assert_eq!(bench.wake_i32("printf", &[pattern, 0]), 2);
+        assert_eq!(bench.printed().len(), 255);
     }
 
     #[test]
     fn sscanf_stores_through_its_pointers() {
-        let mut desk = Desk::new();
-        let (string, pattern) = (desk.put_text(0, b"12 2.5"), desk.put_text(32, b"%d %lf"));
-        let places = desk.put_words(64, &[desk.scratch(128), desk.scratch(136)]);
-        assert_eq!(desk.call_i32("sscanf", &[string, pattern, places]), 2);
-        assert_eq!(desk.memory.peek::<i32>(kmotiondef::GuestAddr::new(desk.scratch(128))), 12);
-        assert_eq!(desk.memory.peek::<f64>(kmotiondef::GuestAddr::new(desk.scratch(136))), 2.5);
+        let mut bench = TestBench::new();
+        let (string, pattern) = (bench.put_text(0, b"12 2.5"), bench.put_text(32, b"%d %lf"));
+        let places = bench.put_words(64, &[bench.scratch(128), bench.scratch(136)]);
+        assert_eq!(bench.call_i32("sscanf", &[string, pattern, places]), 2);
+        assert_eq!(bench.memory.peek::<i32>(kmotiondef::GuestAddr::new(bench.scratch(128))), 12);
+        assert_eq!(bench.memory.peek::<f64>(kmotiondef::GuestAddr::new(bench.scratch(136))), 2.5);
     }
 }

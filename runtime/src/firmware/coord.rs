@@ -224,18 +224,18 @@ pub(crate) fn inc_parametric_index(parts: &mut Parts, caller: &mut Caller<'_>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
 
     #[test]
     fn the_nominal_change_time_is_that_of_the_slowest_axis() {
-        let mut desk = Desk::new();
-        desk.call("DefineCoordSystem", &[0, u32::MAX.into(), u32::MAX.into(), u32::MAX.into()]);
+        let mut bench = TestBench::new();
+        bench.call("DefineCoordSystem", &[0, u32::MAX.into(), u32::MAX.into(), u32::MAX.into()]);
         let axis = AxisId::new(0).expect("0 is an axis");
         for (v, a, j, expect) in [(40000.0, 200_000.0, 4e6, 0.482_842_7), (100.0, 1e5, 1e9, 0.001_894_427)] {
-            desk.memory.set_axis(axis, Chan::VEL, v);
-            desk.memory.set_axis(axis, Chan::ACCEL, a);
-            desk.memory.set_axis(axis, Chan::JERK, j);
-            let time = desk.call_f32("GetNominalFROChangeTime", &[]);
+            bench.memory.set_axis(axis, Chan::VEL, v);
+            bench.memory.set_axis(axis, Chan::ACCEL, a);
+            bench.memory.set_axis(axis, Chan::JERK, j);
+            let time = bench.call_f32("GetNominalFROChangeTime", &[]);
             assert!((time - expect).abs() < 1e-6, "{time}");
         }
     }
@@ -243,26 +243,26 @@ mod tests {
     #[test]
     fn a_held_move_resumes_and_a_jog_does_not() {
         for (name, resumes) in [("Move", true), ("Jog", false)] {
-            let mut desk = Desk::new();
-            desk.call("EnableAxisDest", &[0, 0]);
-            desk.call(name, &[0, 1000.0_f64.to_bits()]);
-            desk.run(1000);
-            desk.call_in_slices("StopCoordinatedMotion", &[]);
-            assert_eq!(desk.memory.get(CS0_STOPPING_STATE), HoldState::StoppingAxes.number());
-            desk.run(5000);
-            desk.call("UpdateStoppingState", &[]);
-            assert_eq!(desk.memory.get(CS0_STOPPING_STATE), HoldState::AxesStopped.number());
-            desk.call("ResumeCoordinatedMotion", &[]);
-            assert_eq!(desk.memory.get(CS0_STOPPING_STATE), HoldState::Running.number());
-            assert_eq!(desk.call_i32("CheckDone", &[0]), i32::from(!resumes), "{name}");
+            let mut bench = TestBench::new();
+            bench.call("EnableAxisDest", &[0, 0]);
+            bench.call(name, &[0, 1000.0_f64.to_bits()]);
+            bench.run(1000);
+            bench.call_in_slices("StopCoordinatedMotion", &[]);
+            assert_eq!(bench.memory.get(CS0_STOPPING_STATE), HoldState::StoppingAxes.number());
+            bench.run(5000);
+            bench.call("UpdateStoppingState", &[]);
+            assert_eq!(bench.memory.get(CS0_STOPPING_STATE), HoldState::AxesStopped.number());
+            bench.call("ResumeCoordinatedMotion", &[]);
+            assert_eq!(bench.memory.get(CS0_STOPPING_STATE), HoldState::Running.number());
+            assert_eq!(bench.call_i32("CheckDone", &[0]), i32::from(!resumes), "{name}");
         }
     }
 
     #[test]
     fn without_motion_there_is_no_feedhold() {
-        let mut desk = Desk::new();
-        desk.call_in_slices("StopCoordinatedMotion", &[]);
-        assert_eq!(desk.memory.get(CS0_STOPPING_STATE), HoldState::Running.number());
-        assert_eq!(desk.call_i32("CheckDoneBuf", &[]), -1);
+        let mut bench = TestBench::new();
+        bench.call_in_slices("StopCoordinatedMotion", &[]);
+        assert_eq!(bench.memory.get(CS0_STOPPING_STATE), HoldState::Running.number());
+        assert_eq!(bench.call_i32("CheckDoneBuf", &[]), -1);
     }
 }

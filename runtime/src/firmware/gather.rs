@@ -70,23 +70,23 @@ pub(crate) fn check_done_gather(parts: &mut Parts, caller: &mut Caller<'_>) -> i
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
 
     #[test]
     fn an_axis_is_recorded_in_six_doubles_a_tick() {
         // `checks.jsonl`, "SetupGatherAllOnAxis(0,100)": 600 doubles.
-        let mut desk = Desk::new();
-        assert_eq!(desk.call_i32("CheckDoneGather", &[]), 1);
-        desk.call("EnableAxisDest", &[0, 2.5_f64.to_bits()]);
-        desk.call("SetupGatherAllOnAxis", &[0, 100]);
-        desk.call("TriggerGather", &[]);
-        assert_eq!(desk.call_i32("CheckDoneGather", &[]), 0);
-        desk.run(100);
-        assert_eq!(desk.call_i32("CheckDoneGather", &[]), 1);
-        let buffer = desk.memory.get(GATHER_BUFFER);
-        let sample: Vec<f64> = (0..6).map(|index| desk.memory.peek(buffer.offset(8 * index))).collect();
+        let mut bench = TestBench::new();
+        assert_eq!(bench.call_i32("CheckDoneGather", &[]), 1);
+        bench.call("EnableAxisDest", &[0, 2.5_f64.to_bits()]);
+        bench.call("SetupGatherAllOnAxis", &[0, 100]);
+        bench.call("TriggerGather", &[]);
+        assert_eq!(bench.call_i32("CheckDoneGather", &[]), 0);
+        bench.run(100);
+        assert_eq!(bench.call_i32("CheckDoneGather", &[]), 1);
+        let buffer = bench.memory.get(GATHER_BUFFER);
+        let sample: Vec<f64> = (0..6).map(|index| bench.memory.peek(buffer.offset(8 * index))).collect();
         assert_eq!(sample, [2.5, 0.0, 2.5, -2048.0, 0.0, 0.0]);
-        let end = desk.memory.get(GATHER.field(Gather::BUFPTR)).get();
+        let end = bench.memory.get(GATHER.field(Gather::BUFPTR)).get();
         assert_eq!(end - buffer.get(), 4800);
     }
 }

@@ -195,57 +195,57 @@ mod tests {
 
     use super::*;
     use crate::out::EventKind;
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
 
-    fn read(desk: &mut Desk, bit: u64) -> i32 {
-        desk.call_i32("ReadBit", &[bit])
+    fn read(bench: &mut TestBench, bit: u64) -> i32 {
+        bench.call_i32("ReadBit", &[bit])
     }
 
     #[test]
     fn bits_answer_as_recorded() {
         // The exchange of `checks.jsonl`, row "bits".
-        let mut desk = Desk::new();
-        desk.call("SetBitDirection", &[5, 1]);
-        assert_eq!(desk.call_i32("GetBitDirection", &[5]), 1);
-        desk.call("SetBit", &[5]);
-        assert_eq!(read(&mut desk, 5), 1);
+        let mut bench = TestBench::new();
+        bench.call("SetBitDirection", &[5, 1]);
+        assert_eq!(bench.call_i32("GetBitDirection", &[5]), 1);
+        bench.call("SetBit", &[5]);
+        assert_eq!(read(&mut bench, 5), 1);
         for (bit, direction) in [(48, 1), (64, 0), (80, 0), (128, 0), (144, 0), (160, 0)] {
-            assert_eq!(desk.call_i32("GetBitDirection", &[bit]), direction, "{bit}");
+            assert_eq!(bench.call_i32("GetBitDirection", &[bit]), direction, "{bit}");
         }
         for (bit, state) in [(144, 1), (128, 0), (200, 0), (63, 1)] {
-            desk.call("SetBit", &[bit]);
-            assert_eq!(read(&mut desk, bit), state, "{bit}");
+            bench.call("SetBit", &[bit]);
+            assert_eq!(read(&mut bench, bit), state, "{bit}");
         }
-        assert_eq!(desk.memory.get(VIRTUAL_BITS), 32768);
+        assert_eq!(bench.memory.get(VIRTUAL_BITS), 32768);
     }
 
     #[test]
     fn a_latched_bit_takes_effect_when_its_pin_becomes_an_output() {
-        let mut desk = Desk::new();
-        desk.call("SetBit", &[8]);
-        assert_eq!(read(&mut desk, 8), 0);
-        desk.call("SetBitDirection", &[8, 1]);
-        assert_eq!(read(&mut desk, 8), 1);
-        assert_eq!(desk.memory.get(BIT_DIR_SHADOW.element(0)), 1 << 8);
+        let mut bench = TestBench::new();
+        bench.call("SetBit", &[8]);
+        assert_eq!(read(&mut bench, 8), 0);
+        bench.call("SetBitDirection", &[8, 1]);
+        assert_eq!(read(&mut bench, 8), 1);
+        assert_eq!(bench.memory.get(BIT_DIR_SHADOW.element(0)), 1 << 8);
     }
 
     #[test]
     fn the_leds_are_on_at_power_up() {
-        let mut desk = Desk::new();
-        assert_eq!(read(&mut desk, 46), 1);
-        desk.call("ClearBit", &[46]);
-        assert_eq!(read(&mut desk, 46), 0);
+        let mut bench = TestBench::new();
+        assert_eq!(read(&mut bench, 46), 1);
+        bench.call("ClearBit", &[46]);
+        assert_eq!(read(&mut bench, 46), 0);
     }
 
     #[test]
     fn pins_used_by_kanalog_are_reported_once() {
-        let mut desk = Desk::new();
-        desk.call("SetBitDirection", &[3, 1]);
-        desk.memory.set(KANALOG_PRESENT, 1);
+        let mut bench = TestBench::new();
+        bench.call("SetBitDirection", &[3, 1]);
+        bench.memory.set(KANALOG_PRESENT, 1);
         for (bit, output) in [(3, 1), (4, 0), (16, 1), (5, 1), (6, 1)] {
-            desk.call("SetBitDirection", &[bit, output]);
+            bench.call("SetBitDirection", &[bit, output]);
         }
-        let told = desk.kernel.parts.out.take_events();
+        let told = bench.kernel.parts.out.take_events();
         let [event] = &told[..] else { panic!("{told:?}") };
         assert!(
             matches!(&event.kind, EventKind::Remark(remark) if remark.to_string().contains("bit 5 becomes")),

@@ -66,53 +66,54 @@ mod tests {
     use kmotiondef::variables::{VIRTUAL_BITS, VIRTUAL_BITS_EX};
 
     use super::*;
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
     use crate::views::Typed;
 
     #[test]
     fn inputs_of_each_added_board_read_0() {
-        let mut desk = Desk::new();
+        let mut bench = TestBench::new();
         let outputs = VIRTUAL_BITS.address().get();
-        desk.call("InitAux", &[]);
+        bench.call("InitAux", &[]);
         for board in 0..2 {
             let inputs = VIRTUAL_BITS_EX.element(board).address().get();
-            desk.call("AddKonnect", &[board as u64, outputs.into(), inputs.into()]);
-            desk.memory.set(VIRTUAL_BITS_EX.element(board), -1);
+            bench.call("AddKonnect", &[board as u64, outputs.into(), inputs.into()]);
+            bench.memory.set(VIRTUAL_BITS_EX.element(board), -1);
         }
-        desk.memory.set(VIRTUAL_BITS, 0x1234);
-        desk.run(2);
-        assert_eq!(desk.memory.get(VIRTUAL_BITS_EX.element(0)), 0);
-        assert_eq!(desk.memory.get(VIRTUAL_BITS_EX.element(1)), 0);
-        assert_eq!(desk.memory.get(VIRTUAL_BITS), 0x1234);
+        bench.memory.set(VIRTUAL_BITS, 0x1234);
+        bench.run(2);
+        assert_eq!(bench.memory.get(VIRTUAL_BITS_EX.element(0)), 0);
+        assert_eq!(bench.memory.get(VIRTUAL_BITS_EX.element(1)), 0);
+        assert_eq!(bench.memory.get(VIRTUAL_BITS), 0x1234);
     }
 
     #[test]
     fn a_missing_board_is_reported_and_reads_zero() {
-        let mut desk = Desk::new();
+        let mut bench = TestBench::new();
         let word: u64 = VIRTUAL_BITS.address().get().into();
-        desk.kernel.parts.io.konnects.set_present(Port::Aux1, 0b01);
+        bench.kernel.parts.io.konnects.set_present(Port::Aux1, 0b01);
         for address in [0, 1] {
             let board = KonnectBoard { port: Port::Aux1, address };
-            desk.kernel.parts.io.konnects.drive(board, 5, true);
+            bench.kernel.parts.io.konnects.drive(board, 5, true);
             let inputs: u64 = VIRTUAL_BITS_EX.element(address.into()).address().get().into();
-            desk.call("AddKonnect", &[address.into(), word, inputs]);
+            bench.call("AddKonnect", &[address.into(), word, inputs]);
         }
-        desk.memory.set(VIRTUAL_BITS, 3);
-        desk.run(4);
-        let inputs = [0, 1].map(|board| desk.memory.get(VIRTUAL_BITS_EX.element(board)));
-        let outputs = [0, 1]
-            .map(|address| desk.kernel.parts.io.konnects.outputs(KonnectBoard { port: Port::Aux1, address }));
+        bench.memory.set(VIRTUAL_BITS, 3);
+        bench.run(4);
+        let inputs = [0, 1].map(|board| bench.memory.get(VIRTUAL_BITS_EX.element(board)));
+        let outputs = [0, 1].map(|address| {
+            bench.kernel.parts.io.konnects.outputs(KonnectBoard { port: Port::Aux1, address })
+        });
         assert_eq!((inputs, outputs), ([32, 0], [3, 0]));
-        assert_eq!(desk.kernel.parts.out.take_events().len(), 1);
+        assert_eq!(bench.kernel.parts.out.take_events().len(), 1);
     }
 
     #[test]
     fn the_seventeenth_board_is_refused() {
-        let mut desk = Desk::new();
+        let mut bench = TestBench::new();
         let word: u64 = VIRTUAL_BITS.address().get().into();
         for board in 0..17 {
-            desk.call("AddKonnect_Aux0", &[board, word, word]);
+            bench.call("AddKonnect_Aux0", &[board, word, word]);
         }
-        assert_eq!(desk.printed(), ["Too many AddKonnects"]);
+        assert_eq!(bench.printed(), ["Too many AddKonnects"]);
     }
 }

@@ -280,22 +280,22 @@ pub(crate) fn divd(_: &mut Parts, _: &mut Caller<'_>, a: f64, b: f64) -> f64 {
 mod tests {
     use kmotiondef::variables::PERSIST;
 
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
 
     #[test]
     fn the_fraction_keeps_its_sign() {
-        let mut desk = Desk::new();
+        let mut bench = TestBench::new();
         for (v, expect) in [(-1.25, -0.25), (2.75, 0.75), (-0.25, -0.25), (5.0, 0.0)] {
-            assert_eq!(desk.call_f32("fractionf", &[f64::to_bits(v)]), expect);
+            assert_eq!(bench.call_f32("fractionf", &[f64::to_bits(v)]), expect);
         }
     }
 
     #[test]
     fn the_second_phase_is_a_third_of_a_cycle_ahead() {
-        let mut desk = Desk::new();
+        let mut bench = TestBench::new();
         let address = PERSIST.address();
-        let first = desk.call_f32("Sine3PH", &[u64::from(0.1_f32.to_bits()), address.get().into()]);
-        let second: f32 = desk.memory.peek(address);
+        let first = bench.call_f32("Sine3PH", &[u64::from(0.1_f32.to_bits()), address.get().into()]);
+        let second: f32 = bench.memory.peek(address);
         assert!(
             (first - 0.587_785_2).abs() < 1e-6 && (second - 0.406_736_9).abs() < 1e-6,
             "{first} {second}"

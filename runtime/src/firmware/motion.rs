@@ -649,82 +649,82 @@ pub(crate) fn start_move(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
 
     fn axis() -> AxisId {
         AxisId::new(0).expect("0 is an axis")
     }
 
     /// A step/direction axis as in the scenarios.
-    fn desk() -> Desk {
-        let mut desk = Desk::new();
-        desk.memory.set_axis(axis(), Chan::OUTPUT_MODE, OutputMode::StepDir.get());
-        desk.memory.set_axis(axis(), Chan::VEL, 40000.0);
-        desk.memory.set_axis(axis(), Chan::ACCEL, 200_000.0);
-        desk.memory.set_axis(axis(), Chan::JERK, 4e6);
-        desk.call("EnableAxisDest", &[0, 0]);
-        desk
+    fn bench() -> TestBench {
+        let mut bench = TestBench::new();
+        bench.memory.set_axis(axis(), Chan::OUTPUT_MODE, OutputMode::StepDir.get());
+        bench.memory.set_axis(axis(), Chan::VEL, 40000.0);
+        bench.memory.set_axis(axis(), Chan::ACCEL, 200_000.0);
+        bench.memory.set_axis(axis(), Chan::JERK, 4e6);
+        bench.call("EnableAxisDest", &[0, 0]);
+        bench
     }
 
     /// Ticks until the motion is done.
-    fn ticks(desk: &mut Desk) -> u64 {
+    fn ticks(bench: &mut TestBench) -> u64 {
         (1..1_000_000)
             .find(|_| {
-                desk.run(1);
-                desk.call_i32("CheckDone", &[0]) == 1
+                bench.run(1);
+                bench.call_i32("CheckDone", &[0]) == 1
             })
             .expect("motion ends")
     }
 
     #[test]
     fn a_move_takes_the_expected_time_and_arrives() {
-        let mut desk = desk();
-        desk.call("Move", &[0, 100_000.0_f64.to_bits()]);
-        let taken = ticks(&mut desk) as f64 * TIMEBASE;
+        let mut bench = bench();
+        bench.call("Move", &[0, 100_000.0_f64.to_bits()]);
+        let taken = ticks(&mut bench) as f64 * TIMEBASE;
         assert!((taken - 2.75).abs() < 3e-4, "{taken}");
-        assert_eq!(desk.memory.axis(axis(), Chan::DEST), 100_000.0);
-        let position = desk.memory.axis(axis(), Chan::POSITION);
+        assert_eq!(bench.memory.axis(axis(), Chan::DEST), 100_000.0);
+        let position = bench.memory.axis(axis(), Chan::POSITION);
         assert!((position - 100_000.0).abs() <= 1.0, "{position}");
-        desk.call("MoveRel", &[0, (-800.0_f64).to_bits()]);
-        let taken = ticks(&mut desk) as f64 * TIMEBASE;
+        bench.call("MoveRel", &[0, (-800.0_f64).to_bits()]);
+        let taken = ticks(&mut bench) as f64 * TIMEBASE;
         assert!((taken - 0.185_66).abs() < 3e-4, "{taken}");
-        assert_eq!(desk.memory.axis(axis(), Chan::DEST), 99_200.0);
+        assert_eq!(bench.memory.axis(axis(), Chan::DEST), 99_200.0);
     }
 
     #[test]
     fn disabling_freezes_the_destination() {
-        let mut desk = desk();
-        desk.call("Jog", &[0, 1000.0_f64.to_bits()]);
-        desk.run(500);
-        desk.call("DisableAxis", &[0]);
-        let dest = desk.memory.axis(axis(), Chan::DEST);
-        desk.run(10);
-        assert_eq!(desk.memory.axis(axis(), Chan::DEST), dest);
-        assert_eq!(desk.call_i32("CheckDone", &[0]), -1);
+        let mut bench = bench();
+        bench.call("Jog", &[0, 1000.0_f64.to_bits()]);
+        bench.run(500);
+        bench.call("DisableAxis", &[0]);
+        let dest = bench.memory.axis(axis(), Chan::DEST);
+        bench.run(10);
+        assert_eq!(bench.memory.axis(axis(), Chan::DEST), dest);
+        assert_eq!(bench.call_i32("CheckDone", &[0]), -1);
     }
 
     #[test]
     fn a_stop_from_a_jog_waits_for_the_next_slice() {
-        let mut desk = desk();
-        desk.call("Jog", &[0, 20000.0_f64.to_bits()]);
-        desk.run(5000);
-        assert_eq!(desk.call_i32("CheckDone", &[0]), 0);
-        desk.call_in_slices("Jog", &[0, 0]);
-        ticks(&mut desk);
-        assert_eq!(desk.memory.axis(axis(), Chan::LAST_MOTION_TYPE), LastMotion::Jog.get());
+        let mut bench = bench();
+        bench.call("Jog", &[0, 20000.0_f64.to_bits()]);
+        bench.run(5000);
+        assert_eq!(bench.call_i32("CheckDone", &[0]), 0);
+        bench.call_in_slices("Jog", &[0, 0]);
+        ticks(&mut bench);
+        assert_eq!(bench.memory.axis(axis(), Chan::LAST_MOTION_TYPE), LastMotion::Jog.get());
     }
 
     #[test]
     fn zero_moves_nothing() {
-        let mut desk = desk();
-        desk.call("Move", &[0, 50.0_f64.to_bits()]);
-        ticks(&mut desk);
-        desk.run(5);
-        desk.call("Zero", &[0]);
+        let mut bench = bench();
+        bench.call("Move", &[0, 50.0_f64.to_bits()]);
+        ticks(&mut bench);
+        bench.run(5);
+        bench.call("Zero", &[0]);
         for _ in 0..5 {
-            desk.run(1);
-            assert_eq!(desk.memory.axis(axis(), Chan::POSITION), 0.0);
-            assert_eq!(desk.kernel.parts.machine.loads[axis()].load, 50.0);
+            bench.run(1);
+            assert_eq!(bench.memory.axis(axis(), Chan::POSITION), 0.0);
+            assert_eq!(bench.kernel.parts.machine.loads[axis()].load, 50.0);
         }
     }
 }

@@ -86,40 +86,40 @@ pub(crate) fn set_flash_bank(parts: &mut Parts, caller: &mut Caller<'_>, address
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
 
     const USER: u64 = 0x9010_0000;
 
     #[test]
     fn a_block_is_programmed_after_a_second() {
-        let mut desk = Desk::new();
-        let from = desk.put_words(0, &[0x0403_0201, 0x0807_0605]);
-        let message = desk.put_text(100, b"done\n");
+        let mut bench = TestBench::new();
+        let from = bench.put_words(0, &[0x0403_0201, 0x0807_0605]);
+        let message = bench.put_text(100, b"done\n");
         let arguments = [from, 4, USER, message];
-        assert!(!desk.is_done("ProgramFlash", &arguments));
-        assert_eq!(desk.wake_i32("ProgramFlash", &arguments), 0);
-        assert_eq!(desk.bytes_at(USER as u32, 9), [1, 2, 3, 4, 5, 6, 7, 8, 0xff]);
-        assert_eq!(desk.printed(), ["done"]);
-        desk.call("SetFlashBank", &[USER]);
+        assert!(!bench.is_done("ProgramFlash", &arguments));
+        assert_eq!(bench.wake_i32("ProgramFlash", &arguments), 0);
+        assert_eq!(bench.bytes_at(USER as u32, 9), [1, 2, 3, 4, 5, 6, 7, 8, 0xff]);
+        assert_eq!(bench.printed(), ["done"]);
+        bench.call("SetFlashBank", &[USER]);
         for (words, to) in [(40_000, USER), (4, USER + 2), (4, 0x9000_0000)] {
             let arguments = [from, words, to];
-            assert_eq!(desk.wake_i32("ProgramFlashNoMessages", &arguments), 1, "{to:#x}");
+            assert_eq!(bench.wake_i32("ProgramFlashNoMessages", &arguments), 1, "{to:#x}");
         }
     }
 
     #[test]
     fn a_strict_board_shows_the_selected_bank() {
-        let mut desk = Desk::new();
-        desk.kernel.parts.io.flash.be_strict(&mut desk.memory);
-        let from = desk.put_words(0, &[0x0403_0201]);
-        assert_eq!(desk.wake_i32("ProgramFlashNoMessages", &[from, 2, USER]), 0);
-        assert_eq!(desk.bytes_at(USER as u32, 2), [0xff, 0xff]);
-        desk.call("SetFlashBank", &[USER]);
-        assert_eq!(desk.bytes_at(USER as u32, 5), [1, 2, 3, 4, 0xff]);
-        desk.call("SetFlashBank", &[USER + 0x8000]);
-        assert_eq!(desk.bytes_at(USER as u32, 2), [0xff, 0xff]);
-        desk.call("SetFlashBank", &[0x9000_0000]);
-        assert_eq!(desk.bytes_at(USER as u32, 2), [1, 2]);
-        assert_eq!(desk.printed(), ["Attempted boot sector write : addr=90000000"]);
+        let mut bench = TestBench::new();
+        bench.kernel.parts.io.flash.be_strict(&mut bench.memory);
+        let from = bench.put_words(0, &[0x0403_0201]);
+        assert_eq!(bench.wake_i32("ProgramFlashNoMessages", &[from, 2, USER]), 0);
+        assert_eq!(bench.bytes_at(USER as u32, 2), [0xff, 0xff]);
+        bench.call("SetFlashBank", &[USER]);
+        assert_eq!(bench.bytes_at(USER as u32, 5), [1, 2, 3, 4, 0xff]);
+        bench.call("SetFlashBank", &[USER + 0x8000]);
+        assert_eq!(bench.bytes_at(USER as u32, 2), [0xff, 0xff]);
+        bench.call("SetFlashBank", &[0x9000_0000]);
+        assert_eq!(bench.bytes_at(USER as u32, 2), [1, 2]);
+        assert_eq!(bench.printed(), ["Attempted boot sector write : addr=90000000"]);
     }
 }

@@ -179,52 +179,52 @@ pub(crate) fn slice(parts: &mut Parts, context: &mut TickContext<'_>) {
 mod tests {
     use super::*;
     use crate::out::EventKind;
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
 
     /// A board whose service runs at 38400 baud for the program alone.
-    fn desk() -> Desk {
-        let mut desk = Desk::new();
-        assert!(!desk.is_done("EnableRS232Cmds", &[26]));
-        desk.wake("EnableRS232Cmds", &[26]);
-        assert_eq!(desk.memory.get(DO_RS232_CMDS), 1);
-        desk.memory.set(DO_RS232_CMDS, 0);
-        desk
+    fn bench() -> TestBench {
+        let mut bench = TestBench::new();
+        assert!(!bench.is_done("EnableRS232Cmds", &[26]));
+        bench.wake("EnableRS232Cmds", &[26]);
+        assert_eq!(bench.memory.get(DO_RS232_CMDS), 1);
+        bench.memory.set(DO_RS232_CMDS, 0);
+        bench
     }
 
     #[test]
     fn the_ring_takes_999_characters_and_is_sent_at_the_rate_of_the_line() {
-        let mut desk = desk();
+        let mut bench = bench();
         for _ in 0..999 {
-            assert!(desk.is_done("RS232_PutChar", &[65]));
+            assert!(bench.is_done("RS232_PutChar", &[65]));
         }
-        assert!(!desk.is_done("RS232_PutChar", &[65]));
+        assert!(!bench.is_done("RS232_PutChar", &[65]));
         // 100 characters of 259.2 µs are 288 ticks; the shift register and the buffer hold two more.
-        desk.run(288);
-        let sent = desk.memory.get(P_RS232_TX_OUT).get() - RS232_TX_BUF.address().get();
+        bench.run(288);
+        let sent = bench.memory.get(P_RS232_TX_OUT).get() - RS232_TX_BUF.address().get();
         assert!((100..=102).contains(&sent), "{sent}");
-        assert!(desk.is_done("RS232_PutChar", &[65]));
+        assert!(bench.is_done("RS232_PutChar", &[65]));
     }
 
     #[test]
     fn received_characters_wait_in_their_ring() {
-        let mut desk = desk();
-        assert!(!desk.is_done("RS232_GetChar", &[]));
-        desk.kernel.parts.io.uart.arrive(b"A\xff", Cycles::default());
-        desk.run(10);
-        assert_eq!(desk.call_i32("RS232_GetChar", &[]), 65);
-        assert_eq!(desk.call_i32("RS232_GetChar", &[]), -1);
-        assert!(!desk.is_done("RS232_GetChar", &[]));
-        assert!(!desk.kernel.parts.calls.serial.is_busy(&desk.memory, &desk.kernel.parts.io.uart));
+        let mut bench = bench();
+        assert!(!bench.is_done("RS232_GetChar", &[]));
+        bench.kernel.parts.io.uart.arrive(b"A\xff", Cycles::default());
+        bench.run(10);
+        assert_eq!(bench.call_i32("RS232_GetChar", &[]), 65);
+        assert_eq!(bench.call_i32("RS232_GetChar", &[]), -1);
+        assert!(!bench.is_done("RS232_GetChar", &[]));
+        assert!(!bench.kernel.parts.calls.serial.is_busy(&bench.memory, &bench.kernel.parts.io.uart));
     }
 
     #[test]
     fn an_overrun_and_unread_commands_are_reported_once() {
         for (commands, word) in [(0, "lost"), (1, "DoRS232Cmds")] {
-            let mut desk = desk();
-            desk.memory.set(DO_RS232_CMDS, commands);
-            desk.kernel.parts.io.uart.arrive(&[b'x'; 2100], Cycles::default());
-            desk.run(6100);
-            let told: Vec<_> = desk.kernel.parts.out.take_events();
+            let mut bench = bench();
+            bench.memory.set(DO_RS232_CMDS, commands);
+            bench.kernel.parts.io.uart.arrive(&[b'x'; 2100], Cycles::default());
+            bench.run(6100);
+            let told: Vec<_> = bench.kernel.parts.out.take_events();
             let [event] = &told[..] else { panic!("{told:?}") };
             assert!(
                 matches!(&event.kind, EventKind::Remark(remark) if remark.to_string().contains(word)),

@@ -82,36 +82,36 @@ mod tests {
     use kmotiondef::Cycles;
 
     use super::*;
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
 
     #[test]
     fn pins_are_the_numbered_bits() {
-        let mut desk = Desk::new();
-        desk.call("WriteSnapAmp", &[0x60 + 19, 0b11]);
-        desk.call("WriteSnapAmp", &[0x60 + 17, 0b11]);
-        desk.call("WriteSnapAmp", &[0x60 + 18, 0b10]);
-        assert_eq!(desk.call_i32("ReadSnapAmp", &[0x60 + 17]), 0b01);
-        assert_eq!(desk.call_i32("ReadBit", &[112]), 1);
-        assert_eq!(desk.call_i32("ReadBit", &[113]), 0);
+        let mut bench = TestBench::new();
+        bench.call("WriteSnapAmp", &[0x60 + 19, 0b11]);
+        bench.call("WriteSnapAmp", &[0x60 + 17, 0b11]);
+        bench.call("WriteSnapAmp", &[0x60 + 18, 0b10]);
+        assert_eq!(bench.call_i32("ReadSnapAmp", &[0x60 + 17]), 0b01);
+        assert_eq!(bench.call_i32("ReadBit", &[112]), 1);
+        assert_eq!(bench.call_i32("ReadBit", &[113]), 0);
     }
 
     #[test]
     fn encoders_and_inputs_have_their_registers() {
-        let mut desk = Desk::new();
-        desk.kernel.parts.io.encoders.count(13, -2, &mut desk.kernel.parts.io.pins, Cycles::default());
-        desk.kernel.parts.io.encoders.fail(13);
-        desk.kernel.parts.io.pins.drive(Bit::new(96 + 3).expect("a bit"), true, Cycles::default());
-        assert_eq!(desk.call_i32("ReadSnapAmp", &[0x60 + 9]), 0x80fe);
-        assert_eq!(desk.call_i32("ReadSnapAmp", &[0x60 + 16]), 0x080c);
-        desk.call("WriteSnapAmp", &[0x60 + 8, 0]);
-        assert_eq!(desk.call_i32("ReadSnapAmp", &[0x60 + 9]), 0x00fe);
+        let mut bench = TestBench::new();
+        bench.kernel.parts.io.encoders.count(13, -2, &mut bench.kernel.parts.io.pins, Cycles::default());
+        bench.kernel.parts.io.encoders.fail(13);
+        bench.kernel.parts.io.pins.drive(Bit::new(96 + 3).expect("a bit"), true, Cycles::default());
+        assert_eq!(bench.call_i32("ReadSnapAmp", &[0x60 + 9]), 0x80fe);
+        assert_eq!(bench.call_i32("ReadSnapAmp", &[0x60 + 16]), 0x080c);
+        bench.call("WriteSnapAmp", &[0x60 + 8, 0]);
+        assert_eq!(bench.call_i32("ReadSnapAmp", &[0x60 + 9]), 0x00fe);
     }
 
     #[test]
     fn a_missing_board_reads_48_volts_and_no_current() {
-        let mut desk = Desk::new();
+        let mut bench = TestBench::new();
         for (register, expect) in [(12, 8192), (22, 30_916), (24, 616), (30, 0)] {
-            assert_eq!(desk.call_i32("ReadSnapAmp", &[0x40 + register]), expect, "{register}");
+            assert_eq!(bench.call_i32("ReadSnapAmp", &[0x40 + register]), expect, "{register}");
         }
     }
 }

@@ -48,31 +48,31 @@ mod tests {
     use kmotiondef::variables::SPINDLE;
 
     use super::*;
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
 
     #[test]
     fn the_speed_is_measured_over_the_update_time() {
-        let mut desk = Desk::new();
+        let mut bench = TestBench::new();
         let float = |value: f32| u64::from(value.to_bits());
-        desk.call("ConfigureSpindle", &[1, 0, float(0.1), float(0.1), float(4096.0)]);
+        bench.call("ConfigureSpindle", &[1, 0, float(0.1), float(0.1), float(4096.0)]);
         let axis = AxisId::new(0).expect("0 is an axis");
-        desk.memory.set_axis(axis, Chan::INPUT_MODE, 4);
+        bench.memory.set_axis(axis, Chan::INPUT_MODE, 4);
         for tick in 0..3000 {
-            desk.memory.set_axis(axis, Chan::POSITION, 0.9 * f64::from(tick));
-            desk.run(1);
+            bench.memory.set_axis(axis, Chan::POSITION, 0.9 * f64::from(tick));
+            bench.run(1);
         }
         // `coord.jsonl`, "spindle speed measurement".
-        let speed = desk.memory.get(SPINDLE.field(Spindle::TRUE_SPEED_RPS));
+        let speed = bench.memory.get(SPINDLE.field(Spindle::TRUE_SPEED_RPS));
         assert!((speed - 2.441_406).abs() < 1e-6, "{speed}");
     }
 
     #[test]
     fn nonsense_spindle_settings_are_reported() {
-        let mut desk = Desk::new();
+        let mut bench = TestBench::new();
         let float = |value: f32| u64::from(value.to_bits());
-        desk.call("ConfigureSpindle", &[1, 9, float(0.1), float(0.1), float(4096.0)]);
-        desk.call("TrigThreading", &[float(0.0)]);
-        desk.run(100);
-        assert_eq!(desk.kernel.parts.out.take_events().len(), 3);
+        bench.call("ConfigureSpindle", &[1, 9, float(0.1), float(0.1), float(4096.0)]);
+        bench.call("TrigThreading", &[float(0.0)]);
+        bench.run(100);
+        assert_eq!(bench.kernel.parts.out.take_events().len(), 3);
     }
 }

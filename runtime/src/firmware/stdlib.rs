@@ -332,23 +332,23 @@ pub(crate) fn bsearch(
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
 
     #[test]
     fn number_parsing_stops_at_the_end_of_the_number() {
-        let mut desk = Desk::new();
-        let (string, end) = (desk.put_text(0, b" 0x1fz"), desk.put_text(64, b"...."));
-        assert_eq!(desk.call_i32("strtol", &[string, end, 16]), 31);
-        assert_eq!(desk.memory.peek::<u32>(kmotiondef::GuestAddr::new(end as u32)), string as u32 + 5);
-        assert_eq!(desk.call_i32("atoi", &[string]), 0);
+        let mut bench = TestBench::new();
+        let (string, end) = (bench.put_text(0, b" 0x1fz"), bench.put_text(64, b"...."));
+        assert_eq!(bench.call_i32("strtol", &[string, end, 16]), 31);
+        assert_eq!(bench.memory.peek::<u32>(kmotiondef::GuestAddr::new(end as u32)), string as u32 + 5);
+        assert_eq!(bench.call_i32("atoi", &[string]), 0);
     }
 
     #[test]
     fn a_block_keeps_its_bytes_when_it_grows() {
-        let mut desk = Desk::new();
-        let block = desk.call_i32("malloc", &[8]) as u32;
-        desk.memory.poke(kmotiondef::GuestAddr::new(block), 0x1234_5678_u32);
-        let grown = desk.call_i32("realloc", &[u64::from(block), 100]) as u32;
-        assert_eq!(desk.memory.peek::<u32>(kmotiondef::GuestAddr::new(grown)), 0x1234_5678);
+        let mut bench = TestBench::new();
+        let block = bench.call_i32("malloc", &[8]) as u32;
+        bench.memory.poke(kmotiondef::GuestAddr::new(block), 0x1234_5678_u32);
+        let grown = bench.call_i32("realloc", &[u64::from(block), 100]) as u32;
+        assert_eq!(bench.memory.peek::<u32>(kmotiondef::GuestAddr::new(grown)), 0x1234_5678);
     }
 }

@@ -346,20 +346,20 @@ pub(crate) fn tolower(_: &mut Parts, _: &mut Caller<'_>, character: i32) -> i32 
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
 
     #[test]
     fn tokens_follow_one_another() {
-        let mut desk = Desk::new();
-        let (string, separators) = (desk.put_text(0, b",a,,bc,"), desk.put_text(64, b","));
+        let mut bench = TestBench::new();
+        let (string, separators) = (bench.put_text(0, b",a,,bc,"), bench.put_text(64, b","));
         let mut tokens = Vec::new();
         let mut start = string;
         loop {
-            let token = desk.call_i32("strtok", &[start, separators]) as u32;
+            let token = bench.call_i32("strtok", &[start, separators]) as u32;
             if token == 0 {
                 break;
             }
-            tokens.push(desk.text_at(token));
+            tokens.push(bench.text_at(token));
             start = 0;
         }
         assert_eq!(tokens, ["a", "bc"]);
@@ -367,18 +367,18 @@ mod tests {
 
     #[test]
     fn strncpy_pads_with_zeros() {
-        let mut desk = Desk::new();
-        let (to, from) = (desk.put_text(0, b"xxxxxx"), desk.put_text(64, b"ab"));
-        desk.call_i32("strncpy", &[to, from, 4]);
-        assert_eq!(desk.bytes_at(to as u32, 6), b"ab\0\0xx");
+        let mut bench = TestBench::new();
+        let (to, from) = (bench.put_text(0, b"xxxxxx"), bench.put_text(64, b"ab"));
+        bench.call_i32("strncpy", &[to, from, 4]);
+        assert_eq!(bench.bytes_at(to as u32, 6), b"ab\0\0xx");
     }
 
     #[test]
     fn comparisons_have_a_sign() {
-        let mut desk = Desk::new();
-        let (a, b) = (desk.put_text(0, b"abc"), desk.put_text(64, b"abd"));
-        assert_eq!(desk.call_i32("strcmp", &[a, b]), -1);
-        assert_eq!(desk.call_i32("strncmp", &[a, b, 2]), 0);
-        assert_eq!(desk.call_i32("memcmp", &[b, a, 3]), 1);
+        let mut bench = TestBench::new();
+        let (a, b) = (bench.put_text(0, b"abc"), bench.put_text(64, b"abd"));
+        assert_eq!(bench.call_i32("strcmp", &[a, b]), -1);
+        assert_eq!(bench.call_i32("strncmp", &[a, b, 2]), 0);
+        assert_eq!(bench.call_i32("memcmp", &[b, a, 3]), 1);
     }
 }

@@ -143,7 +143,7 @@ pub(crate) fn test_and_set(
 mod tests {
     use kmotiondef::variables::PERSIST;
 
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
 
     #[test]
     fn a_lock_waits_for_other_threads_only() {
@@ -151,18 +151,18 @@ mod tests {
         let free = [0, 2, 33, 64, 100, -1].map(|owner| (owner, true));
         let taken = [3, 8, 9, 32, 65, 855].map(|owner| (owner, false));
         for (owner, taken) in free.into_iter().chain(taken) {
-            let mut desk = Desk::new();
-            desk.memory.poke(address, owner);
-            assert_eq!(desk.is_done("MutexLock", &[address.get().into()]), taken, "{owner}");
-            assert_eq!(desk.memory.peek::<i32>(address), if taken { 2 } else { owner });
+            let mut bench = TestBench::new();
+            bench.memory.poke(address, owner);
+            assert_eq!(bench.is_done("MutexLock", &[address.get().into()]), taken, "{owner}");
+            assert_eq!(bench.memory.peek::<i32>(address), if taken { 2 } else { owner });
         }
     }
 
     #[test]
     fn test_and_set_returns_what_was_there() {
-        let mut desk = Desk::new();
+        let mut bench = TestBench::new();
         let arguments = [PERSIST.address().get().into(), 7];
-        assert_eq!(desk.call_i32("TestAndSet", &arguments), 0);
-        assert_eq!(desk.call_i32("TestAndSet", &arguments), 7);
+        assert_eq!(bench.call_i32("TestAndSet", &arguments), 0);
+        assert_eq!(bench.call_i32("TestAndSet", &arguments), 7);
     }
 }

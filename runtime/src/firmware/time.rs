@@ -59,27 +59,27 @@ pub(crate) fn wait_next_time_slice(_: &mut Parts, caller: &mut Caller<'_>) -> Ou
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
 
     #[test]
     fn time_counts_from_the_tick() {
-        let mut desk = Desk::new();
-        desk.memory.set(SERVO_TICK, 1000.0);
-        desk.set_now(Cycles::new(1000 * 18_000 + 9_000));
-        desk.memory.set(LAST_TIMER0, 1000 * 4_500);
-        let now = desk.call_f64("Time_sec", &[]);
+        let mut bench = TestBench::new();
+        bench.memory.set(SERVO_TICK, 1000.0);
+        bench.set_now(Cycles::new(1000 * 18_000 + 9_000));
+        bench.memory.set(LAST_TIMER0, 1000 * 4_500);
+        let now = bench.call_f64("Time_sec", &[]);
         // The call itself costs 400 ns.
         assert!((now - (0.09 + 45e-6 + 4e-7)).abs() < 1e-12, "{now}");
     }
 
     #[test]
     fn zero_and_past_times_return_at_once() {
-        let mut desk = Desk::new();
+        let mut bench = TestBench::new();
         for seconds in [0.0, -1.0, f64::NAN] {
-            assert!(desk.is_done("Delay_sec", &[seconds.to_bits()]));
-            assert!(desk.is_done("WaitUntil", &[seconds.to_bits()]));
+            assert!(bench.is_done("Delay_sec", &[seconds.to_bits()]));
+            assert!(bench.is_done("WaitUntil", &[seconds.to_bits()]));
         }
-        assert!(!desk.is_done("Delay_sec", &[1e-6_f64.to_bits()]));
-        assert!(!desk.is_done("WaitNextTimeSlice", &[]));
+        assert!(!bench.is_done("Delay_sec", &[1e-6_f64.to_bits()]));
+        assert!(!bench.is_done("WaitNextTimeSlice", &[]));
     }
 }

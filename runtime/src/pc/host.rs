@@ -462,42 +462,42 @@ fn edit_cell(host: &Host, memory: &mut GuestMemory, variable: i32) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
 
     /// Makes a request and returns the answer, which takes at most 0.2 s.
-    fn ask(desk: &mut Desk, code: i32, parameters: &[i32]) -> i32 {
+    fn ask(bench: &mut TestBench, code: i32, parameters: &[i32]) -> i32 {
         for (index, parameter) in parameters.iter().enumerate() {
-            desk.memory.set(data(index + 1), *parameter);
+            bench.memory.set(data(index + 1), *parameter);
         }
-        desk.memory.set(data(0), code);
-        desk.run(2222);
-        desk.memory.get(data(0))
+        bench.memory.set(data(0), code);
+        bench.run(2222);
+        bench.memory.get(data(0))
     }
 
     #[test]
     fn a_message_box_is_answered() {
-        let mut desk = Desk::new();
-        let buffer = desk.memory.get(GATHER_BUFFER);
-        desk.memory.poke_bytes(buffer.offset(400), b"go on?\0").expect("mapped");
+        let mut bench = TestBench::new();
+        let buffer = bench.memory.get(GATHER_BUFFER);
+        bench.memory.poke_bytes(buffer.offset(400), b"go on?\0").expect("mapped");
         for (flags, pressed) in [(0, 1), (1, 1), (2, 5), (3, 6), (4, 6), (5, 4)] {
-            assert_eq!(ask(&mut desk, 15, &[100, flags, 0]), DONE);
-            assert_eq!(desk.memory.get(data(3)), pressed);
+            assert_eq!(ask(&mut bench, 15, &[100, flags, 0]), DONE);
+            assert_eq!(bench.memory.get(data(3)), pressed);
         }
-        let told: Vec<_> = desk.kernel.parts.out.take_events();
+        let told: Vec<_> = bench.kernel.parts.out.take_events();
         assert_eq!(told[0].kind, EventKind::Host("message box: go on?".to_owned()));
     }
 
     #[test]
     fn every_request_gets_an_answer_that_lets_the_program_continue() {
-        let mut desk = Desk::new();
+        let mut bench = TestBench::new();
         for code in 1..=55 {
             // An element of UserData, an index of doubles, a tool and a number: what the request takes of them is valid.
             let first = match code {
                 5..=12 | 21 | 22 | 46..=51 | 54 | 55 => 1.0_f32.to_bits().cast_signed(),
                 _ => 10,
             };
-            assert_eq!(ask(&mut desk, code, &[first, 1, 20]), DONE, "request {code}");
-            let shown = desk
+            assert_eq!(ask(&mut bench, code, &[first, 1, 20]), DONE, "request {code}");
+            let shown = bench
                 .kernel
                 .parts
                 .out
@@ -510,74 +510,74 @@ mod tests {
 
     #[test]
     fn a_request_without_a_pc_is_reported_once() {
-        let mut desk = Desk::new();
-        desk.kernel.parts.pc.host.connect(false);
-        assert_eq!(ask(&mut desk, 15, &[100, 0, 0]), 15);
-        desk.run(60_000);
-        desk.run(60_000);
+        let mut bench = TestBench::new();
+        bench.kernel.parts.pc.host.connect(false);
+        assert_eq!(ask(&mut bench, 15, &[100, 0, 0]), 15);
+        bench.run(60_000);
+        bench.run(60_000);
         let expect = "request 15 waits for a PC, but none is connected (`host.enabled = false`)".to_owned();
-        assert_eq!(desk.diagnostics(), [expect]);
+        assert_eq!(bench.diagnostics(), [expect]);
     }
 
     #[test]
     fn requests_that_cannot_be_met_return_an_error() {
-        let mut desk = Desk::new();
-        assert_eq!(ask(&mut desk, 99, &[]), INVALID);
-        assert_eq!(ask(&mut desk, 23, &[100, 10]), BAD_TOOL);
-        assert_eq!(ask(&mut desk, 5, &[0]), INVALID);
-        assert_eq!(ask(&mut desk, 19, &[198]), INVALID);
+        let mut bench = TestBench::new();
+        assert_eq!(ask(&mut bench, 99, &[]), INVALID);
+        assert_eq!(ask(&mut bench, 23, &[100, 10]), BAD_TOOL);
+        assert_eq!(ask(&mut bench, 5, &[0]), INVALID);
+        assert_eq!(ask(&mut bench, 19, &[198]), INVALID);
     }
 
     #[test]
     fn overrides_reach_the_board() {
-        let mut desk = Desk::new();
+        let mut bench = TestBench::new();
         for (code, number, expect) in [(5, 0.5, (0.5, 1.0)), (6, 1.5, (0.75, 1.0)), (54, 0.25, (0.75, 0.25))]
         {
-            assert_eq!(ask(&mut desk, code, &[f32::to_bits(number) as i32]), DONE);
-            let overrides = (desk.memory.get(CS0_LAST_FRO), desk.memory.get(CS0_LAST_RAPID_FRO));
+            assert_eq!(ask(&mut bench, code, &[f32::to_bits(number) as i32]), DONE);
+            let overrides = (bench.memory.get(CS0_LAST_FRO), bench.memory.get(CS0_LAST_RAPID_FRO));
             assert_eq!(overrides, expect, "{code}");
         }
     }
 
     #[test]
     fn variables_and_tools_are_kept() {
-        let mut desk = Desk::new();
-        let place = doubles(&desk.memory, 5, 1).expect("inside");
-        desk.memory.poke(place, 2.5);
+        let mut bench = TestBench::new();
+        let place = doubles(&bench.memory, 5, 1).expect("inside");
+        bench.memory.poke(place, 2.5);
         for (set, get, parameters) in [(17, 16, [500, 1, 5]), (24, 23, [7, 5, 0]), (31, 30, [7, 5, 0])] {
-            assert_eq!(ask(&mut desk, set, &parameters), DONE);
-            desk.memory.poke(place, 0.0);
-            assert_eq!(ask(&mut desk, get, &parameters), DONE);
-            assert_eq!(desk.memory.peek::<f64>(place), 2.5, "{get}");
+            assert_eq!(ask(&mut bench, set, &parameters), DONE);
+            bench.memory.poke(place, 0.0);
+            assert_eq!(ask(&mut bench, get, &parameters), DONE);
+            assert_eq!(bench.memory.peek::<f64>(place), 2.5, "{get}");
         }
     }
 
     #[test]
     fn answers_can_be_set_in_advance() {
-        let mut desk = Desk::new();
+        let mut bench = TestBench::new();
         let mut answers = Answers::default();
         for setting in
             ["msgbox=no", "input=2.5", "mdi=-3", "request.14=-7", "cell.110=1.25", "request.13=never"]
         {
             answers.set(setting).expect(setting);
         }
-        desk.kernel.parts.pc.host.answer_with(answers);
-        let buffer = desk.memory.get(GATHER_BUFFER);
-        desk.memory.poke_bytes(buffer.offset(400), b"#5=1.5 #6 = -2\0").expect("mapped");
-        assert_eq!(ask(&mut desk, 15, &[100, 4, 0]), DONE);
-        assert_eq!(desk.memory.get(data(3)), 7);
-        assert_eq!(ask(&mut desk, 29, &[100]), DONE);
-        assert_eq!(f32::from_bits(desk.memory.get(data(2)).cast_unsigned()), 2.5);
-        assert_eq!(ask(&mut desk, 18, &[100]), DONE);
-        assert_eq!(desk.memory.get(data(2)), -3);
-        assert_eq!(ask(&mut desk, 16, &[5, 2, 10]), DONE);
+        bench.kernel.parts.pc.host.answer_with(answers);
+        let buffer = bench.memory.get(GATHER_BUFFER);
+        bench.memory.poke_bytes(buffer.offset(400), b"#5=1.5 #6 = -2\0").expect("mapped");
+        assert_eq!(ask(&mut bench, 15, &[100, 4, 0]), DONE);
+        assert_eq!(bench.memory.get(data(3)), 7);
+        assert_eq!(ask(&mut bench, 29, &[100]), DONE);
+        assert_eq!(f32::from_bits(bench.memory.get(data(2)).cast_unsigned()), 2.5);
+        assert_eq!(ask(&mut bench, 18, &[100]), DONE);
+        assert_eq!(bench.memory.get(data(2)), -3);
+        assert_eq!(ask(&mut bench, 16, &[5, 2, 10]), DONE);
         let variables = [0, 8].map(|offset| {
-            desk.memory.peek::<f64>(doubles(&desk.memory, 10, 1).expect("inside").offset(offset))
+            bench.memory.peek::<f64>(doubles(&bench.memory, 10, 1).expect("inside").offset(offset))
         });
         assert_eq!(variables, [1.5, -2.0]);
-        assert_eq!(ask(&mut desk, 14, &[3]), -7);
-        assert_eq!(ask(&mut desk, 53, &[110]), DONE);
-        assert_eq!(desk.memory.read_c_string(buffer, 10).expect("mapped"), b"1.25");
-        assert_eq!(ask(&mut desk, 13, &[1]), 13);
+        assert_eq!(ask(&mut bench, 14, &[3]), -7);
+        assert_eq!(ask(&mut bench, 53, &[110]), DONE);
+        assert_eq!(bench.memory.read_c_string(buffer, 10).expect("mapped"), b"1.25");
+        assert_eq!(ask(&mut bench, 13, &[1]), 13);
     }
 }

@@ -39,7 +39,7 @@ mod tests {
     use kmotiondef::AxisId;
 
     use super::*;
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
     use crate::views::Typed;
 
     #[test]
@@ -48,20 +48,20 @@ mod tests {
         let rows =
             [(0.0, 0.0), (0.1, 0.9), (0.2, 1.8), (0.3, 2.7), (1.0, 3.6), (2.0, 4.5), (3.0, 5.0), (3.0, 5.0)];
         let falling = [(2.9, 4.1), (2.5, 3.2), (2.0, 2.3), (1.0, 1.4)];
-        let mut desk = Desk::new();
+        let mut bench = TestBench::new();
         let axis = AxisId::new(0).expect("0 is an axis");
-        desk.memory.set_axis(axis, Chan::BACKLASH_MODE, 1);
-        desk.memory.set_axis(axis, Chan::BACKLASH_AMOUNT, 5.0);
-        desk.memory.set_axis(axis, Chan::BACKLASH_RATE, 10000.0);
+        bench.memory.set_axis(axis, Chan::BACKLASH_MODE, 1);
+        bench.memory.set_axis(axis, Chan::BACKLASH_AMOUNT, 5.0);
+        bench.memory.set_axis(axis, Chan::BACKLASH_RATE, 10000.0);
         for (dest, offset) in rows.into_iter().chain(falling) {
-            desk.memory.set_axis(axis, Chan::DEST, dest);
-            advance(&mut AxisView::of(&mut desk.memory, axis));
-            let found = memory_offset(&desk);
+            bench.memory.set_axis(axis, Chan::DEST, dest);
+            advance(&mut AxisView::of(&mut bench.memory, axis));
+            let found = memory_offset(&bench);
             assert!((found - offset).abs() < 1e-5, "{dest}: {found} {offset}");
         }
     }
 
-    fn memory_offset(desk: &Desk) -> f32 {
-        desk.memory.axis(AxisId::new(0).expect("0 is an axis"), Chan::BACKLASH)
+    fn memory_offset(bench: &TestBench) -> f32 {
+        bench.memory.axis(AxisId::new(0).expect("0 is an axis"), Chan::BACKLASH)
     }
 }

@@ -6,7 +6,7 @@ use kmotiondef::structs::{Chan, Iir};
 use kmotiondef::variables::LAST_PWM;
 use kmotiondef::{AxisId, Field};
 
-use crate::testing::Desk;
+use crate::testing::TestBench;
 use crate::views::Typed;
 
 fn axis() -> AxisId {
@@ -23,16 +23,16 @@ struct Coefficients {
     b2: f64,
 }
 
-/// A desk whose axis 0 has a position that the test writes.
-fn desk() -> Desk {
-    let mut desk = Desk::new();
-    desk.memory.set_axis(axis(), Chan::INPUT_MODE, InputMode::User.get());
+/// A bench whose axis 0 has a position that the test writes.
+fn bench() -> TestBench {
+    let mut bench = TestBench::new();
+    bench.memory.set_axis(axis(), Chan::INPUT_MODE, InputMode::User.get());
     for (field, value) in [(Chan::P, 1.0), (Chan::MAX_OUTPUT, 1e6), (Chan::MAX_ERR, 1e6), (Chan::MAX_I, 1e6)]
     {
-        desk.memory.set_axis(axis(), field, value);
+        bench.memory.set_axis(axis(), field, value);
     }
-    desk.call("EnableAxisDest", &[0, 0]);
-    desk
+    bench.call("EnableAxisDest", &[0, 0]);
+    bench
 }
 
 fn close(found: f32, expect: f64, scale: f64) -> bool {
@@ -49,20 +49,20 @@ fn filters_follow_their_difference_equation() {
     ];
     for number in 0..3 {
         for filter in filters {
-            let mut desk = desk();
+            let mut bench = bench();
             let iir = Chan::IIR.element(number);
             let Coefficients { a1, a2, b0, b1, b2 } = filter;
             for (field, value) in [(Iir::A1, a1), (Iir::A2, a2), (Iir::B0, b0), (Iir::B1, b1), (Iir::B2, b2)]
             {
-                desk.memory.set_axis(axis(), iir.field(field), value as f32);
+                bench.memory.set_axis(axis(), iir.field(field), value as f32);
             }
-            desk.memory.set_axis(axis(), Chan::DEST, 100.0);
+            bench.memory.set_axis(axis(), Chan::DEST, 100.0);
             let [mut x, mut y] = [[0.0_f64; 3]; 2];
             for tick in 0..200 {
-                desk.run(1);
+                bench.run(1);
                 x = [100.0, x[0], x[1]];
                 y = [b0 * x[0] + b1 * x[1] + b2 * x[2] + a1 * y[0] + a2 * y[1], y[0], y[1]];
-                let output = desk.memory.axis(axis(), Chan::OUTPUT);
+                let output = bench.memory.axis(axis(), Chan::OUTPUT);
                 assert!(close(output, y[0], 100.0), "filter {number}, tick {tick}: {output} {}", y[0]);
             }
         }
@@ -72,23 +72,23 @@ fn filters_follow_their_difference_equation() {
 #[test]
 fn the_compensation_follows_its_difference_equation() {
     let (p, i, d, max_i) = (2.0, 0.125, 16.0, 150.0);
-    let mut desk = desk();
+    let mut bench = bench();
     let gains: [(Field<f32>, f32); 4] =
         [(Chan::P, 2.0), (Chan::I, 0.125), (Chan::D, 16.0), (Chan::MAX_I, 150.0)];
     for (field, value) in gains {
-        desk.memory.set_axis(axis(), field, value);
+        bench.memory.set_axis(axis(), field, value);
     }
-    desk.memory.set_axis(axis(), Chan::DEST, 50.0);
+    bench.memory.set_axis(axis(), Chan::DEST, 50.0);
     let (mut sum, mut last) = (0.0_f64, 0.0);
     for tick in 0..100 {
         let position = 50.0 * (1.0 - libm::pow(0.95, f64::from(tick)));
-        desk.memory.set_axis(axis(), Chan::POSITION, position);
-        desk.run(1);
+        bench.memory.set_axis(axis(), Chan::POSITION, position);
+        bench.run(1);
         let error = 50.0 - position;
         sum = (sum + i * error).clamp(-max_i, max_i);
         let expect = p * error + sum - d * (position - last);
         last = position;
-        let output = desk.memory.axis(axis(), Chan::OUTPUT);
+        let output = bench.memory.axis(axis(), Chan::OUTPUT);
         assert!(close(output, expect, 200.0), "tick {tick}: {output} {expect}");
     }
 }
@@ -133,21 +133,21 @@ fn lead_makes_a_knee_where_the_table_says() {
         // At the knee the change from sample to sample, times the lead, is as large as the wave itself.
         let knee = 1.0 / (2.0 * libm::sin(std::f64::consts::PI * TIMEBASE * frequency));
         assert!((knee - lead).abs() <= 0.006, "{frequency} Hz: {knee} instead of {lead}");
-        let mut desk = Desk::new();
-        desk.memory.set_axis(axis(), Chan::OUTPUT_MODE, OutputMode::Microstep.get());
-        desk.memory.set_axis(axis(), Chan::OUTPUT_CHAN1, 1);
-        desk.memory.set_axis(axis(), Chan::STEPPER_AMPLITUDE, 20.0);
-        desk.memory.set_axis(axis(), Chan::LEAD, lead as f32);
-        desk.call("EnableAxisDest", &[0, 0]);
+        let mut bench = TestBench::new();
+        bench.memory.set_axis(axis(), Chan::OUTPUT_MODE, OutputMode::Microstep.get());
+        bench.memory.set_axis(axis(), Chan::OUTPUT_CHAN1, 1);
+        bench.memory.set_axis(axis(), Chan::STEPPER_AMPLITUDE, 20.0);
+        bench.memory.set_axis(axis(), Chan::LEAD, lead as f32);
+        bench.call("EnableAxisDest", &[0, 0]);
         let (mut last, mut compared) = (0.0_f64, 0);
         for tick in 0..400 {
             let cycles = f64::from(tick) * TIMEBASE * frequency;
-            desk.memory.set_axis(axis(), Chan::DEST, cycles);
-            desk.run(1);
+            bench.memory.set_axis(axis(), Chan::DEST, cycles);
+            bench.run(1);
             let wave = f64::from(20.0 * super::sine::sine(cycles, 0));
             let expect = (wave + (wave - last) * lead).clamp(-230.0, 230.0);
             last = wave;
-            let word = f64::from(desk.memory.get(LAST_PWM.element(0)) - 1280);
+            let word = f64::from(bench.memory.get(LAST_PWM.element(0)) - 1280);
             if tick > 0 {
                 assert!((word - expect).abs() <= 0.51, "{frequency} Hz, tick {tick}: {word} {expect}");
                 compared += 1;

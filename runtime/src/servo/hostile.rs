@@ -3,7 +3,7 @@
 use kmotiondef::structs::{Chan, Iir};
 use kmotiondef::{AxisId, Field, GuestAddr};
 
-use crate::testing::Desk;
+use crate::testing::TestBench;
 use crate::views::Typed;
 
 const NONSENSE: [f64; 7] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -1.0, 1e300, f64::MIN_POSITIVE];
@@ -12,35 +12,35 @@ fn axis() -> AxisId {
     AxisId::new(0).expect("0 is an axis")
 }
 
-fn desk() -> Desk {
-    let mut desk = Desk::new();
-    desk.call("EnableAxisDest", &[0, 0]);
-    desk
+fn bench() -> TestBench {
+    let mut bench = TestBench::new();
+    bench.call("EnableAxisDest", &[0, 0]);
+    bench
 }
 
 #[test]
 fn motions_with_nonsense_limits_or_targets_end() {
     for field in [Chan::VEL, Chan::ACCEL, Chan::JERK] {
         for value in NONSENSE {
-            let mut desk = desk();
-            desk.memory.set_axis(axis(), field, value as f32);
-            desk.call("Move", &[0, 10.0_f64.to_bits()]);
-            desk.call_in_slices("Jog", &[0, 5.0_f64.to_bits()]);
-            desk.run(200);
+            let mut bench = bench();
+            bench.memory.set_axis(axis(), field, value as f32);
+            bench.call("Move", &[0, 10.0_f64.to_bits()]);
+            bench.call_in_slices("Jog", &[0, 5.0_f64.to_bits()]);
+            bench.run(200);
         }
     }
     for value in NONSENSE {
-        let mut desk = desk();
+        let mut bench = bench();
         let bits = value.to_bits();
-        desk.call("Move", &[0, bits]);
-        desk.run(50);
-        desk.call_in_slices("MoveRel", &[0, bits]);
-        desk.call_in_slices("Jog", &[0, bits]);
-        desk.call_in_slices("MoveExp", &[0, bits, 0.1_f64.to_bits()]);
-        desk.call_in_slices("MoveExp", &[0, 10.0_f64.to_bits(), bits]);
-        desk.run(200);
-        desk.call("EnableAxisDest", &[0, bits]);
-        desk.run(50);
+        bench.call("Move", &[0, bits]);
+        bench.run(50);
+        bench.call_in_slices("MoveRel", &[0, bits]);
+        bench.call_in_slices("Jog", &[0, bits]);
+        bench.call_in_slices("MoveExp", &[0, bits, 0.1_f64.to_bits()]);
+        bench.call_in_slices("MoveExp", &[0, 10.0_f64.to_bits(), bits]);
+        bench.run(200);
+        bench.call("EnableAxisDest", &[0, bits]);
+        bench.run(50);
     }
 }
 
@@ -61,32 +61,32 @@ fn invalid_targets_and_limits_move_nothing_and_are_reported() {
         ("MoveXYZABC", vec![nan, 0, 0, 0, 0, 0]),
     ];
     for (name, arguments) in calls {
-        let mut desk = desk();
-        desk.memory.set(kmotiondef::variables::CS0_AXIS_Y, -1);
-        desk.memory.set(kmotiondef::variables::CS0_AXIS_Z, -1);
-        desk.memory.set(kmotiondef::variables::CS0_AXIS_A, -1);
-        desk.call_in_slices(name, &arguments);
-        let told = without_hints(desk.diagnostics());
+        let mut bench = bench();
+        bench.memory.set(kmotiondef::variables::CS0_AXIS_Y, -1);
+        bench.memory.set(kmotiondef::variables::CS0_AXIS_Z, -1);
+        bench.memory.set(kmotiondef::variables::CS0_AXIS_A, -1);
+        bench.call_in_slices(name, &arguments);
+        let told = without_hints(bench.diagnostics());
         assert!(
             matches!(&told[..], [text] if text.contains("is not a valid position, so nothing moves")),
             "{told:?}"
         );
-        desk.run(10);
-        assert_eq!(desk.memory.axis(axis(), Chan::DEST), 0.0, "{name}");
+        bench.run(10);
+        assert_eq!(bench.memory.axis(axis(), Chan::DEST), 0.0, "{name}");
     }
     for field in [Chan::VEL, Chan::ACCEL, Chan::JERK] {
         for limit in [0.0, -1.0, f32::NAN, f32::INFINITY] {
-            let mut desk = desk();
-            desk.memory.set_axis(axis(), field, limit);
-            desk.call("Move", &[0, 10.0_f64.to_bits()]);
-            let told = without_hints(desk.diagnostics());
+            let mut bench = bench();
+            bench.memory.set_axis(axis(), field, limit);
+            bench.call("Move", &[0, 10.0_f64.to_bits()]);
+            let told = without_hints(bench.diagnostics());
             assert_eq!(
                 told,
                 ["thread 1: Move: Vel, Accel and Jerk of axis 0 are not all positive"],
                 "{limit}"
             );
-            desk.run(10);
-            assert_eq!(desk.memory.axis(axis(), Chan::DEST), 0.0, "{limit}");
+            bench.run(10);
+            assert_eq!(bench.memory.axis(axis(), Chan::DEST), 0.0, "{limit}");
         }
     }
 }
@@ -110,11 +110,11 @@ fn nonsense_gains_and_filters_still_give_an_output() {
     for mode in 0..=9 {
         for field in gains {
             for value in NONSENSE {
-                let mut desk = desk();
-                desk.memory.set_axis(axis(), Chan::OUTPUT_MODE, mode);
-                desk.memory.set_axis(axis(), field, value as f32);
-                desk.memory.set_axis(axis(), Chan::DEST, 100.0);
-                desk.run(5);
+                let mut bench = bench();
+                bench.memory.set_axis(axis(), Chan::OUTPUT_MODE, mode);
+                bench.memory.set_axis(axis(), field, value as f32);
+                bench.memory.set_axis(axis(), Chan::DEST, 100.0);
+                bench.run(5);
             }
         }
     }
@@ -123,16 +123,16 @@ fn nonsense_gains_and_filters_still_give_an_output() {
 #[test]
 fn invalid_pointers_end_a_motion() {
     for pointer in [4_u32, 0x1234_5677, 0x4200_0010, 0x9100_0000, 0xFFFF_FFF0] {
-        let mut desk = desk();
-        desk.memory.set_axis(axis(), Chan::PCOEFF, GuestAddr::new(pointer));
-        desk.run(3);
-        desk.memory.set_axis(axis(), Chan::C, GuestAddr::new(pointer));
-        desk.call("StartMove", &[0]);
-        desk.call_in_slices("Move", &[0, 10.0_f64.to_bits()]);
-        desk.run(100);
-        assert_eq!(desk.call_i32("CheckDone", &[0]), 1, "{pointer:#x}");
+        let mut bench = bench();
+        bench.memory.set_axis(axis(), Chan::PCOEFF, GuestAddr::new(pointer));
+        bench.run(3);
+        bench.memory.set_axis(axis(), Chan::C, GuestAddr::new(pointer));
+        bench.call("StartMove", &[0]);
+        bench.call_in_slices("Move", &[0, 10.0_f64.to_bits()]);
+        bench.run(100);
+        assert_eq!(bench.call_i32("CheckDone", &[0]), 1, "{pointer:#x}");
         let told = "axis 0: pcoeff does not point to a list of states; its motion has ended";
-        let found = without_hints(desk.diagnostics());
+        let found = without_hints(bench.diagnostics());
         assert!(!found.is_empty() && found.iter().all(|text| text == told), "{pointer:#x}: {found:?}");
     }
 }

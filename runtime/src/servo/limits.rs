@@ -258,7 +258,7 @@ mod tests {
     use kmotiondef::variables::VIRTUAL_BITS;
 
     use super::*;
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
 
     fn axis() -> AxisId {
         AxisId::new(0).expect("0 is an axis")
@@ -267,44 +267,44 @@ mod tests {
     #[test]
     fn an_error_at_the_limit_is_allowed() {
         // `servo.jsonl`, "following error, output mode 0".
-        let mut desk = Desk::new();
-        desk.memory.set_axis(axis(), Chan::MAX_FOLLOWING_ERROR, 10.0);
-        desk.call("EnableAxisDest", &[0, 0]);
+        let mut bench = TestBench::new();
+        bench.memory.set_axis(axis(), Chan::MAX_FOLLOWING_ERROR, 10.0);
+        bench.call("EnableAxisDest", &[0, 0]);
         for (dest, enabled) in [(5.0, 1), (10.0, 1), (10.001, 0), (0.0, 0)] {
-            desk.memory.set_axis(axis(), Chan::DEST, dest);
-            desk.run(1);
-            assert_eq!(desk.memory.axis(axis(), Chan::ENABLE), enabled, "{dest}");
+            bench.memory.set_axis(axis(), Chan::DEST, dest);
+            bench.run(1);
+            assert_eq!(bench.memory.axis(axis(), Chan::ENABLE), enabled, "{dest}");
         }
-        assert_eq!(desk.memory.axis(axis(), Chan::OUTPUT), 10.0);
-        assert_eq!(desk.printed(), ["Following Error Disabled Axis:0"]);
+        assert_eq!(bench.memory.axis(axis(), Chan::OUTPUT), 10.0);
+        assert_eq!(bench.printed(), ["Following Error Disabled Axis:0"]);
     }
 
     #[test]
     fn packed_limit_bit_numbers_disable_the_axis() {
         // `servo.jsonl`, "limit bits packed in the option word".
-        let mut desk = Desk::new();
-        desk.memory.set_axis(axis(), Chan::LIMIT_SWITCH_OPTIONS, 825_229_315);
-        desk.call("EnableAxisDest", &[0, 0]);
-        desk.run(2);
-        assert_eq!(desk.memory.axis(axis(), Chan::ENABLE), 1);
-        desk.memory.set(VIRTUAL_BITS, 1);
-        desk.run(1);
-        assert_eq!(desk.memory.axis(axis(), Chan::ENABLE), 0);
-        assert_eq!(desk.printed(), ["Neg Limit Disabled Axis:0"]);
+        let mut bench = TestBench::new();
+        bench.memory.set_axis(axis(), Chan::LIMIT_SWITCH_OPTIONS, 825_229_315);
+        bench.call("EnableAxisDest", &[0, 0]);
+        bench.run(2);
+        assert_eq!(bench.memory.axis(axis(), Chan::ENABLE), 1);
+        bench.memory.set(VIRTUAL_BITS, 1);
+        bench.run(1);
+        assert_eq!(bench.memory.axis(axis(), Chan::ENABLE), 0);
+        assert_eq!(bench.printed(), ["Neg Limit Disabled Axis:0"]);
     }
 
     #[test]
     fn a_soft_limit_stops_an_axis_and_reports_once() {
-        let mut desk = Desk::new();
+        let mut bench = TestBench::new();
         for axis in 0..4 {
-            desk.call("EnableAxisDest", &[axis, 0]);
+            bench.call("EnableAxisDest", &[axis, 0]);
         }
-        desk.memory.set_axis(axis(), Chan::SOFT_LIMIT_POS, 5.0);
-        desk.call_in_slices("Move", &[0, 100.0_f64.to_bits()]);
-        desk.run(20_000);
-        assert!(!crate::servo::independent::has_motion(&desk.memory, axis()));
-        let dest = desk.memory.axis(axis(), Chan::DEST);
+        bench.memory.set_axis(axis(), Chan::SOFT_LIMIT_POS, 5.0);
+        bench.call_in_slices("Move", &[0, 100.0_f64.to_bits()]);
+        bench.run(20_000);
+        assert!(!crate::servo::independent::has_motion(&bench.memory, axis()));
+        let dest = bench.memory.axis(axis(), Chan::DEST);
         assert!(dest > 5.0 && dest < 100.0, "{dest}");
-        assert_eq!(desk.printed(), ["Pos Soft Limit FeedHold Axis:0"]);
+        assert_eq!(bench.printed(), ["Pos Soft Limit FeedHold Axis:0"]);
     }
 }

@@ -6,7 +6,7 @@ use kmotiondef::{AxisId, CType, GuestAddr};
 use serde_json::Value as Json;
 
 use super::coordinated::system;
-use crate::testing::Desk;
+use crate::testing::TestBench;
 use crate::text::vectors::rows;
 use crate::views::{Typed, chan};
 
@@ -27,19 +27,19 @@ fn place(name: &str) -> (GuestAddr, CType) {
     (chan(axis()).address().offset(field.offset), field.ty)
 }
 
-fn poke(desk: &mut Desk, name: &str, value: f64) {
+fn poke(bench: &mut TestBench, name: &str, value: f64) {
     match place(name) {
-        (address, CType::Float) => desk.memory.poke(address, value as f32),
-        (address, CType::Double) => desk.memory.poke(address, value),
-        (address, _) => desk.memory.poke(address, value as i32),
+        (address, CType::Float) => bench.memory.poke(address, value as f32),
+        (address, CType::Double) => bench.memory.poke(address, value),
+        (address, _) => bench.memory.poke(address, value as i32),
     }
 }
 
-fn peek(desk: &Desk, name: &str) -> f64 {
+fn peek(bench: &TestBench, name: &str) -> f64 {
     match place(name) {
-        (address, CType::Float) => f64::from(desk.memory.peek::<f32>(address)),
-        (address, CType::Double) => desk.memory.peek(address),
-        (address, _) => f64::from(desk.memory.peek::<i32>(address)),
+        (address, CType::Float) => f64::from(bench.memory.peek::<f32>(address)),
+        (address, CType::Double) => bench.memory.peek(address),
+        (address, _) => f64::from(bench.memory.peek::<i32>(address)),
     }
 }
 
@@ -47,18 +47,18 @@ fn number(value: &Json) -> f64 {
     value.as_f64().expect("a number")
 }
 
-/// A desk with an axis enabled at 0 whose position programs write, and the row's parameters.
-fn desk(row: &Json) -> Desk {
-    let mut desk = Desk::new();
-    poke(&mut desk, "InputMode", 4.0);
+/// A bench with an axis enabled at 0 whose position programs write, and the row's parameters.
+fn bench(row: &Json) -> TestBench {
+    let mut bench = TestBench::new();
+    poke(&mut bench, "InputMode", 4.0);
     for (name, limit) in [("MaxOutput", 1e5), ("MaxErr", 1e6), ("MaxI", 1e6)] {
-        poke(&mut desk, name, limit);
+        poke(&mut bench, name, limit);
     }
-    desk.call("EnableAxisDest", &[0, 0]);
+    bench.call("EnableAxisDest", &[0, 0]);
     for (name, value) in row["parameters"].as_object().expect("parameters") {
-        poke(&mut desk, name, number(value));
+        poke(&mut bench, name, number(value));
     }
-    desk
+    bench
 }
 
 fn close(found: f64, expect: f64) -> bool {
@@ -66,112 +66,112 @@ fn close(found: f64, expect: f64) -> bool {
 }
 
 fn check_compensation(row: &Json) {
-    let mut desk = desk(row);
+    let mut bench = bench(row);
     let columns: Vec<&str> =
         row["columns"].as_array().expect("columns").iter().filter_map(Json::as_str).collect();
     // One recording changes the offset on the way, in the tick that shows an error of 6.
     let has_offset = row["name"] == "DestOffset";
     for (tick, values) in row["rows"].as_array().expect("rows").iter().enumerate() {
-        poke(&mut desk, "Position", number(&values[0]));
-        poke(&mut desk, "Dest", number(&values[1]));
+        poke(&mut bench, "Position", number(&values[0]));
+        poke(&mut bench, "Dest", number(&values[1]));
         if has_offset {
-            poke(&mut desk, "DestOffset", number(&values[3]) - number(&values[1]));
+            poke(&mut bench, "DestOffset", number(&values[3]) - number(&values[1]));
         }
-        desk.run(1);
+        bench.run(1);
         for (column, expect) in columns.iter().zip(values.as_array().expect("values")).skip(2) {
-            let found = peek(&desk, column);
+            let found = peek(&bench, column);
             assert!(close(found, number(expect)), "{} tick {tick} {column}: {found} {expect}", row["name"]);
         }
     }
 }
 
 fn check_output(row: &Json) {
-    let mut desk = desk(row);
-    desk.run(2);
+    let mut bench = bench(row);
+    bench.run(2);
     for (tick, values) in row["rows"].as_array().expect("rows").iter().enumerate() {
-        poke(&mut desk, "Dest", number(&values["Dest"]));
-        desk.run(1);
+        poke(&mut bench, "Dest", number(&values["Dest"]));
+        bench.run(1);
         let place = format!("{} tick {tick}", row["name"]);
-        let output = peek(&desk, "Output");
+        let output = peek(&bench, "Output");
         assert!(close(output, number(&values["Output"])), "{place}: {output} {}", values["Output"]);
         for (channel, word) in values["LastPWM"].as_object().expect("words") {
             let channel: usize = channel.parse().expect("a channel");
             assert_eq!(
-                f64::from(desk.memory.get(LAST_PWM.element(channel))),
+                f64::from(bench.memory.get(LAST_PWM.element(channel))),
                 number(word),
                 "{place} PWM {channel}"
             );
         }
         if let Some(word) = values["DAC"].as_f64() {
-            let channel = peek(&desk, "OutputChan0") as usize;
-            assert_eq!(f64::from(desk.memory.get(DAC_BUFFER.element(channel))), word, "{place}");
+            let channel = peek(&bench, "OutputChan0") as usize;
+            assert_eq!(f64::from(bench.memory.get(DAC_BUFFER.element(channel))), word, "{place}");
         }
     }
 }
 
 fn check_analog_input(row: &Json) {
-    let mut desk = Desk::new();
-    poke(&mut desk, "InputMode", 2.0);
-    poke(&mut desk, "InputChan0", 1.0);
+    let mut bench = TestBench::new();
+    poke(&mut bench, "InputMode", 2.0);
+    poke(&mut bench, "InputChan0", 1.0);
     for name in ["InputGain0", "InputOffset0"] {
-        poke(&mut desk, name, number(&row[name]));
+        poke(&mut bench, name, number(&row[name]));
     }
     for values in row["rows"].as_array().expect("rows") {
-        desk.memory.set(ADC_BUFFER_IN.element(1), number(&values[0]) as i32);
-        desk.run(1);
-        assert_eq!(peek(&desk, "Position"), number(&values[1]));
+        bench.memory.set(ADC_BUFFER_IN.element(1), number(&values[0]) as i32);
+        bench.run(1);
+        assert_eq!(peek(&bench, "Position"), number(&values[1]));
     }
 }
 
 /// Encoder registers and positions: the load is turned to what the register showed.
 fn check_encoder(row: &Json) {
     let channel = row["InputChan0"].as_i64().expect("a channel");
-    let mut desk = Desk::new();
-    poke(&mut desk, "InputChan0", channel as f64);
+    let mut bench = TestBench::new();
+    poke(&mut bench, "InputChan0", channel as f64);
     let gain = number(&row["InputGain0"]);
-    poke(&mut desk, "InputGain0", gain);
-    desk.run(1);
+    poke(&mut bench, "InputGain0", gain);
+    bench.run(1);
     let mut last = 0_i8;
     for values in row["rows"].as_array().expect("rows") {
         let register = (number(&values[0]) as i64) as i8;
         // A board without a SnapAmp has nothing behind channel 8. An encoder turns by counts of its own axis.
         if let Some(turned) = AxisId::new(channel as i32) {
             let unit = if turned == axis() { gain } else { 1.0 };
-            desk.kernel.parts.machine.loads.push(turned, f64::from(register.wrapping_sub(last)) * unit);
+            bench.kernel.parts.machine.loads.push(turned, f64::from(register.wrapping_sub(last)) * unit);
         }
         last = register;
-        desk.run(1);
-        assert!(close(peek(&desk, "Position"), number(&values[1])), "{row} {values}");
+        bench.run(1);
+        assert!(close(peek(&bench, "Position"), number(&values[1])), "{row} {values}");
     }
 }
 
 fn check_backlash(row: &Json) {
-    let mut desk = desk_with(row, &["BacklashAmount", "BacklashRate"]);
-    poke(&mut desk, "BacklashMode", 1.0);
-    check_columns(&mut desk, row, 1);
+    let mut bench = desk_with(row, &["BacklashAmount", "BacklashRate"]);
+    poke(&mut bench, "BacklashMode", 1.0);
+    check_columns(&mut bench, row, 1);
 }
 
-/// A desk with some of the row's own values.
-fn desk_with(row: &Json, names: &[&str]) -> Desk {
-    let mut desk = Desk::new();
-    poke(&mut desk, "InputMode", 4.0);
-    poke(&mut desk, "MaxOutput", 1e5);
-    desk.call("EnableAxisDest", &[0, 0]);
+/// A bench with some of the row's own values.
+fn desk_with(row: &Json, names: &[&str]) -> TestBench {
+    let mut bench = TestBench::new();
+    poke(&mut bench, "InputMode", 4.0);
+    poke(&mut bench, "MaxOutput", 1e5);
+    bench.call("EnableAxisDest", &[0, 0]);
     for name in names {
-        poke(&mut desk, name, number(&row[*name]));
+        poke(&mut bench, name, number(&row[*name]));
     }
-    desk
+    bench
 }
 
 /// Writes the first column, the destination, and compares the others after each tick.
-fn check_columns(desk: &mut Desk, row: &Json, first: usize) {
+fn check_columns(bench: &mut TestBench, row: &Json, first: usize) {
     let columns: Vec<&str> =
         row["columns"].as_array().expect("columns").iter().filter_map(Json::as_str).collect();
     for (tick, values) in row["rows"].as_array().expect("rows").iter().enumerate() {
-        poke(desk, "Dest", number(&values[0]));
-        desk.run(1);
+        poke(bench, "Dest", number(&values[0]));
+        bench.run(1);
         for (column, expect) in columns.iter().zip(values.as_array().expect("values")).skip(first) {
-            let found = peek(desk, column);
+            let found = peek(bench, column);
             assert!(close(found, number(expect)), "tick {tick} {column}: {found} {expect} of {row}");
         }
     }
@@ -181,52 +181,52 @@ fn check_columns(desk: &mut Desk, row: &Json, first: usize) {
 fn check_slave(row: &Json) {
     let note = row["note"].as_str().unwrap_or_default();
     let [master, slave] = if note.contains("higher") { [1, 0] } else { [0, 1] };
-    let mut desk = Desk::new();
+    let mut bench = TestBench::new();
     let axes = [master, slave].map(|axis| AxisId::new(axis).expect("an axis"));
     let columns = row["rows"][0].as_array().expect("values").len();
     let start = number(&row["rows"][0][2]);
     for (axis, dest) in axes.into_iter().zip([0.0_f64, start]) {
-        desk.call("EnableAxisDest", &[u64::from(axis.get()), dest.to_bits()]);
+        bench.call("EnableAxisDest", &[u64::from(axis.get()), dest.to_bits()]);
     }
     if note.contains("disabled") {
-        desk.call("DisableAxis", &[u64::from(axes[0].get())]);
+        bench.call("DisableAxis", &[u64::from(axes[0].get())]);
     }
-    desk.memory.set_axis(axes[1], Chan::MASTER_AXIS, master);
-    desk.memory.set_axis(axes[1], Chan::SLAVE_GAIN, row["SlaveGain"].as_f64().unwrap_or(1.0));
+    bench.memory.set_axis(axes[1], Chan::MASTER_AXIS, master);
+    bench.memory.set_axis(axes[1], Chan::SLAVE_GAIN, row["SlaveGain"].as_f64().unwrap_or(1.0));
     let rows = row["rows"].as_array().expect("rows");
     for (tick, values) in rows.iter().enumerate() {
         if note.contains("before the last two") && tick == rows.len() - 2 {
-            desk.memory.set_axis(axes[1], Chan::MASTER_AXIS, -1);
+            bench.memory.set_axis(axes[1], Chan::MASTER_AXIS, -1);
         }
-        desk.memory.set_axis(axes[0], Chan::DEST, number(&values[0]));
-        desk.run(1);
-        let found = axes.map(|axis| desk.memory.axis(axis, Chan::DEST));
+        bench.memory.set_axis(axes[0], Chan::DEST, number(&values[0]));
+        bench.run(1);
+        let found = axes.map(|axis| bench.memory.axis(axis, Chan::DEST));
         assert_eq!(found, [number(&values[1]), number(&values[2])], "tick {tick} of {row}");
-        assert!(columns < 4 || desk.memory.axis(axes[1], Chan::UNFILTERED_DEST) == number(&values[3]));
+        assert!(columns < 4 || bench.memory.axis(axes[1], Chan::UNFILTERED_DEST) == number(&values[3]));
     }
 }
 
 /// Following errors, by their destinations; limit switches, by what became of the axis.
 fn check_following_error(row: &Json) {
-    let mut desk = Desk::new();
-    poke(&mut desk, "InputMode", 4.0);
+    let mut bench = TestBench::new();
+    poke(&mut bench, "InputMode", 4.0);
     for (name, value) in row["parameters"].as_object().expect("parameters") {
-        poke(&mut desk, name, number(value));
+        poke(&mut bench, name, number(value));
     }
-    desk.call("EnableAxisDest", &[0, 0]);
+    bench.call("EnableAxisDest", &[0, 0]);
     for (tick, values) in row["rows"].as_array().expect("rows").iter().enumerate() {
-        poke(&mut desk, "Dest", number(&values[0]));
-        desk.run(1);
+        poke(&mut bench, "Dest", number(&values[0]));
+        bench.run(1);
         for (column, name) in [(1, "Enable"), (2, "Dest"), (3, "Output")] {
-            let found = peek(&desk, name);
+            let found = peek(&bench, name);
             assert!(close(found, number(&values[column])), "tick {tick} {name}: {found} of {row}");
         }
     }
-    check_console(&mut desk, row);
+    check_console(&mut bench, row);
 }
 
-fn check_console(desk: &mut Desk, row: &Json) {
-    let printed: String = desk.printed().iter().map(|line| format!("\u{1b}{line}\r\n")).collect();
+fn check_console(bench: &mut TestBench, row: &Json) {
+    let printed: String = bench.printed().iter().map(|line| format!("\u{1b}{line}\r\n")).collect();
     assert_eq!(Json::from(printed), row["console"], "{}", row["name"]);
 }
 
@@ -234,38 +234,38 @@ fn check_console(desk: &mut Desk, row: &Json) {
 fn check_limit_switch(row: &Json) {
     let name = row["name"].as_str().expect("a name");
     let before = |text: &str| row["before"].as_array().expect("a list").iter().any(|line| line == text);
-    let mut desk = Desk::new();
-    poke(&mut desk, "InputMode", 4.0);
+    let mut bench = TestBench::new();
+    poke(&mut bench, "InputMode", 4.0);
     // The recording jogs an axis of the coordinate system while nobody asks for the status.
-    desk.kernel.parts.pc.host.connect(false);
+    bench.kernel.parts.pc.host.connect(false);
     for (name, value) in row["parameters"].as_object().expect("parameters") {
-        poke(&mut desk, name, number(value));
+        poke(&mut bench, name, number(value));
     }
     let inactive = if name.contains("active low") { 3 } else { 0 };
-    desk.memory.set(VIRTUAL_BITS, inactive);
-    desk.call("EnableAxisDest", &[0, 0]);
+    bench.memory.set(VIRTUAL_BITS, inactive);
+    bench.call("EnableAxisDest", &[0, 0]);
     for speed in [1000.0_f64, -1000.0] {
         if before(&format!("Jog0={speed}")) {
-            desk.call("Jog", &[0, speed.to_bits()]);
+            bench.call("Jog", &[0, speed.to_bits()]);
         }
     }
-    desk.run(100);
-    desk.memory.set(VIRTUAL_BITS, inactive ^ if name.contains("neg") { 1 } else { 2 });
-    desk.run(20);
+    bench.run(100);
+    bench.memory.set(VIRTUAL_BITS, inactive ^ if name.contains("neg") { 1 } else { 2 });
+    bench.run(20);
     let after = &row["after"];
-    let enabled = format!("{}\r\n", peek(&desk, "Enable"));
+    let enabled = format!("{}\r\n", peek(&bench, "Enable"));
     assert_eq!(Json::from(enabled), after["Enabled0"], "{name}");
     if after["GetStopState"].is_string() {
-        let state = format!("{}\r\n", desk.memory.get(CS0_STOPPING_STATE));
+        let state = format!("{}\r\n", bench.memory.get(CS0_STOPPING_STATE));
         assert_eq!(Json::from(state), after["GetStopState"], "{name}");
     }
-    check_console(&mut desk, row);
+    check_console(&mut bench, row);
 }
 
 /// Carries out a command of a recording of protections.
-fn command(desk: &mut Desk, text: &str) {
+fn command(bench: &mut TestBench, text: &str) {
     if let Some(value) = text.strip_prefix("!poke VirtualBits i ") {
-        return desk.memory.set(VIRTUAL_BITS, value.parse().expect(text));
+        return bench.memory.set(VIRTUAL_BITS, value.parse().expect(text));
     }
     let words = text.find(|letter: char| letter.is_ascii_digit() || letter == '=').expect(text);
     let (name, rest) = text.split_at(words);
@@ -277,10 +277,10 @@ fn command(desk: &mut Desk, text: &str) {
     match name {
         "DefineCS" => {
             let axes: Vec<i32> = numbers.iter().map(|&axis| axis as i32).collect();
-            system::assign(&mut desk.memory, &axes);
+            system::assign(&mut bench.memory, &axes);
         }
-        "EnableAxis" => desk.call(name, &[numbers[0] as u64]),
-        _ => desk.call_in_slices(name, &[numbers[0] as u64, numbers[1].to_bits()]),
+        "EnableAxis" => bench.call(name, &[numbers[0] as u64]),
+        _ => bench.call_in_slices(name, &[numbers[0] as u64, numbers[1].to_bits()]),
     }
 }
 
@@ -288,41 +288,41 @@ fn command(desk: &mut Desk, text: &str) {
 ///
 /// The primary thread has every other tick; `wait` ticks pass before the first command, so that both cases come up.
 fn protects(row: &Json, wait: u64) -> Result<(), String> {
-    let mut desk = Desk::new();
-    poke(&mut desk, "InputMode", 4.0);
-    desk.kernel.parts.pc.host.connect(false);
+    let mut bench = TestBench::new();
+    poke(&mut bench, "InputMode", 4.0);
+    bench.kernel.parts.pc.host.connect(false);
     for (name, value) in row["parameters"].as_object().expect("parameters") {
-        poke(&mut desk, name, number(value));
+        poke(&mut bench, name, number(value));
     }
-    desk.run(wait);
+    bench.run(wait);
     let before = row["before"].as_array().expect("a list");
-    before.iter().for_each(|text| command(&mut desk, text.as_str().expect("a command")));
+    before.iter().for_each(|text| command(&mut bench, text.as_str().expect("a command")));
     let rows = row["rows"].as_array().expect("rows");
     // The first row is some ticks behind the last command.
-    let is_at = |desk: &Desk| (peek(desk, "Dest") - number(&rows[0][2])).abs() < 1e-12;
+    let is_at = |bench: &TestBench| (peek(bench, "Dest") - number(&rows[0][2])).abs() < 1e-12;
     for _ in 0..100 {
-        if is_at(&desk) {
+        if is_at(&bench) {
             break;
         }
-        desk.run(1);
+        bench.run(1);
     }
     for (tick, values) in rows.iter().enumerate() {
         let action = values[0].as_str().unwrap_or_default();
         if action.starts_with("!poke") {
-            command(&mut desk, action);
+            command(&mut bench, action);
         }
         if let Some(dest) = values[0].as_f64() {
-            poke(&mut desk, "Dest", dest);
+            poke(&mut bench, "Dest", dest);
         }
-        let state = desk.memory.get(CS0_STOPPING_STATE);
+        let state = bench.memory.get(CS0_STOPPING_STATE);
         if tick > 0 || number(&values[2]) == 0.0 {
-            desk.run(1);
+            bench.run(1);
         }
-        let moves = !desk.memory.axis(axis(), Chan::PCOEFF).is_null();
+        let moves = !bench.memory.axis(axis(), Chan::PCOEFF).is_null();
         let found = [
-            peek(&desk, "Enable"),
-            peek(&desk, "Dest"),
-            peek(&desk, "Output"),
+            peek(&bench, "Enable"),
+            peek(&bench, "Dest"),
+            peek(&bench, "Output"),
             f64::from(u8::from(moves)),
             f64::from(state),
         ];
@@ -333,16 +333,16 @@ fn protects(row: &Json, wait: u64) -> Result<(), String> {
             }
         }
         if action.starts_with("EnableAxis") {
-            command(&mut desk, action);
+            command(&mut bench, action);
         }
         // A jog in motion had been waiting for this slice; one in a feedhold is ignored.
         if let Some(speed) = action.strip_prefix("Jog0=") {
             let arguments = [0, speed.parse::<f64>().expect("a speed").to_bits()];
-            let is_done = desk.is_done("Jog", &arguments) || desk.wake("Jog", &arguments);
+            let is_done = bench.is_done("Jog", &arguments) || bench.wake("Jog", &arguments);
             assert!(is_done, "{action}");
         }
     }
-    let printed: String = desk.printed().iter().map(|line| format!("\u{1b}{line}\r\n")).collect();
+    let printed: String = bench.printed().iter().map(|line| format!("\u{1b}{line}\r\n")).collect();
     if row["console"] == printed.as_str() { Ok(()) } else { Err(printed) }
 }
 
@@ -353,34 +353,34 @@ fn check_protection(row: &Json) {
 
 /// Calls of enable, disable and zero in motion: fields before and after.
 fn check_enable(row: &Json) {
-    let mut desk = Desk::new();
+    let mut bench = TestBench::new();
     let text = row["command"].as_str().expect("a command");
     let (name, value) = match text.split_once("0") {
         Some((name, rest)) => (name, rest.trim().parse().unwrap_or(0.0_f64)),
         None => panic!("{text}"),
     };
-    poke(&mut desk, "InputMode", 4.0);
-    desk.call("EnableAxisDest", &[0, 0]);
-    desk.call("Jog", &[0, 1000.0_f64.to_bits()]);
-    desk.run(5);
+    poke(&mut bench, "InputMode", 4.0);
+    bench.call("EnableAxisDest", &[0, 0]);
+    bench.call("Jog", &[0, 1000.0_f64.to_bits()]);
+    bench.run(5);
     for (name, value) in row["before"].as_object().expect("fields") {
         if let Some(value) = value.as_f64() {
-            poke(&mut desk, name, value);
+            poke(&mut bench, name, value);
         }
     }
-    desk.call(name, &[0, value.to_bits()]);
+    bench.call(name, &[0, value.to_bits()]);
     // What the call alone leaves, where the recording's own tick behind it has not been at work.
     let after = &row["after"];
     for field in ["Enable", "UnfilteredDest", "Position", "Backlash", "LastNonZeroDir", "DirectionOfMotion"] {
         if name != "DisableAxis" || matches!(field, "Enable" | "UnfilteredDest" | "Position") {
-            assert_eq!(peek(&desk, field), number(&after[field]), "{text}: {field}");
+            assert_eq!(peek(&bench, field), number(&after[field]), "{text}: {field}");
         }
     }
-    let moves = !desk.memory.axis(axis(), Chan::PCOEFF).is_null();
+    let moves = !bench.memory.axis(axis(), Chan::PCOEFF).is_null();
     assert_eq!(Json::from(moves), after["pcoeff"], "{text}");
     if name != "DisableAxis" {
         for field in ["Dest", "last_dest", "prev_dest", "last_vel"] {
-            assert_eq!(peek(&desk, field), number(&after[field]), "{text}: {field}");
+            assert_eq!(peek(&bench, field), number(&after[field]), "{text}: {field}");
         }
     }
 }

@@ -56,26 +56,26 @@ fn own_change(servo: &Servo, memory: &GuestMemory, axis: AxisId) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
 
     #[test]
     fn a_chain_of_slaves_follows_in_the_same_tick() {
         // `checks.jsonl`, "chain of slaves 0 -> 1 (0.5) -> 2 (2.0), master Dest written".
-        let mut desk = Desk::new();
+        let mut bench = TestBench::new();
         let [a, b, c] = [0, 1, 2].map(|axis| AxisId::new(axis).expect("an axis"));
         for axis in [a, b, c] {
-            desk.call("EnableAxisDest", &[axis.index() as u64, 0]);
+            bench.call("EnableAxisDest", &[axis.index() as u64, 0]);
         }
-        desk.memory.set_axis(b, Chan::MASTER_AXIS, 0);
-        desk.memory.set_axis(b, Chan::SLAVE_GAIN, 0.5);
-        desk.memory.set_axis(c, Chan::MASTER_AXIS, 1);
-        desk.memory.set_axis(c, Chan::SLAVE_GAIN, 2.0);
+        bench.memory.set_axis(b, Chan::MASTER_AXIS, 0);
+        bench.memory.set_axis(b, Chan::SLAVE_GAIN, 0.5);
+        bench.memory.set_axis(c, Chan::MASTER_AXIS, 1);
+        bench.memory.set_axis(c, Chan::SLAVE_GAIN, 2.0);
         for (dest, expect) in
             [(0.0, [0.0; 3]), (1.0, [1.0, 0.5, 1.0]), (3.0, [3.0, 1.5, 3.0]), (3.0, [3.0, 1.5, 3.0])]
         {
-            desk.memory.set_axis(a, Chan::DEST, dest);
-            desk.run(1);
-            assert_eq!([a, b, c].map(|axis| desk.memory.axis(axis, Chan::DEST)), expect);
+            bench.memory.set_axis(a, Chan::DEST, dest);
+            bench.run(1);
+            assert_eq!([a, b, c].map(|axis| bench.memory.axis(axis, Chan::DEST)), expect);
         }
     }
 }

@@ -51,26 +51,26 @@ mod tests {
 
     use super::super::segment::{Command, Entry};
     use super::*;
-    use crate::testing::Desk;
+    use crate::testing::TestBench;
 
-    /// A desk with axes 0 and 1 enabled and a path as a program builds it: X at 1000 units a second to 100, then a bit
+    /// A bench with axes 0 and 1 enabled and a path as a program builds it: X at 1000 units a second to 100, then a bit
     /// and 0.1 s more.
-    fn desk() -> Desk {
-        let mut desk = Desk::new();
+    fn bench() -> TestBench {
+        let mut bench = TestBench::new();
         let unused = u32::MAX.into();
-        desk.call("DefineCoordSystem", &[0, 1, unused, unused]);
+        bench.call("DefineCoordSystem", &[0, 1, unused, unused]);
         for axis in [0, 1] {
-            desk.call("EnableAxisDest", &[axis, 0]);
+            bench.call("EnableAxisDest", &[axis, 0]);
         }
-        let (start, bit) = (desk.memory.get(PARAMETRIC_COEFFS), Bit::new(1040).expect("a bit"));
-        put_line(&mut desk.memory, Entry::at(start), 0.0);
-        put_command(&mut desk.memory, Entry::at(start.offset(SIZE)), Command::Drive(bit, true));
-        put_line(&mut desk.memory, Entry::at(start.offset(2 * SIZE)), 100.0);
-        Entry::at(start.offset(3 * SIZE)).end_path(&mut desk.memory);
-        desk.memory.set(CS0_FLUSHED, 1);
-        desk.memory.set(LAST_COORD_SYSTEM0, start);
-        desk.memory.set(COORD_SYSTEM0, start);
-        desk
+        let (start, bit) = (bench.memory.get(PARAMETRIC_COEFFS), Bit::new(1040).expect("a bit"));
+        put_line(&mut bench.memory, Entry::at(start), 0.0);
+        put_command(&mut bench.memory, Entry::at(start.offset(SIZE)), Command::Drive(bit, true));
+        put_line(&mut bench.memory, Entry::at(start.offset(2 * SIZE)), 100.0);
+        Entry::at(start.offset(3 * SIZE)).end_path(&mut bench.memory);
+        bench.memory.set(CS0_FLUSHED, 1);
+        bench.memory.set(LAST_COORD_SYSTEM0, start);
+        bench.memory.set(COORD_SYSTEM0, start);
+        bench
     }
 
     /// 100 units of X in 0.1 s.
@@ -91,51 +91,51 @@ mod tests {
         memory.set(entry.field(ParametricCoeff::SPECIAL_PARAM), bit);
     }
 
-    fn dest(desk: &Desk) -> f64 {
-        desk.memory.axis(AxisId::new(0).expect("0 is an axis"), Chan::DEST)
+    fn dest(bench: &TestBench) -> f64 {
+        bench.memory.axis(AxisId::new(0).expect("0 is an axis"), Chan::DEST)
     }
 
     #[test]
     fn a_path_built_by_a_program_moves_axes_and_bits() {
-        let mut desk = desk();
-        desk.run(1000);
-        assert!((dest(&desk) - 90.0).abs() < 0.01, "{}", dest(&desk));
-        assert_eq!(desk.memory.get(VIRTUAL_BITS_EX.element(0)), 0);
-        assert_eq!(desk.call_i32("CheckDoneBuf", &[]), 0);
-        desk.run(200);
-        assert!((dest(&desk) - 108.0).abs() < 0.01, "{}", dest(&desk));
-        assert_eq!(desk.memory.get(VIRTUAL_BITS_EX.element(0)), 1 << 16);
-        desk.run(2000);
-        assert_eq!(desk.call_i32("CheckDoneBuf", &[]), 1);
-        assert!((dest(&desk) - 200.0).abs() < 0.1, "{}", dest(&desk));
+        let mut bench = bench();
+        bench.run(1000);
+        assert!((dest(&bench) - 90.0).abs() < 0.01, "{}", dest(&bench));
+        assert_eq!(bench.memory.get(VIRTUAL_BITS_EX.element(0)), 0);
+        assert_eq!(bench.call_i32("CheckDoneBuf", &[]), 0);
+        bench.run(200);
+        assert!((dest(&bench) - 108.0).abs() < 0.01, "{}", dest(&bench));
+        assert_eq!(bench.memory.get(VIRTUAL_BITS_EX.element(0)), 1 << 16);
+        bench.run(2000);
+        assert_eq!(bench.call_i32("CheckDoneBuf", &[]), 1);
+        assert!((dest(&bench) - 200.0).abs() < 0.1, "{}", dest(&bench));
     }
 
     #[test]
     fn a_feedhold_stops_on_the_path_and_resumes() {
-        let mut desk = desk();
-        desk.run(100);
-        desk.call_in_slices("StopCoordinatedMotion", &[]);
-        assert_eq!(desk.memory.get(CS0_STOPPING_STATE), 1);
-        desk.run(5000);
-        assert_eq!(desk.memory.get(CS0_STOPPING_STATE), 3);
-        let held = dest(&desk);
-        desk.run(100);
-        assert_eq!(dest(&desk), held);
-        assert_eq!(desk.call_i32("CheckDoneBuf", &[]), 0);
-        desk.call_in_slices("ResumeCoordinatedMotion", &[]);
-        desk.run(20_000);
-        assert_eq!(desk.call_i32("CheckDoneBuf", &[]), 1);
-        assert!((dest(&desk) - 200.0).abs() < 0.1);
+        let mut bench = bench();
+        bench.run(100);
+        bench.call_in_slices("StopCoordinatedMotion", &[]);
+        assert_eq!(bench.memory.get(CS0_STOPPING_STATE), 1);
+        bench.run(5000);
+        assert_eq!(bench.memory.get(CS0_STOPPING_STATE), 3);
+        let held = dest(&bench);
+        bench.run(100);
+        assert_eq!(dest(&bench), held);
+        assert_eq!(bench.call_i32("CheckDoneBuf", &[]), 0);
+        bench.call_in_slices("ResumeCoordinatedMotion", &[]);
+        bench.run(20_000);
+        assert_eq!(bench.call_i32("CheckDoneBuf", &[]), 1);
+        assert!((dest(&bench) - 200.0).abs() < 0.1);
     }
 
     #[test]
     fn an_invalid_pointer_ends_the_path_and_is_reported() {
-        let mut desk = desk();
-        desk.memory.set(COORD_SYSTEM0, kmotiondef::GuestAddr::new(0x1234_5678));
-        desk.run(2);
-        assert!(desk.memory.get(COORD_SYSTEM0).is_null());
+        let mut bench = bench();
+        bench.memory.set(COORD_SYSTEM0, kmotiondef::GuestAddr::new(0x1234_5678));
+        bench.run(2);
+        assert!(bench.memory.get(COORD_SYSTEM0).is_null());
         assert_eq!(
-            desk.diagnostics(),
+            bench.diagnostics(),
             ["CoordSystem0 is 0x12345678, where there are no segments; the path has ended"]
         );
     }
@@ -143,22 +143,22 @@ mod tests {
     #[test]
     fn disabling_or_zeroing_an_axis_ends_the_path() {
         for function in ["DisableAxis", "Zero"] {
-            let mut desk = desk();
-            desk.run(100);
-            desk.call(function, &[1]);
-            assert!(desk.memory.get(COORD_SYSTEM0).is_null());
-            assert!(desk.memory.get(LAST_COORD_SYSTEM0).is_null());
+            let mut bench = bench();
+            bench.run(100);
+            bench.call(function, &[1]);
+            assert!(bench.memory.get(COORD_SYSTEM0).is_null());
+            assert!(bench.memory.get(LAST_COORD_SYSTEM0).is_null());
         }
     }
 
     #[test]
     fn a_path_runs_to_its_end_whatever_is_written_to_enable() {
-        let mut desk = desk();
-        desk.run(100);
-        desk.memory.set(CHAN.element(0).field(Chan::ENABLE), 0);
-        assert_eq!(desk.call_i32("CheckDoneBuf", &[]), -1);
-        desk.run(20_000);
-        assert!(desk.memory.get(COORD_SYSTEM0).is_null());
-        assert!((dest(&desk) - 200.0).abs() < 0.1, "{}", dest(&desk));
+        let mut bench = bench();
+        bench.run(100);
+        bench.memory.set(CHAN.element(0).field(Chan::ENABLE), 0);
+        assert_eq!(bench.call_i32("CheckDoneBuf", &[]), -1);
+        bench.run(20_000);
+        assert!(bench.memory.get(COORD_SYSTEM0).is_null());
+        assert!((dest(&bench) - 200.0).abs() < 0.1, "{}", dest(&bench));
     }
 }

@@ -21,7 +21,7 @@ use vm::memory::GuestMemory;
 use super::download::{self, Circle, Plane, Point, Timing};
 use super::segment::Command;
 use super::{buffer, system};
-use crate::testing::Desk;
+use crate::testing::TestBench;
 use crate::text::vectors::rows;
 use crate::views::Typed;
 
@@ -75,8 +75,8 @@ const SPINDLE_LEAD: u64 = 76;
 const POSITIONS: [usize; 4] = [7, 8, 9, 14];
 
 /// The board of the recordings: axes 0 and 1 enabled, X and Y.
-struct Rig {
-    desk: Desk,
+struct RecordedBoard {
+    bench: TestBench,
     /// A motion call that waits for its caller's next slice: in this many ticks.
     waiting: Option<(u64, String, Vec<u64>)>,
     /// The tolerance of a result, relative: values that pass through the board's divisions and singles are less exact.
@@ -85,26 +85,26 @@ struct Rig {
     done: VecDeque<i32>,
 }
 
-impl Rig {
+impl RecordedBoard {
     fn new() -> Self {
-        let mut desk = Desk::new();
+        let mut bench = TestBench::new();
         // Nobody requested the status while the recordings were made.
-        desk.kernel.parts.pc.host.connect(false);
-        system::assign(&mut desk.memory, &[0, 1, -1, -1]);
+        bench.kernel.parts.pc.host.connect(false);
+        system::assign(&mut bench.memory, &[0, 1, -1, -1]);
         for axis in AxisId::all().take(3) {
-            desk.memory.set_axis(axis, Chan::VEL, 1000.0);
-            desk.memory.set_axis(axis, Chan::ACCEL, 10_000.0);
-            desk.memory.set_axis(axis, Chan::JERK, 100_000.0);
+            bench.memory.set_axis(axis, Chan::VEL, 1000.0);
+            bench.memory.set_axis(axis, Chan::ACCEL, 10_000.0);
+            bench.memory.set_axis(axis, Chan::JERK, 100_000.0);
         }
         for axis in AxisId::all().take(2) {
-            desk.call("EnableAxisDest", &[axis.get().into(), 0]);
+            bench.call("EnableAxisDest", &[axis.get().into(), 0]);
         }
-        Self { desk, waiting: None, precision: 1e-9, done: VecDeque::new() }
+        Self { bench, waiting: None, precision: 1e-9, done: VecDeque::new() }
     }
 
     /// Notes what a thread that asks now would be told.
     fn ask(&mut self) {
-        self.done.push_front(self.desk.call_i32("CheckDoneBuf", &[]));
+        self.done.push_front(self.bench.call_i32("CheckDoneBuf", &[]));
         self.done.truncate(3);
     }
 
@@ -133,7 +133,7 @@ impl Rig {
     }
 
     fn buffer_command(&mut self, word: &str, numbers: &[f32]) -> Option<Result<String, String>> {
-        let memory = &mut self.desk.memory;
+        let memory = &mut self.bench.memory;
         let bit = numbers.first().and_then(|number| Bit::new(*number as i32));
         match word {
             "OpenBuf" => buffer::open(memory),
@@ -174,7 +174,7 @@ impl Rig {
             ("StopImmediate", false) => "ResumeCoordinatedMotion",
             _ => word,
         };
-        if !self.desk.is_done(word, &arguments) {
+        if !self.bench.is_done(word, &arguments) {
             self.waiting = Some((2, word.to_owned(), arguments));
         }
         Some(Ok(String::new()))
@@ -185,10 +185,10 @@ impl Rig {
         let axis = AxisId::new(spindle.axis).ok_or("an axis")?;
         if tick < last {
             let position = spindle.offset + spindle.counts * tick as f64;
-            self.desk.memory.set_axis(axis, Chan::POSITION, position);
+            self.bench.memory.set_axis(axis, Chan::POSITION, position);
         }
         if let Some((_, speed)) = spindle.threads.filter(|threads| threads.0 == tick) {
-            self.desk.call("TrigThreading", &[speed.to_bits().into()]);
+            self.bench.call("TrigThreading", &[speed.to_bits().into()]);
         }
         if spindle.threads.is_none() && tick == 3000 {
             let found = self.line("GetSpindleRPS")?;
@@ -202,17 +202,17 @@ impl Rig {
         if let Some((ticks, name, arguments)) = self.waiting.take() {
             if ticks > 0 {
                 self.waiting = Some((ticks - 1, name, arguments));
-            } else if !self.desk.wake(&name, &arguments) {
+            } else if !self.bench.wake(&name, &arguments) {
                 self.waiting = Some((1, name, arguments));
             }
         }
-        self.desk.run(1);
+        self.bench.run(1);
     }
 
     /// The commands that are calls of firmware functions.
     fn function_command(&mut self, word: &str, numbers: &[f32]) -> Option<Result<String, String>> {
         let first = numbers.first().copied().unwrap_or_default();
-        let (desk, single, integer) = (&mut self.desk, u64::from(first.to_bits()), first as i32);
+        let (bench, single, integer) = (&mut self.bench, u64::from(first.to_bits()), first as i32);
         let second = numbers.get(1).map_or(0, |number| f64::from(*number).to_bits());
         let number = u64::from(integer as u32);
         match (word, integer) {
@@ -220,24 +220,24 @@ impl Rig {
                 let single =
                     |index: usize| u64::from(numbers.get(index).copied().unwrap_or_default().to_bits());
                 let axis = numbers.get(1).map_or(0, |axis| *axis as u64);
-                desk.call("ConfigureSpindle", &[number, axis, single(2), single(3), single(4)]);
-                desk.memory.set_axis(AxisId::new(axis as i32)?, Chan::INPUT_MODE, 4);
+                bench.call("ConfigureSpindle", &[number, axis, single(2), single(3), single(4)]);
+                bench.memory.set_axis(AxisId::new(axis as i32)?, Chan::INPUT_MODE, 4);
             }
             ("GetSpindleRPS", _) => {
-                let speed = desk.memory.get(SPINDLE.field(Spindle::TRUE_SPEED_RPS));
+                let speed = bench.memory.get(SPINDLE.field(Spindle::TRUE_SPEED_RPS));
                 return Some(Ok(format!("{speed:.6}\r\n")));
             }
-            ("SetFRO" | "SetRapidFRO" | "SetFROTemp", _) => desk.call(word, &[single]),
-            ("StopImmediate", 2) => desk.call("ClearStopImmediately", &[]),
-            ("SetBit" | "ClearBit" | "DisableAxis", _) => desk.call(word, &[number]),
-            ("EnableAxisDest", _) => desk.call(word, &[number, second]),
+            ("SetFRO" | "SetRapidFRO" | "SetFROTemp", _) => bench.call(word, &[single]),
+            ("StopImmediate", 2) => bench.call("ClearStopImmediately", &[]),
+            ("SetBit" | "ClearBit" | "DisableAxis", _) => bench.call(word, &[number]),
+            ("EnableAxisDest", _) => bench.call(word, &[number, second]),
             ("GetStopState", _) => return Some(Ok(self.stop_state())),
             ("Dest", _) => {
-                desk.memory.set_axis(AxisId::new(integer)?, Chan::DEST, f64::from(*numbers.get(1)?));
+                bench.memory.set_axis(AxisId::new(integer)?, Chan::DEST, f64::from(*numbers.get(1)?));
             }
             ("DefineCS", _) => {
                 let axes: Vec<i32> = numbers.iter().map(|number| *number as i32).collect();
-                system::assign(&mut desk.memory, &axes);
+                system::assign(&mut bench.memory, &axes);
             }
             _ => return None,
         }
@@ -245,8 +245,8 @@ impl Rig {
     }
 
     fn stop_state(&mut self) -> String {
-        self.desk.call("UpdateStoppingState", &[]);
-        format!("{}\r\n", self.desk.memory.get(CS0_STOPPING_STATE))
+        self.bench.call("UpdateStoppingState", &[]);
+        format!("{}\r\n", self.bench.memory.get(CS0_STOPPING_STATE))
     }
 
     /// `chan+88 f 1000.0`, `KLP d 0.9`: stores a value directly.
@@ -257,9 +257,9 @@ impl Rig {
         let value: f64 = words.next().and_then(|word| word.parse().ok()).ok_or_else(refused)?;
         let address = address(place).ok_or_else(refused)?;
         match kind {
-            "i" => self.desk.memory.poke(address, value as i32),
-            "f" => self.desk.memory.poke(address, value as f32),
-            "d" => self.desk.memory.poke(address, value),
+            "i" => self.bench.memory.poke(address, value as i32),
+            "f" => self.bench.memory.poke(address, value as f32),
+            "d" => self.bench.memory.poke(address, value),
             _ => return Err(refused()),
         }
         Ok(String::new())
@@ -280,7 +280,7 @@ impl Rig {
 
     /// Returns the difference between a recorded row and the board.
     fn difference(&self, row: &[Json]) -> Option<String> {
-        let memory = &self.desk.memory;
+        let memory = &self.bench.memory;
         let axis = |number, field| AxisId::new(number).map_or(f64::NAN, |axis| memory.axis(axis, field));
         let executing = !memory.get(COORD_SYSTEM0).is_null();
         let found = [
@@ -313,7 +313,7 @@ impl Rig {
 
     /// The final value of a variable.
     fn variable(&self, name: &str) -> Option<f64> {
-        let memory = &self.desk.memory;
+        let memory = &self.bench.memory;
         Some(match name {
             "CS0_TimeDownloaded" => memory.get(CS0_TIME_DOWNLOADED),
             "CS0_TimeLost" => memory.get(CS0_TIME_LOST),
@@ -398,14 +398,14 @@ fn number(value: &Json) -> f64 {
 
 /// Replays a recording; the result is the first difference.
 fn replay(recording: &Json) -> Result<(), String> {
-    let mut rig = Rig::new();
+    let mut board = RecordedBoard::new();
     for line in recording["setup"].as_array().expect("a list") {
-        rig.line(line.as_str().expect("a line"))?;
+        board.line(line.as_str().expect("a line"))?;
     }
     let spindle = SPINDLES.iter().find(|spindle| recording["name"] == spindle.name);
     if spindle.is_some() {
-        rig.precision = SPINDLE_FILTER;
-        rig.desk.run(SPINDLE_LEAD);
+        board.precision = SPINDLE_FILTER;
+        board.bench.run(SPINDLE_LEAD);
     }
     let nothing = Vec::new();
     let timeline = recording["timeline"].as_array().unwrap_or(&nothing);
@@ -424,23 +424,23 @@ fn replay(recording: &Json) -> Result<(), String> {
             }
         }
         for line in std::mem::take(&mut due) {
-            let reply = rig.line(line)?;
+            let reply = board.line(line)?;
             if line.starts_with('?') {
                 let expect = &replies.next().expect("a reply")[2];
                 (*expect == reply).then_some(()).ok_or(format!("{line}: {reply} instead of {expect}"))?;
             }
         }
         if let Some(spindle) = spindle {
-            rig.turn(spindle, tick, last_tick)?;
+            board.turn(spindle, tick, last_tick)?;
         }
         if tick > 0 {
-            rig.tick();
+            board.tick();
         }
-        rig.ask();
+        board.ask();
         if number(&row[0]) as u64 == tick {
             let row = row.as_array().expect("a row");
             let is_in_slice = recording["name"] == IN_SLICE.0 && IN_SLICE.1.contains(&tick);
-            match rig.difference(row) {
+            match board.difference(row) {
                 None if is_in_slice => return Err(format!("tick {tick} is reproduced, though listed")),
                 Some(text) if !is_in_slice => return Err(format!("tick {tick}, {text}")),
                 _ => {}
@@ -450,7 +450,7 @@ fn replay(recording: &Json) -> Result<(), String> {
         tick += 1;
     }
     for (name, expect) in recording["at_end"].as_object().expect("variables") {
-        let found = rig.variable(name).ok_or(name.as_str())?;
+        let found = board.variable(name).ok_or(name.as_str())?;
         close_enough(name, found, number(expect))?;
     }
     Ok(())
