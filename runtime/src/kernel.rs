@@ -127,8 +127,8 @@ impl Kernel {
 
     /// The run is over: what the stimulus expects then is checked.
     pub(crate) fn finish(&mut self, context: &TickContext<'_>) {
-        let (world, mut stage) = self.parts.stage(context.now);
-        world.finish(&mut stage, context);
+        let (world, mut access) = self.parts.access(context.now);
+        world.finish(&mut access, context);
     }
 
     /// Follows what a program does: whether it only waits, and for what.
@@ -397,8 +397,8 @@ impl Firmware for Kernel {
             parts.io.snapamps.tick(context.memory);
         }
         let moment = Moment { turn: parts.clock.turn, slice_start: parts.clock.slice_start };
-        let (world, mut stage) = parts.stage(context.now);
-        let acted = world.tick(&mut stage, context, moment);
+        let (world, mut access) = parts.access(context.now);
+        let acted = world.tick(&mut access, context, moment);
         parts.pc.host.tick();
         // What goes in here may be stored wherever a program has said.
         let received = serial::tick(parts, context) | parts.exchange(context);

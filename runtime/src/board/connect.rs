@@ -54,12 +54,12 @@ pub(crate) fn play(parts: &mut Parts, machine: &MachineFile, memory: &mut GuestM
     if machine.boards.snapamps > 0 {
         memory.set(SNAP_AMP_PRESENT, 1);
     }
-    let (world, mut stage) = parts.stage(Cycles::default());
+    let (world, mut access) = parts.access(Cycles::default());
     for wire in &machine.wires {
-        stage.io.pins.declare(wire.to);
-        stage.attach(Box::new(Wire::of(wire)), memory);
+        access.io.pins.declare(wire.to);
+        access.attach(Box::new(Wire::of(wire)), memory);
     }
     if !machine.stimulus.is_empty() {
-        world.play(machine.stimulus.clone(), &mut stage, memory);
+        world.play(machine.stimulus.clone(), &mut access, memory);
     }
 }

@@ -64,8 +64,8 @@ impl<E: Engine> Board<E> {
     /// Lets the world around the board act as a stimulus says, from now on.
     pub fn play(&mut self, stimulus: Stimulus) {
         let (kernel, context) = self.machine.firmware_mut();
-        let (world, mut stage) = kernel.parts.stage(context.now);
-        world.play(stimulus, &mut stage, context.memory);
+        let (world, mut access) = kernel.parts.access(context.now);
+        world.play(stimulus, &mut access, context.memory);
     }
 
     /// Plays an operator for programs that wait on inputs nobody drives.

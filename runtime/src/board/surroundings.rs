@@ -148,8 +148,8 @@ impl Surroundings {
         }
         connect::play(&mut self.parts, machine, memory);
         if !stimulus.is_empty() {
-            let (world, mut stage) = self.parts.stage(Cycles::default());
-            world.play(stimulus, &mut stage, memory);
+            let (world, mut access) = self.parts.access(Cycles::default());
+            world.play(stimulus, &mut access, memory);
         }
         self.positions = std::array::from_fn(|axis| {
             AxisId::new(axis as i32).map_or(0.0, |axis| memory.axis(axis, Chan::POSITION))
@@ -158,8 +158,8 @@ impl Surroundings {
 
     /// Acts as a stimulus says from now on, beside what it does already.
     pub fn play(&mut self, stimulus: Stimulus, memory: &mut GuestMemory, now: Cycles) {
-        let (world, mut stage) = self.parts.stage(now);
-        world.play(stimulus, &mut stage, memory);
+        let (world, mut access) = self.parts.access(now);
+        world.play(stimulus, &mut access, memory);
     }
 
     /// Drives an input from outside.
@@ -264,8 +264,8 @@ impl Surroundings {
         let moment = self.slice(instant);
         let mut context =
             TickContext { memory: instant.memory, threads: &mut self.threads, tick: instant.tick, now };
-        let (world, mut stage) = self.parts.stage(now);
-        world.tick(&mut stage, &mut context, moment);
+        let (world, mut access) = self.parts.access(now);
+        world.tick(&mut access, &mut context, moment);
         self.parts.pc.host.tick();
         if context.memory.get(CURRENT_THREAD) == 0 {
             let Parts { pc, out, .. } = &mut self.parts;
@@ -467,8 +467,8 @@ impl Surroundings {
     pub fn finish(&mut self, memory: &mut GuestMemory, now: Cycles) {
         self.follow_threads(active(memory, self.active));
         let context = TickContext { memory, threads: &mut self.threads, tick: Ticks::new(0), now };
-        let (world, mut stage) = self.parts.stage(now);
-        world.finish(&mut stage, &context);
+        let (world, mut access) = self.parts.access(now);
+        world.finish(&mut access, &context);
     }
 }
 

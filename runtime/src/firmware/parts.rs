@@ -22,7 +22,7 @@ use crate::pc::Pc;
 use crate::servo::cache::Change;
 use crate::servo::{Servo, Tick};
 use crate::world::trace::View;
-use crate::world::{Stage, World};
+use crate::world::{World, WorldAccess};
 
 /// The board times of the tick and of the slice.
 #[derive(Clone, Copy, Debug)]
@@ -98,10 +98,15 @@ impl Parts {
     }
 
     /// The world, and what it acts on.
-    pub(crate) fn stage(&mut self, now: Cycles) -> (&mut World, Stage<'_>) {
-        let stage =
-            Stage { machine: &mut self.machine, io: &mut self.io, pc: &mut self.pc, out: &mut self.out, now };
-        (&mut self.world, stage)
+    pub(crate) fn access(&mut self, now: Cycles) -> (&mut World, WorldAccess<'_>) {
+        let access = WorldAccess {
+            machine: &mut self.machine,
+            io: &mut self.io,
+            pc: &mut self.pc,
+            out: &mut self.out,
+            now,
+        };
+        (&mut self.world, access)
     }
 
     /// The values of the board.

@@ -1,12 +1,12 @@
 //! The surroundings of the board: a stimulus that drives its lines, an operator, and the recorder.
 
+mod access;
 pub(crate) mod attached;
 pub(crate) mod outside;
-mod stage;
 pub mod stimulus;
 pub mod trace;
 
-pub(crate) use stage::{Moment, Stage};
+pub(crate) use access::{Moment, WorldAccess};
 
 use kmotiondef::{Cycles, ThreadId};
 use vm::firmware::TickContext;
@@ -35,38 +35,48 @@ pub(crate) struct World {
 
 impl World {
     /// Acts as a stimulus says, beside what it does already.
-    pub(crate) fn play(&mut self, stimulus: Stimulus, stage: &mut Stage<'_>, memory: &mut GuestMemory) {
+    pub(crate) fn play(
+        &mut self,
+        stimulus: Stimulus,
+        access: &mut WorldAccess<'_>,
+        memory: &mut GuestMemory,
+    ) {
         let player = self.stimulus.get_or_insert_with(|| Box::new(Player::new()));
-        stage.out.keep_lines();
-        player.extend(stimulus, stage, memory);
-        player.watched().for_each(|bit| stage.io.pins.watch(bit));
-        changes::switch_on(&mut stage.io.pins.changes, memory);
+        access.out.keep_lines();
+        player.extend(stimulus, access, memory);
+        player.watched().for_each(|bit| access.io.pins.watch(bit));
+        changes::switch_on(&mut access.io.pins.changes, memory);
     }
 
     /// Acts at the beginning of a tick; returns whether anything was done.
     pub(crate) fn tick(
         &mut self,
-        stage: &mut Stage<'_>,
+        access: &mut WorldAccess<'_>,
         context: &mut TickContext<'_>,
         moment: Moment,
     ) -> bool {
-        self.play_tick(stage, context, moment) | self.assist_tick(stage)
+        self.play_tick(access, context, moment) | self.assist_tick(access)
     }
 
-    fn play_tick(&mut self, stage: &mut Stage<'_>, context: &mut TickContext<'_>, moment: Moment) -> bool {
-        let hears_now = self.hears_uart && stage.io.uart.is_sending();
-        if !stage.io.pins.changes.is_on() && !hears_now {
+    fn play_tick(
+        &mut self,
+        access: &mut WorldAccess<'_>,
+        context: &mut TickContext<'_>,
+        moment: Moment,
+    ) -> bool {
+        let hears_now = self.hears_uart && access.io.uart.is_sending();
+        if !access.io.pins.changes.is_on() && !hears_now {
             return false;
         }
-        changes::sweep(&mut stage.io.pins.changes, context.memory, stage.now);
-        stage.io.fpga.tell_pwm(&mut stage.io.pins, stage.now);
-        stage.lines().settle();
-        let sent = stage.machine.run_devices(stage.io, stage.out, self.hears_uart, stage.now);
-        let changes = stage.io.pins.changes.take();
+        changes::sweep(&mut access.io.pins.changes, context.memory, access.now);
+        access.io.fpga.tell_pwm(&mut access.io.pins, access.now);
+        access.lines().settle();
+        let sent = access.machine.run_devices(access.io, access.out, self.hears_uart, access.now);
+        let changes = access.io.pins.changes.take();
         if self.records_changes() {
-            changes.iter().for_each(|change| tell_change(stage, moment, *change));
+            changes.iter().for_each(|change| tell_change(access, moment, *change));
         }
-        self.stimulus.as_mut().is_some_and(|player| player.tick(stage, context, &changes, &sent))
+        self.stimulus.as_mut().is_some_and(|player| player.tick(access, context, &changes, &sent))
     }
 
     /// Plays an operator from now on.
@@ -74,20 +84,22 @@ impl World {
         self.assist = Some(Assist::new(now));
     }
 
-    fn assist_tick(&mut self, stage: &mut Stage<'_>) -> bool {
-        let Some(step) = self.assist.as_mut().and_then(|assist| assist.step(stage.now)) else { return false };
+    fn assist_tick(&mut self, access: &mut WorldAccess<'_>) -> bool {
+        let Some(step) = self.assist.as_mut().and_then(|assist| assist.step(access.now)) else {
+            return false;
+        };
         let (Step::Press(bit, _) | Step::Release(bit)) = step;
-        let level = !stage.io.pins.input(bit);
+        let level = !access.io.pins.input(bit);
         if let Step::Press(_, reader) = step {
             let speaker = Speaker::from(reader.thread);
-            stage.out.remark_of(
-                stage.now,
+            access.out.remark_of(
+                access.now,
                 speaker,
                 reader.at,
                 Message::Assisted { bit, level: level.into() },
             );
         }
-        stage.lines().drive(bit, level);
+        access.lines().drive(bit, level);
         true
     }
 
@@ -159,9 +171,9 @@ impl World {
     }
 
     /// The run is over: what the stimulus expects then is checked.
-    pub(crate) fn finish(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>) {
+    pub(crate) fn finish(&mut self, access: &mut WorldAccess<'_>, context: &TickContext<'_>) {
         if let Some(player) = &mut self.stimulus {
-            player.finish(stage, context);
+            player.finish(access, context);
         }
     }
 
@@ -173,11 +185,11 @@ impl World {
 }
 
 /// Tells a change of a bit, and the thread that had the processor then, unless a generator has made it.
-fn tell_change(stage: &mut Stage<'_>, moment: Moment, BitChange { at, bit, level }: BitChange) {
-    let is_generated = stage.io.pins.is_watched(bit) && stage.io.pins.is_generated(bit);
+fn tell_change(access: &mut WorldAccess<'_>, moment: Moment, BitChange { at, bit, level }: BitChange) {
+    let is_generated = access.io.pins.is_watched(bit) && access.io.pins.is_generated(bit);
     let thread = match moment.turn {
-        Turn::User(thread) if (moment.slice_start..stage.now).contains(&at) && !is_generated => Some(thread),
+        Turn::User(thread) if (moment.slice_start..access.now).contains(&at) && !is_generated => Some(thread),
         _ => None,
     };
-    stage.out.tell(at, EventKind::Trace(Record::Bit { bit, level, thread }));
+    access.out.tell(at, EventKind::Trace(Record::Bit { bit, level, thread }));
 }

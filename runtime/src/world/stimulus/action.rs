@@ -18,7 +18,7 @@ use super::tokens::Mistake;
 use super::wave::Wave;
 use crate::io::konnect::KonnectBoard;
 use crate::io::snapamp::{Quantity, Side};
-use crate::world::Stage;
+use crate::world::WorldAccess;
 use crate::world::attached::DeviceSpec;
 
 /// The translation of an event's key into statements: a template with the event's values in braces. Texts come in
@@ -102,11 +102,11 @@ macro_rules! actions {
             }
 
             /// Prepares for it before time begins.
-            pub(super) fn announce(&self, stage: &mut Stage<'_>, memory: &mut GuestMemory) {
+            pub(super) fn announce(&self, access: &mut WorldAccess<'_>, memory: &mut GuestMemory) {
                 match self {
                     $(Self::$name(first, ..) => {
                         let _ = first;
-                        $($announce(first, stage, memory);)?
+                        $($announce(first, access, memory);)?
                     })+
                 }
             }

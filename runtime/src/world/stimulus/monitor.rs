@@ -11,7 +11,7 @@ use super::plans::Due;
 use super::player::Player;
 use super::{Action, Condition, Expectation, Trigger};
 use crate::out::EventKind;
-use crate::world::Stage;
+use crate::world::WorldAccess;
 use crate::world::trace::View;
 
 /// The progress of a statement.
@@ -72,12 +72,12 @@ impl Player {
     }
 
     /// Looks at the values that statements wait for.
-    pub(super) fn watch_values(&mut self, stage: &Stage<'_>, context: &TickContext<'_>) {
+    pub(super) fn watch_values(&mut self, access: &WorldAccess<'_>, context: &TickContext<'_>) {
         for index in 0..self.rules.len() {
             let Some(Condition::Becomes(expectation)) = self.rules[index].trigger.condition() else {
                 continue;
             };
-            let (is_so, _) = self.look(stage, context, index, expectation);
+            let (is_so, _) = self.look(access, context, index, expectation);
             if is_so && !self.progress[index].was_so {
                 let risen = Condition::Becomes(expectation.clone());
                 self.happened(context.now, |condition| *condition == risen);
@@ -87,32 +87,32 @@ impl Player {
     }
 
     /// Looks at all that is watched.
-    pub(super) fn watch(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>) {
+    pub(super) fn watch(&mut self, access: &mut WorldAccess<'_>, context: &TickContext<'_>) {
         for index in 0..self.rules.len() {
             match &self.rules[index].trigger {
                 Trigger::Always { while_met } => {
                     let is_watched =
-                        while_met.as_ref().is_none_or(|met| self.look(stage, context, index, met).0);
+                        while_met.as_ref().is_none_or(|met| self.look(access, context, index, met).0);
                     if is_watched && !self.progress[index].told {
-                        self.check(stage, context, index);
+                        self.check(access, context, index);
                     }
                 }
-                Trigger::Within { .. } => self.watch_deadline(stage, context, index),
+                Trigger::Within { .. } => self.watch_deadline(access, context, index),
                 Trigger::At(_) | Trigger::Every { .. } | Trigger::When { .. } | Trigger::End => {}
             }
         }
     }
 
     /// Checks a statement with a deadline: reports its failure once the time has passed.
-    fn watch_deadline(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>, index: usize) {
+    fn watch_deadline(&mut self, access: &mut WorldAccess<'_>, context: &TickContext<'_>, index: usize) {
         let Trigger::Within { limit, .. } = self.rules[index].trigger else { return };
         let Action::Expect(expectation) = &self.rules[index].action else { return };
         let Some(since) = self.progress[index].since else { return };
-        if self.look(stage, context, index, expectation).0 {
+        if self.look(access, context, index, expectation).0 {
             self.progress[index].happened = true;
             self.progress[index].since = None;
         } else if context.now >= since + limit {
-            self.check(stage, context, index);
+            self.check(access, context, index);
             self.progress[index].since = None;
         }
     }
@@ -120,22 +120,22 @@ impl Player {
     /// Examines an expectation of a statement; returns whether it is met, with the actual and the expected value.
     pub(super) fn look(
         &self,
-        stage: &Stage<'_>,
+        access: &WorldAccess<'_>,
         context: &TickContext<'_>,
         index: usize,
         expectation: &Expectation,
     ) -> (bool, String) {
-        let view = View::new(stage.machine, stage.io, context.now, context.memory);
+        let view = View::new(access.machine, access.io, context.now, context.memory);
         let look = Look { view, threads: context.threads.active(), said: self.progress[index].said };
         let seen = expectation.look(&look);
         (seen.is_met, seen.text)
     }
 
     /// Tells what is not as expected.
-    pub(super) fn check(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>, index: usize) {
+    pub(super) fn check(&mut self, access: &mut WorldAccess<'_>, context: &TickContext<'_>, index: usize) {
         let rule = &self.rules[index];
         let Action::Expect(expectation) = &rule.action else { return };
-        let (is_met, text) = self.look(stage, context, index, expectation);
+        let (is_met, text) = self.look(access, context, index, expectation);
         if !is_met {
             let (place, at) = (&rule.place, seconds(context.now));
             let within = match (&rule.trigger, self.progress[index].since) {
@@ -145,23 +145,23 @@ impl Player {
                 _ => String::new(),
             };
             let text = format!("{place}: at {at} s {text}{within}");
-            stage.out.tell(context.now, EventKind::Unmet(text));
+            access.out.tell(context.now, EventKind::Unmet(text));
             self.progress[index].told = true;
         }
         self.progress[index].happened = true;
     }
 
     /// The run is over: checks the watched expectations once again, and reports those that were not met.
-    pub(super) fn finish_watching(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>) {
-        self.watch(stage, context);
+    pub(super) fn finish_watching(&mut self, access: &mut WorldAccess<'_>, context: &TickContext<'_>) {
+        self.watch(access, context);
         for index in 0..self.rules.len() {
             let Trigger::Within { condition, .. } = &self.rules[index].trigger else { continue };
             if self.progress[index].since.is_some() {
-                self.check(stage, context, index);
+                self.check(access, context, index);
             } else if !self.progress[index].happened {
                 let place = &self.rules[index].place;
                 let text = format!("{place}: {condition} never happened, so nothing was checked");
-                stage.out.tell(context.now, EventKind::Unmet(text));
+                access.out.tell(context.now, EventKind::Unmet(text));
                 self.progress[index].happened = true;
             }
         }

@@ -8,7 +8,7 @@ use vm::firmware::TickContext;
 
 use super::wave::Wave;
 use crate::views::Typed;
-use crate::world::Stage;
+use crate::world::WorldAccess;
 use chips::kanalog::{ADC_CHANNELS, conversion};
 
 /// The most that may be planned at a time.
@@ -132,12 +132,12 @@ impl Plans {
     }
 
     /// Encoders turn, and analog inputs take their course.
-    pub(super) fn run(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>) {
-        self.turn_encoders(stage, context);
-        self.run_waves(stage, context);
+    pub(super) fn run(&mut self, access: &mut WorldAccess<'_>, context: &TickContext<'_>) {
+        self.turn_encoders(access, context);
+        self.run_waves(access, context);
     }
 
-    fn turn_encoders(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>) {
+    fn turn_encoders(&mut self, access: &mut WorldAccess<'_>, context: &TickContext<'_>) {
         for turning in &mut self.turning {
             let elapsed = context.now - turning.begun;
             let part =
@@ -145,19 +145,19 @@ impl Plans {
             let step = turning.counts * part - turning.turned;
             turning.turned += step;
             let gain = f64::from(context.memory.axis(turning.axis, Chan::INPUT_GAIN0));
-            stage.machine.loads.push(turning.axis, step * gain);
+            access.machine.loads.push(turning.axis, step * gain);
         }
         self.turning.retain(|turning| context.now - turning.begun < turning.over);
     }
 
-    fn run_waves(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>) {
+    fn run_waves(&mut self, access: &mut WorldAccess<'_>, context: &TickContext<'_>) {
         for channel in 0..ADC_CHANNELS {
             let Some((wave, begun)) = &self.waves[channel] else { continue };
-            let load = |axis: AxisId| stage.machine.table(axis);
+            let load = |axis: AxisId| access.machine.table(axis);
             let value = conversion(wave.value(context.now - *begun, load));
             if self.converted[channel] != value {
                 self.converted[channel] = value;
-                stage.io.kanalog.drive(channel, value);
+                access.io.kanalog.drive(channel, value);
             }
         }
     }

@@ -15,7 +15,7 @@ use super::{Condition, Rule, Stimulus, Trigger};
 use crate::io::changes;
 use crate::machine::SentByte;
 use crate::out::{Message, Out};
-use crate::world::Stage;
+use crate::world::WorldAccess;
 use chips::changes::BitChange;
 
 /// A stimulus under way.
@@ -56,13 +56,18 @@ impl Player {
     }
 
     /// Gets ready for more; an option board that something happens to was found at power-up.
-    pub(crate) fn extend(&mut self, stimulus: Stimulus, stage: &mut Stage<'_>, memory: &mut GuestMemory) {
+    pub(crate) fn extend(
+        &mut self,
+        stimulus: Stimulus,
+        access: &mut WorldAccess<'_>,
+        memory: &mut GuestMemory,
+    ) {
         // What was printed before does not count for the new rules.
-        self.hear(stage.out);
+        self.hear(access.out);
         for rule in stimulus.rules {
-            rule.action.announce(stage, memory);
+            rule.action.announce(access, memory);
             if let Some(Condition::UartSent(_)) = rule.trigger.condition() {
-                stage.io.uart.listen();
+                access.io.uart.listen();
             }
             let index = self.rules.len();
             match rule.trigger {
@@ -127,12 +132,12 @@ impl Player {
     /// Acts at the beginning of a tick; returns whether anything was done.
     pub(crate) fn tick(
         &mut self,
-        stage: &mut Stage<'_>,
+        access: &mut WorldAccess<'_>,
         context: &mut TickContext<'_>,
         changes: &[BitChange],
         sent: &[SentByte],
     ) -> bool {
-        self.hear(stage.out);
+        self.hear(access.out);
         self.is_idle = changes.is_empty()
             && sent.is_empty()
             && self.lines.is_empty()
@@ -141,18 +146,18 @@ impl Player {
         self.watch_uart(sent);
         self.watch_lines();
         self.watch_threads(context);
-        self.watch_values(stage, context);
+        self.watch_values(access, context);
         if self.plans.limit() {
-            stage.out.remark(context.now, Message::TooMuchPlanned { most: MOST_PLANNED });
+            access.out.remark(context.now, Message::TooMuchPlanned { most: MOST_PLANNED });
         }
         let mut acted = false;
         while let Some(due) = self.plans.take(context.now) {
             acted = true;
             match due {
-                Due::Level(bit, level) => drive(stage, context, bit, level),
-                Due::Rule(index) => self.act(stage, context, index),
+                Due::Level(bit, level) => drive(access, context, bit, level),
+                Due::Rule(index) => self.act(access, context, index),
                 Due::Release(bit) => {
-                    let_go(stage, bit);
+                    let_go(access, bit);
                 }
                 Due::Check => {}
             }
@@ -161,9 +166,9 @@ impl Player {
             self.forget_done();
         }
         self.is_idle &= !acted;
-        self.watch(stage, context);
+        self.watch(access, context);
         let turns = self.plans.is_turning();
-        self.plans.run(stage, context);
+        self.plans.run(access, context);
         acted || turns
     }
 
@@ -246,10 +251,10 @@ impl Player {
         }
     }
 
-    fn act(&mut self, stage: &mut Stage<'_>, context: &mut TickContext<'_>, index: usize) {
+    fn act(&mut self, access: &mut WorldAccess<'_>, context: &mut TickContext<'_>, index: usize) {
         let now = context.now;
         if let Trigger::Every { period, from, until, ref while_met } = self.rules[index].trigger {
-            let is_so = while_met.as_ref().is_none_or(|met| self.look(stage, context, index, met).0);
+            let is_so = while_met.as_ref().is_none_or(|met| self.look(access, context, index, met).0);
             // Counted from the first, so that rounding to ticks does not add up.
             let next = from + Cycles::new(((now - from).get() / period.get() + 1) * period.get());
             if until.is_none_or(|until| next <= until) {
@@ -262,10 +267,10 @@ impl Player {
         self.progress[index].happened = true;
         let Rule { place, action, .. } = self.rules[index].clone();
         let place = place.to_string();
-        let mut scene = Scene { plans: &mut self.plans, stage, context, place: &place, is_checked: false };
+        let mut scene = Scene { plans: &mut self.plans, access, context, place: &place, is_checked: false };
         action.act(&mut scene);
         if scene.is_checked {
-            self.check(stage, context, index);
+            self.check(access, context, index);
         }
     }
 
@@ -276,10 +281,10 @@ impl Player {
     }
 
     /// The run is over: checks what is expected then, or later than it lasted.
-    pub(crate) fn finish(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>) {
-        changes::sweep(&mut stage.io.pins.changes, context.memory, stage.now);
-        self.hear(stage.out);
-        self.watch_bits(&stage.io.pins.changes.take());
+    pub(crate) fn finish(&mut self, access: &mut WorldAccess<'_>, context: &TickContext<'_>) {
+        changes::sweep(&mut access.io.pins.changes, context.memory, access.now);
+        self.hear(access.out);
+        self.watch_bits(&access.io.pins.changes.take());
         self.watch_lines();
         self.watch_threads(context);
         let late = self.plans.take_all().filter_map(|due| match due {
@@ -289,12 +294,12 @@ impl Player {
         let mut checked: Vec<usize> = late.collect();
         checked.extend((0..self.rules.len()).filter(|&index| self.rules[index].trigger == Trigger::End));
         for index in checked {
-            self.check(stage, context, index);
+            self.check(access, context, index);
         }
-        self.finish_watching(stage, context);
+        self.finish_watching(access, context);
         let statements = self.never_happened();
         if !statements.is_empty() {
-            stage.out.remark(context.now, Message::NeverHappened { statements: statements.join("; ") });
+            access.out.remark(context.now, Message::NeverHappened { statements: statements.join("; ") });
         }
     }
 }

@@ -3,13 +3,13 @@
 use vm::firmware::TickContext;
 
 use super::plans::Plans;
-use crate::world::Stage;
+use crate::world::WorldAccess;
 
 /// The board, what is planned, and the statement that acts.
 #[derive(Debug)]
 pub(crate) struct Scene<'a, 'b, 'c> {
     pub(crate) plans: &'a mut Plans,
-    pub(crate) stage: &'a mut Stage<'b>,
+    pub(crate) access: &'a mut WorldAccess<'b>,
     pub(crate) context: &'a mut TickContext<'c>,
     /// The location of the statement, for messages.
     pub(crate) place: &'a str,

@@ -18,7 +18,7 @@ pub(crate) fn read_uart(reader: &mut StatementReader<'_>) -> Result<(Vec<u8>,), 
 }
 
 pub(crate) fn uart(scene: &mut Scene<'_, '_, '_>, bytes: Vec<u8>) {
-    scene.stage.io.uart.arrive(&bytes, scene.context.now);
+    scene.access.io.uart.arrive(&bytes, scene.context.now);
 }
 
 pub(crate) fn read_persist(reader: &mut StatementReader<'_>) -> Result<(usize, i32), Mistake> {
@@ -38,7 +38,7 @@ pub(crate) fn read_start(reader: &mut StatementReader<'_>) -> Result<(ThreadId,)
 pub(crate) fn start(scene: &mut Scene<'_, '_, '_>, thread: ThreadId) {
     if scene.context.threads.start(thread).is_err() {
         let message = Message::StimulusThreadEmpty { place: scene.place.to_string(), thread };
-        scene.stage.out.remark(scene.context.now, message);
+        scene.access.out.remark(scene.context.now, message);
     }
 }
 
@@ -48,7 +48,7 @@ pub(crate) fn read_run(reader: &mut StatementReader<'_>) -> Result<(ThreadId, Ar
 }
 
 pub(crate) fn run(scene: &mut Scene<'_, '_, '_>, thread: ThreadId, name: Arc<str>) {
-    scene.stage.out.ask(Request::Run(thread, name));
+    scene.access.out.ask(Request::Run(thread, name));
 }
 
 pub(crate) fn read_answer(reader: &mut StatementReader<'_>) -> Result<(String,), Mistake> {
@@ -60,7 +60,7 @@ pub(crate) fn read_answer(reader: &mut StatementReader<'_>) -> Result<(String,),
 }
 
 pub(crate) fn answer(scene: &mut Scene<'_, '_, '_>, setting: String) {
-    let taken = scene.stage.pc.host.answer_next(&setting);
+    let taken = scene.access.pc.host.answer_next(&setting);
     debug_assert!(taken.is_ok(), "it was checked when it was read");
 }
 
@@ -70,7 +70,7 @@ pub(crate) fn read_command(reader: &mut StatementReader<'_>) -> Result<(String,)
 
 /// No echo is wanted.
 pub(crate) fn command(scene: &mut Scene<'_, '_, '_>, line: String) {
-    scene.stage.pc.usb.receive(format!("\u{1b}.{line}\r").as_bytes());
+    scene.access.pc.usb.receive(format!("\u{1b}.{line}\r").as_bytes());
 }
 
 pub(crate) fn read_kill(reader: &mut StatementReader<'_>) -> Result<(ThreadId,), Mistake> {

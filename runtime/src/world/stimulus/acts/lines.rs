@@ -9,7 +9,7 @@ use vm::memory::GuestMemory;
 use crate::io::bits::bit_state;
 use crate::out::Message;
 use crate::views::Typed;
-use crate::world::Stage;
+use crate::world::WorldAccess;
 use crate::world::stimulus::reader::{StatementReader, number};
 use crate::world::stimulus::scene::Scene;
 use crate::world::stimulus::tokens::Mistake;
@@ -41,7 +41,7 @@ pub(crate) fn read_clear(reader: &mut StatementReader<'_>) -> Result<(Bit, bool)
 }
 
 pub(crate) fn set(scene: &mut Scene<'_, '_, '_>, bit: Bit, level: bool) {
-    drive(scene.stage, scene.context, bit, level);
+    drive(scene.access, scene.context, bit, level);
 }
 
 pub(crate) fn read_toggle(reader: &mut StatementReader<'_>) -> Result<(Bit,), Mistake> {
@@ -62,7 +62,7 @@ pub(crate) fn pulse(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) {
     let level = level(scene, bit);
     set(scene, bit, !level);
     let end = scene.context.now + duration;
-    if scene.stage.machine.mechanics.contact(bit).is_some() {
+    if scene.access.machine.mechanics.contact(bit).is_some() {
         scene.plans.release(end, bit);
     } else {
         scene.plans.level(end, bit, level);
@@ -70,21 +70,21 @@ pub(crate) fn pulse(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) {
 }
 
 pub(crate) fn press(scene: &mut Scene<'_, '_, '_>, bit: Bit) {
-    let active = scene.stage.machine.mechanics.contact(bit).is_none_or(|(.., active)| active);
+    let active = scene.access.machine.mechanics.contact(bit).is_none_or(|(.., active)| active);
     set(scene, bit, active);
 }
 
 pub(crate) fn release(scene: &mut Scene<'_, '_, '_>, bit: Bit) {
-    if !let_go(scene.stage, bit) {
-        let idle = scene.stage.io.pins.is_described(bit);
+    if !let_go(scene.access, bit) {
+        let idle = scene.access.io.pins.is_described(bit);
         set(scene, bit, idle);
     }
 }
 
 /// Gives an input back to its switch; whether it has one.
-pub(crate) fn let_go(stage: &mut Stage<'_>, bit: Bit) -> bool {
-    stage.machine.mechanics.let_go(bit);
-    stage.machine.mechanics.contact(bit).is_some()
+pub(crate) fn let_go(access: &mut WorldAccess<'_>, bit: Bit) -> bool {
+    access.machine.mechanics.let_go(bit);
+    access.machine.mechanics.contact(bit).is_some()
 }
 
 /// When a contact that bounces inverts its level, as parts of the time that it takes.
@@ -100,16 +100,16 @@ pub(crate) fn bounce(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) 
 }
 
 /// Declares a bit as driven, so that no remark calls its use an accident; a Kanalog whose inputs are driven is present.
-pub(crate) fn announce(bit: &Bit, stage: &mut Stage<'_>, memory: &mut GuestMemory) {
-    stage.io.pins.declare(*bit);
+pub(crate) fn announce(bit: &Bit, access: &mut WorldAccess<'_>, memory: &mut GuestMemory) {
+    access.io.pins.declare(*bit);
     if KANALOG_INPUTS.contains(&bit.get()) {
         memory.set(KANALOG_PRESENT, 1);
     }
 }
 
 /// An analog input is one of a Kanalog.
-pub(crate) fn announce_adc(channel: &usize, stage: &mut Stage<'_>, memory: &mut GuestMemory) {
-    stage.io.kanalog.connect(*channel);
+pub(crate) fn announce_adc(channel: &usize, access: &mut WorldAccess<'_>, memory: &mut GuestMemory) {
+    access.io.kanalog.connect(*channel);
     memory.set(KANALOG_PRESENT, 1);
 }
 
@@ -182,28 +182,28 @@ fn is_memory(bit: Bit) -> bool {
 /// The level that the world gives a bit.
 fn level(scene: &Scene<'_, '_, '_>, bit: Bit) -> bool {
     if is_memory(bit) {
-        bit_state(scene.stage.io, scene.context.memory, bit).0
+        bit_state(scene.access.io, scene.context.memory, bit).0
     } else {
-        scene.stage.io.pins.input(bit)
+        scene.access.io.pins.input(bit)
     }
 }
 
 /// Gives a bit its level.
-pub(crate) fn drive(stage: &mut Stage<'_>, context: &mut TickContext<'_>, bit: Bit, level: bool) {
+pub(crate) fn drive(access: &mut WorldAccess<'_>, context: &mut TickContext<'_>, bit: Bit, level: bool) {
     if is_memory(bit) {
-        stage.lines().write(context.memory, bit, level);
+        access.lines().write(context.memory, bit, level);
     } else {
-        hold(stage, bit);
-        stage.lines().drive(bit, level);
+        hold(access, bit);
+        access.lines().drive(bit, level);
     }
 }
 
 /// An action overrides a switch on the same input until it is released.
-fn hold(stage: &mut Stage<'_>, bit: Bit) {
-    if let Some((axis, ..)) = stage.machine.mechanics.contact(bit)
-        && stage.machine.mechanics.hold(bit)
+fn hold(access: &mut WorldAccess<'_>, bit: Bit) {
+    if let Some((axis, ..)) = access.machine.mechanics.contact(bit)
+        && access.machine.mechanics.hold(bit)
     {
-        let now = stage.lines().now;
-        stage.out.remark(now, Message::SwitchOverridden { bit, axis });
+        let now = access.lines().now;
+        access.out.remark(now, Message::SwitchOverridden { bit, axis });
     }
 }

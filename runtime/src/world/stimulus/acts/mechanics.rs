@@ -21,7 +21,7 @@ pub(crate) fn push(scene: &mut Scene<'_, '_, '_>, axis: AxisId, units: f64) {
     let gain = f64::from(scene.context.memory.axis(axis, Chan::INPUT_GAIN0));
     let ticks = (units / gain / COUNTS_PER_TICK).abs().ceil();
     if gain == 0.0 || ticks <= 1.0 {
-        return scene.stage.machine.loads.push(axis, units);
+        return scene.access.machine.loads.push(axis, units);
     }
     let over = Cycles::new((ticks as i64).saturating_mul(Cycles::PER_TICK.get()));
     turn(scene, axis, units / gain, over);
@@ -36,7 +36,7 @@ pub(crate) fn read_pull(reader: &mut StatementReader<'_>) -> Result<(AxisId, f64
 
 /// Changes what a constant load adds to the speed of a motor.
 pub(crate) fn pull(scene: &mut Scene<'_, '_, '_>, axis: AxisId, speed: f64) {
-    scene.stage.machine.loads.pull(axis, speed);
+    scene.access.machine.loads.pull(axis, speed);
 }
 
 pub(crate) fn read_turn(reader: &mut StatementReader<'_>) -> Result<(AxisId, f64, Cycles), Mistake> {
@@ -64,5 +64,5 @@ pub(crate) fn read_fail(reader: &mut StatementReader<'_>) -> Result<(usize,), Mi
 }
 
 pub(crate) fn fail(scene: &mut Scene<'_, '_, '_>, channel: usize) {
-    scene.stage.io.encoders.fail(channel);
+    scene.access.io.encoders.fail(channel);
 }

@@ -7,7 +7,7 @@ use crate::io::konnect::{KonnectBoard, Port};
 use crate::io::snapamp::{Quantity, Side};
 use crate::machine::connect_snapamp;
 use crate::views::Typed;
-use crate::world::Stage;
+use crate::world::WorldAccess;
 use crate::world::attached::DeviceSpec;
 use crate::world::stimulus::reader::StatementReader;
 use crate::world::stimulus::scene::Scene;
@@ -35,12 +35,12 @@ pub(crate) fn read_device(reader: &mut StatementReader<'_>) -> Result<(DeviceSpe
 
 pub(crate) fn attach(scene: &mut Scene<'_, '_, '_>, device: DeviceSpec) {
     if let Ok(device) = device.build() {
-        scene.stage.attach(device, scene.context.memory);
+        scene.access.attach(device, scene.context.memory);
     }
 }
 
 /// A device on an analog input is on a Kanalog.
-pub(crate) fn announce_device(device: &DeviceSpec, _: &mut Stage<'_>, memory: &mut GuestMemory) {
+pub(crate) fn announce_device(device: &DeviceSpec, _: &mut WorldAccess<'_>, memory: &mut GuestMemory) {
     if device.settings.iter().any(|(key, _)| KANALOG_SETTINGS.contains(&key.as_str())) {
         memory.set(KANALOG_PRESENT, 1);
     }
@@ -56,7 +56,7 @@ pub(crate) fn read_konnect(reader: &mut StatementReader<'_>) -> Result<(KonnectB
 }
 
 pub(crate) fn konnect(scene: &mut Scene<'_, '_, '_>, board: KonnectBoard, input: u8, level: bool) {
-    scene.stage.io.konnects.drive(board, input, level);
+    scene.access.io.konnects.drive(board, input, level);
 }
 
 pub(crate) fn read_snapamp(
@@ -85,11 +85,11 @@ pub(crate) fn snapamp(
     quantity: Quantity,
     value: f64,
 ) {
-    scene.stage.io.snapamps.set(board, side, quantity, value, scene.context.now);
+    scene.access.io.snapamps.set(board, side, quantity, value, scene.context.now);
 }
 
 /// A SnapAmp that something happens to was found at power-up.
-pub(crate) fn announce_snapamp(board: &usize, stage: &mut Stage<'_>, memory: &mut GuestMemory) {
-    connect_snapamp(&mut stage.io.snapamps, &mut stage.io.pins, *board);
+pub(crate) fn announce_snapamp(board: &usize, access: &mut WorldAccess<'_>, memory: &mut GuestMemory) {
+    connect_snapamp(&mut access.io.snapamps, &mut access.io.pins, *board);
     memory.set(SNAP_AMP_PRESENT, 1);
 }

@@ -12,7 +12,7 @@ use crate::pc::Pc;
 
 /// The parts of the board that the world reaches at an instant.
 #[derive(Debug)]
-pub(crate) struct Stage<'a> {
+pub(crate) struct WorldAccess<'a> {
     pub(crate) machine: &'a mut Machine,
     pub(crate) io: &'a mut Io,
     pub(crate) pc: &'a mut Pc,
@@ -20,7 +20,7 @@ pub(crate) struct Stage<'a> {
     pub(crate) now: Cycles,
 }
 
-impl Stage<'_> {
+impl WorldAccess<'_> {
     /// The board's lines.
     pub(crate) fn lines(&mut self) -> Lines<'_> {
         Lines { machine: self.machine, io: self.io, out: self.out, now: self.now }
