@@ -174,7 +174,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
         &[
             ("server", &["server"]),
             ("board", &["board"]),
-            ("desk", &["desk"]),
+            ("hub", &["hub"]),
             ("words", &["control", "request", "names"]),
         ],
     ),

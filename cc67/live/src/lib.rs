@@ -8,7 +8,7 @@
 //! server/    connections: the files of the page, access checks, sockets
 //! board/     the session under the clock: frames, signals, threads, messages
 //! control    what pages may do to the board and its time
-//! desk       shared by connections and the board: requests in, messages and frames out
+//! hub       shared by connections and the board: requests in, messages and frames out
 //! request    the requests of a page
 //! names      the programs' names of bits
 //! ```
@@ -24,12 +24,12 @@
 
 mod board;
 mod control;
-mod desk;
+mod hub;
 mod names;
 mod request;
 mod server;
 
-pub use board::{Company, LiveView, ShowEnd, Wishes};
+pub use board::{Company, LiveView, OwnerRequests, ShowEnd};
 pub use control::TimeControl;
 pub use server::{ListenError, Server};
 

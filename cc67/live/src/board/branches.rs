@@ -3,12 +3,12 @@
 use cc67_host::{Branch, BranchId, Session, Target, Timeline};
 use serde_json::{Value, json};
 
-use super::{Stage, log_message};
+use super::{ViewState, log_message};
 
 /// Lines that are kept; the oldest is dropped when another one is left.
 pub(super) const MOST: usize = 8;
 
-impl<T: Target> Stage<T> {
+impl<T: Target> ViewState<T> {
     /// The lines that were left, as a message to pages.
     pub(super) fn branches(&self) -> Value {
         let describe = |branch: &Branch<T>| json!({ "id": branch.id, "from": branch.from.get(), "end": branch.end.get() });

@@ -5,7 +5,7 @@ use kmotiondef::{AxisId, ThreadId};
 use serde_json::{Value, json};
 
 use super::jogs::Jogs;
-use super::{Stage, Voice};
+use super::{ViewState, Voice};
 use crate::TimeControl;
 use crate::control::is_harmless;
 use crate::request::PageRequest;
@@ -28,7 +28,7 @@ impl PageAccess {
     }
 }
 
-impl<T: Target> Stage<T> {
+impl<T: Target> ViewState<T> {
     /// Returns whether the board is a controller.
     pub(super) fn is_real(&self) -> bool {
         self.show.time == TimeControl::Real

@@ -8,11 +8,11 @@ use kmotiondef::Ticks;
 use kmotiondef::limits::TIMEBASE;
 use serde_json::json;
 
-use super::Stage;
+use super::ViewState;
 use super::keep::{Kept, Run};
-use crate::desk::PageId;
+use crate::hub::PageId;
 
-impl<T: Target> Stage<T> {
+impl<T: Target> ViewState<T> {
     /// The timeline takes up what was done; in the past, the run continues from there.
     pub(super) fn keep(&mut self, session: &mut Session<T>) {
         let history = self.timeline.as_mut().map(|timeline| timeline.keep(session));

@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 use cc67_host::{Session, Target};
 use kmotiondef::AxisId;
 
-use super::Stage;
+use super::ViewState;
 use super::clock::now;
-use crate::desk::PageId;
+use crate::hub::PageId;
 
 /// The longest time between two words of a page that holds a button; it sends one every 0.1 s.
 const SILENCE: Duration = Duration::from_millis(400);
@@ -33,7 +33,7 @@ impl Jogs {
     }
 }
 
-impl<T: Target> Stage<T> {
+impl<T: Target> ViewState<T> {
     /// A page holds a button, or has released it.
     pub(super) fn jog(
         &mut self,

@@ -11,7 +11,7 @@ use std::thread;
 
 use serde_json::json;
 
-use crate::desk::Mailbox;
+use crate::hub::Mailbox;
 use crate::{Show, TestOption};
 
 /// Most characters of a name.

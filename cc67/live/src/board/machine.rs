@@ -4,8 +4,8 @@ use cc67_host::{Session, Target};
 use serde_json::{Value, json};
 
 use super::log::Voice;
-use super::{Stage, saved};
-use crate::desk::Desk;
+use super::{ViewState, saved};
+use crate::hub::Hub;
 
 /// The machine file since the board was made with it.
 #[derive(Debug, Default)]
@@ -21,11 +21,11 @@ pub(super) enum MachineState {
     Wanted,
 }
 
-impl<T: Target> Stage<T> {
+impl<T: Target> ViewState<T> {
     /// Looks at the machine file from now on.
-    pub(super) fn watch_machine(&self, desk: &std::sync::Arc<Desk>) {
+    pub(super) fn watch_machine(&self, hub: &std::sync::Arc<Hub>) {
         if let Some(path) = &self.show.machine.path {
-            saved::watch_machine(path.clone(), &self.programs.watch, desk);
+            saved::watch_machine(path.clone(), &self.programs.watch, hub);
         }
     }
 

@@ -23,7 +23,7 @@ mod threads;
 mod turns;
 mod view;
 
-pub use view::{LiveView, Wishes};
+pub use view::{LiveView, OwnerRequests};
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -37,7 +37,7 @@ use runtime::{Event, OpenBox};
 use serde_json::{Value, json};
 use vm::scheduler::Turn;
 
-use crate::desk::{Desk, Incoming, Mailbox, PageId};
+use crate::hub::{Hub, Incoming, Mailbox, PageId};
 use crate::request::PageRequest;
 use crate::{Keeper, Show, TimeControl};
 use clock::{Clock, now};
@@ -82,28 +82,28 @@ pub(crate) fn run<T: Target>(
     show: Show,
     company: Company<T>,
     check: &mut dyn FnMut() -> Result<(), String>,
-    (desk, requests): (&Arc<Desk>, &Receiver<Incoming>),
+    (hub, requests): (&Arc<Hub>, &Receiver<Incoming>),
 ) -> ShowEnd {
     let limit = show.limit.map(|seconds| session.tick_after(seconds));
-    let mut stage = Stage::new(session, show, desk);
-    stage.company = company;
-    stage.watch_machine(desk);
+    let mut state = ViewState::new(session, show, hub);
+    state.company = company;
+    state.watch_machine(hub);
     while limit.is_none_or(|limit| session.tick() < limit) {
-        stage.take(session, requests, BEAT);
-        stage.stop_silent_jogs(session);
-        stage.advance(session, limit);
-        stage.tell(session);
-        if stage.is_rebuild_wanted() {
+        state.take(session, requests, BEAT);
+        state.stop_silent_jogs(session);
+        state.advance(session, limit);
+        state.tell(session);
+        if state.is_rebuild_wanted() {
             match check() {
                 Ok(()) => {
-                    stage.close();
+                    state.close();
                     return ShowEnd::NewMachine;
                 }
-                Err(text) => stage.refuse_rebuild(&text),
+                Err(text) => state.refuse_rebuild(&text),
             }
         }
     }
-    stage.close();
+    state.close();
     ShowEnd::TimeOver
 }
 
@@ -111,10 +111,10 @@ pub(crate) fn run<T: Target>(
 pub(crate) fn view<T: Target>(
     session: &mut Session<T>,
     show: Show,
-    desk: &Arc<Desk>,
+    hub: &Arc<Hub>,
     requests: Receiver<Incoming>,
 ) -> LiveView<T> {
-    LiveView::new(Stage::new(session, show, desk), requests)
+    LiveView::new(ViewState::new(session, show, hub), requests)
 }
 
 /// A page that looks.
@@ -142,7 +142,7 @@ struct Told {
 
 /// The state of a shown session, besides the session.
 #[derive(Debug)]
-struct Stage<T: Target> {
+struct ViewState<T: Target> {
     show: Show,
     programs: Programs,
     clock: Clock,
@@ -156,7 +156,7 @@ struct Stage<T: Target> {
     /// The thread that had the processor in each of the last ticks.
     turns: Turns,
     /// For whoever else runs the session.
-    wishes: Wishes,
+    owner_requests: OwnerRequests,
     /// The other users of the board.
     company: Company<T>,
     /// The jogs of pages, and their rights over a connected controller.
@@ -172,9 +172,9 @@ pub struct Company<T: Target> {
     pub keeper: Option<Box<dyn Keeper<T>>>,
 }
 
-impl<T: Target> Stage<T> {
-    fn new(session: &mut Session<T>, show: Show, desk: &Arc<Desk>) -> Self {
-        let programs = Programs::watched(&show, session.options(), desk);
+impl<T: Target> ViewState<T> {
+    fn new(session: &mut Session<T>, show: Show, hub: &Arc<Hub>) -> Self {
+        let programs = Programs::watched(&show, session.options(), hub);
         let clock = Clock::new(session.tick(), show.speed, !show.is_paused);
         let mut samples = Samples::new(show.time == TimeControl::Real);
         let list = if show.watch.is_empty() { SIGNALS } else { &show.watch };
@@ -203,7 +203,7 @@ impl<T: Target> Stage<T> {
             pages: BTreeMap::new(),
             told: Told { threads: Vec::new(), at: now(), open_box: None },
             turns: Turns::default(),
-            wishes: Wishes::default(),
+            owner_requests: OwnerRequests::default(),
             company: Company { attendant: None, keeper: None },
             access: PageAccess::default(),
         }
@@ -352,7 +352,7 @@ impl<T: Target> Stage<T> {
         }
         session.act(text).map_err(|error| error.to_string())?;
         if self.is_guest() {
-            self.wishes.acts.push(text.to_owned());
+            self.owner_requests.acts.push(text.to_owned());
         }
         self.keep(session);
         Ok(())
@@ -368,7 +368,7 @@ impl<T: Target> Stage<T> {
             return Ok(());
         }
         if self.is_guest() {
-            self.wishes.commands.push(line.to_owned());
+            self.owner_requests.commands.push(line.to_owned());
             return Ok(());
         }
         let quoted = line.replace('\\', "\\\\").replace('"', "\\\"");
@@ -468,7 +468,7 @@ impl<T: Target> Stage<T> {
         events.iter().for_each(|event| self.log.note(session, event));
         self.keep(session);
         if self.is_guest() {
-            self.wishes.events.extend(events);
+            self.owner_requests.events.extend(events);
         }
     }
 

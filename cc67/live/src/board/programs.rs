@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::machine::MachineState;
 use super::saved::{self, Watch};
-use crate::desk::{Compiled, Desk};
+use crate::hub::{Compiled, Hub};
 use crate::{Program, Show};
 
 /// The programs.
@@ -33,9 +33,9 @@ pub(super) struct Programs {
 
 impl Programs {
     /// The programs of a board, whose files are looked at from now on.
-    pub(super) fn watched(show: &Show, options: &Options, desk: &Arc<Desk>) -> Self {
+    pub(super) fn watched(show: &Show, options: &Options, hub: &Arc<Hub>) -> Self {
         let watch = Watch::default();
-        saved::watch(show.programs.clone(), show.include_dirs.clone(), options.clone(), (&watch, desk));
+        saved::watch(show.programs.clone(), show.include_dirs.clone(), options.clone(), (&watch, hub));
         Self {
             watch,
             machine: MachineState::default(),

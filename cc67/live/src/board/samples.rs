@@ -7,7 +7,7 @@ use cc67_host::{Session, Target, Watch};
 use kmotiondef::Ticks;
 use serde::Serialize;
 
-use crate::desk::locked;
+use crate::hub::locked;
 
 /// Numbers that are kept, over all signals: 32 MiB.
 const KEPT: usize = 4 << 20;

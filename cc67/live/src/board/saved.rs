@@ -10,7 +10,7 @@ use std::time::{Duration, SystemTime};
 use cc67_host::{CompileMessage, HostError, Options, UserProgram};
 use runtime::MachineFile;
 
-use crate::desk::{Compiled, Desk, Incoming};
+use crate::hub::{Compiled, Hub, Incoming};
 use crate::{Program, names};
 
 /// The interval at which files are looked at.
@@ -39,9 +39,9 @@ pub(super) fn watch(
     programs: Vec<Program>,
     include_dirs: Vec<PathBuf>,
     options: Options,
-    (watch, desk): (&Watch, &Arc<Desk>),
+    (watch, hub): (&Watch, &Arc<Hub>),
 ) {
-    let (desk, watch) = (Arc::clone(desk), Arc::downgrade(watch));
+    let (hub, watch) = (Arc::clone(hub), Arc::downgrade(watch));
     thread::spawn(move || {
         let mut known: Vec<_> = programs.iter().map(|program| stamps(&program.path, &include_dirs)).collect();
         while is_wanted(&watch) {
@@ -56,7 +56,7 @@ pub(super) fn watch(
                     continue;
                 }
                 *known = stamps;
-                if !desk.hand_in(Incoming::Saved(Box::new(compile(program, &options)))) {
+                if !hub.hand_in(Incoming::Saved(Box::new(compile(program, &options)))) {
                     return;
                 }
             }
@@ -65,8 +65,8 @@ pub(super) fn watch(
 }
 
 /// Looks at the machine file from now on, and hands in whether it is right when it is saved.
-pub(super) fn watch_machine(path: PathBuf, watch: &Watch, desk: &Arc<Desk>) {
-    let (desk, watch) = (Arc::clone(desk), Arc::downgrade(watch));
+pub(super) fn watch_machine(path: PathBuf, watch: &Watch, hub: &Arc<Hub>) {
+    let (hub, watch) = (Arc::clone(hub), Arc::downgrade(watch));
     thread::spawn(move || {
         let mut known = fs::read(&path).ok();
         while is_wanted(&watch) {
@@ -79,7 +79,7 @@ pub(super) fn watch_machine(path: PathBuf, watch: &Watch, desk: &Arc<Desk>) {
                 thread::sleep(AWAY);
             }
             known = fs::read(&path).ok();
-            if !desk.hand_in(Incoming::Machine(check_machine(&path, known.as_deref()))) {
+            if !hub.hand_in(Incoming::Machine(check_machine(&path, known.as_deref()))) {
                 return;
             }
         }

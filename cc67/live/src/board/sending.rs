@@ -7,10 +7,10 @@ use serde_json::{Value, json};
 
 use super::clock::now;
 use super::frame::{self, Moment};
-use super::{BEAT, Stage, THREADS, asks, log_message, threads};
-use crate::desk::PageId;
+use super::{BEAT, THREADS, ViewState, asks, log_message, threads};
+use crate::hub::PageId;
 
-impl<T: Target> Stage<T> {
+impl<T: Target> ViewState<T> {
     /// Tells pages what is new.
     pub(super) fn tell(&mut self, session: &Session<T>) {
         self.tell_link(session);

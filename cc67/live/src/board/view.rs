@@ -6,19 +6,19 @@ use std::time::Duration;
 use cc67_host::{Session, Target};
 use runtime::Event;
 
-use super::Stage;
-use crate::desk::Incoming;
+use super::ViewState;
+use crate::hub::Incoming;
 
 /// The page of a session that somebody else runs.
 #[derive(Debug)]
 pub struct LiveView<T: Target> {
-    stage: Stage<T>,
+    state: ViewState<T>,
     requests: Receiver<Incoming>,
 }
 
 /// The requests of pages to the owner of the session.
 #[derive(Debug, Default)]
-pub struct Wishes {
+pub struct OwnerRequests {
     /// The events of the ticks that a page has run.
     pub events: Vec<Event>,
     /// Lines of script commands to be sent to the board.
@@ -30,33 +30,33 @@ pub struct Wishes {
 }
 
 impl<T: Target> LiveView<T> {
-    pub(super) const fn new(stage: Stage<T>, requests: Receiver<Incoming>) -> Self {
-        Self { stage, requests }
+    pub(super) const fn new(state: ViewState<T>, requests: Receiver<Incoming>) -> Self {
+        Self { state, requests }
     }
 
     /// Takes note of what has happened on the board.
     pub fn hear(&mut self, session: &Session<T>, event: &Event) {
-        self.stage.log.note(session, event);
+        self.state.log.note(session, event);
     }
 
     /// Does what pages have requested since the last time, without waiting, and sends them what is new. To be called
     /// about a hundred times in a second.
-    pub fn beat(&mut self, session: &mut Session<T>) -> Wishes {
-        self.stage.take(session, &self.requests, Duration::ZERO);
-        self.stage.stop_silent_jogs(session);
-        self.stage.tell(session);
-        let clock = &self.stage.clock;
+    pub fn beat(&mut self, session: &mut Session<T>) -> OwnerRequests {
+        self.state.take(session, &self.requests, Duration::ZERO);
+        self.state.stop_silent_jogs(session);
+        self.state.tell(session);
+        let clock = &self.state.clock;
         let speed = clock.is_running().then(|| clock.speed());
-        Wishes { speed, ..std::mem::take(&mut self.stage.wishes) }
+        OwnerRequests { speed, ..std::mem::take(&mut self.state.owner_requests) }
     }
 
     /// Sends pages what is new while nothing may be requested.
     pub fn show(&mut self, session: &Session<T>) {
-        self.stage.tell(session);
+        self.state.tell(session);
     }
 
     /// The session is over: pages are told.
     pub fn close(&self) {
-        self.stage.close();
+        self.state.close();
     }
 }

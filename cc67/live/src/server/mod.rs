@@ -17,7 +17,7 @@ use cc67_host::{Session, Target};
 
 use crate::Show;
 use crate::board::{self, Company, LiveView, ShowEnd};
-use crate::desk::{Desk, Incoming};
+use crate::hub::{Hub, Incoming};
 use gate::Gate;
 use http::{Head, HttpAnswer};
 
@@ -50,7 +50,7 @@ pub struct Server {
     url: String,
     port: u16,
     token: String,
-    desk: Arc<Desk>,
+    hub: Arc<Hub>,
     requests: Receiver<Incoming>,
 }
 
@@ -67,10 +67,10 @@ impl Server {
         let bound = listener.local_addr().map_err(failed)?;
         let gate = Gate::new(bound, token).map_err(ListenError::Random)?;
         let (url, token) = (gate.url(), gate.token().to_owned());
-        let (desk, requests) = Desk::new();
-        let shared = Arc::clone(&desk);
+        let (hub, requests) = Hub::new();
+        let shared = Arc::clone(&hub);
         thread::spawn(move || accept(&listener, &Arc::new(gate), &shared));
-        Ok(Self { url, port: bound.port(), token, desk, requests })
+        Ok(Self { url, port: bound.port(), token, hub, requests })
     }
 
     /// The address of the page, with the token.
@@ -100,17 +100,17 @@ impl Server {
         company: Company<T>,
         check: &mut dyn FnMut() -> Result<(), String>,
     ) -> ShowEnd {
-        board::run(session, show, company, check, (&self.desk, &self.requests))
+        board::run(session, show, company, check, (&self.hub, &self.requests))
     }
 
     /// Shows a board that somebody else runs.
     pub fn view<T: Target>(self, session: &mut Session<T>, show: Show) -> LiveView<T> {
-        board::view(session, show, &self.desk, self.requests)
+        board::view(session, show, &self.hub, self.requests)
     }
 }
 
 /// Takes connections forever, each on a thread of its own.
-fn accept(listener: &TcpListener, gate: &Arc<Gate>, desk: &Arc<Desk>) {
+fn accept(listener: &TcpListener, gate: &Arc<Gate>, hub: &Arc<Hub>) {
     let seats = Seats::new(CONNECTIONS);
     for stream in listener.incoming() {
         let Ok(stream) = stream else {
@@ -123,40 +123,40 @@ fn accept(listener: &TcpListener, gate: &Arc<Gate>, desk: &Arc<Desk>) {
             Box::new(move || drop(stream.shutdown(Shutdown::Both))) as Closer
         });
         let Some(admission) = seats.take(close.ok()) else {
-            desk.log("there are too many connections", "");
+            hub.log("there are too many connections", "");
             continue;
         };
         if admission.has_closed_another {
-            desk.log("there are too many connections; the one that was silent the longest is closed", "");
+            hub.log("there are too many connections; the one that was silent the longest is closed", "");
         }
-        let (gate, own) = (Arc::clone(gate), Arc::clone(desk));
+        let (gate, own) = (Arc::clone(gate), Arc::clone(hub));
         let spawned = thread::Builder::new().spawn(move || {
             // What goes wrong is that client's loss.
             let _ = serve(stream, &admission.seat, &gate, &own);
         });
         if spawned.is_err() {
-            desk.log("there is no thread for a connection", "");
+            hub.log("there is no thread for a connection", "");
         }
     }
 }
 
 /// Serves one connection: one request, or a socket.
-fn serve(mut stream: TcpStream, seat: &Seat, gate: &Gate, desk: &Arc<Desk>) -> io::Result<()> {
+fn serve(mut stream: TcpStream, seat: &Seat, gate: &Gate, hub: &Arc<Hub>) -> io::Result<()> {
     stream.set_read_timeout(Some(PATIENCE))?;
     stream.set_write_timeout(Some(PATIENCE))?;
     stream.set_nodelay(true)?;
     let Some(head) = Head::read(&mut stream)? else {
-        desk.log("a client sent what is not HTTP", "");
+        hub.log("a client sent what is not HTTP", "");
         return HttpAnswer::problem(400, "this is not HTTP").send(&mut stream);
     };
     if let Err(refusal) = gate.check(&head) {
-        desk.log(refusal.why(), "");
+        hub.log(refusal.why(), "");
         let why = format!("{}\nOpen the address that cc67 printed when it started.", refusal.why());
         return HttpAnswer::problem(403, &why).send(&mut stream);
     }
     match head.path() {
         "/socket" => match head.websocket_key() {
-            Some(key) => socket::serve(stream, key, seat, desk),
+            Some(key) => socket::serve(stream, key, seat, hub),
             None => HttpAnswer::problem(400, "this address is for WebSocket").send(&mut stream),
         },
         path => match files::find(path) {

@@ -13,7 +13,7 @@ use tungstenite::handshake::derive_accept_key;
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Bytes, Message, Utf8Bytes, WebSocket};
 
-use crate::desk::{Desk, Incoming, Mailbox, Outgoing, PageId};
+use crate::hub::{Hub, Incoming, Mailbox, Outgoing, PageId};
 use crate::request::{LONGEST, PageRequest};
 
 /// The time for which it waits for incoming messages before it sends the outgoing ones.
@@ -22,7 +22,7 @@ const TURN: Duration = Duration::from_millis(5);
 const MESSAGES_AT_ONCE: usize = 32;
 
 /// Serves a page until it is gone.
-pub(super) fn serve(mut stream: TcpStream, key: &str, seat: &Seat, desk: &Arc<Desk>) -> io::Result<()> {
+pub(super) fn serve(mut stream: TcpStream, key: &str, seat: &Seat, hub: &Arc<Hub>) -> io::Result<()> {
     let accept = derive_accept_key(key.as_bytes());
     let head = format!(
         "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Accept: {accept}\r\n\r\n"
@@ -32,13 +32,13 @@ pub(super) fn serve(mut stream: TcpStream, key: &str, seat: &Seat, desk: &Arc<De
     let config = WebSocketConfig::default().max_message_size(Some(LONGEST)).max_frame_size(Some(LONGEST));
     let socket = WebSocket::from_raw_socket(stream, Role::Server, Some(config));
     seat.hear();
-    let (page, mailbox) = (desk.number(), Arc::new(Mailbox::default()));
-    if desk.hand_in(Incoming::Join(page, Arc::clone(&mailbox))) {
-        let mut connection = Connection { socket, seat, desk, page, mailbox: &mailbox };
+    let (page, mailbox) = (hub.number(), Arc::new(Mailbox::default()));
+    if hub.hand_in(Incoming::Join(page, Arc::clone(&mailbox))) {
+        let mut connection = Connection { socket, seat, hub, page, mailbox: &mailbox };
         if let Err(why) = connection.run() {
             connection.leave(&why);
         }
-        desk.hand_in(Incoming::Leave(page));
+        hub.hand_in(Incoming::Leave(page));
     }
     Ok(())
 }
@@ -47,7 +47,7 @@ pub(super) fn serve(mut stream: TcpStream, key: &str, seat: &Seat, desk: &Arc<De
 struct Connection<'a> {
     socket: WebSocket<TcpStream>,
     seat: &'a Seat,
-    desk: &'a Desk,
+    hub: &'a Hub,
     page: PageId,
     mailbox: &'a Mailbox,
 }
@@ -98,7 +98,7 @@ impl Connection<'_> {
                     self.seat.hear();
                     let request =
                         PageRequest::parse(&text).map_err(|error| Gone::Broken(error.to_string()))?;
-                    if !self.desk.hand_in(Incoming::Ask(self.page, request)) {
+                    if !self.hub.hand_in(Incoming::Ask(self.page, request)) {
                         return Err(Gone::Closed);
                     }
                 }
@@ -114,7 +114,7 @@ impl Connection<'_> {
     /// Says good-bye to a client, and says what it has done.
     fn leave(&mut self, why: &Gone) {
         if let Gone::Broken(what) = why {
-            self.desk.log("a page sent what is not a request and was disconnected", what);
+            self.hub.log("a page sent what is not a request and was disconnected", what);
         }
         // It may be gone already.
         let _ = self.socket.close(None);

@@ -157,7 +157,7 @@ impl<T: Target> Served<T> {
     #[cfg(feature = "live")]
     pub(super) fn beat(&mut self) -> Option<PageWishes> {
         let wishes = self.view.as_mut()?.beat(&mut self.rig.session);
-        let cc67_live::Wishes { events, commands, acts, speed } = wishes;
+        let cc67_live::OwnerRequests { events, commands, acts, speed } = wishes;
         Some(PageWishes { events, commands, acts, speed })
     }
 

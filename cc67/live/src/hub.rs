@@ -44,16 +44,16 @@ pub(crate) struct Compiled {
     pub(crate) result: Result<UserProgram, Vec<CompileMessage>>,
 }
 
-/// The desk between connections and the board.
+/// The hub between connections and the board.
 #[derive(Debug)]
-pub(crate) struct Desk {
+pub(crate) struct Hub {
     sender: SyncSender<Incoming>,
     pages: Mutex<u64>,
     said: Mutex<BTreeSet<&'static str>>,
 }
 
-impl Desk {
-    /// A desk, and where its requests come out.
+impl Hub {
+    /// A hub, and where its requests come out.
     pub(crate) fn new() -> (Arc<Self>, Receiver<Incoming>) {
         let (sender, receiver) = mpsc::sync_channel(REQUESTS);
         (Arc::new(Self { sender, pages: Mutex::default(), said: Mutex::default() }), receiver)
