@@ -147,8 +147,8 @@ impl Setup {
             options.firmware.check_version()?;
             modelled(&options)?;
         }
-        let described = Described::read(started, board, compiler, options)?;
-        let Some(Described { session, uart, flash }) = described else { return Ok(None) };
+        let prepared = PreparedBoard::read(started, board, compiler, options)?;
+        let Some(PreparedBoard { session, uart, flash }) = prepared else { return Ok(None) };
         Ok(Some(Self { session, code, uart, flash, controller: None }))
     }
 
@@ -286,7 +286,7 @@ impl Setup {
 
 /// The board and its programs as the options describe them, for any code.
 #[derive(Debug)]
-pub(crate) struct Described {
+pub(crate) struct PreparedBoard {
     /// The board and its programs.
     pub(crate) session: cc67_host::Setup,
     /// The connection of its serial port.
@@ -295,7 +295,7 @@ pub(crate) struct Described {
     pub(crate) flash: Flash,
 }
 
-impl Described {
+impl PreparedBoard {
     /// Reads what the arguments name and compiles the programs; `None` if one has errors, which have been reported.
     pub(crate) fn read<'a>(
         started: impl Into<Started<'a>>,

@@ -3,7 +3,6 @@
 //! An option of a board is one field in [`board`]; every command that has a board has the option.
 
 pub(crate) mod attach;
-pub(crate) mod beside;
 pub(crate) mod board;
 pub(crate) mod compiler;
 pub(crate) mod controller;
@@ -12,6 +11,7 @@ pub(crate) mod heading;
 pub(crate) mod pc;
 pub(crate) mod program;
 pub(crate) mod setting;
+pub(crate) mod sidecars;
 pub(crate) mod stimulus;
 pub(crate) mod time;
 pub(crate) mod trace;

@@ -12,9 +12,9 @@ use clap::Args;
 use kmotiondef::ThreadId;
 use kmotiondef::timing::Timing;
 
-use crate::cli::args::beside::{Head, Project, within};
 use crate::cli::args::compiler::SourceArguments;
 use crate::cli::args::program::{ProgramFile, assign, names_thread};
+use crate::cli::args::sidecars::{Head, Project, within};
 use crate::cli::io::exit::Exit;
 use crate::cli::io::input::read;
 use crate::cli::io::output;

@@ -18,9 +18,9 @@ use kmotiondef::limits::TIMEBASE;
 use kmotiondef::{ThreadId, Ticks};
 use runtime::{Event, EventKind};
 
-use crate::cli::args::beside::{Beside, BesideArguments};
 use crate::cli::args::board::BoardArguments;
 use crate::cli::args::compiler::CompilerArguments;
+use crate::cli::args::sidecars::{SidecarArguments, Sidecars};
 use crate::cli::args::time::{DEFAULT_LIMIT, seconds};
 use crate::cli::io::exit::Exit;
 use crate::cli::io::{output, terminal};
@@ -53,7 +53,7 @@ pub(super) struct CompareArguments {
     #[command(flatten)]
     random: RandomArguments,
     #[command(flatten)]
-    beside: BesideArguments,
+    sidecars: SidecarArguments,
     #[command(flatten)]
     board: BoardArguments,
     #[command(flatten)]
@@ -157,10 +157,11 @@ impl CompareArguments {
         let given: Vec<OsString> =
             given.iter().filter(|word| !self.programs.contains(word)).cloned().collect();
         let mut options = Vec::new();
-        if !self.beside.no_sidecar {
-            let beside = Beside::of("compare", &programs, &given, |option| super::knows("compare", option))?;
-            options = beside.options;
-            programs.extend(beside.also);
+        if !self.sidecars.no_sidecar {
+            let sidecars =
+                Sidecars::of("compare", &programs, &given, |option| super::knows("compare", option))?;
+            options = sidecars.options;
+            programs.extend(sidecars.also);
         }
         let words = [before, &options, &given, std::slice::from_ref(program)].concat();
         match super::Arguments::try_parse_from(words)?.command {
@@ -229,7 +230,7 @@ impl CompareArguments {
     }
 
     fn started<'a>(&'a self, programs: &'a [OsString]) -> Started<'a> {
-        Started { programs, first: &self.beside.first }
+        Started { programs, first: &self.sidecars.first }
     }
 
     /// The run on the modelled board; `None` if a source has errors.

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use compiler::words::suggest;
 
-use crate::cli::args::beside::Head;
+use crate::cli::args::sidecars::Head;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::output;
 

@@ -41,8 +41,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 use compiler::words::suggest;
 
 use self::deferred::Deferred;
-use super::args::beside::Beside;
 use super::args::board::with_boot;
+use super::args::sidecars::Sidecars;
 use super::io::exit::Exit;
 use super::io::{output, stack, terminal};
 
@@ -269,22 +269,22 @@ impl Arguments {
             Some(Command::Test(_)) => ("test", None),
             _ => return Ok(self),
         };
-        let (beside, line) = match (programs, &self.command) {
+        let (sidecars, line) = match (programs, &self.command) {
             (Some(programs), _) => {
-                let beside = Beside::of(name, programs, words, |option| knows(name, option))?;
-                let line = programs.first().and_then(|program| beside.line(program));
-                (beside, line)
+                let sidecars = Sidecars::of(name, programs, words, |option| knows(name, option))?;
+                let line = programs.first().and_then(|program| sidecars.line(program));
+                (sidecars, line)
             }
-            (None, Some(Command::Test(arguments))) => (Beside::from(arguments.of_project()?), None),
+            (None, Some(Command::Test(arguments))) => (Sidecars::from(arguments.of_project()?), None),
             (None, _) => return Ok(self),
         };
-        if beside.is_empty() {
+        if sidecars.is_empty() {
             return Ok(self);
         }
         let at = words.iter().position(|word| word == name).context("the subcommand is among the words")? + 1;
         let (before, given) = words.split_at(at);
         let arguments =
-            Self::try_parse_from(with_boot([before, &beside.options, given, &beside.also].concat()));
+            Self::try_parse_from(with_boot([before, &sidecars.options, given, &sidecars.also].concat()));
         let arguments = arguments.map_err(|error| {
             let text = error.to_string();
             let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ");

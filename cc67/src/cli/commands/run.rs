@@ -12,9 +12,9 @@ use kmotiondef::limits::TIMEBASE;
 use kmotiondef::{AxisId, ThreadId, Ticks};
 use vm::profile::ProfilingEngine;
 
-use crate::cli::args::beside::BesideArguments;
 use crate::cli::args::board::{BoardArguments, RunForm};
 use crate::cli::args::compiler::CompilerArguments;
+use crate::cli::args::sidecars::SidecarArguments;
 use crate::cli::args::time::{DEFAULT_LIMIT, seconds};
 use crate::cli::args::trace::TraceArguments;
 use crate::cli::io::exit::Exit;
@@ -56,7 +56,7 @@ pub(super) struct RunArguments {
     #[arg(long, value_name = "FILE.svg", num_args = 0..=1, require_equals = true, default_missing_value = "")]
     profile: Option<String>,
     #[command(flatten)]
-    beside: BesideArguments,
+    sidecars: SidecarArguments,
     #[command(flatten)]
     board: BoardArguments,
     #[command(flatten)]
@@ -129,12 +129,12 @@ impl Work for &RunArguments {
 impl RunArguments {
     /// The programs, if what is beside them should be used.
     pub(super) fn with_sidecars(&self) -> Option<&[OsString]> {
-        (!self.beside.no_sidecar && self.board.controller.on.is_none()).then_some(&self.programs)
+        (!self.sidecars.no_sidecar && self.board.controller.on.is_none()).then_some(&self.programs)
     }
 
     /// The programs and the order in which they start.
     fn started(&self) -> Started<'_> {
-        Started { programs: &self.programs, first: &self.beside.first }
+        Started { programs: &self.programs, first: &self.sidecars.first }
     }
 
     /// The limit of the run.

@@ -17,10 +17,10 @@ use clap::{Args, Parser};
 use kmotiondef::Ticks;
 use kmotiondef::limits::TIMEBASE;
 
-use crate::cli::args::beside::{Beside, BesideArguments};
 use crate::cli::args::board::{BoardArguments, with_boot};
 use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::args::engine::EngineName;
+use crate::cli::args::sidecars::{SidecarArguments, Sidecars};
 use crate::cli::args::time::seconds;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::input::read;
@@ -50,7 +50,7 @@ pub(super) struct DebugArguments {
     #[arg(long = "for", alias = "until", value_name = "SECONDS", value_parser = seconds)]
     limit: Option<f64>,
     #[command(flatten)]
-    beside: BesideArguments,
+    sidecars: SidecarArguments,
     #[command(flatten)]
     board: BoardArguments,
     #[command(flatten)]
@@ -63,7 +63,7 @@ pub(super) struct DebugArguments {
 impl DebugArguments {
     /// The programs, if the files beside them should be used.
     pub(super) fn with_sidecars(&self) -> Option<&[OsString]> {
-        (!self.beside.no_sidecar).then_some(&self.programs)
+        (!self.sidecars.no_sidecar).then_some(&self.programs)
     }
 }
 
@@ -83,8 +83,8 @@ impl LaunchArguments {
     fn with_sidecars(words: &[OsString]) -> Result<Self> {
         let arguments = Self::try_parse_from(words)?;
         let Some(programs) = arguments.debug.with_sidecars() else { return Ok(arguments) };
-        let beside = Beside::of("debug", programs, words, |option| super::knows("debug", option))?;
-        Ok(Self::try_parse_from([&beside.options, words, &beside.also].concat())?)
+        let sidecars = Sidecars::of("debug", programs, words, |option| super::knows("debug", option))?;
+        Ok(Self::try_parse_from([&sidecars.options, words, &sidecars.also].concat())?)
     }
 }
 
@@ -146,7 +146,7 @@ fn note_active<T: Target>(shell: &Shell<T>) {
 
 /// Makes the setup that the arguments ask for; `None` if a program has errors, which have been reported.
 fn setup(arguments: &DebugArguments) -> Result<Option<Setup>> {
-    let started = Started { programs: &arguments.programs, first: &arguments.beside.first };
+    let started = Started { programs: &arguments.programs, first: &arguments.sidecars.first };
     Setup::new(started, &arguments.board, &arguments.compiler)
 }
 

@@ -19,10 +19,10 @@ use cc67_live::{
 use clap::{Arg, Args, Parser};
 
 use crate::cli::args::attach::AttachArguments;
-use crate::cli::args::beside::BesideArguments;
 use crate::cli::args::board::BoardArguments;
 use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::args::program::assign;
+use crate::cli::args::sidecars::SidecarArguments;
 use crate::cli::args::time::seconds;
 use crate::cli::args::uart::UartArguments;
 use crate::cli::io::exit::Exit;
@@ -67,7 +67,7 @@ pub(super) struct LiveArguments {
     #[command(flatten)]
     attach: AttachArguments,
     #[command(flatten)]
-    beside: BesideArguments,
+    sidecars: SidecarArguments,
     #[command(flatten)]
     board: BoardArguments,
     #[command(flatten)]
@@ -77,7 +77,7 @@ pub(super) struct LiveArguments {
 impl LiveArguments {
     /// The programs, if what is beside them should be used.
     pub(super) fn with_sidecars(&self) -> Option<&[OsString]> {
-        (!self.beside.no_sidecar).then_some(&self.programs)
+        (!self.sidecars.no_sidecar).then_some(&self.programs)
     }
 }
 
@@ -269,7 +269,7 @@ impl LiveArguments {
             "`--debug`: programs on a connected controller cannot be stopped"
         );
         ensure!(
-            self.beside.first.is_empty(),
+            self.sidecars.first.is_empty(),
             "`--first` is about a simulated board: it does not work with `--on`"
         );
         Ok(())
@@ -277,7 +277,7 @@ impl LiveArguments {
 
     /// Reads and compiles what the board is made of; `None` if a program has errors, which have been reported.
     fn setup(&self) -> Result<Option<Setup>> {
-        let started = Started { programs: &self.programs, first: &self.beside.first };
+        let started = Started { programs: &self.programs, first: &self.sidecars.first };
         Setup::new(started, &self.board, &self.compiler)
     }
 

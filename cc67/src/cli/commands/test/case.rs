@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 
-use crate::cli::args::beside::{BESIDE, Head, Project};
+use crate::cli::args::sidecars::{Head, Project, SIDECARS};
 use crate::cli::io::input::read;
 
 /// A program with the console it should show.
@@ -95,10 +95,10 @@ fn case(path: &Path, head: Head) -> Result<Case> {
         Head::Part | Head::None => (Vec::new(), Vec::new()),
     };
     let project = project(path)?;
-    for (suffix, option) in BESIDE {
-        let beside = path.with_extension(suffix);
-        if beside.is_file() && !options.iter().any(|given| given.starts_with(option)) {
-            let name = beside.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    for (suffix, option) in SIDECARS {
+        let sidecar = path.with_extension(suffix);
+        if sidecar.is_file() && !options.iter().any(|given| given.starts_with(option)) {
+            let name = sidecar.file_name().unwrap_or_default().to_string_lossy().into_owned();
             options.extend([(*option).to_owned(), name]);
         }
     }

@@ -25,9 +25,9 @@ use anyhow::{Context, Result, bail};
 use cc67_controller::Address;
 use clap::Args;
 
-use crate::cli::args::beside::Project;
 use crate::cli::args::board::RunForm;
 use crate::cli::args::engine::EngineName;
+use crate::cli::args::sidecars::Project;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::{output, terminal};
 use crate::cli::session::controller;

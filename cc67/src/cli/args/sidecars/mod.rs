@@ -19,7 +19,7 @@ use clap::Args;
 use super::heading;
 
 /// Files beside a program that it is run with, and the options that take them.
-pub(crate) const BESIDE: &[(&str, &str)] = &[("toml", "--machine"), ("stim", "--stim")];
+pub(crate) const SIDECARS: &[(&str, &str)] = &[("toml", "--machine"), ("stim", "--stim")];
 
 /// Options whose value names a file or a folder, or with `N:` in front a program.
 const FILES: &[&str] = &[
@@ -43,7 +43,7 @@ const FILES: &[&str] = &[
 /// Options for the files beside a program.
 #[derive(Debug, Args)]
 #[command(next_help_heading = heading::PROGRAMS)]
-pub(crate) struct BesideArguments {
+pub(crate) struct SidecarArguments {
     /// Run an initialisation program to its end before the others start
     #[arg(long, value_name = "[N:]FILE")]
     pub(crate) first: Vec<OsString>,
@@ -54,7 +54,7 @@ pub(crate) struct BesideArguments {
 
 /// The files and options found beside a program.
 #[derive(Debug, Default, PartialEq, Eq)]
-pub(crate) struct Beside {
+pub(crate) struct Sidecars {
     /// Options to put before those of the command line.
     pub(crate) options: Vec<OsString>,
     /// Programs to put after those of the command line.
@@ -63,7 +63,7 @@ pub(crate) struct Beside {
     said: Vec<String>,
 }
 
-impl Beside {
+impl Sidecars {
     /// Looks for files beside the first program of a command whose arguments are `given`; of the first line, only
     /// options that the command has are taken.
     ///
@@ -75,12 +75,12 @@ impl Beside {
         given: &[OsString],
         knows: impl Fn(&str) -> bool,
     ) -> Result<Self> {
-        let mut beside = Self::default();
-        let Some(program) = programs.first() else { return Ok(beside) };
+        let mut sidecars = Self::default();
+        let Some(program) = programs.first() else { return Ok(sidecars) };
         let program = file_of(program);
         let folder = program.parent().unwrap_or(Path::new(""));
         if let Some(project) = Project::above(folder)? {
-            beside.take_project(command, &project);
+            sidecars.take_project(command, &project);
         }
         let is_source = program.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("c"));
         let head = if is_source && program.is_file() { Head::of(&program)? } else { Head::None };
@@ -90,7 +90,7 @@ impl Beside {
             Head::Run { options, also } => (known(options, knows), also),
             Head::Part | Head::None => (Vec::new(), Vec::new()),
         };
-        for (suffix, option) in BESIDE {
+        for (suffix, option) in SIDECARS {
             let path = program.with_extension(suffix);
             let is_project = path.file_name() == Some(OsStr::new(project::NAME));
             if path.is_file()
@@ -98,15 +98,15 @@ impl Beside {
                 && !names(given, option)
                 && !options.iter().any(|word| word.starts_with(option))
             {
-                beside.said.push(path.display().to_string());
-                beside.options.extend([OsString::from(option), path.into()]);
+                sidecars.said.push(path.display().to_string());
+                sidecars.options.extend([OsString::from(option), path.into()]);
             }
         }
-        beside.take_head(options, also, folder, programs.len() == 1);
+        sidecars.take_head(options, also, folder, programs.len() == 1);
         if names(given, "--json") {
-            beside.options.retain(|option| option != "--time");
+            sidecars.options.retain(|option| option != "--time");
         }
-        Ok(beside)
+        Ok(sidecars)
     }
 
     /// Returns whether there is nothing.
@@ -142,7 +142,7 @@ impl Beside {
     }
 }
 
-impl From<Vec<OsString>> for Beside {
+impl From<Vec<OsString>> for Sidecars {
     fn from(options: Vec<OsString>) -> Self {
         Self { options, ..Self::default() }
     }
