@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 use vm::interp::BytecodeEngine;
 use vm::native::{NativeEngine, SharedCode};
 
-use crate::control::{AxisField, Control, Fault, Portion, Rig, Said, Unwritten, fields};
+use crate::control::{AxisField, Control, Fault, Portion, LoggedSession, LogLine, Unwritten, fields};
 use crate::controller::{Controller, ControllerTerms};
 use crate::errors::{Error, ExpectationError, LinkError, RangeError, ThreadError, TrapError, input};
 use crate::program::{LinkableProgram, thread};
@@ -136,7 +136,7 @@ fn boxed<T: Target + Send + 'static>(session: Session<T>) -> Box<dyn Control + S
 where
     T::Snapshot: Send,
 {
-    Box::new(Rig::new(session))
+    Box::new(LoggedSession::new(session))
 }
 
 /// Returns the options for programs and expressions of a controller: its processor and its firmware.
@@ -155,7 +155,7 @@ fn unwritten(reason: Unwritten) -> PyErr {
     }
 }
 
-fn lines(lines: &[Said]) -> Vec<(f64, String)> {
+fn lines(lines: &[LogLine]) -> Vec<(f64, String)> {
     lines.iter().map(|line| (line.time, line.text.clone())).collect()
 }
 

@@ -62,7 +62,7 @@ fn static_assert(assert: &StaticAssert) -> String {
 
 /// The contents of a list of specifiers, in any order.
 #[derive(Default)]
-struct Said {
+struct SpecifierList {
     storage: &'static str,
     is_inline: bool,
     is_const: bool,
@@ -71,7 +71,7 @@ struct Said {
     other: Option<String>,
 }
 
-impl Said {
+impl SpecifierList {
     fn qualifier(&mut self, qualifier: &TypeQualifier) {
         match qualifier {
             TypeQualifier::Const => self.is_const = true,
@@ -152,11 +152,11 @@ fn basic(words: &[&str]) -> &'static str {
 }
 
 fn specifiers(specifiers: &[Node<DeclarationSpecifier>]) -> String {
-    let mut said = Said::default();
+    let mut specifiers = SpecifierList::default();
     for specifier in specifiers {
         match &specifier.node {
             DeclarationSpecifier::StorageClass(class) => {
-                said.storage = match class.node {
+                specifiers.storage = match class.node {
                     StorageClassSpecifier::Typedef => "typedef",
                     StorageClassSpecifier::Extern => "extern",
                     StorageClassSpecifier::Static => "static",
@@ -165,27 +165,27 @@ fn specifiers(specifiers: &[Node<DeclarationSpecifier>]) -> String {
                     StorageClassSpecifier::Register => "register",
                 };
             }
-            DeclarationSpecifier::TypeSpecifier(ty) => said.ty(&ty.node),
-            DeclarationSpecifier::TypeQualifier(qualifier) => said.qualifier(&qualifier.node),
+            DeclarationSpecifier::TypeSpecifier(ty) => specifiers.ty(&ty.node),
+            DeclarationSpecifier::TypeQualifier(qualifier) => specifiers.qualifier(&qualifier.node),
             DeclarationSpecifier::Function(function) => {
-                said.is_inline |= function.node == FunctionSpecifier::Inline;
+                specifiers.is_inline |= function.node == FunctionSpecifier::Inline;
             }
             DeclarationSpecifier::Alignment(_) | DeclarationSpecifier::Extension(_) => {}
         }
     }
-    said.show()
+    specifiers.show()
 }
 
 fn specifier_qualifiers(specifiers: &[Node<SpecifierQualifier>]) -> String {
-    let mut said = Said::default();
+    let mut specifiers = SpecifierList::default();
     for specifier in specifiers {
         match &specifier.node {
-            SpecifierQualifier::TypeSpecifier(ty) => said.ty(&ty.node),
-            SpecifierQualifier::TypeQualifier(qualifier) => said.qualifier(&qualifier.node),
+            SpecifierQualifier::TypeSpecifier(ty) => specifiers.ty(&ty.node),
+            SpecifierQualifier::TypeQualifier(qualifier) => specifiers.qualifier(&qualifier.node),
             SpecifierQualifier::Extension(_) => {}
         }
     }
-    said.show()
+    specifiers.show()
 }
 
 fn record(record: &StructType) -> String {
@@ -228,13 +228,13 @@ fn declarator(declarator: &Declarator) -> String {
 fn derived(derived: &DerivedDeclarator) -> String {
     match derived {
         DerivedDeclarator::Pointer(qualifiers) | DerivedDeclarator::Block(qualifiers) => {
-            let mut said = Said { other: Some(String::new()), ..Said::default() };
+            let mut specifiers = SpecifierList { other: Some(String::new()), ..SpecifierList::default() };
             for qualifier in qualifiers {
                 if let PointerQualifier::TypeQualifier(qualifier) = &qualifier.node {
-                    said.qualifier(&qualifier.node);
+                    specifiers.qualifier(&qualifier.node);
                 }
             }
-            joined(["*".to_owned(), said.show()])
+            joined(["*".to_owned(), specifiers.show()])
         }
         DerivedDeclarator::Array(array) => match &array.node.size {
             ArraySize::Unknown | ArraySize::VariableUnknown => "[]".to_owned(),

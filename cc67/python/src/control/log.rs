@@ -7,7 +7,7 @@ use runtime::{Event, EventKind};
 
 /// A line and its board time.
 #[derive(Clone, Debug)]
-pub(crate) struct Said {
+pub(crate) struct LogLine {
     /// Seconds of board time since power-up.
     pub(crate) time: f64,
     /// The text, without its line end.
@@ -44,11 +44,11 @@ pub(crate) enum Fault {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Log {
     /// Lines that programs printed.
-    pub(crate) console: Vec<Said>,
+    pub(crate) console: Vec<LogLine>,
     /// Lines of the reply to the present command.
     pub(crate) replies: Vec<String>,
     /// Remarks of the simulation.
-    pub(crate) remarks: Vec<Said>,
+    pub(crate) remarks: Vec<LogLine>,
     /// Characters that the serial port sent, if they are recorded.
     pub(crate) uart: Vec<u8>,
     /// Traps and expectations that were not met.
@@ -65,7 +65,7 @@ impl Log {
         for event in events {
             let time = event.at.get() as f64 / Cycles::PER_SECOND.get() as f64;
             match &event.kind {
-                EventKind::ConsoleLine(line) => self.console.push(Said { time, text: text(line) }),
+                EventKind::ConsoleLine(line) => self.console.push(LogLine { time, text: text(line) }),
                 EventKind::Reply(line) => self.replies.push(text(line)),
                 EventKind::UartSent(byte) => self.uart.push(*byte),
                 EventKind::Echo(_) | EventKind::Aborted | EventKind::Trace(_) | EventKind::Loaded(..) => {}
@@ -82,7 +82,7 @@ impl Log {
                 // Whatever else happens is a remark, if it has words.
                 _ => {
                     known = programs.take().map_or(known, |programs| programs());
-                    let line = remark::describe(&event, &known).map(|text| Said { time, text });
+                    let line = remark::describe(&event, &known).map(|text| LogLine { time, text });
                     self.remarks.extend(line);
                 }
             }

@@ -13,7 +13,7 @@ use runtime::trace::Item;
 use runtime::{Event, EventKind};
 
 pub(crate) use fields::{AxisField, field, fields, stored};
-pub(crate) use log::{Fault, Log, Said};
+pub(crate) use log::{Fault, Log, LogLine};
 
 use crate::trace::{Columns, Recorder};
 
@@ -119,8 +119,8 @@ pub(crate) trait Control: 'static {
     fn recording(&self) -> (String, bool);
 }
 
-/// A session with what its board has said.
-pub(crate) struct Rig<T: Target> {
+/// A session with the log of its board.
+pub(crate) struct LoggedSession<T: Target> {
     session: Session<T>,
     log: Log,
     stops_at_faults: bool,
@@ -161,7 +161,7 @@ impl Kept {
 /// Most bytes of the recording of what is done by hand.
 const RECORDING: usize = 1 << 20;
 
-impl<T: Target> Rig<T> {
+impl<T: Target> LoggedSession<T> {
     /// A session whose board has said nothing yet.
     pub(crate) fn new(mut session: Session<T>) -> Self {
         session.limit_recording(RECORDING);
@@ -247,7 +247,7 @@ impl<T: Target> Rig<T> {
     }
 }
 
-impl<T: Target + 'static> Control for Rig<T> {
+impl<T: Target + 'static> Control for LoggedSession<T> {
     fn tick(&mut self) -> u64 {
         self.refresh();
         self.session.tick().get()
