@@ -35,5 +35,5 @@ pub use debugger::{
     ShownVariable, StackFrame, Stop,
 };
 pub use programs::Programs;
-pub use shell::{Output, Said, Shell};
+pub use shell::{CommandOutput, Output, Shell};
 pub use words::{BreakWords, LineReader};

@@ -22,7 +22,7 @@ use crate::words::{BreakWords, LineReader, is_move, split_if};
 
 /// The result of a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Said {
+pub enum CommandOutput {
     /// A text to show; it may be empty.
     Text(String),
     /// The end.
@@ -109,27 +109,30 @@ impl<T: Target> Shell<T> {
     ///
     /// # Errors
     /// What is wrong with it.
-    pub fn command(&mut self, line: &str, output: Output<'_>) -> Result<Said, DebugError> {
+    pub fn command(&mut self, line: &str, output: Output<'_>) -> Result<CommandOutput, DebugError> {
         if let Some(id) = self.reading {
             match line.trim() {
                 "end" => self.reading = None,
                 command => self.commands.entry(id).or_default().push(command.to_owned()),
             }
-            return Ok(Said::Text(String::new()));
+            return Ok(CommandOutput::Text(String::new()));
         }
         let mut said = self.one(line, output)?;
         // What belongs to the breakpoint that has stopped the board, which may let it go on to another one.
-        let mut next =
-            if matches!(said, Said::Text(_)) { self.commands_of_stop(line) } else { VecDeque::new() };
+        let mut next = if matches!(said, CommandOutput::Text(_)) {
+            self.commands_of_stop(line)
+        } else {
+            VecDeque::new()
+        };
         while let Some(command) = next.pop_front() {
-            if let Said::Text(text) = &said {
+            if let CommandOutput::Text(text) = &said {
                 output(text);
             }
             said = self.one(&command, output)?;
             if self.is_move(&command) {
                 next = self.commands_of_stop(&command);
             }
-            if said == Said::Quit {
+            if said == CommandOutput::Quit {
                 break;
             }
         }
@@ -151,10 +154,12 @@ impl<T: Target> Shell<T> {
         commands.filter(|command| *command != "silent").cloned().collect()
     }
 
-    fn one(&mut self, line: &str, output: Output<'_>) -> Result<Said, DebugError> {
-        let Some((name, rest)) = self.lines.read(line)? else { return Ok(Said::Text(String::new())) };
+    fn one(&mut self, line: &str, output: Output<'_>) -> Result<CommandOutput, DebugError> {
+        let Some((name, rest)) = self.lines.read(line)? else {
+            return Ok(CommandOutput::Text(String::new()));
+        };
         if name == "quit" {
-            return Ok(Said::Quit);
+            return Ok(CommandOutput::Quit);
         }
         let text = self.execute(name, &rest, output)?;
         let mut messages = String::new();
@@ -162,7 +167,7 @@ impl<T: Target> Shell<T> {
             messages += &message;
             messages.push('\n');
         }
-        Ok(Said::Text(messages + &text))
+        Ok(CommandOutput::Text(messages + &text))
     }
 
     fn execute(&mut self, name: &str, rest: &str, output: Output<'_>) -> Result<String, DebugError> {
@@ -276,8 +281,8 @@ impl<T: Target> Shell<T> {
             self.debugger.select(one, 0)?;
             text += &format!("\nThread {one}:\n");
             match self.one(&command, output) {
-                Ok(Said::Text(said)) => text += &said,
-                Ok(Said::Quit) => {}
+                Ok(CommandOutput::Text(said)) => text += &said,
+                Ok(CommandOutput::Quit) => {}
                 Err(error) => text += &format!("{error}\n"),
             }
         }

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use cc67_debug::{Debugger, Said, Shell};
+use cc67_debug::{CommandOutput, Debugger, Shell};
 use cc67_host::{Setup, UserProgram};
 use compiler::passes::Level;
 use kmotiondef::{ThreadId, Ticks};
@@ -27,7 +27,7 @@ fn transcript(program: &Path, level: Level, session: &str) -> String {
     for command in session.lines().filter_map(|line| line.strip_prefix("(cc67) ")) {
         let mut said = String::new();
         let answer = shell.command(command, &mut |text| said.push_str(text)).expect(command);
-        let Said::Text(text) = answer else { break };
+        let CommandOutput::Text(text) = answer else { break };
         // Writing to a string cannot fail.
         let _ = write!(out, "(cc67) {command}\n{said}{text}");
     }

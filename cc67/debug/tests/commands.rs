@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use cc67_debug::{Debugger, Said, Shell};
+use cc67_debug::{CommandOutput, Debugger, Shell};
 use cc67_host::{Setup, UserProgram};
 use compiler::passes::Level;
 use kmotiondef::{ThreadId, Ticks};
@@ -56,8 +56,8 @@ fn session(level: Level, programs: &[&str], commands: &str) -> String {
         let answer = shell.command(command, &mut |text| said.push_str(text));
         out.push_str(&said);
         match answer {
-            Ok(Said::Text(text)) => out.push_str(&text),
-            Ok(Said::Quit) => break,
+            Ok(CommandOutput::Text(text)) => out.push_str(&text),
+            Ok(CommandOutput::Quit) => break,
             Err(error) => out.push_str(&format!("{error}\n")),
         }
     }
@@ -351,7 +351,7 @@ fn an_expression_is_caught_at_the_tick_in_which_it_becomes_true() {
     let folder = Folder::new();
     let mut first = shell(&folder, Level::Full, &[text]);
     let mut answer = |line: &str| match first.command(line, &mut |_| ()) {
-        Ok(Said::Text(text)) => text,
+        Ok(CommandOutput::Text(text)) => text,
         other => panic!("{line}: {other:?}"),
     };
     assert_eq!(answer("catch when \"ch0->Dest > 20\""), "Catchpoint 1 (when ch0->Dest > 20)\n");
@@ -361,7 +361,7 @@ fn an_expression_is_caught_at_the_tick_in_which_it_becomes_true() {
     // It becomes true once more only after it was false.
     let caught = first.debugger().session().tick();
     let mut answer = |line: &str| match first.command(line, &mut |_| ()) {
-        Ok(Said::Text(text)) => text,
+        Ok(CommandOutput::Text(text)) => text,
         other => panic!("{line}: {other:?}"),
     };
     assert!(answer("continue").contains("All threads have ended"));

@@ -152,11 +152,11 @@ fn basic(words: &[&str]) -> &'static str {
 }
 
 fn specifiers(specifiers: &[Node<DeclarationSpecifier>]) -> String {
-    let mut specifiers = SpecifierList::default();
+    let mut list = SpecifierList::default();
     for specifier in specifiers {
         match &specifier.node {
             DeclarationSpecifier::StorageClass(class) => {
-                specifiers.storage = match class.node {
+                list.storage = match class.node {
                     StorageClassSpecifier::Typedef => "typedef",
                     StorageClassSpecifier::Extern => "extern",
                     StorageClassSpecifier::Static => "static",
@@ -165,27 +165,27 @@ fn specifiers(specifiers: &[Node<DeclarationSpecifier>]) -> String {
                     StorageClassSpecifier::Register => "register",
                 };
             }
-            DeclarationSpecifier::TypeSpecifier(ty) => specifiers.ty(&ty.node),
-            DeclarationSpecifier::TypeQualifier(qualifier) => specifiers.qualifier(&qualifier.node),
+            DeclarationSpecifier::TypeSpecifier(ty) => list.ty(&ty.node),
+            DeclarationSpecifier::TypeQualifier(qualifier) => list.qualifier(&qualifier.node),
             DeclarationSpecifier::Function(function) => {
-                specifiers.is_inline |= function.node == FunctionSpecifier::Inline;
+                list.is_inline |= function.node == FunctionSpecifier::Inline;
             }
             DeclarationSpecifier::Alignment(_) | DeclarationSpecifier::Extension(_) => {}
         }
     }
-    specifiers.show()
+    list.show()
 }
 
 fn specifier_qualifiers(specifiers: &[Node<SpecifierQualifier>]) -> String {
-    let mut specifiers = SpecifierList::default();
+    let mut list = SpecifierList::default();
     for specifier in specifiers {
         match &specifier.node {
-            SpecifierQualifier::TypeSpecifier(ty) => specifiers.ty(&ty.node),
-            SpecifierQualifier::TypeQualifier(qualifier) => specifiers.qualifier(&qualifier.node),
+            SpecifierQualifier::TypeSpecifier(ty) => list.ty(&ty.node),
+            SpecifierQualifier::TypeQualifier(qualifier) => list.qualifier(&qualifier.node),
             SpecifierQualifier::Extension(_) => {}
         }
     }
-    specifiers.show()
+    list.show()
 }
 
 fn record(record: &StructType) -> String {
@@ -228,13 +228,13 @@ fn declarator(declarator: &Declarator) -> String {
 fn derived(derived: &DerivedDeclarator) -> String {
     match derived {
         DerivedDeclarator::Pointer(qualifiers) | DerivedDeclarator::Block(qualifiers) => {
-            let mut specifiers = SpecifierList { other: Some(String::new()), ..SpecifierList::default() };
+            let mut list = SpecifierList { other: Some(String::new()), ..SpecifierList::default() };
             for qualifier in qualifiers {
                 if let PointerQualifier::TypeQualifier(qualifier) = &qualifier.node {
-                    specifiers.qualifier(&qualifier.node);
+                    list.qualifier(&qualifier.node);
                 }
             }
-            joined(["*".to_owned(), specifiers.show()])
+            joined(["*".to_owned(), list.show()])
         }
         DerivedDeclarator::Array(array) => match &array.node.size {
             ArraySize::Unknown | ArraySize::VariableUnknown => "[]".to_owned(),

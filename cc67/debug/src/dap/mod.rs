@@ -29,9 +29,9 @@ use runtime::{Event, EventKind};
 use serde_json::{Value, json};
 use vm::engine::ContextId;
 
-use crate::debugger::{DebugError, Debugger, Goal, ONLY_FORWARD, Reason, Stop, Way};
+use crate::debugger::{DebugError, Debugger, Goal, ONLY_FORWARD, Reason, StepKind, Stop};
 use crate::early::EarlyLines;
-use crate::shell::{Said, Shell};
+use crate::shell::{CommandOutput, Shell};
 use crate::words::{command_of, is_move};
 use look::Handle;
 use wire::ClientWire;
@@ -120,7 +120,7 @@ struct Server<'a, W, T: Target> {
 /// A movement of the board that a client requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Move {
-    Forward(Way),
+    Forward(StepKind),
     Back,
     BackInstruction,
     BackOn,
@@ -181,11 +181,11 @@ impl<W: Write, T: Target> Server<'_, W, T> {
     fn move_of(&self, command: &str, arguments: &Value) -> Option<Move> {
         let is_instruction = arguments["granularity"] == "instruction";
         Some(match command {
-            "continue" => Move::Forward(Way::On),
-            "next" | "stepIn" if is_instruction => Move::Forward(Way::Instruction),
-            "next" => Move::Forward(Way::Over),
-            "stepIn" => Move::Forward(Way::Into),
-            "stepOut" => Move::Forward(Way::Out),
+            "continue" => Move::Forward(StepKind::Continue),
+            "next" | "stepIn" if is_instruction => Move::Forward(StepKind::Instruction),
+            "next" => Move::Forward(StepKind::Over),
+            "stepIn" => Move::Forward(StepKind::Into),
+            "stepOut" => Move::Forward(StepKind::Out),
             "stepBack" if is_instruction => Move::BackInstruction,
             "stepBack" => Move::Back,
             "reverseContinue" => Move::BackOn,
@@ -259,7 +259,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         if self.launcher.is_none() {
             return Ok(());
         }
-        let result = self.run(Move::Forward(Way::On))?;
+        let result = self.run(Move::Forward(StepKind::Continue))?;
         self.tell_result(result)
     }
 
@@ -335,11 +335,11 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         let mut herald = Herald::new(&mut self.wire, &mut self.early, debugger);
         let mut tell = |event: &Event| herald.tell(event);
         let result = match kind {
-            Move::Forward(Way::On) => Ok(debugger.go_on(&mut tell)),
-            Move::Forward(Way::Into) => debugger.step(&mut tell),
-            Move::Forward(Way::Over) => debugger.next(&mut tell),
-            Move::Forward(Way::Out) => debugger.finish(&mut tell),
-            Move::Forward(Way::Instruction) => debugger.step_instruction(&mut tell),
+            Move::Forward(StepKind::Continue) => Ok(debugger.go_on(&mut tell)),
+            Move::Forward(StepKind::Into) => debugger.step(&mut tell),
+            Move::Forward(StepKind::Over) => debugger.next(&mut tell),
+            Move::Forward(StepKind::Out) => debugger.finish(&mut tell),
+            Move::Forward(StepKind::Instruction) => debugger.step_instruction(&mut tell),
             Move::Back => debugger.reverse_next(),
             Move::BackInstruction => Ok(debugger.reverse_step_instruction()),
             Move::BackOn => Ok(debugger.reverse_continue()),
@@ -391,7 +391,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         }
         let is_done = said.is_ok();
         let reply = said.map(|said| {
-            let text = if let Said::Text(text) = said { text } else { String::new() };
+            let text = if let CommandOutput::Text(text) = said { text } else { String::new() };
             json!({ "result": text.trim_end(), "variablesReference": 0 })
         });
         self.wire.respond(request, reply)?;

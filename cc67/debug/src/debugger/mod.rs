@@ -8,7 +8,7 @@ mod values;
 
 pub use breakpoints::{Breakpoint, BreakpointKind};
 pub use hits::HitCondition;
-pub(crate) use run::{Goal, Way};
+pub(crate) use run::{Goal, StepKind};
 pub(crate) use travel::ONLY_FORWARD;
 pub use values::ShownVariable;
 

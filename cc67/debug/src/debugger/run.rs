@@ -34,11 +34,11 @@ pub(crate) enum Goal {
     Tick(Ticks),
 }
 
-/// A way forward.
+/// The kind of a movement forward.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Way {
+pub(crate) enum StepKind {
     /// To the next stop.
-    On,
+    Continue,
     /// To the next line, into functions.
     Into,
     /// To the next line, over functions.
@@ -58,14 +58,14 @@ impl<T: Target> Debugger<T> {
     /// Returns the goal of a movement.
     ///
     /// # Errors
-    /// Why it cannot go that way.
-    pub(crate) fn goal(&self, way: Way) -> Result<Goal, DebugError> {
-        match way {
-            Way::On => Ok(Goal::None),
-            Way::Into => self.line_goal(true),
-            Way::Over => self.line_goal(false),
-            Way::Out => self.outer_goal(),
-            Way::Instruction => {
+    /// The debugger cannot move so.
+    pub(crate) fn goal(&self, kind: StepKind) -> Result<Goal, DebugError> {
+        match kind {
+            StepKind::Continue => Ok(Goal::None),
+            StepKind::Into => self.line_goal(true),
+            StepKind::Over => self.line_goal(false),
+            StepKind::Out => self.outer_goal(),
+            StepKind::Instruction => {
                 self.must_hold()?;
                 self.must_be_active()?;
                 Ok(Goal::Instruction(self.context()))
@@ -90,7 +90,7 @@ impl<T: Target> Debugger<T> {
     /// # Errors
     /// The thread runs nothing, or nothing is known about its program.
     pub fn step(&mut self, events: Events<'_>) -> Result<Stop, DebugError> {
-        let goal = self.goal(Way::Into)?;
+        let goal = self.goal(StepKind::Into)?;
         Ok(self.run(&goal, events))
     }
 
@@ -99,7 +99,7 @@ impl<T: Target> Debugger<T> {
     /// # Errors
     /// As [`step`](Self::step).
     pub fn next(&mut self, events: Events<'_>) -> Result<Stop, DebugError> {
-        let goal = self.goal(Way::Over)?;
+        let goal = self.goal(StepKind::Over)?;
         Ok(self.run(&goal, events))
     }
 
@@ -108,7 +108,7 @@ impl<T: Target> Debugger<T> {
     /// # Errors
     /// It is the outermost.
     pub fn finish(&mut self, events: Events<'_>) -> Result<Stop, DebugError> {
-        let goal = self.goal(Way::Out)?;
+        let goal = self.goal(StepKind::Out)?;
         Ok(self.run(&goal, events))
     }
 
@@ -131,7 +131,7 @@ impl<T: Target> Debugger<T> {
     /// # Errors
     /// The thread is not active.
     pub fn step_instruction(&mut self, events: Events<'_>) -> Result<Stop, DebugError> {
-        let goal = self.goal(Way::Instruction)?;
+        let goal = self.goal(StepKind::Instruction)?;
         Ok(self.run(&goal, events))
     }
 

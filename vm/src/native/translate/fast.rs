@@ -166,7 +166,7 @@ impl Translator<'_, '_> {
             None => (self.blocks[&to], 0, fast.plan.is_counted && to != fast.plan.entry()),
         };
         let cycles = fast.spent - kept;
-        self.edge(block, cycles, is_rare)
+        self.budget_edge(block, cycles, is_rare)
     }
 
     /// The block to branch to if the ordinary loop must execute the instruction; `None` outside of fast iterations.
@@ -176,10 +176,10 @@ impl Translator<'_, '_> {
         let fast = self.unroll.fast.as_mut()?;
         let cycles = fast.spent;
         let block = *fast.bails.entry(self.at).or_insert_with(|| self.builder.create_block());
-        Some(self.edge(block, cycles, true))
+        Some(self.budget_edge(block, cycles, true))
     }
 
-    fn edge(&mut self, to: Block, cycles: u32, is_rare: bool) -> Block {
+    fn budget_edge(&mut self, to: Block, cycles: u32, is_rare: bool) -> Block {
         if cycles == 0 {
             return to;
         }

@@ -11,7 +11,7 @@ use std::rc::Rc;
 
 use anyhow::{Context, Result};
 use cc67_debug::dap::{self, Launch};
-use cc67_debug::{Debugger, Said, Shell};
+use cc67_debug::{CommandOutput, Debugger, Shell};
 use cc67_host::{AnyTarget, Capability, Target};
 use clap::{Args, Parser};
 use kmotiondef::Ticks;
@@ -174,8 +174,8 @@ fn batch<T: Target>(shell: &mut Shell<T>, path: &std::path::Path) -> Result<Exit
             .command(line, &mut |text| show(text))
             .map_err(|error| anyhow::anyhow!("`{line}`: {error}"))?;
         match answer {
-            Said::Text(text) => output::print(&text)?,
-            Said::Quit => break,
+            CommandOutput::Text(text) => output::print(&text)?,
+            CommandOutput::Quit => break,
         }
     }
     Ok(Exit::Success)

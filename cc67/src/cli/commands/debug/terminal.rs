@@ -7,7 +7,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use anyhow::{Context as _, Result};
-use cc67_debug::{Said, Shell};
+use cc67_debug::{CommandOutput, Shell};
 use cc67_host::Target;
 use rustyline::completion::{Completer, Pair};
 use rustyline::error::ReadlineError;
@@ -57,8 +57,8 @@ pub(super) fn talk<T: Target + 'static>(shell: &Rc<RefCell<Shell<T>>>) -> Result
 /// Does what a line says; whether there may be another one.
 fn obey<T: Target>(shell: &mut Shell<T>, line: &str) -> Result<bool> {
     match shell.command(line, &mut |text| show(text)) {
-        Ok(Said::Text(text)) => output::print(&text)?,
-        Ok(Said::Quit) => return Ok(false),
+        Ok(CommandOutput::Text(text)) => output::print(&text)?,
+        Ok(CommandOutput::Quit) => return Ok(false),
         Err(error) => output::print(&format!("{error}\n"))?,
     }
     Ok(true)
