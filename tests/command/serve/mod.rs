@@ -1,6 +1,7 @@
 //! `cc67 serve`: clients on sockets, as the vendor's library talks to its server. The client here speaks the protocol
 //! from its description alone.
 
+mod boards;
 mod calls;
 mod client;
 #[cfg(unix)]
@@ -44,7 +45,12 @@ impl Server {
         Self::spawn(command, scratch, count)
     }
 
-    fn spawn(mut command: Command, scratch: Scratch, count: usize) -> Self {
+    fn spawn(command: Command, scratch: Scratch, count: usize) -> Self {
+        Self::spawn_after(command, scratch, 0, count)
+    }
+
+    /// A server that says this many lines before its places.
+    fn spawn_after(mut command: Command, scratch: Scratch, skipped: usize, count: usize) -> Self {
         // Where it keeps the token of a page.
         let state = scratch.path().join(".state");
         command.env("XDG_STATE_HOME", &state).env("LOCALAPPDATA", &state);
@@ -59,6 +65,7 @@ impl Server {
             let line = lines.recv().expect("it says where it listens");
             line.strip_prefix("cc67: a board is served on ").expect(&line).to_owned()
         };
+        (0..skipped).for_each(|_| drop(lines.recv().expect("it says something")));
         let places = (0..count).map(|_| place()).collect();
         Self { child, scratch, places, lines }
     }

@@ -39,7 +39,7 @@ impl RunForm {
 }
 
 /// The options of a board, of every command that has one.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(next_help_heading = heading::BOARD)]
 pub(crate) struct BoardArguments {
     /// Simulate the board this closely; `--as firmware FILE` executes your own firmware file
@@ -98,11 +98,22 @@ pub(crate) struct BoardArguments {
     pub(crate) pc: PcArguments,
 }
 
-/// Returns the words of a command line with `--boot FILE` for `--as firmware FILE`, the only option with two values.
+/// Returns the words of a command line with `--boot FILE` for `--as firmware FILE`, the only option with two values, and
+/// with `--serves NAME=FILE` for `--board NAME=FILE`, which is about another board than `--board NAME`.
 pub(crate) fn with_boot(words: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut words = words.into_iter().peekable();
-    let mut all = Vec::new();
+    let mut all: Vec<OsString> = Vec::new();
+    let is_pair = |word: &OsString| word.to_str().is_some_and(|word| word.contains('='));
     while let Some(word) = words.next() {
+        let pair = match word.to_str() {
+            Some("--board") => words.next_if(is_pair),
+            Some(word) => word.strip_prefix("--board=").map(Into::into).filter(is_pair),
+            None => None,
+        };
+        if let Some(pair) = pair {
+            all.extend([SERVES.into(), pair]);
+            continue;
+        }
         let is_firmware =
             word == "--as=firmware" || word == "--as" && words.next_if(|next| next == "firmware").is_some();
         all.push(match (is_firmware, words.peek()) {
@@ -113,6 +124,9 @@ pub(crate) fn with_boot(words: impl IntoIterator<Item = OsString>) -> Vec<OsStri
     }
     all
 }
+
+/// The option for a board that is served beside others.
+pub(crate) const SERVES: &str = "--serves";
 
 impl BoardArguments {
     /// Returns the engine that executes the programs.

@@ -10,7 +10,7 @@ use super::heading;
 pub(crate) const WORK_WITH_CONTROLLER: &str = "run, console, live, test, debug and compare";
 
 /// The controller that takes the place of the simulated board, and the risks that its user accepts.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(next_help_heading = heading::CONTROLLER)]
 pub(crate) struct ControllerArguments {
     /// Use a connected controller in place of a simulated board (run, console, live, test, debug, compare): usb[:LOCATION], serial:PATH, server[:PATH|:HOST:PORT],

@@ -12,7 +12,7 @@ use super::setting::{self, Setting};
 use crate::cli::io::input::read;
 
 /// Options about the PC.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(next_help_heading = heading::PC)]
 pub(crate) struct PcArguments {
     /// Take the PC's answers to programs from FILE: lines of `key=value`, as for `--answer`; for `live` also an address

@@ -5,7 +5,7 @@ use std::panic::resume_unwind;
 use std::thread;
 
 /// Bytes of stack that the command may need.
-const NEEDED: usize = 8 << 20;
+pub(in crate::cli) const NEEDED: usize = 8 << 20;
 
 /// Reports whether the stack of the process is limited to less than the command needs; systems that do not say are
 /// taken to give enough.

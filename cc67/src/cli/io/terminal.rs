@@ -1,5 +1,6 @@
 //! Writing to the person in front of the terminal.
 
+use std::cell::RefCell;
 use std::fs::File;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
@@ -9,6 +10,16 @@ use compiler::render::human::Color;
 
 /// The file in place of stderr, for a process whose stderr nobody reads.
 static FILE: OnceLock<File> = OnceLock::new();
+
+thread_local! {
+    /// The name of what this thread alone is about, with a colon; empty in most.
+    static SUBJECT: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// Has all notes of this thread begin with the name of what it is about.
+pub(crate) fn name_subject(name: &str) {
+    SUBJECT.with_borrow_mut(|subject| *subject = format!("{name}: "));
+}
 
 /// Has everything from now on written to a file instead of stderr.
 pub(crate) fn write_to(path: &Path) -> io::Result<()> {
@@ -33,7 +44,7 @@ pub(crate) fn error(error: &anyhow::Error) {
 
 /// Prints a line of our own to stderr.
 pub(crate) fn note(message: &str) {
-    write(&format!("cc67: {message}\n"));
+    SUBJECT.with_borrow(|subject| write(&format!("cc67: {subject}{message}\n")));
 }
 
 /// Prints a text of our own to stderr, apart from the console.

@@ -8,7 +8,7 @@ use cc67_host::{Lock, Readiness};
 
 use super::desk::{Desk, Token, Waiting, Wanted};
 use super::link::LinkLine;
-use super::message::{Call, Reply, Request};
+use super::message::{Call, Reply, Request, location};
 use crate::cli::io::terminal;
 
 /// Before a line that is not echoed.
@@ -17,8 +17,6 @@ pub(super) const SILENT: &[u8] = b"\x1b\x01";
 const ANSWER_WITHIN: u32 = 3000;
 /// The time limit for each line before `Ready`, in milliseconds.
 const READY_WITHIN: u32 = 100;
-/// The identifiers of the boards: there is one.
-pub(super) const LOCATIONS: [i32; 1] = [1];
 /// The generation of the firmware.
 const FIRMWARE: i32 = 2;
 /// The result of a line that does not come in time.
@@ -29,7 +27,7 @@ const FAILED: &str = "Read Failed - Auto Disconnect";
 impl<T: Target> Desk<'_, T> {
     /// Does what a client asks for; its reply, if that is known already.
     pub(super) fn ask(&mut self, client: u64, request: &Request) -> Option<Reply> {
-        if !request.is_for(&LOCATIONS) {
+        if request.index(self.slot.boards) != Some(self.slot.index) {
             return Some(Reply::number(elsewhere(&request.call)));
         }
         let success = Some(Reply::number(0));
@@ -39,7 +37,10 @@ impl<T: Target> Desk<'_, T> {
             Call::WriteLineWithEcho(line) => self.write(b"", line),
             Call::ReadLine(_) if !self.state.is_open => return Some(Reply::text(TIMEOUT, b"")),
             Call::ReadLine(milliseconds) => return self.wait(client, Wanted::Line, *milliseconds),
-            Call::ListLocations => return Some(Reply::numbers(&LOCATIONS)),
+            Call::ListLocations => {
+                let locations: Vec<_> = (0..self.slot.boards).map(location).collect();
+                return Some(Reply::numbers(&locations));
+            }
             Call::Failed => self.fail(),
             Call::Disconnect => self.state.is_open = false,
             Call::FirmwareVersion => return Some(Reply::number(FIRMWARE)),
@@ -51,7 +52,7 @@ impl<T: Target> Desk<'_, T> {
             }
             Call::Lock => return Some(Reply::number(self.lock(client) as i32)),
             Call::Location => {
-                let [location] = LOCATIONS;
+                let location = location(self.slot.index);
                 return Some(Reply::number(if self.state.is_open { location } else { -1 }));
             }
             Call::Release => self.token = Token::default(),

@@ -16,7 +16,7 @@ use kmotiondef::limits::TIMEBASE;
 
 use super::Terms;
 use super::board::ServedBoard;
-use super::calls::{LOCATIONS, SILENT};
+use super::calls::SILENT;
 use super::message::{self, Reply, Request};
 use super::wire::WireClient;
 use crate::cli::io::exit::Exit;
@@ -120,15 +120,23 @@ pub(super) struct LinkState {
     pub(super) has_told_failure: bool,
 }
 
+/// The place of a board among those of a server.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BoardSlot {
+    /// Its index.
+    pub(super) index: usize,
+    /// The number of boards.
+    pub(super) boards: usize,
+}
+
 /// The board and its clients.
 pub(super) struct Desk<'a, T: Target> {
     pub(super) board: ServedBoard<'a, T>,
+    pub(super) slot: BoardSlot,
     terms: &'a Terms<'a>,
     /// The clock, if the board keeps pace with one, and its speed.
     clock: Option<(Pace, f64)>,
-    inbox: Receiver<Note>,
-    /// The messages that have arrived and are not taken yet.
-    notes: VecDeque<Note>,
+    inbox: Inbox,
     clients: BTreeMap<u64, Sender<Vec<Vec<u8>>>>,
     waiting: Vec<Waiting>,
     pub(super) token: Token,
@@ -137,6 +145,21 @@ pub(super) struct Desk<'a, T: Target> {
     /// Error texts for the next answer.
     pub(super) error_texts: Vec<String>,
     pub(super) page: PageState,
+}
+
+/// Messages to the desk.
+#[derive(Debug)]
+struct Inbox {
+    incoming: Receiver<Note>,
+    /// The messages that have arrived and are not taken yet.
+    notes: VecDeque<Note>,
+}
+
+impl Inbox {
+    /// Takes in what has arrived.
+    fn collect(&mut self) {
+        self.notes.extend(self.incoming.try_iter());
+    }
 }
 
 /// The actions and requests of pages.
@@ -154,14 +177,19 @@ pub(super) struct PageState {
 
 impl<'a, T: Target> Desk<'a, T> {
     /// A desk for requests from `inbox`.
-    pub(super) fn new(board: ServedBoard<'a, T>, terms: &'a Terms<'a>, inbox: Receiver<Note>) -> Self {
+    pub(super) fn new(
+        board: ServedBoard<'a, T>,
+        slot: BoardSlot,
+        terms: &'a Terms<'a>,
+        inbox: Receiver<Note>,
+    ) -> Self {
         let clock = terms.pace.map(|speed| (Pace::with_speed(board.tick(), speed), speed));
         Self {
             board,
+            slot,
             terms,
             clock,
-            inbox,
-            notes: VecDeque::new(),
+            inbox: Inbox { incoming: inbox, notes: VecDeque::new() },
             clients: BTreeMap::new(),
             waiting: Vec::new(),
             token: Token::default(),
@@ -194,7 +222,7 @@ impl<'a, T: Target> Desk<'a, T> {
 
     /// Takes the next message; `None` if it is time to run the board.
     fn next_note(&mut self) -> Option<Note> {
-        if let Some(note) = self.notes.pop_front() {
+        if let Some(note) = self.inbox.notes.pop_front() {
             return Some(note);
         }
         let first = self.waiting.iter().map(|waiting| waiting.until).min();
@@ -209,9 +237,9 @@ impl<'a, T: Target> Desk<'a, T> {
             (None, Some(until)) => until.saturating_duration_since(now()),
             (None, None) if self.page.wished.is_some() || self.board.is_attended() => BEAT,
             // Time passes in exchanges only.
-            (None, None) => return Some(self.inbox.recv().unwrap_or(Note::End)),
+            (None, None) => return Some(self.inbox.incoming.recv().unwrap_or(Note::End)),
         };
-        match self.inbox.recv_timeout(patience) {
+        match self.inbox.incoming.recv_timeout(patience) {
             Ok(note) => Some(note),
             Err(RecvTimeoutError::Timeout) => None,
             Err(RecvTimeoutError::Disconnected) => Some(Note::End),
@@ -238,7 +266,7 @@ impl<'a, T: Target> Desk<'a, T> {
                     self.answer(client, reply);
                 }
                 if self.board.is_logged() {
-                    self.board.log(&format!("client {client}: {}", request.name(&LOCATIONS)));
+                    self.board.log(&format!("client {client}: {}", request.name(self.slot.boards)));
                 }
             }
         }
@@ -311,7 +339,7 @@ impl<'a, T: Target> Desk<'a, T> {
         if let Some(since) = self.page.stopped.take() {
             let stopped = time.saturating_duration_since(since);
             self.waiting.iter_mut().for_each(|waiting| waiting.until += stopped);
-            self.notes.extend(self.page.held.drain(..));
+            self.inbox.notes.extend(self.page.held.drain(..));
         }
         self.clock = Some((Pace::with_speed(self.board.tick(), speed), speed));
     }
@@ -368,8 +396,8 @@ impl<'a, T: Target> Desk<'a, T> {
                 self.board.advance(Ticks::new(tick.get() + part));
             }
             self.board.forward();
-            self.notes.extend(self.inbox.try_iter());
-            if !self.notes.is_empty() {
+            self.inbox.collect();
+            if !self.inbox.notes.is_empty() {
                 return;
             }
         }
@@ -384,11 +412,11 @@ impl<'a, T: Target> Desk<'a, T> {
     /// to itself as long as it takes what was sent, and an exchange longer.
     fn run_for_clients(&mut self) {
         if self.board.is_feeding() {
-            while self.board.is_feeding() && self.notes.is_empty() {
+            while self.board.is_feeding() && self.inbox.notes.is_empty() {
                 self.board.feed();
                 self.board.until(STRETCH, |board| !board.is_receiving());
                 self.board.forward();
-                self.notes.extend(self.inbox.try_iter());
+                self.inbox.collect();
             }
             self.board.until(EXCHANGE, |_| false);
         }

@@ -5,6 +5,7 @@
 //! a raw port the board's own bytes are [carried](super::carry).
 
 use std::io;
+use std::iter;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -51,16 +52,25 @@ impl Drop for Places {
 /// The way from a connection to the desk.
 #[derive(Clone, Debug)]
 pub(super) struct Door {
+    /// The desk of the first board, which also answers for boards that are not there.
     desk: Sender<Note>,
+    /// The desks of the other boards.
+    others: Arc<[Sender<Note>]>,
     /// Connections so far.
     numbers: Arc<AtomicU64>,
     /// The places of those that are connected.
     seats: Seats,
 }
 
-/// Takes connections at these addresses in the background; `option` is where they come from.
-pub(super) fn listen(addresses: &[String], option: &str, desk: &Sender<Note>) -> Result<Places> {
-    let door = Door { desk: desk.clone(), numbers: Arc::default(), seats: Seats::new(MOST_CLIENTS) };
+/// Takes connections to the boards of some desks at these addresses in the background; `option` is where they come from.
+pub(super) fn listen(addresses: &[String], option: &str, desks: &[Sender<Note>]) -> Result<Places> {
+    let (desk, others) = desks.split_first().context("a board is served")?;
+    let door = Door {
+        desk: desk.clone(),
+        others: others.into(),
+        numbers: Arc::default(),
+        seats: Seats::new(MOST_CLIENTS),
+    };
     let mut places = Places::default();
     for address in addresses {
         let complaint = || format!("`{option} {address}`");
@@ -186,6 +196,17 @@ fn listen_on_path(_: &str, _: &Door) -> Result<PathBuf> {
 }
 
 impl Door {
+    /// The desks of all boards.
+    fn desks(&self) -> impl Iterator<Item = &Sender<Note>> {
+        iter::once(&self.desk).chain(&*self.others)
+    }
+
+    /// The desk for a request.
+    fn desk(&self, request: &Request) -> &Sender<Note> {
+        let index = request.index(1 + self.others.len()).unwrap_or(0);
+        self.desks().nth(index).unwrap_or(&self.desk)
+    }
+
     /// Serves a connection in a thread of its own; if there are too many, the one that is silent the longest is closed.
     pub(super) fn enter(&self, connection: impl ClientConnection) {
         let number = self.numbers.fetch_add(1, Ordering::Relaxed) + 1;
@@ -198,8 +219,8 @@ impl Door {
                 "client {number}: {MOST_CLIENTS} are connected; the one that was silent the longest is disconnected"
             ));
         }
-        let desk = self.desk.clone();
-        let spawned = thread::Builder::new().spawn(move || serve(number, connection, &admission.seat, &desk));
+        let door = self.clone();
+        let spawned = thread::Builder::new().spawn(move || serve(number, connection, &admission.seat, &door));
         if spawned.is_err() {
             terminal::note(&format!("client {number}: refused, there is no thread for it"));
         }
@@ -207,7 +228,7 @@ impl Door {
 }
 
 /// Answers requests until the client goes, or asks for what does not exist.
-fn serve(number: u64, mut connection: impl ClientConnection, seat: &Seat, desk: &Sender<Note>) {
+fn serve(number: u64, mut connection: impl ClientConnection, seat: &Seat, door: &Door) {
     connection.limit_wait(Some(FIRST_WORDS));
     let mut received = connection.receive_first();
     connection.limit_wait(None);
@@ -224,16 +245,18 @@ fn serve(number: u64, mut connection: impl ClientConnection, seat: &Seat, desk: 
         Received::Message(_) => {}
     }
     let (answers, inbox) = channel();
-    // A desk that is closed answers nothing below.
-    let _ = desk.send(Note::Came(number, answers));
+    for desk in door.desks() {
+        // A desk that is closed answers nothing below.
+        let _ = desk.send(Note::Came(number, answers.clone()));
+    }
     while let Received::Message(bytes) = &received {
         seat.hear();
         let Some(request) = Request::read(bytes) else {
             // A desk that is closed needs no news.
-            let _ = desk.send(Note::Unknown(number, bytes.clone()));
+            let _ = door.desk.send(Note::Unknown(number, bytes.clone()));
             break;
         };
-        if desk.send(Note::Asked(number, request)).is_err() {
+        if door.desk(&request).send(Note::Asked(number, request)).is_err() {
             break;
         }
         let Ok(messages) = inbox.recv() else { break };
@@ -242,6 +265,8 @@ fn serve(number: u64, mut connection: impl ClientConnection, seat: &Seat, desk: 
         }
         received = connection.receive();
     }
-    // The desk may have closed before.
-    let _ = desk.send(Note::Left(number));
+    for desk in door.desks() {
+        // It may have closed before.
+        let _ = desk.send(Note::Left(number));
+    }
 }

@@ -60,8 +60,13 @@ impl Call {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Request {
     pub(super) call: Call,
-    /// 0, -1 … for the first, second … board that is connected; else the identifier of one.
+    /// 0, -1 … for the first, second … board that is connected; else the [location] of one.
     board: i32,
+}
+
+/// The location of a board, by its index.
+pub(super) fn location(index: usize) -> i32 {
+    i32::try_from(index + 1).unwrap_or(i32::MAX)
 }
 
 impl Request {
@@ -92,18 +97,23 @@ impl Request {
     }
 
     /// Its name for a log, with its board if that is not there.
-    pub(super) fn name(&self, locations: &[i32]) -> String {
+    pub(super) fn name(&self, boards: usize) -> String {
         let name = self.call.name();
-        if self.is_for(locations) {
+        if self.index(boards).is_some() {
             name
         } else {
             format!("{name} for board {}, which is not there", self.board)
         }
     }
 
-    /// Returns whether it is for the first of the connected boards, the only one there is.
-    pub(super) fn is_for(&self, locations: &[i32]) -> bool {
-        self.board == 0 || locations.first() == Some(&self.board)
+    /// Returns the index of the board that it is for, if there are that many.
+    pub(super) fn index(&self, boards: usize) -> Option<usize> {
+        let index = match usize::try_from(self.board) {
+            Ok(0) => 0,
+            Ok(location) => location - 1,
+            Err(_) => self.board.unsigned_abs() as usize,
+        };
+        (index < boards).then_some(index)
     }
 }
 
@@ -173,6 +183,21 @@ mod tests {
         assert_eq!(request, Request { call: Call::WriteLineReadLine(b"Version".to_vec()), board: 0 });
         // The library of version 4.32 gives no name with its request for the token.
         assert!(Request::read(&[9, 0, 0, 0, 0, 0, 0, 0]).is_some_and(|request| request.call == Call::Lock));
+    }
+
+    #[test]
+    fn a_board_is_the_first_or_second_or_at_a_location() {
+        for (board, boards, expect) in [
+            (0, 1, Some(0)),
+            (1, 1, Some(0)),
+            (-1, 1, None),
+            (2, 1, None),
+            (-1, 2, Some(1)),
+            (2, 2, Some(1)),
+            (i32::MIN, 2, None),
+        ] {
+            assert_eq!(Request { call: Call::Lock, board }.index(boards), expect, "{board} of {boards}");
+        }
     }
 
     #[test]

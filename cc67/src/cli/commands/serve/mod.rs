@@ -6,6 +6,7 @@
 //! listen    sockets and ports; a thread for each connection
 //! desk      takes one request after another, keeps the board's time
 //! calls     what each request does
+//! boards    several boards beside each other
 //! board     the board under control, with what is written of it
 //! served    what is under control there
 //! page      the page of it
@@ -20,6 +21,7 @@
 //! ```
 
 mod board;
+mod boards;
 mod calls;
 mod carry;
 mod connection;
@@ -37,9 +39,9 @@ mod wire;
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Sender, channel};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex};
 
 use anyhow::{Context, Result, bail, ensure};
 use cc67_debug::dap::AttachPoint;
@@ -52,12 +54,14 @@ use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::args::time::seconds;
 use crate::cli::args::trace::TraceArguments;
 use crate::cli::io::exit::Exit;
-use crate::cli::io::output;
+use crate::cli::io::{output, terminal};
 use crate::cli::session::{Rig, Setup, Work};
 use board::ServedBoard;
-use desk::{Desk, Note};
+use boards::BoardFile;
+use desk::{BoardSlot, Desk, Note};
 pub(super) use link::{CONSOLE_LINES, UNHEARD_LINES};
 pub(super) use listen::MOST_CLIENTS;
+use listen::Places;
 use served::Served;
 pub(super) use wire::{LOST_BYTES, UNREAD_BYTES};
 
@@ -76,6 +80,9 @@ pub(super) struct ServeArguments {
     /// byte protocol, as at its USB port
     #[arg(long, value_name = "PATH|pipe[:NAME]|tcp:PORT|pty|tcp-raw:PORT")]
     listen: Vec<String>,
+    /// Serve several boards: `--board NAME=MACHINE.toml` for each, at the locations 1, 2, … in this order
+    #[arg(long, value_name = "NAME=MACHINE.toml", value_parser = BoardFile::parse)]
+    serves: Vec<BoardFile>,
     /// Speed of board time: 1 is real time, N is N times as fast; with `fast`, time passes only while a client waits
     /// for a reply
     #[arg(long, value_name = "1|N|fast", default_value = "1", value_parser = pace)]
@@ -173,6 +180,9 @@ pub(super) fn serve(arguments: &ServeArguments) -> Result<Exit> {
         home::remember(&folder, home::own_words())?;
         output::print(&home::lines(&folder))?;
     }
+    if !arguments.serves.is_empty() {
+        return boards::serve(&terms, arguments);
+    }
     let debugger = arguments.attach.open()?;
     let setup = Setup::new(&arguments.programs, &arguments.board, &arguments.compiler)?;
     let Some(setup) = setup else { return Ok(Exit::Failure) };
@@ -188,7 +198,7 @@ impl Terms<'_> {
     /// Serves the board of a setup until it is ended.
     pub(super) fn serve(&self, setup: Setup, debugger: Option<AttachPoint>) -> Result<Exit> {
         if !self.is_on_wire() {
-            return setup.debugged(debugger, self);
+            return self.serve_one(setup, debugger);
         }
         let [address] = &self.addresses[..] else {
             bail!(
@@ -205,34 +215,83 @@ impl Terms<'_> {
             self.log.is_none(),
             "`--log` writes calls of the vendor's library, which do not come over a wire"
         );
-        setup.with_pc_elsewhere().debugged(debugger, self)
+        self.serve_one(setup.with_pc_elsewhere(), debugger)
     }
-}
 
-impl Work for &Terms<'_> {
-    fn on<T: Target>(self, mut rig: Rig<T>) -> Result<Exit> {
-        rig.connect()?;
-        let is_ending = Arc::default();
-        let (board, trace) = Served::new(rig, self, Arc::clone(&is_ending))?;
-        let board = ServedBoard::new(board, trace, self)?;
+    fn serve_one(&self, setup: Setup, debugger: Option<AttachPoint>) -> Result<Exit> {
         let (notes, inbox) = channel();
-        end_on_signal(notes.clone(), is_ending)?;
-        let places = listen::listen(&self.addresses, self.option, &notes)?;
-        drop(notes);
-        let exit = Desk::new(board, self, inbox).run();
-        drop(places);
-        exit
+        let opening = Opening::new(self, vec![notes])?;
+        setup.debugged(debugger, BoardWork { opening: &opening, inbox, index: 0, name: None })
     }
 }
 
-/// Has Ctrl-C, and a request of the system to end, end the server.
-fn end_on_signal(desk: Sender<Note>, is_ending: Arc<AtomicBool>) -> Result<()> {
-    let end = move || {
-        is_ending.store(true, Ordering::Relaxed);
+/// The boards of a server before its first client: listeners begin when all are ready.
+struct Opening<'a> {
+    terms: &'a Terms<'a>,
+    desks: Vec<Sender<Note>>,
+    /// The server is to end, even where a debugger has stopped a board.
+    is_ending: Arc<AtomicBool>,
+    /// The number of boards that are not ready.
+    missing: AtomicUsize,
+    places: Mutex<Places>,
+}
+
+impl<'a> Opening<'a> {
+    /// The beginning for boards with these desks; Ctrl-C and a request of the system to end end all of them.
+    fn new(terms: &'a Terms<'a>, desks: Vec<Sender<Note>>) -> Result<Self> {
+        let is_ending = Arc::<AtomicBool>::default();
+        let (is_told, told) = (Arc::clone(&is_ending), desks.clone());
+        let end = move || {
+            is_told.store(true, Ordering::Relaxed);
+            end_all(&told);
+        };
+        ctrlc::set_handler(end).context("cannot take Ctrl-C")?;
+        let missing = AtomicUsize::new(desks.len());
+        Ok(Self { terms, desks, is_ending, missing, places: Mutex::default() })
+    }
+
+    /// A board is ready; with the last one listeners begin.
+    fn note_ready(&self) -> Result<()> {
+        if self.missing.fetch_sub(1, Ordering::Relaxed) > 1 {
+            return Ok(());
+        }
+        let opened = listen::listen(&self.terms.addresses, self.terms.option, &self.desks)?;
+        if let Ok(mut places) = self.places.lock() {
+            *places = opened;
+        }
+        Ok(())
+    }
+}
+
+/// Ends all desks.
+fn end_all(desks: &[Sender<Note>]) {
+    for desk in desks {
         // A desk that is closed has ended.
         let _ = desk.send(Note::End);
-    };
-    ctrlc::set_handler(end).context("cannot take Ctrl-C")
+    }
+}
+
+/// One of the boards, to be served.
+struct BoardWork<'a> {
+    opening: &'a Opening<'a>,
+    inbox: Receiver<Note>,
+    index: usize,
+    /// Its name among several.
+    name: Option<&'a str>,
+}
+
+impl Work for BoardWork<'_> {
+    fn on<T: Target>(self, mut rig: Rig<T>) -> Result<Exit> {
+        let Self { opening, inbox, index, name } = self;
+        let terms = opening.terms;
+        rig.connect()?;
+        let (board, trace) = Served::new(rig, terms, Arc::clone(&opening.is_ending))?;
+        let board = ServedBoard::new(board, trace, terms)?;
+        opening.note_ready()?;
+        name.into_iter().for_each(terminal::name_subject);
+        let slot = BoardSlot { index, boards: opening.desks.len() };
+        Desk::new(board, slot, terms, inbox).run()
+    }
 }
 
 #[cfg(test)]
