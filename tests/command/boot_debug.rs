@@ -4,7 +4,7 @@
 
 use std::env;
 
-use harness::{Output, Scratch, cc67};
+use harness::{Output, Scratch, cc67, cc67_with_input};
 
 const PROGRAM: &str = "\
 #include \"KMotionDef.h\"
@@ -176,4 +176,23 @@ fn threads_that_wait_in_the_real_firmware_are_shown_there() {
     ] {
         assert!(text.contains(part), "{part}\nis not in\n{text}");
     }
+}
+
+#[test]
+fn what_the_real_firmware_cannot_is_refused_by_name() {
+    let Some(file) = env::var_os("CC67_FIRMWARE") else {
+        println!("not run: CC67_FIRMWARE names no firmware file");
+        return;
+    };
+    let file = file.to_str().expect("a name of text");
+    let scratch = Scratch::new("boot-debug-refused");
+    scratch.write("twice.c", PROGRAM);
+    let commands = "print twice(3)\nawatch total\nprint total\n";
+    let output = cc67_with_input(&scratch, ["debug", "--boot", file, "-O0", "twice.c"], commands);
+    let expect = "\
+the firmware file cannot call functions of a program from an expression
+the firmware file cannot stop where a variable is read
+$1 = 0
+";
+    assert!(output.stdout.ends_with(expect), "{output:?}");
 }

@@ -257,7 +257,7 @@ fn a_debugger_shows_and_sets_variables_of_a_running_program_and_controls_its_thr
     let debug = ["debug", "--yes", "--on", &place, "--for", "1", "2:a.c"];
     let commands = "p ticks\np point\nset var level = 100\np level + 1\nrun\npause 2\ninfo threads\np ticks\np ticks\n\
                     p point.a - 2 * ticks\nresume 2\np level > 110\nkill 2\ninfo threads\nset var persist.UserData[3] = 7\n\
-                    p persist.UserData[3]\np missing\nbreak 7\nstep\nwatch ticks\nrc\nslice\n";
+                    p persist.UserData[3]\np missing\nbreak 7\nstep\nwatch ticks\nrwatch ticks\np ReadBit(3)\nrc\nslice\n";
     let output = cc67_with_input(&scratch, debug, commands);
     assert_eq!(output.code, 0, "{output:?}");
     let lines: Vec<_> = output.stdout.lines().collect();
@@ -279,6 +279,8 @@ fn a_debugger_shows_and_sets_variables_of_a_running_program_and_controls_its_thr
 a connected controller cannot stop at breakpoints
 a connected controller cannot stop at breakpoints
 a connected controller cannot stop where a variable changes
+a connected controller cannot stop where a variable is read
+a connected controller cannot call functions of a program from an expression
 a connected controller cannot go back to an earlier state
 a connected controller cannot stop its time
 ";

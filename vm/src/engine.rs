@@ -95,6 +95,15 @@ impl ContextId {
     }
 }
 
+/// The stack for a call that a debugger makes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CallStack {
+    /// The stack of the context.
+    pub whole: Stack,
+    /// The context has calls in progress, whose part of the stack stays as it is.
+    pub is_in_use: bool,
+}
+
 /// A stack in guest memory; it grows down from `top`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stack {
@@ -290,6 +299,26 @@ pub enum HoldReason {
         /// The instruction that did it; `None` if it was none of this context's.
         by: Option<CodeAddr>,
     },
+    /// An instruction has read a range, or has written to it, whatever is there now.
+    Accessed {
+        /// Its place in the list that was set.
+        index: usize,
+        /// The instruction.
+        by: CodeAddr,
+        /// It has written.
+        is_store: bool,
+    },
+}
+
+/// Bytes of memory whose accesses by programs are looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AccessRange {
+    /// The first of them.
+    pub address: GuestAddr,
+    /// Number of bytes.
+    pub size: u32,
+    /// Stores count as well as loads.
+    pub has_stores: bool,
 }
 
 /// A context that is held.
@@ -299,6 +328,26 @@ pub struct Hold {
     pub context: ContextId,
     /// The reason.
     pub reason: HoldReason,
+}
+
+/// The end of a call that a debugger makes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[must_use]
+pub enum CallEnd {
+    /// The function has returned, with this in the slot of its result.
+    Returned(u64),
+    /// It has called a function of the firmware that waits.
+    Waits(CodeAddr),
+    /// It has ended its thread.
+    EndsThread,
+    /// It has not returned within a time.
+    Endless(Cycles),
+    /// It did the impossible.
+    Trapped(Trap),
+    /// No program that is loaded, and not the firmware, has such a function.
+    NoFunction,
+    /// The engine makes no calls for a debugger.
+    Unsupported,
 }
 
 /// A call in progress, as a debugger sees it.
@@ -396,6 +445,12 @@ pub trait Executor: Default {
         let _ = (memory, ranges);
     }
 
+    /// Holds contexts after instructions that access these bytes, and after no others. What functions of the firmware
+    /// read is not noticed.
+    fn set_accessed(&mut self, ranges: &[AccessRange]) {
+        let _ = ranges;
+    }
+
     /// Returns which of what is watched has changed since the last call.
     fn take_change(&mut self, memory: &GuestMemory) -> Option<usize> {
         let _ = memory;
@@ -417,6 +472,21 @@ pub trait Executor: Default {
     fn set_register(&mut self, id: ContextId, frame: usize, register: u16, slot: u64) -> bool {
         let _ = (id, frame, register, slot);
         false
+    }
+
+    /// Calls the function at `entry` with the arguments, each as a slot, on the part of the stack that `id` does not
+    /// use. The context is then as it was.
+    fn call<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        code: &Arc<Self::Code>,
+        entry: GuestAddr,
+        arguments: &[u64],
+        stack: CallStack,
+        slice: &mut Slice<'_, F>,
+    ) -> CallEnd {
+        let _ = (id, code, entry, arguments, stack, slice);
+        CallEnd::Unsupported
     }
 }
 

@@ -34,8 +34,12 @@ use self::observe::Observer;
 use self::split::Split;
 use self::steps::{NextStep, Stepping};
 use crate::call::CallArguments;
-use crate::engine::{ContextId, Executor, ForeignSnapshot, FrameView, Hold, Preemption, Slice, Stack, Stop};
+use crate::engine::{
+    AccessRange, CallEnd, CallStack, ContextId, Executor, ForeignSnapshot, FrameView, Hold, Preemption,
+    Slice, Stack, Stop,
+};
 use crate::firmware::{Firmware, Outcome, SwitchPoint};
+use crate::kind::OpKind;
 use crate::memory::GuestMemory;
 use crate::operand::SigRef;
 use crate::program::Program;
@@ -186,6 +190,11 @@ impl Executor for BytecodeEngine {
         self.refresh();
     }
 
+    fn set_accessed(&mut self, ranges: &[AccessRange]) {
+        self.holds.set_accessed(ranges);
+        self.refresh();
+    }
+
     fn take_change(&mut self, memory: &GuestMemory) -> Option<usize> {
         self.holds.take_change(memory)
     }
@@ -202,6 +211,72 @@ impl Executor for BytecodeEngine {
     fn set_register(&mut self, id: ContextId, frame: usize, register: u16, slot: u64) -> bool {
         let running = self.contexts[id.index()].as_mut();
         running.is_some_and(|running| running.context.set_in(frame, register, slot))
+    }
+
+    fn call<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        program: &Arc<Program>,
+        entry: GuestAddr,
+        arguments: &[u64],
+        stack: CallStack,
+        slice: &mut Slice<'_, F>,
+    ) -> CallEnd {
+        let me = id.index();
+        let (kept, passes) = (self.contexts[me].take(), self.holds.passes[me]);
+        let mut own = stack.whole;
+        if let Some(kept) = kept.as_ref().filter(|_| stack.is_in_use) {
+            own.top = kept.context.calls.frame_address();
+        }
+        let end = self.call_alone(id, program, entry, arguments, own, slice);
+        self.contexts[me] = kept;
+        self.holds.passes[me] = passes;
+        end
+    }
+}
+
+impl BytecodeEngine {
+    /// Calls a function in a fresh context.
+    fn call_alone<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        program: &Arc<Program>,
+        entry: GuestAddr,
+        arguments: &[u64],
+        stack: Stack,
+        slice: &mut Slice<'_, F>,
+    ) -> CallEnd {
+        let trap = |kind, at| CallEnd::Trapped(Trap::new(kind, at, id.thread()));
+        let Some(function) = program.function_at(entry) else { return CallEnd::NoFunction };
+        if program.signature_of(function).params.len() != arguments.len() {
+            return CallEnd::NoFunction;
+        }
+        let at = program.address_of(function.0 as usize);
+        if let Err(kind) = self.start(id, program, entry, stack, slice.firmware) {
+            return trap(kind, at);
+        }
+        let Some(Running { code, context }) = &mut self.contexts[id.index()] else {
+            return CallEnd::NoFunction;
+        };
+        if let Err(kind) = enter(&code.program, context) {
+            return trap(kind, at);
+        }
+        for (register, slot) in (0..).zip(arguments) {
+            context.set(register, *slot);
+        }
+        let stop = self.resume(id, slice);
+        let Some(Running { context, .. }) = &self.contexts[id.index()] else { return CallEnd::NoFunction };
+        let at = program.address_of(context.calls.pc);
+        let op = program.ops().get(context.calls.pc);
+        match stop {
+            Stop::Ended if op.is_some_and(|op| matches!(op.kind(), OpKind::Return(_))) => {
+                CallEnd::Returned(context.calls.result)
+            }
+            Stop::Ended => CallEnd::EndsThread,
+            Stop::Waiting(_) => CallEnd::Waits(at),
+            Stop::Trapped(trap) => CallEnd::Trapped(trap),
+            Stop::Preempted | Stop::NeedsBoard | Stop::Held => CallEnd::Endless(slice.length),
+        }
     }
 }
 

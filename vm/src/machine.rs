@@ -4,6 +4,7 @@
 //! kernel's work, the choice of the next thread. What is left of the tick is that thread's
 //! slice. Rules: threads-and-time.md of the specification.
 
+mod called;
 mod engines;
 mod held;
 mod long;

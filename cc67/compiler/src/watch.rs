@@ -69,6 +69,23 @@ pub trait ItemReader {
         let _ = local;
         None
     }
+
+    /// The slot of the result of a call, if it is known.
+    fn result(&self, call: CallRequest) -> Option<u64> {
+        let _ = call;
+        None
+    }
+}
+
+/// A call of a function that an expression makes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CallRequest {
+    /// Its place in the expression.
+    pub(crate) id: ExprId,
+    /// The function.
+    pub function: GuestAddr,
+    /// The arguments, each as the slot of a register.
+    pub arguments: Vec<u64>,
 }
 
 /// The location of a local of a call in progress.
@@ -94,6 +111,18 @@ pub(crate) enum Meaning {
     Variable(GuestAddr),
     Item(usize),
     Function(Operation),
+    /// A function that the board executes.
+    Code(GuestAddr),
+}
+
+/// The calls that an expression may make.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AllowedCalls {
+    /// Only those of functions that are computed without the board.
+    #[default]
+    Computed,
+    /// Also those of functions of the program and of the firmware.
+    Executed,
 }
 
 /// Compiles an expression. `items` are further names in it, of type `double`.
@@ -139,6 +168,7 @@ fn compile_here(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Ex
         function: &function,
         meanings: BTreeMap::new(),
         count: 0,
+        code: None,
         locals: false,
         has_locals: false,
     };
@@ -164,6 +194,8 @@ struct Check<'a> {
     function: &'a Function,
     meanings: BTreeMap<SymbolId, Meaning>,
     count: usize,
+    /// The functions of the program, if it may call them and those of the firmware.
+    code: Option<&'a BTreeMap<String, GuestAddr>>,
     /// True if it may name locals.
     locals: bool,
     /// True if it names one.
@@ -184,6 +216,7 @@ pub(crate) fn meanings(
     function: usize,
     value: ExprId,
     symbols: &BTreeMap<String, GuestAddr>,
+    code: Option<&BTreeMap<String, GuestAddr>>,
     options: &Options,
     items: &[&str],
 ) -> Result<Named, String> {
@@ -191,7 +224,7 @@ pub(crate) fn meanings(
     let function = unit.functions.get(function).ok_or("not an expression")?;
     let meanings = BTreeMap::new();
     let mut check =
-        Check { unit, scope, items, function, meanings, count: 0, locals: true, has_locals: false };
+        Check { unit, scope, items, function, meanings, count: 0, code, locals: true, has_locals: false };
     check.expr(value)?;
     Ok(Named { meanings: check.meanings, has_locals: check.has_locals })
 }
@@ -269,7 +302,43 @@ impl Check<'_> {
                 return self.expr(*argument);
             }
         }
-        Err(format!("an expression can call only {}; `bit46` is the level of a bit", known()))
+        match (self.code, call.callee) {
+            (Some(code), Callee::Symbol(id)) => self.executed_call(code, id, call),
+            (Some(_), Callee::Pointer(_)) => {
+                Err("a function that is called from an expression is called by its name".to_owned())
+            }
+            (None, _) => {
+                Err(format!("an expression can call only {}; `bit46` is the level of a bit", known()))
+            }
+        }
+    }
+
+    /// Resolves the call of a function that the board executes.
+    fn executed_call(
+        &mut self,
+        code: &BTreeMap<String, GuestAddr>,
+        id: SymbolId,
+        call: &Call,
+    ) -> Result<(), String> {
+        let name = self.unit.symbols[id].name.as_str();
+        if call.variable.is_some() {
+            return Err(format!(
+                "`{name}` takes a variable number of arguments: an expression cannot call it"
+            ));
+        }
+        let firmware = || self.scope.options.firmware.find(name);
+        let firmware = || firmware().filter(|symbol| matches!(symbol.kind, FirmwareKind::Function(_)));
+        let address = code.get(name).copied().or_else(|| Some(firmware()?.address));
+        let is_defined = self.unit.functions.iter().any(|function| function.symbol == id);
+        let address = address.ok_or_else(|| {
+            if is_defined {
+                format!("`{name}` has no code of its own here: its calls are inlined, or it is not used; with -O0 it has some")
+            } else {
+                format!("there is no function `{name}`")
+            }
+        })?;
+        self.meanings.insert(id, Meaning::Code(address));
+        call.arguments.iter().try_for_each(|argument| self.expr(*argument))
     }
 }
 
@@ -415,17 +484,26 @@ impl Expression {
             ExprKind::Conditional(a, b, c) => return of(if is_true(*a)? { *b } else { *c }),
             ExprKind::Comma(_, b) => return of(*b),
             ExprKind::Convert(a) => constants::convert(of(*a)?, self.function.exprs[*a].ty, expr.ty),
-            ExprKind::Call(call) => return self.call(call, reader),
+            ExprKind::Call(call) => return self.call(id, call, reader),
             _ => return None,
         })
     }
 
-    fn call(&self, call: &Call, reader: &dyn ItemReader) -> Option<Constant> {
+    fn call(&self, id: ExprId, call: &Call, reader: &dyn ItemReader) -> Option<Constant> {
         let Callee::Symbol(symbol) = call.callee else { return None };
-        let Some(Meaning::Function(function)) = self.meanings.get(&symbol) else { return None };
-        match self.constant(*call.arguments.first()?, reader)? {
-            Constant::Float(value) => Some(Constant::Float(function(value))),
-            Constant::Int(_) => None,
+        match self.meanings.get(&symbol)? {
+            Meaning::Function(function) => match self.constant(*call.arguments.first()?, reader)? {
+                Constant::Float(value) => Some(Constant::Float(function(value))),
+                Constant::Int(_) => None,
+            },
+            Meaning::Code(address) => {
+                let slot =
+                    |id: &ExprId| Some(slot_of(self.constant(*id, reader)?, self.function.exprs[*id].ty));
+                let arguments = call.arguments.iter().map(slot).collect::<Option<Vec<_>>>()?;
+                let slot = reader.result(CallRequest { id, function: *address, arguments })?;
+                Some(read(self.function.exprs[id].ty, slot.to_le_bytes()))
+            }
+            Meaning::Variable(_) | Meaning::Item(_) => None,
         }
     }
 
@@ -452,7 +530,7 @@ impl Expression {
         let (base, offset) = match self.function.places[id].kind {
             PlaceKind::Symbol(symbol, offset) => match self.meanings.get(&symbol)? {
                 Meaning::Variable(address) => (address.get(), offset),
-                Meaning::Item(_) | Meaning::Function(_) => return None,
+                Meaning::Item(_) | Meaning::Function(_) | Meaning::Code(_) => return None,
             },
             PlaceKind::Pointer(pointer, offset) => match self.constant(pointer, reader)? {
                 Constant::Int(address) => (address as u32, offset),
@@ -485,6 +563,16 @@ fn bytes_of(value: f64, ty: TypeId) -> Vec<u8> {
         Types::FLOAT => (value as f32).to_le_bytes().into(),
         Types::BOOL => vec![u8::from(value != 0.0)],
         _ => (value as i64).to_le_bytes().into_iter().take(size_of(ty)).collect(),
+    }
+}
+
+/// A value as a register holds it.
+fn slot_of(value: Constant, ty: TypeId) -> u64 {
+    match value {
+        Constant::Float(value) if ty == Types::FLOAT => (value as f32).to_bits().into(),
+        Constant::Float(value) => value.to_bits(),
+        Constant::Int(value) if size_of(ty) == 8 => value.cast_unsigned(),
+        Constant::Int(value) => u64::from(value as u32),
     }
 }
 

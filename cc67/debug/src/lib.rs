@@ -32,7 +32,7 @@ mod words;
 
 pub use debugger::{
     Breakpoint, BreakpointKind, Catches, CodePlace, DebugError, Debugger, HitCondition, Reason,
-    ShownVariable, StackFrame, Stop,
+    ShownVariable, StackFrame, Stop, WatchedAccess,
 };
 pub use programs::Programs;
 pub use shell::{CommandOutput, Output, Shell};

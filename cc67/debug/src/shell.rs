@@ -16,7 +16,7 @@ use kmotiondef::{ThreadId, Ticks};
 use runtime::{Board, Event, EventKind};
 use vm::engine::ContextId;
 
-use crate::debugger::{BreakpointKind, DebugError, Debugger, Reason, Stop};
+use crate::debugger::{BreakpointKind, DebugError, Debugger, Reason, Stop, WatchedAccess};
 use crate::early::EarlyLines;
 use crate::words::{BreakWords, LineReader, is_move, split_if};
 
@@ -183,15 +183,24 @@ impl<T: Target> Shell<T> {
             "display" | "undisplay" => self.display(name, rest),
             "thread" if rest.starts_with("apply ") => self.apply(rest, output),
             "break" | "tbreak" => self.set_break(rest, name == "tbreak"),
-            "watch" => {
+            "watch" | "rwatch" | "awatch" => {
                 let (expression, condition) = split_if(rest);
-                let (_, text) = self.debugger.watch(expression, condition)?;
+                let (_, text) = match name {
+                    "rwatch" => self.debugger.watch_access(expression, WatchedAccess::Read, condition),
+                    "awatch" => self.debugger.watch_access(expression, WatchedAccess::ReadWrite, condition),
+                    _ => self.debugger.watch(expression, condition),
+                }?;
                 Ok(text + "\n")
             }
             "dprintf" => self.log_point(rest),
             "catch" => self.catch(rest),
             "condition" | "ignore" | "enable" | "disable" | "delete" => self.change(name, rest),
-            "print" | "ptype" | "x" | "set" => self.values(name, rest),
+            "print" | "call" | "ptype" | "x" | "set" => {
+                let text = self.values(name, rest)?;
+                // A function that it has called may have printed.
+                self.show_early(true, output);
+                Ok(text)
+            }
             "info" | "backtrace" | "frame" | "up" | "down" | "thread" | "list" | "disassemble" | "help" => {
                 self.look(name, rest)
             }
@@ -518,7 +527,7 @@ fn thread_of(number: &str) -> Result<ThreadId, DebugError> {
 fn ids_of(reason: &Reason) -> Vec<u32> {
     match reason {
         Reason::Breakpoint(ids) => ids.clone(),
-        Reason::Changed { id, .. } | Reason::When { id, .. } => vec![*id],
+        Reason::Changed { id, .. } | Reason::Accessed { id, .. } | Reason::When { id, .. } => vec![*id],
         _ => Vec::new(),
     }
 }
@@ -570,6 +579,12 @@ fn breakpoints<T: Target>(debugger: &Debugger<T>) -> String {
             BreakpointKind::Code(place, _) if breakpoint.log.is_some() => format!("dprintf     {place}"),
             BreakpointKind::Code(place, _) => format!("breakpoint  {place}"),
             BreakpointKind::Watch(expression) => format!("watchpoint  {expression}"),
+            BreakpointKind::Access(expression, WatchedAccess::Read) => {
+                format!("read watchpoint  {expression}")
+            }
+            BreakpointKind::Access(expression, WatchedAccess::ReadWrite) => {
+                format!("acc watchpoint  {expression}")
+            }
             BreakpointKind::When(expression) => format!("catchpoint  when {expression}"),
         };
         let enabled = if breakpoint.is_enabled { 'y' } else { 'n' };

@@ -17,8 +17,13 @@ void count(int by)
     n += by;
     if (n < 0) row[1] = *wild;
 }
+int stepped(int by)
+{
+    return 10 * by;
+}
 main()
 {
+    if (n) stepped(n);
     for (;;)
     {
         count(1);
@@ -180,4 +185,58 @@ fn values_are_shown_as_the_editor_wants_them_and_failures_are_quiet() {
     assert_eq!(answers[3]["message"], "Cannot access memory at address 0x12");
     let memory = &responses(&sent, "readMemory")[0]["body"];
     assert_eq!((&memory["data"], &memory["unreadableBytes"]), (&json!(""), &json!(4)));
+}
+
+#[test]
+fn only_the_console_of_an_editor_calls_functions() {
+    let then = [
+        evaluate("count(5)", "hover"),
+        evaluate("count(5)", "watch"),
+        evaluate("n", "watch"),
+        evaluate("count(5)", "repl"),
+        evaluate("n", "watch"),
+        evaluate("count(-9)", "repl"),
+        evaluate("n", "watch"),
+        evaluate("stepped(3) + stepped(4),x", "repl"),
+    ];
+    let sent = serve("calls", &stopped("2", &then));
+    let answers = responses(&sent, "evaluate");
+    assert!(
+        !answers[0]["success"].as_bool().unwrap_or(true) && !answers[1]["success"].as_bool().unwrap_or(true)
+    );
+    assert_eq!((&answers[2]["body"]["result"], &answers[3]["body"]["result"]), (&json!("1"), &json!("void")));
+    assert_eq!(answers[4]["body"]["result"], "6");
+    let message = answers[5]["message"].as_str().unwrap_or_default();
+    assert!(
+        message.contains("count at")
+            && message.ends_with("read of the unmapped address 0x00000012; nothing has changed"),
+        "{message}"
+    );
+    assert_eq!((&answers[6]["body"]["result"], &answers[7]["body"]["result"]), (&json!("6"), &json!("0x46")));
+}
+
+#[test]
+fn data_breakpoints_stop_at_reads_as_well() {
+    let info = json!({ "command": "dataBreakpointInfo", "arguments": { "name": "n" } });
+    let breakpoints = |access: &str| {
+        json!({ "command": "setDataBreakpoints",
+        "arguments": { "breakpoints": [{ "dataId": "0|0|n", "accessType": access }] } })
+    };
+    let clear = json!({ "command": "setFunctionBreakpoints", "arguments": { "breakpoints": [] } });
+    let go = json!({ "command": "continue", "arguments": { "threadId": 1 } });
+    for (access, expect) in [
+        ("read", ["n: 1, accessed by thread 1, count at", "n: 2, accessed by thread 1, count at"]),
+        ("readWrite", ["n: 1, accessed by thread 1, count at", "n: 1 → 2, accessed by thread 1, count at"]),
+        ("write", ["n: 1 → 2, written by thread 1, count at", "n: 2 → 3, written by thread 1, count at"]),
+    ] {
+        let then = [info.clone(), breakpoints(access), clear.clone(), go.clone(), go.clone()];
+        let sent = serve("data", &stopped("2", &then));
+        let types = &responses(&sent, "dataBreakpointInfo")[0]["body"]["accessTypes"];
+        assert_eq!(types, &json!(["read", "write", "readWrite"]));
+        let stops: Vec<_> = events(&sent, "stopped").iter().map(|one| one["body"].clone()).collect();
+        for (stop, expect) in stops[1..].iter().zip(expect) {
+            assert_eq!(stop["reason"], "data breakpoint");
+            assert!(stop["text"].as_str().is_some_and(|text| text.starts_with(expect)), "{access}: {stop}");
+        }
+    }
 }

@@ -1,80 +1,10 @@
 //! Commands of the debugger as a person gives them, on small programs.
 
-use std::fs;
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicU32, Ordering};
+mod terminal;
 
-use cc67_debug::{CommandOutput, Debugger, Shell};
-use cc67_host::{Setup, UserProgram};
+use cc67_debug::CommandOutput;
 use compiler::passes::Level;
-use kmotiondef::{ThreadId, Ticks};
-use runtime::Board;
-
-/// A folder for the sources of a test, which ends with it.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new() -> Self {
-        static COUNT: AtomicU32 = AtomicU32::new(0);
-        let number = COUNT.fetch_add(1, Ordering::Relaxed);
-        let path = std::env::temp_dir().join(format!("cc67-debug-commands-{}-{number}", std::process::id()));
-        fs::create_dir_all(&path).expect("a folder");
-        Self(path)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        // A folder that stays is the system's to clean up.
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
-/// A shell for programs in threads 1, 2, …, named `a.c`, `b.c`, ….
-fn shell(folder: &Folder, level: Level, programs: &[&str]) -> Shell<Board> {
-    let mut setup = Setup::default();
-    setup.options.level = level;
-    for (index, text) in programs.iter().enumerate() {
-        let letter = char::from(b'a' + index as u8);
-        let path = folder.0.join(format!("{letter}.c"));
-        fs::write(&path, format!("#include \"KMotionDef.h\"\n{text}")).expect("a file");
-        let thread = ThreadId::new(index as i32 + 1).expect("there are 7");
-        let program = UserProgram::compile(&path, thread, &setup.options).expect("it compiles");
-        setup.programs.push(program.started());
-    }
-    let debugger = Debugger::new(setup.session().expect("a board"), Ticks::new(1_000_000));
-    Shell::new(debugger)
-}
-
-/// Returns the output of commands without board times; a refused command says why.
-fn session(level: Level, programs: &[&str], commands: &str) -> String {
-    let folder = Folder::new();
-    let mut shell = shell(&folder, level, programs);
-    let mut out = String::new();
-    for command in commands.lines().map(str::trim).filter(|line| !line.is_empty()) {
-        let mut said = String::new();
-        let answer = shell.command(command, &mut |text| said.push_str(text));
-        out.push_str(&said);
-        match answer {
-            Ok(CommandOutput::Text(text)) => out.push_str(&text),
-            Ok(CommandOutput::Quit) => break,
-            Err(error) => out.push_str(&format!("{error}\n")),
-        }
-    }
-    let lines = out.lines().map(|line| match line.split_once(" [thread ") {
-        Some((before, _)) => before,
-        None => line,
-    });
-    lines.fold(String::new(), |text, line| text + line + "\n")
-}
-
-#[track_caller]
-fn check(level: Level, programs: &[&str], commands: &str, expect: &str) {
-    let found = session(level, programs, commands);
-    let expect: String = expect.lines().map(|line| line.trim_start().to_owned() + "\n").collect();
-    let found: String = found.lines().map(|line| line.trim_start().to_owned() + "\n").collect();
-    assert_eq!(found, expect, "\n{found}");
-}
+use terminal::{Folder, check, shell};
 
 const COUNTER: &str = "int parts, goal = 5;
 int twice(int n)
@@ -396,7 +326,7 @@ fn words_of_gdb() {
          finish
          thread apply all backtrace
          info threads
-         rwatch parts
+         jump 5
          delete
          commands",
         "Breakpoint 1 at twice, a.c:5 (thread 1)
@@ -424,7 +354,7 @@ fn words_of_gdb() {
          * 1    running     main () at a.c:13
          2    waiting     main () at b.c:7, waits for 0.010 s
          tick 4, 0.000360 s
-         Undefined command: \"rwatch\".  Try \"help\".
+         Undefined command: \"jump\".  Try \"help\".
          No breakpoints specified.",
     );
 }

@@ -13,6 +13,10 @@ pub enum Capability {
     Breakpoints,
     /// Programs stop where a variable changes.
     Watchpoints,
+    /// Programs stop where a variable is read.
+    AccessWatchpoints,
+    /// Functions of programs are called from expressions.
+    Calls,
     /// Programs stop that are code of the controller's processor.
     ProcessorCode,
     /// A stimulus, a machine file and the serial port are connected to it, and all that happens is recorded.
@@ -32,6 +36,8 @@ impl fmt::Display for Capability {
             Self::Snapshots => "go back to an earlier state",
             Self::Breakpoints => "stop at breakpoints",
             Self::Watchpoints => "stop where a variable changes",
+            Self::AccessWatchpoints => "stop where a variable is read",
+            Self::Calls => "call functions of a program from an expression",
             Self::ProcessorCode => "stop code of the controller's processor",
             Self::Pauses => "pause one thread while the others run",
             Self::Answers => "be given answers by a call: a statement of a stimulus does",

@@ -29,7 +29,7 @@ use runtime::standing::{StandingAxis, StandingThread};
 use runtime::stimulus::Stimulus;
 use runtime::trace::{Item, TraceRequest};
 use runtime::{Event, OpenBox};
-use vm::engine::{ContextId, FrameView, Hold};
+use vm::engine::{AccessRange, CallEnd, ContextId, FrameView, Hold};
 use vm::scheduler::Turn;
 use vm::thread::ThreadState;
 
@@ -355,6 +355,12 @@ pub trait Target {
         let _ = ranges;
     }
 
+    /// Holds programs after instructions that access these bytes, and after no others
+    /// ([`Capability::AccessWatchpoints`]).
+    fn set_accessed(&mut self, ranges: &[AccessRange]) {
+        let _ = ranges;
+    }
+
     /// Returns which of the watched bytes have changed, once.
     fn take_change(&mut self) -> Option<usize> {
         None
@@ -375,6 +381,13 @@ pub trait Target {
     fn set_register(&mut self, context: ContextId, frame: usize, register: u16, slot: u64) -> bool {
         let _ = (context, frame, register, slot);
         false
+    }
+
+    /// Calls a function of a program or of the firmware in a context, with the arguments each as a slot; the board stands
+    /// meanwhile ([`Capability::Calls`]).
+    fn call_function(&mut self, context: ContextId, function: GuestAddr, arguments: &[u64]) -> CallEnd {
+        let _ = (context, function, arguments);
+        CallEnd::Unsupported
     }
 
     /// The text of the instruction, or of the packet, at an address, and how many bytes it has; `None` where no program

@@ -27,7 +27,7 @@ use kmotiondef::structs::Persist;
 use kmotiondef::timing::Timing;
 use kmotiondef::variables::{PERSIST, cell_name};
 use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
-use vm::engine::Engine;
+use vm::engine::{CallEnd, ContextId, Engine};
 use vm::interp::BytecodeEngine;
 use vm::machine::{Config as MachineConfig, Machine};
 use vm::memory::{Faults, GuestMemory};
@@ -360,6 +360,11 @@ impl<E: Engine> Board<E> {
     /// Holds programs after these bytes, addresses and how many, are not what they are now; and after no others.
     pub fn set_watched(&mut self, ranges: &[(GuestAddr, u32)]) {
         self.machine.set_watched(ranges);
+    }
+
+    /// Calls a function of a loaded program or of the firmware, for a debugger; see [`Machine::call_function`].
+    pub fn call_function(&mut self, id: ContextId, function: GuestAddr, arguments: &[u64]) -> CallEnd {
+        self.machine.call_function(id, function, arguments)
     }
 
     /// Returns the index of a watched byte that has changed since the last call, if any has.

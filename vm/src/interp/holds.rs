@@ -11,9 +11,11 @@ use kmotiondef::{CodeAddr, GuestAddr};
 
 use super::code::{Code, Encoded, Words};
 use super::context::Context;
+use super::observe::{self, AccessPart, AccessPlace};
 use super::steps::{SingleText, Stepping};
-use crate::engine::{ContextId, Hold, HoldReason, Slice, Stop};
+use crate::engine::{AccessRange, ContextId, Hold, HoldReason, Slice, Stop};
 use crate::firmware::Firmware;
+use crate::kind::OpKind;
 use crate::memory::GuestMemory;
 use crate::op::Op;
 use crate::program::Program;
@@ -39,6 +41,7 @@ impl WatchedBytes {
 pub(super) struct Holds {
     breakpoints: BTreeSet<u32>,
     watched: Vec<WatchedBytes>,
+    accessed: Vec<AccessRange>,
     stepping: Option<ContextId>,
     /// Contexts whose present instruction is executed without being held before.
     pub(super) passes: [bool; ContextId::COUNT],
@@ -50,7 +53,11 @@ pub(super) struct Holds {
 impl Holds {
     /// Reports whether anything is held anywhere.
     pub(super) fn is_active(&self) -> bool {
-        self.stepping.is_some() || !self.breakpoints.is_empty() || !self.watched.is_empty()
+        self.stepping.is_some() || !self.breakpoints.is_empty() || self.looks_at_memory()
+    }
+
+    fn looks_at_memory(&self) -> bool {
+        !self.watched.is_empty() || !self.accessed.is_empty()
     }
 
     pub(super) fn set_breakpoints(&mut self, addresses: impl IntoIterator<Item = CodeAddr>) {
@@ -66,6 +73,11 @@ impl Holds {
             .iter()
             .map(|(address, length)| WatchedBytes { address: *address, bytes: bytes(*address, *length) })
             .collect();
+        self.patched.clear();
+    }
+
+    pub(super) fn set_accessed(&mut self, ranges: &[AccessRange]) {
+        self.accessed = ranges.to_vec();
         self.patched.clear();
     }
 
@@ -88,18 +100,44 @@ impl Holds {
 
     /// The words of a program with those at which contexts are held; `plain` are those without.
     pub(super) fn words(&mut self, program: &Arc<Program>, plain: Arc<Encoded>) -> Arc<Encoded> {
-        if self.breakpoints.is_empty() && self.watched.is_empty() {
+        if self.breakpoints.is_empty() && !self.looks_at_memory() {
             return plain;
         }
         if let Some((_, words)) = self.patched.iter().find(|(known, _)| Arc::ptr_eq(known, program)) {
             return Arc::clone(words);
         }
-        let is_probed = |op: &Op| !self.watched.is_empty() && may_store(op);
+        let is_probed = |op: &Op| !self.watched.is_empty() && may_store(op) || self.may_access(op);
         let is_held =
             |pc: usize, op: &Op| self.breakpoints.contains(&program.address_of(pc).get()) || is_probed(op);
         let words = Arc::new(plain.held(program, &is_held));
         self.patched.push((Arc::clone(program), Arc::clone(&words)));
         words
+    }
+
+    /// Reports whether an instruction can access one of the ranges whose accesses are looked for.
+    fn may_access(&self, op: &Op) -> bool {
+        let is_meant = |range: &AccessRange| match (observe::place_of(op), op.kind().width()) {
+            (None, _) => false,
+            (Some(AccessPlace::Constant(address)), Some(width)) => {
+                let is_store = matches!(op.kind(), OpKind::Store(_));
+                overlaps(
+                    range,
+                    &AccessPart { address: GuestAddr::new(address), size: width.bytes(), is_store },
+                )
+            }
+            (Some(_), _) => range.has_stores || !matches!(op.kind(), OpKind::Store(_)),
+        };
+        self.accessed.iter().any(is_meant)
+    }
+
+    /// The reason to hold a context after its present instruction, if that accesses a range.
+    fn access(&self, program: &Program, context: &Context) -> Option<HoldReason> {
+        let op = program.ops().get(context.calls.pc).filter(|_| !self.accessed.is_empty())?;
+        let by = program.address_of(context.calls.pc);
+        observe::accesses(op, context).iter().find_map(|part| {
+            let index = self.accessed.iter().position(|range| overlaps(range, part))?;
+            Some(HoldReason::Accessed { index, by, is_store: part.is_store })
+        })
     }
 
     /// Runs a context until it stops or is held.
@@ -119,6 +157,7 @@ impl Holds {
         loop {
             if self.passes[me] {
                 let at = code.program.address_of(context.calls.pc);
+                let access = self.access(&code.program, context);
                 let stop = self.single(id, code, context, slice, steps);
                 // A call that waits is the same instruction when it is made again.
                 self.passes[me] = matches!(stop, Ok(Stop::Waiting(_)));
@@ -128,6 +167,9 @@ impl Holds {
                 }
                 if let Some(index) = self.take_change(slice.memory) {
                     return Ok(self.hold(id, HoldReason::Changed { index, by: Some(at) }));
+                }
+                if let Some(reason) = access {
+                    return Ok(self.hold(id, reason));
                 }
             }
             if self.stepping == Some(id) {
@@ -165,6 +207,13 @@ impl Holds {
         let stop = self.single.with(program, code.words.words(), pc, run);
         stop.unwrap_or(Err(TrapKind::Unreachable))
     }
+}
+
+/// Reports whether an access is one of those that are looked for in a range.
+fn overlaps(range: &AccessRange, part: &AccessPart) -> bool {
+    let (one, other) = (range.address.get(), part.address.get());
+    let is_inside = other.wrapping_sub(one) < range.size || one.wrapping_sub(other) < part.size;
+    is_inside && (range.has_stores || !part.is_store)
 }
 
 /// Reports whether an instruction can change memory.

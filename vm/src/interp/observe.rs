@@ -56,6 +56,37 @@ pub(super) fn place_of(op: &Op) -> Option<AccessPlace> {
     }
 }
 
+/// A part of an access that is about to be made.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct AccessPart {
+    pub(super) address: GuestAddr,
+    /// Number of bytes.
+    pub(super) size: u32,
+    pub(super) is_store: bool,
+}
+
+/// The accesses that the present instruction of `context` is about to make.
+pub(super) fn accesses(op: &Op, context: &Context) -> Vec<AccessPart> {
+    let pointer = |name| op.operand::<RegI32>(name).map(|register| context.get(register.0) as u32);
+    let part = |address, size, is_store| AccessPart { address: GuestAddr::new(address), size, is_store };
+    let one = |address: u32| op.kind().width().map(|width| part(address, width.bytes(), is_store(op)));
+    match place_of(op) {
+        None => Vec::new(),
+        Some(AccessPlace::Block) => {
+            let len = op.operand::<Count>(Name::Len).map_or(0, |Count(len)| len.into());
+            let (to, from) = (pointer(Name::To), pointer(Name::Src));
+            let parts = [(from, false), (to, true)].into_iter();
+            parts.filter_map(|(address, is_store)| Some(part(address?, len, is_store))).collect()
+        }
+        Some(AccessPlace::Constant(address)) => one(address).into_iter().collect(),
+        Some(AccessPlace::Register) => {
+            let address = op.operand(Name::Off).zip(pointer(Name::Base));
+            let address = address.map(|(Off(off), base)| base.wrapping_add_signed(off.into()));
+            address.and_then(one).into_iter().collect()
+        }
+    }
+}
+
 /// Facts about the text of programs, computed when first needed.
 #[derive(Debug, Default)]
 pub(super) struct Observer {
@@ -73,8 +104,7 @@ pub(super) struct Pending {
     op: Op,
     at: CodeAddr,
     made_of: Arc<[CodeAddr]>,
-    /// Address, bytes, whether it is a store.
-    parts: Vec<(GuestAddr, u32, bool)>,
+    parts: Vec<AccessPart>,
     /// The stored value.
     stored: u64,
 }
@@ -105,30 +135,12 @@ impl Observer {
         let pc = context.calls.pc;
         let op = *program.ops().get(pc)?;
         let at = program.address_of(pc);
-        let pointer = |name| op.operand::<RegI32>(name).map(|register| context.get(register.0) as u32);
-        let parts = match place_of(&op)? {
-            AccessPlace::Block => {
-                let len = op.operand::<Count>(Name::Len).map_or(0, |Count(len)| len.into());
-                let (to, from) = (pointer(Name::To), pointer(Name::Src));
-                [(from, false), (to, true)]
-                    .into_iter()
-                    .filter_map(|(p, is_store)| Some((p?, len, is_store)))
-                    .collect()
-            }
-            AccessPlace::Constant(address) => vec![(address, op.kind().width()?.bytes(), is_store(&op))],
-            AccessPlace::Register => {
-                let Off(off) = op.operand(Name::Off)?;
-                let address = pointer(Name::Base)?.wrapping_add_signed(off.into());
-                vec![(address, op.kind().width()?.bytes(), is_store(&op))]
-            }
-        };
+        place_of(&op)?;
         let has_call_back = self.has_call_back.entry(program.base());
         let has_call_back = *has_call_back.or_insert_with(|| program.has_call_back());
-        let parts: Vec<_> = parts
-            .into_iter()
-            .filter(|(address, ..)| is_shared(*address) || has_call_back && is_of_program(*address))
-            .map(|(address, size, is_store)| (GuestAddr::new(address), size, is_store))
-            .collect();
+        let is_noticed = |address: u32| is_shared(address) || has_call_back && is_of_program(address);
+        let mut parts = accesses(&op, context);
+        parts.retain(|part| is_noticed(part.address.get()));
         if parts.is_empty() {
             return None;
         }
@@ -145,7 +157,8 @@ impl Pending {
         id: ContextId,
         slice: &mut Slice<'_, F>,
     ) -> Option<SwitchPoint> {
-        let (thread, (address, size, is_store)) = (id.thread()?, self.parts.first().copied()?);
+        let (thread, part) = (id.thread()?, *self.parts.first()?);
+        let AccessPart { address, size, is_store } = part;
         let (at, now) = (self.at, slice.now());
         slice.firmware.switch_at(&NextAccess { thread, at, address, size, is_store, now })
     }
@@ -159,7 +172,7 @@ impl Pending {
     ) {
         let Self { op, at, made_of, parts, stored } = self;
         let now = slice.now();
-        for (address, size, is_store) in parts.iter().copied() {
+        for AccessPart { address, size, is_store } in parts.iter().copied() {
             let loaded = registers(op).assigned.map_or(0, |register| context.get(register));
             let value = if op.kind() == OpKind::Block {
                 0

@@ -3,7 +3,7 @@
 //! An expression is compiled as a statement at the end of the innermost block around a line, so that every name in it
 //! means what it means there. It is computed from the board's memory and the registers of a call; it only reads.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
 use kmotiondef::GuestAddr;
@@ -18,9 +18,9 @@ use crate::names::Names;
 use crate::pp::Disk;
 use crate::sema::constants::{self, Constant};
 use crate::source::SourceMap;
-use crate::ty::{Type, TypeId, Types};
+use crate::ty::{QualifiedType, Type, TypeId, Types};
 use crate::typed::{ExprId, ExprKind, LocalId, PlaceKind, StmtKind, Unit};
-use crate::watch::{self, Expression};
+use crate::watch::{self, AllowedCalls, CallRequest, Expression};
 
 /// The location of a local of a call in progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,6 +73,42 @@ pub struct Probe {
     has_locals: bool,
 }
 
+/// The calls of functions that the board executes for an expression: their results as far as they are known, and the call
+/// whose result is needed next.
+#[derive(Debug, Default)]
+pub struct CallResults {
+    known: BTreeMap<ExprId, u64>,
+    next: RefCell<Option<CallRequest>>,
+}
+
+impl CallResults {
+    /// Takes the call whose result a value needs, if there is one.
+    pub fn take_next(&mut self) -> Option<CallRequest> {
+        self.next.take()
+    }
+
+    /// Notes the result of a call, as the slot of a register.
+    pub fn note(&mut self, call: &CallRequest, slot: u64) {
+        self.known.insert(call.id, slot);
+    }
+}
+
+/// The names that an expression may use.
+struct ProbeNames<'a> {
+    place: Option<CodeScope<'a>>,
+    items: &'a [&'a str],
+    calls: AllowedCalls,
+}
+
+/// An expression in the text of a program.
+struct Inserted<'a> {
+    range: std::ops::Range<u32>,
+    /// The function around it, and its locals.
+    function: &'a str,
+    locals: &'a [LocalModel],
+    is_address: bool,
+}
+
 /// The reason why there is no probe.
 enum ProbeError {
     /// The text is not an expression.
@@ -91,7 +127,7 @@ const BEHIND: &str = "\n; }\n";
 
 impl Model {
     /// Compiles an expression at a line of a function; without one, outside of all functions. `items` are further names
-    /// in it, of type `double`.
+    /// in it, of type `double`; `calls` says which functions it may call.
     ///
     /// # Errors
     /// What is wrong with it, in one line.
@@ -100,15 +136,15 @@ impl Model {
         place: Option<CodeScope<'_>>,
         expression: &str,
         items: &[&str],
+        calls: AllowedCalls,
     ) -> Result<Probe, String> {
         let line = place.map_or(1, |place| place.line);
         let expression = &with_line(expression, line);
+        let names = ProbeNames { place, items, calls };
         on_large_stack(|| {
-            match self.probe_as(place, &format!("&(\n{expression}\n)"), items, true) {
+            match self.probe_as(&names, &format!("&(\n{expression}\n)"), true) {
                 // It may be a value without an address.
-                Err(ProbeError::Invalid(_)) => {
-                    self.probe_as(place, &format!("(\n{expression}\n)"), items, false)
-                }
+                Err(ProbeError::Invalid(_)) => self.probe_as(&names, &format!("(\n{expression}\n)"), false),
                 whole => whole,
             }
         })
@@ -118,12 +154,15 @@ impl Model {
 
     fn probe_as(
         &self,
-        place: Option<CodeScope<'_>>,
+        probe_names: &ProbeNames<'_>,
         expression: &str,
-        items: &[&str],
         is_address: bool,
     ) -> Result<Probe, ProbeError> {
-        let items_text: String = items.iter().map(|item| format!("extern double {item}; ")).collect();
+        let ProbeNames { place, items, calls } = *probe_names;
+        let mut items_text: String = items.iter().map(|item| format!("extern double {item}; ")).collect();
+        if calls == AllowedCalls::Executed {
+            items_text += &self.declarations(place.map_or(u32::MAX, |place| place.line), expression);
+        }
         let inserted = format!("{BEFORE}{items_text}{expression}{BEHIND}");
         let mut text = self.text.clone();
         let inside = place.and_then(|place| Some((self.place_in(place.function, place.line)?, place)));
@@ -139,7 +178,21 @@ impl Model {
                 (from, text.len(), name, [].as_slice())
             }
         };
-        self.compile(text, from as u32..until as u32, name, locals, items, is_address)
+        let inserted = Inserted { range: from as u32..until as u32, function: name, locals, is_address };
+        self.compile(text, &inserted, probe_names)
+    }
+
+    /// The declarations of the functions that an expression calls and that the program defines only after a line.
+    fn declarations(&self, line: u32, expression: &str) -> String {
+        let later = self.functions.iter().filter(|function| function.lines.start > line);
+        let called = later.filter(|function| calls_by_name(expression, &function.name));
+        let types = &self.unit.types;
+        let declaration = |function: &super::FunctionModel| {
+            let symbol = self.unit.symbols.values().find(|symbol| symbol.name == function.name)?;
+            let ty = QualifiedType::plain(symbol.ty);
+            Some(types.declare(&self.names, ty, function.name.clone()) + "; ")
+        };
+        called.filter_map(declaration).collect()
     }
 
     /// The position in the text at which to insert an expression that is evaluated in a line of a function.
@@ -154,12 +207,11 @@ impl Model {
     fn compile(
         &self,
         text: Vec<u8>,
-        inserted: std::ops::Range<u32>,
-        name: &str,
-        locals: &[LocalModel],
-        items: &[&str],
-        is_address: bool,
+        inserted: &Inserted<'_>,
+        probe_names: &ProbeNames<'_>,
     ) -> Result<Probe, ProbeError> {
+        let Inserted { range: inserted, function: name, locals, is_address } = inserted;
+        let (is_address, items) = (*is_address, probe_names.items);
         let mut context = CompileContext::default();
         let request = CompileRequest { path: &self.path, options: &self.options, files: &Disk };
         let Front { main, mut unit } = request.front(text, &mut context);
@@ -170,7 +222,7 @@ impl Model {
         }
         let start = sources.file(main).start;
         let range = start + inserted.start..start + inserted.end;
-        let index = unit.functions.iter().position(|function| unit.symbols[function.symbol].name == name);
+        let index = unit.functions.iter().position(|function| unit.symbols[function.symbol].name == *name);
         let index = index.ok_or_else(not_an_expression)?;
         let function = &unit.functions[index];
         let mut found = None;
@@ -189,9 +241,9 @@ impl Model {
             value = inner;
         }
         let locals = locals_of(locals, function, &sources, start);
-        let symbols = self.image.symbols.iter().filter(|entry| entry.kind == EntryKind::Object);
-        let symbols = symbols.map(|entry| (entry.name.clone(), GuestAddr::new(entry.address))).collect();
-        let named = watch::meanings(&unit, index, value, &symbols, &self.options, items)
+        let symbols = self.addresses(EntryKind::Object);
+        let code = (probe_names.calls == AllowedCalls::Executed).then(|| self.addresses(EntryKind::Function));
+        let named = watch::meanings(&unit, index, value, &symbols, code.as_ref(), &self.options, items)
             .map_err(ProbeError::Unreadable)?;
         let function = &unit.functions[index];
         if is_address
@@ -204,6 +256,12 @@ impl Model {
         let function = unit.functions.swap_remove(index);
         let expression = Expression::new(function, value, named.meanings);
         Ok(Probe { unit, names, expression, value, is_address, locals, has_locals: named.has_locals })
+    }
+
+    /// The addresses of the entries of a kind in the image, by their names.
+    fn addresses(&self, kind: EntryKind) -> BTreeMap<String, GuestAddr> {
+        let entries = self.image.symbols.iter().filter(|entry| entry.kind == kind);
+        entries.map(|entry| (entry.name.clone(), GuestAddr::new(entry.address))).collect()
     }
 
     /// The value of a local, if it has one at present.
@@ -269,6 +327,16 @@ fn with_line(expression: &str, line: u32) -> String {
     whole + rest
 }
 
+/// Reports whether an expression has a call of a function by its name.
+fn calls_by_name(expression: &str, name: &str) -> bool {
+    let is_part = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
+    expression.match_indices(name).any(|(at, _)| {
+        let before = expression[..at].chars().next_back();
+        let after = expression[at + name.len()..].trim_start();
+        !before.is_some_and(is_part) && after.starts_with('(')
+    })
+}
+
 /// The message on a place where there is no memory.
 fn no_memory(address: GuestAddr) -> String {
     format!("Cannot access memory at address {:#x}", address.get())
@@ -278,6 +346,7 @@ fn no_memory(address: GuestAddr) -> String {
 struct Inner<'a> {
     reader: &'a dyn DebugReader,
     locals: &'a BTreeMap<LocalId, LocalModel>,
+    results: &'a CallResults,
     /// The last address read at which there is no memory.
     unmapped: Cell<Option<GuestAddr>>,
 }
@@ -300,6 +369,14 @@ impl watch::ItemReader for Inner<'_> {
             LocalPlace::Slot(bits) => watch::Local::Slot(bits),
         })
     }
+
+    fn result(&self, call: CallRequest) -> Option<u64> {
+        let known = self.results.known.get(&call.id).copied();
+        if known.is_none() {
+            self.results.next.borrow_mut().get_or_insert(call);
+        }
+        known
+    }
 }
 
 impl Probe {
@@ -308,7 +385,16 @@ impl Probe {
     /// # Errors
     /// That a local is optimised out, that an integer is divided by 0, or that there is no memory where a pointer points.
     pub fn value(&self, reader: &dyn DebugReader) -> Result<DebugValue, String> {
-        let inner = Inner { reader, locals: &self.locals, unmapped: Cell::new(None) };
+        self.value_with(reader, &CallResults::default())
+    }
+
+    /// The present value with the results of calls. There is none if one is needed that is not known: the call is then in
+    /// `results`.
+    ///
+    /// # Errors
+    /// As [`value`](Self::value).
+    pub fn value_with(&self, reader: &dyn DebugReader, results: &CallResults) -> Result<DebugValue, String> {
+        let inner = Inner { reader, locals: &self.locals, results, unmapped: Cell::new(None) };
         let value = self.value_in(&inner)?;
         let unmapped = inner.unmapped.get();
         let place = value.address().filter(|address| !reader.is_mapped(*address));

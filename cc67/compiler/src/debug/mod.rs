@@ -9,7 +9,7 @@ mod eval;
 mod scope;
 mod value;
 
-pub use eval::{CodeScope, DebugReader, LocalPlace, Probe};
+pub use eval::{CallResults, CodeScope, DebugReader, LocalPlace, Probe};
 pub use value::{Child, DebugValue, Displayed};
 
 use std::fmt::Write as _;
@@ -33,6 +33,7 @@ use crate::ty::{FunctionType, ParameterTypes, Type};
 use crate::typed::Unit;
 
 pub use crate::object::Location;
+pub use crate::watch::{AllowedCalls, CallRequest};
 
 /// The debug information of one program.
 #[derive(Debug)]

@@ -6,7 +6,7 @@ use cc67_host::Target;
 use serde_json::{Value, json};
 
 use super::{Reply, Server};
-use crate::debugger::{DebugError, Debugger, HitCondition};
+use crate::debugger::{DebugError, Debugger, HitCondition, WatchedAccess};
 
 /// Makes the breakpoint that the editor wants: its number, and what to say of it.
 type Maker<'a, T> = dyn FnMut(&mut Debugger<T>, &Value) -> Result<(u32, String), DebugError> + 'a;
@@ -47,7 +47,12 @@ impl<W: Write, T: Target> Server<'_, W, T> {
             if let (Some(thread), Ok(frame)) = (thread, frame.parse()) {
                 debugger.select(thread, frame)?;
             }
-            debugger.watch(expression, wanted["condition"].as_str())
+            let condition = wanted["condition"].as_str();
+            match wanted["accessType"].as_str() {
+                Some("read") => debugger.watch_access(expression, WatchedAccess::Read, condition),
+                Some("readWrite") => debugger.watch_access(expression, WatchedAccess::ReadWrite, condition),
+                _ => debugger.watch(expression, condition),
+            }
         })
     }
 

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use cc67_host::Target;
+use cc67_host::{Capability, Target};
 use kmotiondef::{GuestAddr, ThreadId};
 use serde_json::{Value, json};
 use vm::engine::ContextId;
@@ -225,10 +225,15 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         let assignment = (arguments["context"] == "repl").then(|| Assignment::of(&text)).flatten();
         let mut variable = match assignment {
             Some(Assignment { place, value, .. }) => self.debugger()?.set(&place, &value)?,
+            // Only what a person types calls functions; what the editor looks at by itself reads.
+            None if arguments["context"] == "repl" => self.debugger()?.evaluate_with_calls(&text)?,
             None => self.debugger()?.evaluate(&text)?,
         };
         if !format.is_empty() && format != "x" {
-            variable.text = number_as(self.debugger()?.number(&text)?, format)?;
+            // A call is not made again.
+            let known = variable.text.split(' ').next().and_then(|word| word.parse().ok());
+            let number = known.map_or_else(|| self.debugger()?.number(&text), Ok)?;
+            variable.text = number_as(number, format)?;
         }
         let number = frame.unwrap_or_else(|| {
             self.shell.as_ref().map_or(0, |shell| number_of(shell.debugger().context()) * FRAMES)
@@ -280,11 +285,17 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         if frame > 0 {
             self.select(frame)?;
         }
-        match self.debugger()?.evaluate(&expression) {
-            Ok(_) => Ok(json!({
-                "dataId": format!("{}|{}|{expression}", frame / FRAMES, frame % FRAMES),
-                "description": expression, "accessTypes": ["write"], "canPersist": false,
-            })),
+        let debugger = self.debugger()?;
+        let sees_reads = debugger.session().can(Capability::AccessWatchpoints);
+        match debugger.evaluate(&expression) {
+            Ok(variable) => {
+                let sees_reads = sees_reads && variable.address.is_some();
+                let types = if sees_reads { json!(["read", "write", "readWrite"]) } else { json!(["write"]) };
+                Ok(json!({
+                    "dataId": format!("{}|{}|{expression}", frame / FRAMES, frame % FRAMES),
+                    "description": expression, "accessTypes": types, "canPersist": false,
+                }))
+            }
             Err(error) => Ok(json!({ "dataId": null, "description": error.to_string() })),
         }
     }

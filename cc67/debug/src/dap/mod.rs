@@ -446,6 +446,10 @@ impl<W: Write, T: Target> Server<'_, W, T> {
             Reason::Changed { expression, old, new, by, .. } => {
                 ("data breakpoint", format!("{expression}: {old} → {new}, written by {by}"))
             }
+            Reason::Accessed { expression, old, value, by, .. } => {
+                let before = old.as_ref().map_or_else(String::new, |old| format!("{old} → "));
+                ("data breakpoint", format!("{expression}: {before}{value}, accessed by {by}"))
+            }
             Reason::Step | Reason::Time => ("step", String::new()),
             Reason::Trap(text) | Reason::Remark(text) => ("exception", text.clone()),
             Reason::Interrupted => ("pause", String::new()),
@@ -469,7 +473,9 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         if let Reason::Breakpoint(ids) = &stop.reason {
             body["hitBreakpointIds"] = json!(ids);
         }
-        if let Reason::Changed { id, .. } | Reason::When { id, .. } = &stop.reason {
+        if let Reason::Changed { id, .. } | Reason::Accessed { id, .. } | Reason::When { id, .. } =
+            &stop.reason
+        {
             body["hitBreakpointIds"] = json!([id]);
         }
         self.wire.event("stopped", body)

@@ -15,8 +15,30 @@ pub enum BreakpointKind {
     Code(String, Vec<u32>),
     /// A change of an expression's value.
     Watch(String),
+    /// An access of programs to the memory of an expression.
+    Access(String, WatchedAccess),
     /// An expression that becomes true, looked at after every tick.
     When(String),
+}
+
+/// The accesses that stop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WatchedAccess {
+    /// Reads.
+    Read,
+    /// Reads and writes.
+    ReadWrite,
+}
+
+impl WatchedAccess {
+    /// The breakpoint in gdb's words.
+    #[must_use]
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Read => "Hardware read watchpoint",
+            Self::ReadWrite => "Hardware access (read/write) watchpoint",
+        }
+    }
 }
 
 /// A breakpoint.
@@ -54,6 +76,8 @@ pub(super) enum Subject {
     Instructions,
     /// A watched expression.
     Change(WatchedExpression),
+    /// An expression whose memory is accessed, and its value at the last stop.
+    Access(WatchedExpression),
     /// An expression that becomes true, and whether it was at the last tick.
     Truth(Prepared, bool),
 }
@@ -61,6 +85,21 @@ pub(super) enum Subject {
 impl Subject {
     pub(super) const fn watched(&self) -> Option<&WatchedExpression> {
         if let Self::Change(watched) = self { Some(watched) } else { None }
+    }
+
+    /// The expression whose memory is accessed.
+    pub(super) const fn accessed(&self) -> Option<&WatchedExpression> {
+        if let Self::Access(watched) = self { Some(watched) } else { None }
+    }
+
+    /// The expression of a watchpoint of any kind.
+    pub(super) const fn expression_mut(&mut self) -> Option<&mut WatchedExpression> {
+        if let Self::Change(watched) | Self::Access(watched) = self { Some(watched) } else { None }
+    }
+
+    /// The same, to look at.
+    pub(super) const fn expression(&self) -> Option<&WatchedExpression> {
+        if let Self::Change(watched) | Self::Access(watched) = self { Some(watched) } else { None }
     }
 
     pub(super) const fn watched_mut(&mut self) -> Option<&mut WatchedExpression> {
@@ -74,7 +113,7 @@ impl Subject {
     /// Reports whether it is looked at after every tick.
     pub(super) const fn is_polled(&self) -> bool {
         match self {
-            Self::Instructions => false,
+            Self::Instructions | Self::Access(_) => false,
             Self::Change(watched) => watched.is_polled,
             Self::Truth(..) => true,
         }
@@ -94,6 +133,8 @@ pub(super) struct WatchedExpression {
     pub(super) prepared: Prepared,
     /// The memory that it is read from.
     pub(super) ranges: Vec<(GuestAddr, u32)>,
+    /// The memory that it is itself, if it is a place in memory.
+    pub(super) own: Option<(GuestAddr, u32)>,
     /// Registers are among what it is read from: it is looked at before every line.
     pub(super) has_registers: bool,
     /// Items of the board are: it is looked at after every tick.
@@ -158,6 +199,30 @@ impl<T: Target> Debugger<T> {
         Ok((id, format!("Watchpoint {id}: {expression}")))
     }
 
+    /// Stops after an instruction of a program accesses the memory of an expression; its number, and what there is to say.
+    ///
+    /// # Errors
+    /// The expression is wrong, or it is not a place in memory.
+    pub fn watch_access(
+        &mut self,
+        expression: &str,
+        access: WatchedAccess,
+        condition: Option<&str>,
+    ) -> Result<(u32, String), DebugError> {
+        self.session.require(Capability::AccessWatchpoints)?;
+        let watched = self.watched(expression)?;
+        if watched.own.is_none() {
+            return Err("Expression cannot be implemented with read/access watchpoint.".into());
+        }
+        let kind = BreakpointKind::Access(expression.to_owned(), access);
+        let conditions = self.conditions(&kind, condition)?;
+        let id = self.add(kind, condition, conditions);
+        if let Some(added) = self.breakpoints.last_mut() {
+            added.subject = Subject::Access(watched);
+        }
+        Ok((id, format!("{} {id}: {expression}", access.title())))
+    }
+
     /// Stops at the end of the tick in which an expression becomes true, that is, is not 0; its number, and what there is
     /// to say.
     ///
@@ -212,7 +277,9 @@ impl<T: Target> Debugger<T> {
             BreakpointKind::Code(_, addresses) => {
                 addresses.iter().map(|at| Ok((*at, self.prepare_at(*at, condition)?))).collect()
             }
-            BreakpointKind::Watch(_) | BreakpointKind::When(_) => Ok(vec![(0, self.prepare(condition)?)]),
+            BreakpointKind::Watch(_) | BreakpointKind::Access(..) | BreakpointKind::When(_) => {
+                Ok(vec![(0, self.prepare(condition)?)])
+            }
         }
     }
 

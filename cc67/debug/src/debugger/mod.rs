@@ -6,7 +6,7 @@ mod run;
 mod travel;
 mod values;
 
-pub use breakpoints::{Breakpoint, BreakpointKind};
+pub use breakpoints::{Breakpoint, BreakpointKind, WatchedAccess};
 pub use hits::HitCondition;
 pub(crate) use run::{Goal, StepKind};
 pub(crate) use travel::ONLY_FORWARD;
@@ -103,6 +103,21 @@ pub enum Reason {
         /// Its value now.
         new: String,
         /// The context that did it.
+        by: String,
+    },
+    /// The memory of an expression was accessed.
+    Accessed {
+        /// Number of the breakpoint.
+        id: u32,
+        /// The expression.
+        expression: String,
+        /// The accesses that it stops at.
+        access: WatchedAccess,
+        /// Its value before, if the access has changed it.
+        old: Option<String>,
+        /// Its value now.
+        value: String,
+        /// Who did it.
         by: String,
     },
     /// An expression has become true.
@@ -483,11 +498,20 @@ impl<T: Target> Debugger<T> {
 
     /// Tells the timeline that a person has changed something; says so if that makes another history.
     pub(crate) fn changed(&mut self) {
-        let history = match &mut self.timeline {
-            Some(timeline) if self.session.held().is_some() => timeline.branch(&mut self.session),
-            Some(timeline) => timeline.keep(&mut self.session),
-            None => History::Same,
-        };
+        if self.session.held().is_some() {
+            return self.changed_beyond_journal();
+        }
+        let history = self.timeline.as_mut().map(|timeline| timeline.keep(&mut self.session));
+        self.tell_history(history.unwrap_or(History::Same));
+    }
+
+    /// Does the same for what no journal has.
+    pub(crate) fn changed_beyond_journal(&mut self) {
+        let history = self.timeline.as_mut().map(|timeline| timeline.branch(&mut self.session));
+        self.tell_history(history.unwrap_or(History::Same));
+    }
+
+    fn tell_history(&mut self, history: History) {
         if history != History::Same {
             let seconds = self.now().get() as f64 / Cycles::PER_SECOND.get() as f64;
             self.messages.push_back(format!(

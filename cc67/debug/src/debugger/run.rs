@@ -5,10 +5,12 @@ use std::sync::atomic::Ordering;
 use cc67_host::{Capability, Target};
 use kmotiondef::{Bit, CodeAddr, GuestAddr, ThreadId, Ticks};
 use runtime::{Event, EventKind};
-use vm::engine::{ContextId, Hold, HoldReason};
+use vm::engine::{AccessRange, ContextId, Hold, HoldReason};
 
 use super::breakpoints::WatchedExpression;
-use super::{BreakpointKind, DebugError, Debugger, Events, Reason, Stop, file_name};
+use super::{
+    Breakpoint, BreakpointKind, DebugError, Debugger, Events, Reason, Stop, WatchedAccess, file_name,
+};
 
 /// The writer of a value that is looked at only after every tick.
 const IN_TICK: &str = "a program or the board in the last tick";
@@ -213,6 +215,7 @@ impl<T: Target> Debugger<T> {
         }
         self.session.set_breakpoints(addresses.into_iter().filter_map(CodeAddr::new));
         self.session.set_watched(&ranges);
+        self.session.set_accessed(&self.accessed());
         self.session.set_stepping(if let Goal::Instruction(context) = goal { Some(*context) } else { None });
     }
 
@@ -220,7 +223,18 @@ impl<T: Target> Debugger<T> {
     pub(super) fn disarm(&mut self) {
         self.session.set_breakpoints([]);
         self.session.set_watched(&[]);
+        self.session.set_accessed(&[]);
         self.session.set_stepping(None);
+    }
+
+    /// The memory whose accesses stop.
+    fn accessed(&self) -> Vec<AccessRange> {
+        let range = |breakpoint: &Breakpoint| {
+            let BreakpointKind::Access(_, access) = &breakpoint.kind else { return None };
+            let (address, size) = breakpoint.subject.accessed()?.own?;
+            Some(AccessRange { address, size, has_stores: *access == WatchedAccess::ReadWrite })
+        };
+        self.breakpoints.iter().filter(|breakpoint| breakpoint.is_enabled).filter_map(range).collect()
     }
 
     /// The statements of all programs.
@@ -389,6 +403,10 @@ impl<T: Target> Debugger<T> {
                 let by = by.map_or_else(|| BY_SERVO.to_owned(), |at| self.writer(hold.context, at));
                 self.judge_change(index, by, counts)
             }
+            HoldReason::Accessed { index, by, .. } => {
+                let by = self.writer(hold.context, by);
+                self.judge_access(index, by, counts)
+            }
             HoldReason::Breakpoint => {
                 let at = self.session.frames(hold.context).first()?.at.get();
                 self.judge_registers(hold.context, counts)
@@ -451,7 +469,32 @@ impl<T: Target> Debugger<T> {
         Some(Reason::Changed { id, expression, old, new, by })
     }
 
-    fn judge_breakpoints(&mut self, context: ContextId, at: u32, counts: bool) -> Option<Reason> {
+    /// The memory of an expression was accessed.
+    fn judge_access(&mut self, range: usize, by: String, counts: bool) -> Option<Reason> {
+        let is_meant = |index: &usize| {
+            let breakpoint = &self.breakpoints[*index];
+            breakpoint.is_enabled
+                && breakpoint.subject.accessed().is_some_and(|watched| watched.own.is_some())
+        };
+        let index = (0..self.breakpoints.len()).filter(is_meant).nth(range)?;
+        let value = self.watched_text(self.breakpoints[index].subject.accessed()?)?;
+        let watched = self.breakpoints[index].subject.expression_mut()?;
+        let old = std::mem::replace(&mut watched.last, value.clone());
+        let context = self.session.held().map_or_else(|| self.context(), |(context, _)| context);
+        if !self.is_to_stop(index, context, counts) {
+            return None;
+        }
+        let Breakpoint { id, kind: BreakpointKind::Access(expression, access), .. } =
+            &self.breakpoints[index]
+        else {
+            return None;
+        };
+        let (expression, access) = (expression.clone(), *access);
+        let old = Some(old).filter(|old| *old != value && access == WatchedAccess::ReadWrite);
+        Some(Reason::Accessed { id: *id, expression, access, old, value, by })
+    }
+
+    pub(super) fn judge_breakpoints(&mut self, context: ContextId, at: u32, counts: bool) -> Option<Reason> {
         let is_here = |kind: &BreakpointKind| matches!(kind, BreakpointKind::Code(_, addresses) if addresses.contains(&at));
         let here: Vec<_> = (0..self.breakpoints.len())
             .filter(|index| self.breakpoints[*index].is_enabled && is_here(&self.breakpoints[*index].kind))

@@ -161,6 +161,11 @@ impl<T: Target> Debugger<T> {
                 self.refresh_watches();
                 return self.stopped(reason, None);
             }
+            if let Some(reason) = self.stop_at(place, wanted) {
+                self.disarm();
+                self.refresh_watches();
+                return self.stopped(reason, None);
+            }
             if self.interrupt.swap(false, Ordering::Relaxed) {
                 self.disarm();
                 return self.stopped(Reason::Interrupted, None);
@@ -172,6 +177,29 @@ impl<T: Target> Debugger<T> {
             self.messages.push_back("the beginning of the past cannot be reached".to_owned());
         }
         self.stopped(Reason::BeginOfHistory, None)
+    }
+
+    /// The reason to stop where a snapshot was taken in the middle of a tick: somebody has changed something there, so
+    /// what is before leads to the same place in another state.
+    fn stop_at(&mut self, place: u64, wanted: &Wanted) -> Option<Reason> {
+        self.disarm();
+        if !self.restore(place) {
+            return None;
+        }
+        let (held, _) = self.session.held()?;
+        let frames = self.session.frames(held);
+        let at = frames.first()?.at.get();
+        match wanted {
+            Wanted::Stop => self.judge_breakpoints(held, at, false),
+            Wanted::Instruction(context) => (held == *context).then_some(Reason::Step),
+            Wanted::Line { context, depth } => {
+                let here = self.line_and_depth(held).filter(|(_, now)| held == *context && now <= depth);
+                here.map(|_| Reason::Step)
+            }
+            Wanted::Call { context, depth, at: call } => {
+                (held == *context && frames.len() == *depth && at == *call).then_some(Reason::Step)
+            }
+        }
     }
 
     /// Searches one stretch of the past; the session is where it was found then.

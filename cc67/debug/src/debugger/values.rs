@@ -2,10 +2,13 @@
 
 use std::cell::{Cell, RefCell};
 
-use compiler::debug::{Child, DebugReader, DebugValue, Displayed, LocalModel, LocalPlace, Location, Probe};
+use compiler::debug::{
+    AllowedCalls, CallRequest, CallResults, Child, DebugReader, DebugValue, Displayed, LocalModel,
+    LocalPlace, Location, Probe,
+};
 use kmotiondef::GuestAddr;
 use runtime::trace::Item;
-use vm::engine::{ContextId, FrameView};
+use vm::engine::{CallEnd, ContextId, FrameView};
 
 use super::breakpoints::{Subject, WatchedExpression};
 use super::{DebugError, Debugger, StackFrame};
@@ -115,6 +118,7 @@ fn compile(
     thread: kmotiondef::ThreadId,
     at: Option<(u32, usize)>,
     expression: &str,
+    calls: AllowedCalls,
 ) -> Result<(Probe, Vec<Item>), DebugError> {
     let (thread, expression) = match expression.split_once(':') {
         Some((number, rest)) if number.trim().parse().ok().and_then(kmotiondef::ThreadId::new).is_some() => {
@@ -130,7 +134,7 @@ fn compile(
         Ok(model) => model,
         Err(why) => any().ok_or(why)?,
     };
-    match model.probe(place, &expression, &[]) {
+    match model.probe(place, &expression, &[], calls) {
         Ok(probe) => Ok((probe, Vec::new())),
         Err(error) => {
             let names = items_in(&expression);
@@ -138,7 +142,7 @@ fn compile(
                 return Err(format!("`{expression}`: {error}").into());
             }
             let probe = model
-                .probe(place, &expression, &names)
+                .probe(place, &expression, &names, calls)
                 .map_err(|error| format!("`{expression}`: {error}"))?;
             Ok((probe, names.into_iter().filter_map(|name| Item::new(name).ok()).collect()))
         }
@@ -155,14 +159,14 @@ impl<T: Target> Debugger<T> {
         self.call().map(|frame| frame.view)
     }
 
-    fn probe(&self, expression: &str) -> Result<(Probe, Vec<Item>), DebugError> {
+    fn probe(&self, expression: &str, calls: AllowedCalls) -> Result<(Probe, Vec<Item>), DebugError> {
         let at = self.call().map(|frame| (frame.address.get(), frame.level));
-        compile(&self.programs, self.thread, at, expression)
+        compile(&self.programs, self.thread, at, expression, calls)
     }
 
     /// An expression, compiled for the call that is looked at.
     pub(super) fn prepare(&self, expression: &str) -> Result<Prepared, DebugError> {
-        let (probe, items) = self.probe(expression)?;
+        let (probe, items) = self.probe(expression, AllowedCalls::Computed)?;
         let depth = |call: StackFrame| self.session.frames(self.context()).len() - call.real;
         let call = self.call().filter(|_| probe.has_locals());
         Ok(Prepared { probe, items, frame: call.map(|call| (self.context(), depth(call))) })
@@ -171,7 +175,8 @@ impl<T: Target> Debugger<T> {
     /// An expression, compiled for an instruction.
     pub(super) fn prepare_at(&self, address: u32, expression: &str) -> Result<Prepared, DebugError> {
         let thread = self.programs.at(address).map_or(self.thread, |(thread, ..)| thread);
-        let (probe, items) = compile(&self.programs, thread, Some((address, 0)), expression)?;
+        let (probe, items) =
+            compile(&self.programs, thread, Some((address, 0)), expression, AllowedCalls::Computed)?;
         Ok(Prepared { probe, items, frame: None })
     }
 
@@ -201,12 +206,70 @@ impl<T: Target> Debugger<T> {
         expression: &str,
         work: impl FnOnce(&Probe, &DebugValue, &Displayed<'_>) -> R,
     ) -> Result<R, DebugError> {
-        let (probe, items) = self.probe(expression)?;
+        let (probe, items) = self.probe(expression, AllowedCalls::Computed)?;
         let view = self.view();
         let at = At::new(&self.session, view.as_ref(), &items);
         let value = probe.value(&at)?;
         let worked = work(&probe, &value, &probe.shown(&at));
         at.checked(worked)
+    }
+
+    /// Does the same with an expression that may call functions of the program and of the firmware, which the board
+    /// executes while its time stands.
+    fn with_called_value<R>(
+        &mut self,
+        expression: &str,
+        work: impl FnOnce(&DebugValue, &Displayed<'_>) -> R,
+    ) -> Result<R, DebugError> {
+        let (probe, items) = self.probe(expression, AllowedCalls::Executed)?;
+        let (mut results, mut has_called) = (CallResults::default(), false);
+        let shown = loop {
+            let view = self.view();
+            let at = At::new(&self.session, view.as_ref(), &items);
+            let value = probe.value_with(&at, &results);
+            let Some(call) = results.take_next() else {
+                let value = value?;
+                let worked = work(&value, &probe.shown(&at));
+                break at.checked(worked);
+            };
+            let slot = self.call_function(expression, &call)?;
+            results.note(&call, slot);
+            has_called = true;
+        };
+        if has_called {
+            self.changed_beyond_journal();
+        }
+        shown
+    }
+
+    /// The slot of the result of a function of the program or of the firmware.
+    fn call_function(&mut self, expression: &str, call: &CallRequest) -> Result<u64, DebugError> {
+        let why = match self.session.call_function(self.context(), call.function, &call.arguments)? {
+            CallEnd::Returned(slot) => return Ok(slot),
+            CallEnd::Waits(at) => {
+                let place = self.place(at.get());
+                let place = place.map_or_else(String::new, |place| {
+                    format!(" at {}:{}", super::file_name(&place.file), place.line)
+                });
+                format!("the function waits{place}, and the board stands meanwhile")
+            }
+            CallEnd::EndsThread => "the function ends its thread".to_owned(),
+            CallEnd::Endless(limit) => {
+                let seconds = limit.get() as f64 / kmotiondef::Cycles::PER_SECOND.get() as f64;
+                format!("the function has not returned after {seconds} s of the processor")
+            }
+            CallEnd::Trapped(trap) => {
+                let place = self.place(trap.at.get());
+                let place = place.map_or_else(
+                    || trap.at.to_string(),
+                    |place| format!("{} at {}:{}", place.function, super::file_name(&place.file), place.line),
+                );
+                format!("{place}: {}", trap.kind)
+            }
+            CallEnd::NoFunction => "there is no such function in the program".to_owned(),
+            CallEnd::Unsupported => "functions in code for the processor are not called".to_owned(),
+        };
+        Err(format!("`{expression}`: {why}; nothing has changed").into())
     }
 
     /// The value of an expression where the call that is looked at stands.
@@ -226,6 +289,26 @@ impl<T: Target> Debugger<T> {
     /// What is wrong with it, or that it is no number.
     pub fn number(&self, expression: &str) -> Result<f64, DebugError> {
         let number = self.with_value(expression, |_, value, shown| shown.number(value))?;
+        number.ok_or_else(|| format!("`{expression}` is not a number").into())
+    }
+
+    /// The value of an expression that may call functions.
+    ///
+    /// # Errors
+    /// As [`evaluate`](Self::evaluate), or a function does not return.
+    pub fn evaluate_with_calls(&mut self, expression: &str) -> Result<ShownVariable, DebugError> {
+        if let Some(literal) = string_literal(expression) {
+            return Ok(literal);
+        }
+        self.with_called_value(expression, |value, shown| variable(expression, expression, value, shown))
+    }
+
+    /// The number that an expression is, which may call functions.
+    ///
+    /// # Errors
+    /// As [`number`](Self::number), or a function does not return.
+    pub fn number_with_calls(&mut self, expression: &str) -> Result<f64, DebugError> {
+        let number = self.with_called_value(expression, |value, shown| shown.number(value))?;
         number.ok_or_else(|| format!("`{expression}` is not a number").into())
     }
 
@@ -301,8 +384,8 @@ impl<T: Target> Debugger<T> {
     /// # Errors
     /// An expression is wrong, or the first is not a place.
     pub fn set(&mut self, expression: &str, value: &str) -> Result<ShownVariable, DebugError> {
-        let number = self.number(value)?;
-        let (probe, items) = self.probe(expression)?;
+        let number = self.number_with_calls(value)?;
+        let (probe, items) = self.probe(expression, AllowedCalls::Computed)?;
         let view = self.view();
         let (bytes, address, register) = {
             let at = At::new(&self.session, view.as_ref(), &items);
@@ -407,7 +490,7 @@ impl<T: Target> Debugger<T> {
         if ranges.is_empty() && !has_registers && !is_polled {
             return Err(format!("Cannot watch constant value `{expression}'.").into());
         }
-        Ok(WatchedExpression { prepared, ranges, has_registers, is_polled, last })
+        Ok(WatchedExpression { prepared, ranges, own, has_registers, is_polled, last })
     }
 
     /// The present value of what a breakpoint watches; `None` if the call that it is of has ended, or it is nowhere.
@@ -423,8 +506,8 @@ impl<T: Target> Debugger<T> {
     pub(super) fn refresh_watches(&mut self) {
         for index in 0..self.breakpoints.len() {
             let text =
-                self.breakpoints[index].subject.watched().and_then(|watched| self.watched_text(watched));
-            if let (Some(watched), Some(text)) = (self.breakpoints[index].subject.watched_mut(), text) {
+                self.breakpoints[index].subject.expression().and_then(|watched| self.watched_text(watched));
+            if let (Some(watched), Some(text)) = (self.breakpoints[index].subject.expression_mut(), text) {
                 watched.last = text;
             }
             let is_so = self.is_so(&self.breakpoints[index]);

@@ -25,6 +25,14 @@ impl<T: Target> Shell<T> {
         let (format, rest) = format_of(rest);
         match name {
             "print" => self.print(format, rest),
+            "call" => {
+                let text = self.print(format, rest)?;
+                if !text.ends_with(" = void\n") {
+                    return Ok(text);
+                }
+                self.values -= 1;
+                Ok(String::new())
+            }
             "ptype" => Ok(format!("type = {}\n", self.debugger.evaluate(rest)?.ty)),
             "x" => self.memory(format, rest),
             _ => self.set(rest),
@@ -34,17 +42,17 @@ impl<T: Target> Shell<T> {
     fn print(&mut self, format: &str, expression: &str) -> Result<String, DebugError> {
         let assignment = Assignment::of(expression);
         let shown = assignment.as_ref().map_or(expression, |assignment| assignment.place.as_str());
-        let text_of = |debugger: &Debugger<T>| match format {
-            "" => Ok(debugger.evaluate(shown)?.text),
-            _ => number_as(debugger.number(shown)?, format),
+        let text_of = |debugger: &mut Debugger<T>| match format {
+            "" => Ok(debugger.evaluate_with_calls(shown)?.text),
+            _ => number_as(debugger.number_with_calls(shown)?, format),
         };
         let text = match &assignment {
             Some(Assignment { place, value, is_postfix }) => {
-                let old = text_of(&self.debugger);
+                let old = text_of(&mut self.debugger);
                 self.debugger.set(place, value)?;
-                if *is_postfix { old? } else { text_of(&self.debugger)? }
+                if *is_postfix { old? } else { text_of(&mut self.debugger)? }
             }
-            None => text_of(&self.debugger)?,
+            None => text_of(&mut self.debugger)?,
         };
         self.values += 1;
         Ok(format!("${} = {text}\n", self.values))
@@ -285,6 +293,13 @@ pub(super) fn stop<T: Target>(debugger: &Debugger<T>, stop: &Stop) -> String {
             format!(
                 "Watchpoint {id}: {expression}\n\nOld value = {old}\nNew value = {new}\nWritten by {by}\n"
             )
+        }
+        Reason::Accessed { id, expression, access, old, value, by } => {
+            let values = match old {
+                Some(old) => format!("Old value = {old}\nNew value = {value}"),
+                None => format!("Value = {value}"),
+            };
+            format!("{} {id}: {expression}\n\n{values}\nAccessed by {by}\n", access.title())
         }
         Reason::Trap(text) => format!("Trap: {text}\n"),
         Reason::Remark(text) => format!("Remark: {text}\n"),

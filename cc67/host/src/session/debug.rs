@@ -2,9 +2,11 @@
 
 use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 use runtime::trace::Item;
-use vm::engine::{ContextId, FrameView, Hold};
+use vm::engine::{AccessRange, CallEnd, ContextId, FrameView, Hold};
 
 use super::{Session, UserProgram};
+use crate::HostError;
+use crate::capability::Capability;
 use crate::target::Target;
 
 impl<T: Target> Session<T> {
@@ -56,6 +58,11 @@ impl<T: Target> Session<T> {
         self.target.set_watched(ranges);
     }
 
+    /// Holds programs after instructions that access these bytes, and after no others.
+    pub fn set_accessed(&mut self, ranges: &[AccessRange]) {
+        self.target.set_accessed(ranges);
+    }
+
     /// Takes the index of a watched byte that has changed between two instructions.
     pub fn take_change(&mut self) -> Option<usize> {
         self.target.take_change()
@@ -77,6 +84,27 @@ impl<T: Target> Session<T> {
     /// No journal has it: a [timeline](super::Timeline) is informed by [`branch`](super::Timeline::branch).
     pub fn set_register(&mut self, id: ContextId, frame: usize, register: u16, slot: u64) -> bool {
         self.target.set_register(id, frame, register, slot)
+    }
+
+    /// Calls a function of a program or of the firmware in a context, with the arguments each as a slot. The instant and
+    /// the context are then as before. What the function has stored stays, and no journal has it, as with
+    /// [`set_register`](Self::set_register); all is as before the call if it has another end than a result.
+    ///
+    /// # Errors
+    /// The target makes no calls.
+    pub fn call_function(
+        &mut self,
+        id: ContextId,
+        function: GuestAddr,
+        arguments: &[u64],
+    ) -> Result<CallEnd, HostError> {
+        self.require(Capability::Calls)?;
+        let before = self.snapshot()?;
+        let end = self.target.call_function(id, function, arguments);
+        if !matches!(end, CallEnd::Returned(_)) {
+            self.restore(&before)?;
+        }
+        Ok(end)
     }
 }
 

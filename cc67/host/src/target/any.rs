@@ -6,7 +6,7 @@ use runtime::standing::{StandingAxis, StandingThread};
 use runtime::stimulus::Stimulus;
 use runtime::trace::{Item, TraceRequest};
 use runtime::{Board, OpenBox};
-use vm::engine::{ContextId, FrameView, Hold};
+use vm::engine::{AccessRange, CallEnd, ContextId, FrameView, Hold};
 use vm::scheduler::Turn;
 use vm::thread::ThreadState;
 
@@ -139,9 +139,11 @@ impl Target for AnyTarget {
         fn set_breakpoints(&mut self, addresses: &[CodeAddr]);
         fn set_stepping(&mut self, context: Option<ContextId>);
         fn set_watched(&mut self, ranges: &[(GuestAddr, u32)]);
+        fn set_accessed(&mut self, ranges: &[AccessRange]);
         fn take_change(&mut self) -> Option<usize>;
         fn take_hold(&mut self) -> Option<Hold>;
         fn set_register(&mut self, context: ContextId, frame: usize, register: u16, slot: u64) -> bool;
+        fn call_function(&mut self, context: ContextId, function: GuestAddr, arguments: &[u64]) -> CallEnd;
     }
 
     fn snapshot(&mut self) -> Result<Self::Snapshot, SnapshotError> {

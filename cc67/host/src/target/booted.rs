@@ -349,7 +349,9 @@ impl Target for BootedTarget {
             | Capability::Watchpoints
             | Capability::ProcessorCode => true,
             Capability::Surroundings | Capability::Recordings => self.board.external().is_some(),
-            Capability::Answers | Capability::Pauses => false,
+            Capability::AccessWatchpoints | Capability::Answers | Capability::Calls | Capability::Pauses => {
+                false
+            }
         }
     }
 

@@ -6,7 +6,7 @@ use runtime::standing::{StandingAxis, StandingThread};
 use runtime::stimulus::Stimulus;
 use runtime::trace::{Item, TraceRequest};
 use runtime::{Board, BoardSnapshot, OpenBox};
-use vm::engine::{ContextId, Engine, FrameView, Hold};
+use vm::engine::{AccessRange, CallEnd, ContextId, Engine, FrameView, Hold};
 use vm::loaded::Loaded;
 use vm::memory::{GuestMemory, is_on_bus};
 use vm::scheduler::Turn;
@@ -62,7 +62,10 @@ impl<E: Engine> Target for Board<E> {
             | Capability::Snapshots
             | Capability::Surroundings
             | Capability::Recordings => true,
-            Capability::Breakpoints | Capability::Watchpoints => E::HOLDS,
+            Capability::Breakpoints
+            | Capability::Calls
+            | Capability::Watchpoints
+            | Capability::AccessWatchpoints => E::HOLDS,
             Capability::ProcessorCode | Capability::Answers | Capability::Pauses => false,
         }
     }
@@ -257,6 +260,10 @@ impl<E: Engine> Target for Board<E> {
         self.set_watched(ranges);
     }
 
+    fn set_accessed(&mut self, ranges: &[AccessRange]) {
+        self.engine_mut().set_accessed(ranges);
+    }
+
     fn take_change(&mut self) -> Option<usize> {
         self.take_change()
     }
@@ -280,5 +287,9 @@ impl<E: Engine> Target for Board<E> {
 
     fn set_register(&mut self, context: ContextId, frame: usize, register: u16, slot: u64) -> bool {
         self.engine_mut().set_register(context, frame, register, slot)
+    }
+
+    fn call_function(&mut self, context: ContextId, function: GuestAddr, arguments: &[u64]) -> CallEnd {
+        self.call_function(context, function, arguments)
     }
 }
