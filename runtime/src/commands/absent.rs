@@ -1,8 +1,12 @@
 //! Unknown words that people send: explanations, and alternatives.
 //!
 //! The board answers them as it answers every unknown word; the simulation adds a remark beside it. The words are
-//! those of the manual's command references that firmware 4.34 lacks, some of them only misprinted there, and G code.
+//! commands of the other firmware, those of the manual's command references that no modelled firmware has, some of them
+//! only misprinted there, and G code.
 
+use kmotiondef::boards::TargetBoard;
+
+use super::boards_with;
 use crate::out::Message;
 
 /// The reason for which the board does not know a word.
@@ -10,7 +14,7 @@ use crate::out::Message;
 enum Why {
     /// The board has it under this name.
     Named(&'static str),
-    /// Firmware after 4.34 has it.
+    /// Later firmware than any that is modelled has it.
     Later,
     /// Another board has it.
     OtherBoard,
@@ -32,10 +36,6 @@ const WORDS: &[(&str, Why)] = &[
     ("ARCXZEX", Later),
     ("ARCYZEX", Later),
     ("GETALLDESTHEX", Later),
-    ("GETALLDESTVELHEX", Later),
-    ("JOGATACCEL", Later),
-    ("MOVEATVELACCEL", Later),
-    ("MOVERELATVELACCEL", Later),
     ("MOVERELATVELACCELSOFT", Later),
     ("ARCHEXP", OtherBoard),
     ("ARCHEXYZP", OtherBoard),
@@ -63,19 +63,29 @@ const WORDS: &[(&str, Why)] = &[
 /// Letters that a block of G code begins with, and after which a number stands.
 const G_CODE: &[u8] = b"GMTSFN";
 
-/// Returns the message about a part, in upper case, that begins with no command.
-pub(super) fn explain(part: &[u8]) -> Option<Message> {
+/// Returns the message about a part, in upper case, that begins with no command of a board.
+pub(super) fn explain(part: &[u8], board: &TargetBoard) -> Option<Message> {
     let letters = part.iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
     let word = std::str::from_utf8(&part[..letters]).ok()?;
     let is_number = part.get(letters).is_some_and(u8::is_ascii_digit);
     if letters == 1 && is_number && G_CODE.contains(&part[0]) {
         return Some(Message::GCode {});
     }
+    let title = board.title();
+    if let Some((command, other)) = boards_with(word).find(|(_, other)| other.name != board.name) {
+        let other_title = other.title();
+        return Some(Message::CommandOfFirmware {
+            command,
+            other: other_title,
+            board: title,
+            name: other.name,
+        });
+    }
     let (_, why) = WORDS.iter().find(|(known, _)| *known == word)?;
     let word = word.to_owned();
     Some(match why {
-        Named(name) => Message::CommandNamed { word, name },
-        Later => Message::CommandLater { word },
+        Named(name) => Message::CommandNamed { word, name, board: title },
+        Later => Message::CommandLater { word, board: title },
         OtherBoard => Message::CommandOtherBoard { word },
     })
 }
@@ -100,7 +110,8 @@ mod tests {
         for (part, expect) in [
             ("ENABLE0", Some("EnableAxis")),
             ("LINHEX1 3F800000", Some("LHex1")),
-            ("JOGATACCEL0=1 2", Some("later firmware")),
+            ("JOGATACCEL0=1 2", Some("`JogAtAccel` is a command of KFLOP firmware 5.3.2")),
+            ("GETALLDESTHEX", Some("later firmware than KFLOP firmware 4.34")),
             ("G1 X5", Some("G code")),
             ("M3", Some("G code")),
             ("GET", None),
@@ -108,7 +119,7 @@ mod tests {
             ("", None),
             ("BOGUS", None),
         ] {
-            let found = explain(part.as_bytes());
+            let found = explain(part.as_bytes(), TargetBoard::default_board());
             assert_eq!(found.is_some(), expect.is_some(), "{part}: {found:?}");
             assert!(
                 found.is_none_or(|message| message.to_string().contains(expect.unwrap_or_default())),

@@ -192,7 +192,7 @@ impl Turn<'_, '_> {
     fn part(&mut self, part: &[u8], rest: &[u8]) {
         let has_later = self.parts.level.behaviour().has_later_commands;
         let Some((command, length)) = find(part, has_later) else {
-            if let Some(message) = absent::explain(part) {
+            if let Some(message) = absent::explain(part, self.parts.level.board()) {
                 self.parts.out.remark(self.context.now, message);
             }
             return self.mistake(part, &Mistake { column: 0, message: MistakeText::InvalidCommand });

@@ -29,6 +29,7 @@ mod table;
 pub use arguments::Argument;
 pub use table::{COMMANDS, LATER_COMMANDS};
 
+use kmotiondef::boards::{BOARDS, TargetBoard};
 use vm::firmware::TickContext;
 
 use arguments::Values;
@@ -36,6 +37,7 @@ use link::Link;
 use memory::Experiment;
 use session::{Answer, Session};
 
+use crate::firmware::level::ModelledBoard;
 use crate::firmware::parts::Parts;
 
 /// The state of script commands.
@@ -166,6 +168,18 @@ fn find(text: &[u8], has_later: bool) -> Option<(&'static Command, usize)> {
 #[must_use]
 pub fn command_at(line: &str) -> Option<&'static Command> {
     find(line.to_ascii_uppercase().as_bytes(), false).map(|(command, _)| command)
+}
+
+/// The boards whose firmware has a command of this name, in whatever case, each with the name as its manual writes it.
+pub fn boards_with(name: &str) -> impl Iterator<Item = (&'static str, &'static TargetBoard)> {
+    let named = move |list: &'static [Command]| {
+        list.iter().find(|command| command.name.eq_ignore_ascii_case(name)).map(|command| command.name)
+    };
+    let (always, later) = (named(COMMANDS), named(LATER_COMMANDS));
+    BOARDS.iter().filter_map(move |board| {
+        let has_later = ModelledBoard::of(board)?.behaviour().has_later_commands;
+        Some((always.or(later.filter(|_| has_later))?, board))
+    })
 }
 
 /// The command of this name, in whatever case.

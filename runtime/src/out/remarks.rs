@@ -690,11 +690,14 @@ messages! {
     GCode { } = "g-code", Warning, [always],
         "G code is interpreted by the PC application: the board has no command for it";
     /// A command has another name in this firmware.
-    CommandNamed { word: String, name: &'static str } = "command-named", Warning, [always],
-        "firmware 4.34 has no command {word}; its name there is {name}";
+    CommandNamed { word: String, name: &'static str, board: String } = "command-named", Warning, [always],
+        "{board} has no command {word}; its name there is {name}";
     /// A command belongs to later firmware.
-    CommandLater { word: String } = "command-later", Warning, [always],
-        "{word} is a command of later firmware than 4.34, which the simulated board models";
+    CommandLater { word: String, board: String } = "command-later", Warning, [always],
+        "{word} is a command of later firmware than {board}, which the simulated board models";
+    /// A command belongs to another firmware that can be simulated.
+    CommandOfFirmware { command: &'static str, other: String, board: String, name: &'static str } = "command-of-firmware", Warning, [always],
+        "`{command}` is a command of {other}; the simulated board models {board} (`--board {name}` models the other)";
     /// A command belongs to another board.
     CommandOtherBoard { word: String } = "command-other-board", Warning, [always],
         "{word} is a command of the Kogna board; the simulated board is a KFLOP";

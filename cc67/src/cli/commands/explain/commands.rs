@@ -2,20 +2,26 @@
 
 use std::fmt::Write as _;
 
-use runtime::commands::{COMMANDS, Command};
+use kmotiondef::boards::BOARDS;
+use runtime::ModelledBoard;
+use runtime::commands::{COMMANDS, Command, LATER_COMMANDS, boards_with};
 
 use super::Explained;
 
 /// Each command with its effect.
 pub(super) fn entries() -> impl Iterator<Item = Explained> {
-    COMMANDS
-        .iter()
-        .map(|command| Explained { name: command.name, about: format!("Script command: {}.", command.help) })
+    all().map(|command| Explained { name: command.name, about: format!("Script command: {}.", command.help) })
+}
+
+/// The commands of all firmware.
+fn all() -> impl Iterator<Item = &'static Command> {
+    let is_new = |command: &&Command| COMMANDS.iter().all(|known| known.name != command.name);
+    COMMANDS.iter().chain(LATER_COMMANDS.iter().filter(is_new))
 }
 
 /// Every command.
 pub(super) fn list() -> String {
-    let mut commands: Vec<_> = COMMANDS.iter().collect();
+    let mut commands: Vec<_> = all().collect();
     commands.sort_by_key(|command| command.name.to_lowercase());
     commands.iter().fold(String::new(), |mut rows, command| {
         let _ = writeln!(rows, "  {:<34}{}", command.usage(), command.help);
@@ -25,7 +31,7 @@ pub(super) fn list() -> String {
 
 /// The answer for one command.
 pub(super) fn answer(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
-    let command: &Command = COMMANDS.iter().find(|command| is_meant(command.name))?;
+    let command: &Command = all().find(|command| is_meant(command.name))?;
     let (usage, help) = (command.usage(), command.help);
     let asks = match usage.contains("[=") {
         true => "With `=` and a value it sets, without it asks.\n\n",
@@ -33,10 +39,22 @@ pub(super) fn answer(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
     };
     Some(format!(
         "# {}, a script command\n\n    {usage}\n\nIt {help}.\n\n{asks}It is a line of `cc67 console`, and `command \"…\"` in a \
-         stimulus; letter case does not matter.\n",
+         stimulus; letter case does not matter.\n{boards}",
         command.name,
-        help = described(help)
+        help = described(help),
+        boards = boards(command)
     ))
+}
+
+/// The boards that have a command and those that lack it; nothing if all have it.
+fn boards(command: &Command) -> String {
+    let with: Vec<_> = boards_with(command.name).map(|(_, board)| board.name).collect();
+    let without = BOARDS.iter().filter(|board| ModelledBoard::of(board).is_some());
+    let without: Vec<_> = without.map(|board| board.name).filter(|name| !with.contains(name)).collect();
+    if without.is_empty() {
+        return String::new();
+    }
+    format!("\n- Boards with it: {}. Boards without: {}.\n", with.join(", "), without.join(", "))
 }
 
 /// Most rows begin with a verb, those of values with a noun.
