@@ -337,25 +337,25 @@ macro_rules! for_each_firmware_fn {
             motion::reset_filters = ResetFilters(ch: AxisNumber), at 0x8001_1300, cost 63, header;
             /// Starts a move to position `x` under the axis' Vel, Accel and Jerk. Poll CheckDone.
             motion::move_to = Move(ch: AxisNumber, x: f64), at 0x1000_C15C, cost 3420, header,
-                drives_axis, after_slice(4720, 0);
+                drives_axis;
             /// Starts a move by `dx` from the present destination. Poll CheckDone.
             motion::move_rel = MoveRel(ch: AxisNumber, dx: f64), at 0x1000_C1B0, cost 3423, header,
-                drives_axis, after_slice(4720, 0);
+                drives_axis;
             /// Starts a move to position `x` with at most `MaxVel` units/s. Poll CheckDone.
             motion::move_at_vel = MoveAtVel(chno: AxisNumber, x: f64, MaxVel: f32), at 0x1000_B868, cost 3420, header,
-                drives_axis, after_slice(4720, 0);
+                drives_axis;
             /// Starts a move by `x` from the present destination with at most `MaxVel` units/s.
             motion::move_rel_at_vel = MoveRelAtVel(chno: AxisNumber, x: f64, MaxVel: f32),
-                at 0x1000_C104, cost 3450, header, drives_axis, after_slice(4720, 0);
+                at 0x1000_C104, cost 3450, header, drives_axis;
             /// Starts an exponential approach to `x` with time constant `Tau` seconds.
             motion::move_exp = MoveExp(chno: AxisNumber, x: f64, Tau: f64), at 0x1000_C208, cost 475, header,
                 drives_axis;
             /// Runs an axis at `vel` units/s, signed; 0 brings it to a stop under Accel and Jerk.
             motion::jog = Jog(ch: AxisNumber, vel: f64), at 0x1000_C558, cost 1418, header,
-                drives_axis, after_slice(1500, 0);
+                drives_axis;
             /// Starts independent moves of the coordinate system's six axes. Poll CheckDoneXYZABC.
             motion::move_xyzabc = MoveXYZABC(x: f64, y: f64, z: f64, a: f64, b: f64, c: f64),
-                at 0x8001_020C, cost 10426, header, after_slice(3475, 0);
+                at 0x8001_020C, cost 10426, header;
             /// 1 when no profile is running, 0 while one is, -1 when the axis is disabled.
             motion::check_done = CheckDone(ch: AxisNumber) -> i32, at 0x1000_CA74, cost 25, header,
                 polls(Polled::Motion);

@@ -1,19 +1,20 @@
 //! The coordinate system, feed override and feedhold. Source: coordinated-motion.md sections 1 and 4 to 5.
 
 use kmotiondef::AxisId;
+use kmotiondef::firmware::Function;
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::CS0_STOPPING_STATE;
 use vm::firmware::{Caller, Outcome, Wake};
 
 use super::calls::Continuation;
 use super::costs;
+use super::motion::{PlanningStage, schedule};
 use super::parts::Parts;
 use crate::out::Message;
 use crate::servo::coordinated::feedhold::HoldState;
 use crate::servo::coordinated::system::{assign, members, nominal_change_time};
 use crate::servo::coordinated::{buffer, feedhold, rate};
-use crate::servo::hold;
-use crate::servo::independent::has_motion;
+use crate::servo::{hold, moves, planning};
 use crate::views::Typed;
 
 /// Assigns the letters from X on; the others keep theirs.
@@ -87,6 +88,7 @@ pub(crate) fn stop_coordinated_motion(parts: &mut Parts, caller: &mut Caller<'_>
     let mut left = match (caller.woken, parts.calls.take(caller)) {
         (Some(_), Some(Continuation::Stop(Some(left)))) => left,
         (Some(_), Some(Continuation::Stop(None))) => {
+            costs::spend(caller, costs::STOP);
             if feedhold::stop(caller.memory) {
                 return Outcome::Done(());
             }
@@ -105,11 +107,15 @@ pub(crate) fn stop_coordinated_motion(parts: &mut Parts, caller: &mut Caller<'_>
                 return Outcome::Done(());
             }
             feedhold::note_time(caller.memory);
+            costs::spend(caller, costs::BEFORE_A_WAIT - Function::StopCoordinatedMotion.row().cost.get());
             parts.calls.keep(caller, Continuation::Stop(None));
             return Outcome::Wait(Wake::NextSlice);
         }
     };
     if let Some(axis) = left.pop() {
+        if let Some(limits) = moves::limits(caller.memory, axis, Some(1.0)) {
+            costs::spend(caller, costs::STOP_AXIS + planning::of_jog(caller.memory, axis, 0.0, &limits));
+        }
         hold::stop_axis(&mut parts.servo, caller.memory, axis);
     }
     if left.is_empty() {
@@ -137,16 +143,10 @@ pub(crate) fn update_stopping_state(_: &mut Parts, caller: &mut Caller<'_>) {
     hold::update_state(caller.memory);
 }
 
-/// Ends a feedhold. A thread waits for a slice before each axis but the first, and of that if it still moves: the
-/// board plans there.
+/// Ends a feedhold: its axes move on in turn, each as a move of its own would.
 pub(crate) fn resume_coordinated_motion(parts: &mut Parts, caller: &mut Caller<'_>) -> Outcome<()> {
-    let (mut left, mut has_planned) = match (caller.woken, parts.calls.take(caller)) {
-        (Some(_), Some(Continuation::Resume(mut left))) => {
-            if let Some(axis) = left.pop() {
-                hold::resume_axis(&mut parts.servo, caller.memory, axis);
-            }
-            (left, true)
-        }
+    let (mut left, mut progress) = match (caller.woken, parts.calls.take(caller)) {
+        (Some(_), Some(Continuation::Resume(left, progress))) => (left, progress),
         _ => {
             hold::update_state(caller.memory);
             if feedhold::resume(caller.memory) || HoldState::of(caller.memory) == HoldState::Running {
@@ -156,18 +156,23 @@ pub(crate) fn resume_coordinated_motion(parts: &mut Parts, caller: &mut Caller<'
             let held = |axis: &AxisId| parts.servo.axes[axis.index()].held.is_some();
             let mut left: Vec<AxisId> = members(caller.memory).filter(held).collect();
             left.reverse();
-            (left, false)
+            (left, PlanningStage::Called)
         }
     };
     while let Some(&axis) = left.last() {
-        if caller.thread.is_some() && (has_planned || has_motion(caller.memory, axis)) {
-            parts.calls.keep(caller, Continuation::Resume(left));
-            return Outcome::Wait(Wake::NextSlice);
+        let resumed = hold::resumed_move(&parts.servo, caller.memory, axis);
+        if let Some((target, limits)) = resumed {
+            let planning = |caller: &Caller<'_>| planning::of_move(caller.memory, axis, target, &limits);
+            if let Some(pause) = schedule::plan(parts, caller, axis, progress, 0, planning) {
+                parts.calls.keep(caller, Continuation::Resume(left, pause.then));
+                return Outcome::Wait(pause.wake);
+            }
         }
         left.pop();
         hold::resume_axis(&mut parts.servo, caller.memory, axis);
-        has_planned = true;
+        progress = PlanningStage::Called;
     }
+    costs::spend(caller, costs::RESUME);
     Outcome::Done(())
 }
 

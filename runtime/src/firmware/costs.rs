@@ -3,6 +3,7 @@
 //! The numbers are cycles of firmware 4.34 with the wait states of the bus as it sets them.
 
 use kmotiondef::Cycles;
+use kmotiondef::firmware::Function;
 use vm::firmware::Caller;
 
 /// Ranges of bits: the last bit of each, and the cycles by which a call differs from its row.
@@ -34,13 +35,42 @@ pub(super) const TO_OUTPUT: Ranges = &[(47, 0), (63, -102), (95, 159), (i32::MAX
 /// `SetBitDirection` to input.
 pub(super) const TO_INPUT: Ranges = &[(47, -6), (63, -102), (95, 153), (i32::MAX, 147)];
 
-/// The plan of a move that reaches its full speed.
+/// The plan of a move that reaches its full speed, in firmware 5.
 pub(super) const FULL_SPEED: i64 = 595;
+
+/// The plan of a motion after the wait for its slice, in firmware 5: of a move, a jog, several moves.
+pub(super) const AFTER_MOVE: i64 = 4720;
+pub(super) const AFTER_JOG: i64 = 1500;
+pub(super) const AFTER_MOVES: i64 = 3475;
+
+/// `MoveExp` after the wait for its slice.
+pub(super) const AFTER_EXP: i64 = 220;
+
+/// What a motion call takes before it waits for its slice.
+pub(super) const BEFORE_A_WAIT: i64 = 100;
+
+/// A motion call that does nothing: the axis is disabled, or beyond a limit.
+pub(super) const REFUSED: i64 = 76;
+
+/// `StopCoordinatedMotion` in its slice, and for each axis in a slice of its own besides the jog to rest.
+pub(super) const STOP: i64 = 327;
+pub(super) const STOP_AXIS: i64 = 176;
+
+/// `ResumeCoordinatedMotion` in a feedhold, besides the moves of its axes.
+pub(super) const RESUME: i64 = 230;
+
+/// A jog of 0 of an axis at rest.
+pub(super) const NOTHING_TO_STOP: i64 = 136;
 
 /// Spends what a call with this bit costs.
 pub(super) fn spend_bit(caller: &mut Caller<'_>, ranges: Ranges, bit: i32) {
     let range = ranges.iter().find(|(last, _)| bit <= *last);
     spend(caller, range.map_or(0, |(_, cycles)| *cycles));
+}
+
+/// Spends what a motion call takes that does nothing.
+pub(super) fn refused(caller: &mut Caller<'_>, function: Function) {
+    spend(caller, REFUSED - function.row().cost.get());
 }
 
 /// Spends cycles.

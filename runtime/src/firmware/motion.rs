@@ -1,19 +1,23 @@
 //! Single axes: enabling, independent moves. Source: axes-and-motion.md sections 3 to 6 and 12.
 
+pub(super) mod schedule;
 mod structure;
+mod together;
 
+pub(crate) use schedule::PlanningStage;
 pub(crate) use structure::{
     do_resolver_input2, setup_for_motion_end, setup_for_motion_pause, setup_for_move, stop_motion, write_3ph,
     write_4ph,
 };
+pub(crate) use together::move_xyzabc;
 
+use kmotiondef::AxisId;
 use kmotiondef::firmware::Function;
 use kmotiondef::limits::{N_CHANNELS, TIMEBASE};
 use kmotiondef::modes::{InputMode, LastMotion, OutputMode};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::{COORD_SYSTEM0, CS0_STOPPING_STATE};
-use kmotiondef::{AxisId, Cycles};
-use vm::firmware::{Caller, Outcome, Wake};
+use vm::firmware::{Caller, Outcome};
 use vm::memory::GuestMemory;
 
 use super::calls::Continuation;
@@ -23,11 +27,13 @@ use crate::io::bits;
 use crate::out::Message;
 use crate::servo::coordinated::system;
 use crate::servo::independent::{has_motion, is_planned, present, run, start, state};
-use crate::servo::moves::{Accelerations, limits, limits_with, start_jog, start_move_to};
+use crate::servo::moves::{Accelerations, Planner, limits_with, start_jog, start_move_to};
+use crate::servo::planning;
 use crate::servo::profile::{LEAD, Mode, MotionState};
 use crate::servo::{hold, switching};
 use crate::views::Typed;
 use chips::stepgen::generator_of;
+use schedule::row_cost;
 
 /// The number after the last axis, which the board does not refuse: it takes what comes after the axes in memory for one.
 const AFTER_AXES: i32 = N_CHANNELS as i32;
@@ -187,19 +193,6 @@ fn is_beyond(
     true
 }
 
-/// Waits for the caller's next slice if the axis is moving: the board plans there; for the planning time of the machine
-/// file if it has one. The call-back cannot wait.
-fn planning_wait(parts: &Parts, caller: &Caller<'_>, axis: AxisId) -> Option<Wake> {
-    if caller.woken.is_some() || caller.thread.is_none() {
-        return None;
-    }
-    if parts.calls.plan_ticks > 0 {
-        let planning = Cycles::PER_TICK.get() * i64::from(parts.calls.plan_ticks);
-        return Some(Wake::At(caller.now() + Cycles::new(planning)));
-    }
-    has_motion(caller.memory, axis).then_some(Wake::NextSlice)
-}
-
 /// Tells a program that calls motions faster than the board plans them why the axis does not get on.
 fn notice_hurry(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Function) {
     /// That many in a row are not a coincidence; it is reported once.
@@ -248,48 +241,68 @@ struct MoveRequest {
 
 fn request(parts: &mut Parts, caller: &mut Caller<'_>, request: &MoveRequest) -> Outcome<()> {
     axis_check::goes_on(parts, caller);
-    let Some(axis) = checked(parts, caller, request.function, request.axis) else {
+    let function = request.function;
+    let Some(axis) = checked(parts, caller, function, request.axis) else {
         return Outcome::Done(());
     };
-    let target = match (caller.woken, parts.calls.take(caller)) {
-        (Some(_), Some(Continuation::Target(target))) => target,
-        _ => request.target + if request.is_relative { caller.memory.axis(axis, Chan::DEST) } else { 0.0 },
+    let (target, progress) = match (caller.woken, parts.calls.take(caller)) {
+        (Some(_), Some(Continuation::Motion(target, progress))) => (target, progress),
+        _ => (requested(caller.memory, axis, request), PlanningStage::Called),
     };
-    let target = if request.is_soft { within_soft_limits(caller.memory, axis, target) } else { target };
-    if !may_move(parts, caller, axis, request.function) {
+    if progress == PlanningStage::Called && !begins(parts, caller, request, axis, target) {
         return Outcome::Done(());
     }
-    if caller.woken.is_none() {
-        notice_replaced(parts, caller, axis, request.function, target);
-    }
-    if caller.woken.is_none() {
-        let way = (target - caller.memory.axis(axis, Chan::DEST)).abs();
-        parts.calls.motions.goes(axis, way);
-        axis_check::moved(parts, caller, request.function, axis);
-        axis_check::planned(parts, caller, request.function, axis, way);
-    }
-    if let Some(wake) = planning_wait(parts, caller, axis) {
-        parts.calls.keep(caller, Continuation::Target(target));
-        return Outcome::Wait(wake);
-    }
-    // A destination that is not a number makes a relative target another one.
-    let way = target - caller.memory.axis(axis, Chan::DEST);
-    if !is_place(parts, caller, request.function, request.target)
-        || is_beyond(parts, caller, request.function, axis, way)
-    {
+    let Some((limits, decel)) = limits_with(caller.memory, axis, request.velocity, request.own) else {
+        no_limits(parts, caller, axis, function);
         return Outcome::Done(());
+    };
+    let is_direct = parts.servo.planner == Planner::Direct;
+    let planning = |caller: &Caller<'_>| {
+        if is_direct { costs::AFTER_MOVE } else { planning::of_move(caller.memory, axis, target, &limits) }
+    };
+    if let Some(pause) = schedule::plan(parts, caller, axis, progress, row_cost(function), planning) {
+        parts.calls.keep(caller, Continuation::Motion(target, pause.then));
+        return Outcome::Wait(pause.wake);
     }
-    notice_hurry(parts, caller, axis, request.function);
-    match limits_with(caller.memory, axis, request.velocity, request.own) {
-        Some((limits, decel)) => {
-            let planner = parts.servo.planner;
-            if start_move_to(caller.memory, axis, target, (&limits, decel), LastMotion::Move, planner) {
-                costs::spend(caller, costs::FULL_SPEED);
-            }
-        }
-        None => no_limits(parts, caller, axis, request.function),
+    notice_hurry(parts, caller, axis, function);
+    let planner = parts.servo.planner;
+    let is_full = start_move_to(caller.memory, axis, target, (&limits, decel), LastMotion::Move, planner);
+    if is_full && is_direct {
+        costs::spend(caller, costs::FULL_SPEED);
     }
     Outcome::Done(())
+}
+
+/// The target that a move names.
+fn requested(memory: &GuestMemory, axis: AxisId, request: &MoveRequest) -> f64 {
+    let target = request.target + if request.is_relative { memory.axis(axis, Chan::DEST) } else { 0.0 };
+    if request.is_soft { within_soft_limits(memory, axis, target) } else { target }
+}
+
+/// Whether a move may begin; what it takes is spent if not.
+fn begins(
+    parts: &mut Parts,
+    caller: &mut Caller<'_>,
+    request: &MoveRequest,
+    axis: AxisId,
+    target: f64,
+) -> bool {
+    let function = request.function;
+    if !may_move(parts, caller, axis, function) {
+        costs::refused(caller, function);
+        return false;
+    }
+    notice_replaced(parts, caller, axis, function, target);
+    let way = target - caller.memory.axis(axis, Chan::DEST);
+    parts.calls.motions.goes(axis, way.abs());
+    axis_check::moved(parts, caller, function, axis);
+    axis_check::planned(parts, caller, function, axis, way.abs());
+    // A destination that is not a number makes a relative target another one.
+    if !is_place(parts, caller, function, request.target) || is_beyond(parts, caller, function, axis, way) {
+        costs::refused(caller, function);
+        return false;
+    }
+    true
 }
 
 fn no_limits(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Function) {
@@ -482,31 +495,38 @@ fn begin_jog(
     let is_enabled = caller.memory.axis(axis, Chan::ENABLE) != 0;
     // To stop an axis that is disabled is no mistake.
     if !is_enabled && velocity == 0.0 {
+        costs::refused(caller, Function::Jog);
         return Outcome::Done(());
     }
     // Odd and kept: to stop an axis of the coordinate system gives up a feedhold, and the path that it holds.
     let is_held = caller.memory.get(CS0_STOPPING_STATE) != 0;
     if velocity == 0.0 && is_held && system::is_member(caller.memory, axis) {
         hold::clear(&mut parts.servo, caller.memory);
+        caller.memory.set_axis(axis, Chan::LAST_NON_ZERO_DIR, 0);
+        caller.memory.set_axis(axis, Chan::DIRECTION_OF_MOTION, 0);
     }
     if !may_move(parts, caller, axis, Function::Jog) || !is_place(parts, caller, Function::Jog, velocity) {
+        costs::refused(caller, Function::Jog);
         return Outcome::Done(());
     }
-    if caller.woken.is_none() {
+    let progress = match (caller.woken, parts.calls.take(caller)) {
+        (Some(_), Some(Continuation::Motion(_, progress))) => progress,
+        _ => PlanningStage::Called,
+    };
+    if progress == PlanningStage::Called {
         axis_check::jogs(parts, caller, axis, velocity);
-    }
-    if let Some(wake) = planning_wait(parts, caller, axis) {
-        return Outcome::Wait(wake);
-    }
-    if is_beyond(parts, caller, Function::Jog, axis, velocity) {
-        return Outcome::Done(());
-    }
-    // At rest there is nothing to stop. What counts is whether a motion is executed, not its speed.
-    if velocity == 0.0 && !has_motion(caller.memory, axis) {
-        return Outcome::Done(());
-    }
-    if velocity != 0.0 && caller.woken.is_none() {
-        axis_check::moved(parts, caller, Function::Jog, axis);
+        if is_beyond(parts, caller, Function::Jog, axis, velocity) {
+            costs::refused(caller, Function::Jog);
+            return Outcome::Done(());
+        }
+        // At rest there is nothing to stop. What counts is whether a motion is executed, not its speed.
+        if velocity == 0.0 && !has_motion(caller.memory, axis) {
+            costs::spend(caller, costs::NOTHING_TO_STOP - row_cost(Function::Jog));
+            return Outcome::Done(());
+        }
+        if velocity != 0.0 {
+            axis_check::moved(parts, caller, Function::Jog, axis);
+        }
     }
     // Any speed will do: only acceleration and jerk limit a jog.
     let own = accel.map(|accel| Accelerations { accel, decel: accel });
@@ -514,6 +534,15 @@ fn begin_jog(
         no_limits(parts, caller, axis, Function::Jog);
         return Outcome::Done(());
     };
+    let is_direct = parts.servo.planner == Planner::Direct;
+    let planning = |caller: &Caller<'_>| {
+        if is_direct { costs::AFTER_JOG } else { planning::of_jog(caller.memory, axis, velocity, &limits) }
+    };
+    let charged = row_cost(Function::Jog);
+    if let Some(pause) = schedule::plan(parts, caller, axis, progress, charged, planning) {
+        parts.calls.keep(caller, Continuation::Motion(velocity, pause.then));
+        return Outcome::Wait(pause.wake);
+    }
     let point = present(caller.memory, axis);
     if point.v != velocity {
         notice_hurry(parts, caller, axis, Function::Jog);
@@ -539,8 +568,21 @@ pub(crate) fn move_exp(
     if caller.woken.is_none() {
         axis_check::moved(parts, caller, Function::MoveExp, axis);
     }
-    if let Some(wake) = planning_wait(parts, caller, axis) {
-        return Outcome::Wait(wake);
+    let progress = if caller.woken.is_some() { PlanningStage::Due } else { PlanningStage::Called };
+    let is_direct = parts.servo.planner == Planner::Direct;
+    let planning = |_: &Caller<'_>| match progress {
+        PlanningStage::Called => row_cost(Function::MoveExp),
+        PlanningStage::Due | PlanningStage::Planned => {
+            if is_direct {
+                0
+            } else {
+                costs::AFTER_EXP
+            }
+        }
+    };
+    let charged = row_cost(Function::MoveExp);
+    if let Some(pause) = schedule::plan(parts, caller, axis, progress, charged, planning) {
+        return Outcome::Wait(pause.wake);
     }
     let memory = &mut *caller.memory;
     let accel = f64::from(memory.axis(axis, Chan::ACCEL));
@@ -563,52 +605,6 @@ pub(crate) fn move_exp(
     memory.set_axis(axis, Chan::T, t);
     memory.set_axis(axis, Chan::LAST_MOTION_TYPE, LastMotion::Exp.get());
     memory.set_axis(axis, Chan::LAST_MOTION_DEST, x);
-    Outcome::Done(())
-}
-
-/// The letters of `MoveXYZABC`.
-const LETTERS: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
-
-#[expect(clippy::too_many_arguments, reason = "the C function has six coordinates")]
-pub(crate) fn move_xyzabc(
-    parts: &mut Parts,
-    caller: &mut Caller<'_>,
-    x: f64,
-    y: f64,
-    z: f64,
-    a: f64,
-    b: f64,
-    c: f64,
-) -> Outcome<()> {
-    let letters = system::letters(caller.memory).into_iter().zip([x, y, z, a, b, c]);
-    let moves: Vec<(AxisId, f64)> = letters.filter_map(|(axis, target)| Some((axis?, target))).collect();
-    // Unlike the calls for one axis this one waits even if all axes are at rest.
-    if caller.woken.is_none() && caller.thread.is_some() {
-        let wake = moves.first().and_then(|&(axis, _)| planning_wait(parts, caller, axis));
-        return Outcome::Wait(wake.unwrap_or(Wake::NextSlice));
-    }
-    let without = LETTERS.into_iter().zip(system::letters(caller.memory)).zip([x, y, z, a, b, c]);
-    for ((letter, axis), target) in without {
-        if axis.is_none() && target != 0.0 {
-            let function = Function::MoveXYZABC;
-            parts.out.diagnose(caller, Message::NoAxisForLetter { function, letter, target });
-        }
-    }
-    for (axis, target) in moves {
-        if may_move(parts, caller, axis, Function::MoveXYZABC)
-            && is_place(parts, caller, Function::MoveXYZABC, target)
-        {
-            axis_check::moved(parts, caller, Function::MoveXYZABC, axis);
-            match limits(caller.memory, axis, None) {
-                Some(limits) => {
-                    let planner = parts.servo.planner;
-                    let limits = (&limits, limits.a);
-                    start_move_to(caller.memory, axis, target, limits, LastMotion::Multi, planner);
-                }
-                None => no_limits(parts, caller, axis, Function::MoveXYZABC),
-            }
-        }
-    }
     Outcome::Done(())
 }
 

@@ -13,6 +13,7 @@ use super::coordinated::path;
 use super::coordinated::system::{is_member, members};
 use super::independent::has_motion;
 use super::moves::{limits, start_jog, start_move_to};
+use super::profile::Limits;
 use super::spindle;
 use super::state::Servo;
 use crate::views::Typed;
@@ -104,6 +105,12 @@ pub(crate) fn update_state(memory: &mut GuestMemory) {
     if HoldState::of(memory) == HoldState::StoppingAxes && stopped {
         memory.set(CS0_STOPPING_STATE, HoldState::AxesStopped.number());
     }
+}
+
+/// The target and the limits of the move with which a held axis continues, if it does.
+pub(crate) fn resumed_move(servo: &Servo, memory: &GuestMemory, axis: AxisId) -> Option<(f64, Limits)> {
+    servo.axes[axis.index()].held.filter(|kind| *kind != LastMotion::Jog)?;
+    Some((memory.axis(axis, Chan::LAST_MOTION_DEST), limits(memory, axis, None)?))
 }
 
 /// Restarts what a feedhold interrupted. A jog is not resumed; an exponential approach becomes a move.

@@ -136,8 +136,22 @@ pub(crate) fn advance(memory: &mut GuestMemory, axis: AxisId) -> bool {
     // Most ticks stay inside a polynomial.
     let mut chan = AxisView::of(memory, axis);
     chan.set(Chan::DEST, state.at(t).x);
-    chan.set(Chan::T, t + TIMEBASE);
+    let next = t + TIMEBASE;
+    chan.set(Chan::T, next);
+    if next >= state.t {
+        enter_reached(memory, axis, current);
+    }
     true
+}
+
+/// Enters the states whose time has come: the board does so at the end of a tick, and of a new motion at its beginning.
+fn enter_reached(memory: &mut GuestMemory, axis: AxisId, current: GuestAddr) {
+    let reached = entered(cursor(memory, axis), |index| read(memory, current, index));
+    if reached.index > 0 {
+        let mut chan = AxisView::of(memory, axis);
+        chan.set(Chan::T, reached.t);
+        chan.set(Chan::PCOEFF, current.offset(TripCoeff::SIZE * reached.index as u32));
+    }
 }
 
 /// The same where another state begins, or something else than a polynomial follows.
@@ -152,9 +166,11 @@ fn enter(memory: &mut GuestMemory, axis: AxisId) -> bool {
         Step::Moving(dest, next) => {
             chan.set(Chan::DEST, dest);
             chan.set(Chan::T, next.t);
+            let present = current.offset(TripCoeff::SIZE * next.index as u32);
             if next.index > 0 {
-                chan.set(Chan::PCOEFF, current.offset(TripCoeff::SIZE * next.index as u32));
+                chan.set(Chan::PCOEFF, present);
             }
+            enter_reached(memory, axis, present);
         }
         Step::Ended(t) => {
             chan.set(Chan::PCOEFF, GuestAddr::NULL);

@@ -25,6 +25,7 @@ pub(crate) mod limits;
 pub(crate) mod moves;
 mod output;
 mod plan;
+pub(crate) mod planning;
 pub(crate) mod profile;
 #[cfg(test)]
 mod recorded;

@@ -243,22 +243,22 @@ impl Path {
 
 /// A symmetric move from rest to rest: ramp, constant, ramp, cruise, ramp, constant, ramp.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Phases {
+pub(super) struct Phases {
     /// Seconds of each change of the acceleration.
     ramp: f64,
     /// Seconds of constant acceleration.
-    constant: f64,
+    pub(super) constant: f64,
     /// Seconds of constant velocity.
-    cruise: f64,
+    pub(super) cruise: f64,
     /// The acceleration that is reached.
     peak: f64,
     /// True if the limit of the velocity is reached.
-    is_full: bool,
+    pub(super) is_full: bool,
 }
 
 impl Phases {
     /// The fastest move over `distance` within the limits.
-    fn of(distance: f64, limits: &Limits) -> Self {
+    pub(super) fn of(distance: f64, limits: &Limits) -> Self {
         let length = distance.abs();
         let Limits { v, a, j } = *limits;
         // The product is a single on the board.
@@ -328,26 +328,60 @@ pub(crate) fn bare_move(from: f64, to: f64, ramps: [Ramp; 2], limits: &Limits) -
 /// A move planned while the axis moves: 20 ticks continue as they are, then either the target is approached at full
 /// speed or the axis stops and starts again.
 pub(crate) fn move_in_motion(start: Point, to: f64, limits: &Limits) -> Vec<MotionState> {
-    let mut path = lead(start);
+    let InMotion { mut path, sign, remaining, stop } = weigh(start, to, limits);
+    if stop.is_some() {
+        path.move_from_rest(to, [Ramp::Smooth; 2], limits);
+        path.states.push(MotionState::END);
+        return path.states;
+    }
+    path.append(divide(remaining, sign * limits.v), 0.0);
+    path.change(0.0, limits);
+    path.states.push(MotionState::off(FOREVER, to));
+    path.states
+}
+
+/// The way in which a move in motion begins.
+#[derive(Clone, Debug)]
+pub(super) struct InMotion {
+    /// Its first phases: to full speed, or to rest.
+    path: Path,
+    /// The direction of its full speed.
+    pub(super) sign: f64,
+    /// The distance at full speed.
+    remaining: f64,
+    /// The place where the axis stops first, if it does.
+    pub(super) stop: Option<f64>,
+}
+
+/// Decides whether a move in motion continues or stops first.
+pub(super) fn weigh(start: Point, to: f64, limits: &Limits) -> InMotion {
+    let path = lead(start);
     let mut stopped = path.clone();
     stopped.change(0.0, limits);
     let distance = to - path.end.x;
     let sign = if distance < stopped.end.x - path.end.x { -1.0 } else { 1.0 };
-    let mut direct = path.clone();
+    let mut direct = path;
     direct.change(sign * limits.v, limits);
     let mut shortest = direct.clone();
     shortest.change(0.0, limits);
     let remaining = to - shortest.end.x;
     if sign * remaining < 0.0 {
-        path = stopped;
-        path.move_from_rest(to, [Ramp::Smooth; 2], limits);
-        path.states.push(MotionState::END);
-        return path.states;
+        let stop = Some(stopped.end.x);
+        return InMotion { path: stopped, sign, remaining, stop };
     }
-    direct.append(divide(remaining, sign * limits.v), 0.0);
-    direct.change(0.0, limits);
-    direct.states.push(MotionState::off(FOREVER, to));
-    direct.states
+    InMotion { path: direct, sign, remaining, stop: None }
+}
+
+/// The point from which a motion changes its speed after the planning time.
+pub(super) fn after_lead(start: Point) -> Point {
+    lead(start).end
+}
+
+/// Returns whether a change of speed has a phase of constant acceleration.
+pub(super) fn is_in_three(start: Point, velocity: f64, limits: &Limits) -> bool {
+    let mut path = Path::from(start);
+    path.change(velocity, limits);
+    path.states.len() > 2
 }
 
 /// A jog: 20 ticks as before, then the change to the new velocity, which lasts.

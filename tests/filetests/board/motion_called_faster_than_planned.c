@@ -20,4 +20,4 @@ main()
     printf("%d\n", ch2->Dest < 1);
     DisableAxis(2);
 }
-//@ cycles: 4144937
+//@ cycles: 5001102

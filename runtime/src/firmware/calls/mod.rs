@@ -12,6 +12,8 @@ use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::{AxisId, GuestAddr, ThreadId};
 use vm::firmware::Caller;
 
+use super::motion::PlanningStage;
+
 pub(crate) use globals::Globals;
 pub(crate) use heap::Heap;
 pub(crate) use motions::{EndedWait, Jogged, Motions, WrongWait};
@@ -30,12 +32,14 @@ pub(crate) enum Continuation {
         /// The result.
         result: i32,
     },
-    /// The target of a motion, as it was when the call began.
-    Target(f64),
+    /// The target or velocity of a motion, as it was when the call began, and how far the call has come.
+    Motion(f64, PlanningStage),
+    /// The axes that `MoveXYZABC` has still to move with their targets, the first last, and how far that one has come.
+    Moves(Vec<(AxisId, f64)>, PlanningStage),
     /// That a stop was begun, and the axes that are still to be stopped once those are known.
     Stop(Option<Vec<AxisId>>),
-    /// The axes that are still to continue after a feedhold.
-    Resume(Vec<AxisId>),
+    /// The axes that are still to continue after a feedhold, the first last, and how far that one has come.
+    Resume(Vec<AxisId>, PlanningStage),
 }
 
 /// The state of firmware functions.

@@ -7,6 +7,8 @@ main()
 
     DefineCoordSystem(0, 1, 2, -1);
     for (i = 0; i < 3; i++)
+        EnableAxis(i);
+    for (i = 0; i < 3; i++)
     {
         MoveXYZABC(i, i, 0, 0, 0, 0);  // <-
         while (!CheckDoneXYZABC())

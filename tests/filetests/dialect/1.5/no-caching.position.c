@@ -14,4 +14,4 @@ main()
     printf("moving\n");
     Jog(2, 0);
 }
-//@ cycles: 176179
+//@ cycles: 176420
