@@ -70,7 +70,7 @@ const NOT_CALLED: &[(&str, &str)] = &[
 
 const WORDS: &str = "its calls are recorded in words";
 const PRICE: &str =
-    "it has one price, that of the arguments that programs use; what is nearest to its mean are special ones";
+    "it has one cost, that of the arguments that programs use; what is nearest to its mean are special ones";
 const WAITS: &str = "it waits";
 const FILES: &str = "it needs a file of the PC";
 

@@ -16,7 +16,7 @@ use vm::profile::ProfilingEngine;
 /// The tolerance of a statement, relative.
 const LIMIT: f64 = 0.1;
 
-/// Cycles that are less than the price of one access.
+/// Cycles that are less than the cost of one access.
 const SLIGHT: f64 = 2.0;
 
 /// Statements that are further off, and why.
@@ -31,8 +31,8 @@ const OTHERS: &[(&str, &str)] = &[
     ("sprintf(buf,\"a\")", STRINGS),
     ("sprintf(buf,\"%d\",lj)", STRINGS),
     ("sprintf(buf,\"%d %d %d\",lj,lj,lk)", STRINGS),
-    ("gd=sin(gd)", "the price of a sine is that of usual arguments"),
-    ("gst2=gst", "the price of a copy follows a formula that is 16 cycles off for this size"),
+    ("gd=sin(gd)", "the cost of a sine is that of usual arguments"),
+    ("gst2=gst", "the cost of a copy follows a formula that is 16 cycles off for this size"),
     (
         "gda[lj]=gda[lj]+gda[lk]*ld",
         "an element of a double that is assigned to one: known to be 20 cycles more",

@@ -45,7 +45,7 @@ fn thread() -> ThreadId {
     ThreadId::new(1).expect("there is a thread 1")
 }
 
-/// Bytes allocated, and stretches of memory mapped, where the system tells.
+/// Bytes allocated, and ranges of memory mapped, where the system tells.
 fn held() -> (usize, usize) {
     let maps = fs::read_to_string("/proc/self/maps").map_or(0, |maps| maps.lines().count());
     (MEMORY.current_usage(), maps)
@@ -77,7 +77,7 @@ fn check<E: Engine>(engine: &str) {
     let grown = later_bytes.saturating_sub(bytes);
     println!("{engine}: 500 programs later {grown} bytes and {} maps more", later_maps.saturating_sub(maps));
     assert!(grown < 100_000, "{engine}: {grown} bytes more");
-    assert!(later_maps <= maps + 8, "{engine}: {maps} stretches of memory, then {later_maps}");
+    assert!(later_maps <= maps + 8, "{engine}: {maps} ranges of memory, then {later_maps}");
     drop(board);
     let left = held().0.saturating_sub(before.0);
     assert!(left < 100_000, "{engine}: {left} bytes are left");

@@ -127,7 +127,7 @@ fn three_service_programs_serve_for_a_day_without_growing_or_slowing_down() {
     println!("processor time of the first {:?}, of the last {:?}", cost(1), cost(24));
     assert!(usages[24].peak < MEMORY, "{usages:?}");
     assert!(usages[24].peak <= usages[1].peak + BREATH, "{usages:?}");
-    // Another process may slow down a short stretch of time.
+    // Another process may slow down a short time.
     let halves = [1..13, 13..25].map(|half| half.map(cost).sum::<Duration>());
     assert!(halves[1] < 2 * halves[0], "{halves:?}");
 }

@@ -86,7 +86,7 @@ impl Program {
     ///
     /// A segment costs a cycle at least, and what fits a count at most.
     #[must_use]
-    pub fn priced(mut self, factor: f64) -> Self {
+    pub fn with_costs_scaled(mut self, factor: f64) -> Self {
         for op in &mut self.ops {
             if let Op::Charge { cycles } = op {
                 cycles.0 = (f64::from(cycles.0) * factor).clamp(1.0, f64::from(i32::MAX)) as u32;

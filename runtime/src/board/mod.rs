@@ -128,7 +128,7 @@ pub struct Board<E = BytecodeEngine> {
     programs: Arc<Programs>,
     bss_fill: u8,
     /// The cost of an instruction, relative to its cost on the board.
-    price: f64,
+    cost: f64,
     /// The names of the axes in the machine file, and their units; an empty unit was not given.
     names: [(String, String); N_CHANNELS],
 }
@@ -161,9 +161,9 @@ impl<E: Engine> Board<E> {
         };
         let machine = Machine::with_engine(kernel, settings, engine);
         let bss_fill = if config.bss_fill == 0 { connected.cpu.bss_fill } else { config.bss_fill };
-        let price = connected.cpu.ns_per_instruction / NS_PER_INSTRUCTION;
+        let cost = connected.cpu.ns_per_instruction / NS_PER_INSTRUCTION;
         let names = std::array::from_fn(|axis| connected.axes[axis].names());
-        let mut board = Self { machine, programs: Arc::default(), bss_fill, price, names };
+        let mut board = Self { machine, programs: Arc::default(), bss_fill, cost, names };
         if let Some(flash) = config.flash {
             let stored = board.machine.memory_mut().poke_bytes(FLASH.base, &flash);
             debug_assert!(stored.is_ok() && flash.len() == FLASH_SIZE, "flash has its size");

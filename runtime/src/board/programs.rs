@@ -148,8 +148,8 @@ impl<E: Engine> Board<E> {
     /// Gives the machine code; that of bytecode costs what the machine file says, that of the processor its cycles.
     pub(super) fn hand_over(&mut self, thread: ThreadId, code: Code, entry: GuestAddr) {
         let code = match code {
-            Code::Program(program) if self.price != 1.0 => {
-                Code::Program(Arc::unwrap_or_clone(program).priced(self.price).into())
+            Code::Program(program) if self.cost != 1.0 => {
+                Code::Program(Arc::unwrap_or_clone(program).with_costs_scaled(self.cost).into())
             }
             other => other,
         };
@@ -249,7 +249,7 @@ impl<E: Engine> Board<E> {
             let text = self.memory().read_bytes(base, end.get() - base.get()).unwrap_or_default();
             match code::bare(text, base, self.level()) {
                 Ok(code) => return Ok(Some(code)),
-                // What the longest stretch lacks is what the text lacks.
+                // What the longest range lacks is what the text lacks.
                 Err(wrong) => error = Some(wrong),
             }
         }

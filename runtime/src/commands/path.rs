@@ -1,6 +1,6 @@
 //! Coordinated motion: the coordinate system, the buffer and what fills it, overrides, spindle.
 //!
-//! A stretch that is sent in hexadecimal leaves out what the board remembers: its beginning (`LHex1`), or its
+//! A segment that is sent in hexadecimal leaves out what the board remembers: its beginning (`LHex1`), or its
 //! beginning and end (`LHex2`). [`Geometry`] is that memory.
 
 use kmotiondef::structs::Spindle;

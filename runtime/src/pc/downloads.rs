@@ -19,7 +19,7 @@ const MOST_STRETCHES: usize = 1000;
 impl Downloads {
     /// Bytes were stored from `start` to before `end`.
     pub(crate) fn record(&mut self, start: GuestAddr, end: GuestAddr) {
-        self.stored.retain(|stretch| stretch.0 != start);
+        self.stored.retain(|range| range.0 != start);
         if self.stored.len() < MOST_STRETCHES {
             self.stored.push((start, end));
         }

@@ -345,22 +345,22 @@ impl Core {
         match self.idle.arrive(self.state.pc, self.state.clock.cycle) {
             Arrival::Pass => {}
             Arrival::Look => self.idle.look(self.state.picture(), self.packets, memory.touches()),
-            Arrival::Again => self.skip_turns(memory),
+            Arrival::Again => self.skip_iterations(memory),
         }
     }
 
     #[cold]
-    fn skip_turns<M: Memory>(&mut self, memory: &M) {
+    fn skip_iterations<M: Memory>(&mut self, memory: &M) {
         let picture = self.state.picture();
         let ended = self.idle.end(&picture, self.packets, memory.touches(), |at| memory.fetch(at));
         let (Some((period, packets)), true) = (ended, self.border == Border::Next) else { return };
         let left = self.state.clock.left().max(0).cast_unsigned();
-        let turns = left / period;
+        let iterations = left / period;
         // The slot of a result is its cycle modulo 16.
-        let turns = if picture.has_flight() { turns / 16 * 16 } else { turns };
-        self.state.skip(turns * period);
-        self.packets += turns * packets;
-        self.idle.skipped += turns * period;
+        let iterations = if picture.has_flight() { iterations / 16 * 16 } else { iterations };
+        self.state.skip(iterations * period);
+        self.packets += iterations * packets;
+        self.idle.skipped += iterations * period;
     }
 
     /// A branch has gone back: executes the loop that begins here, if it is known.

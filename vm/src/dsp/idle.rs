@@ -21,7 +21,7 @@ type Old = (u32, u32);
 
 /// An iteration that is being watched.
 #[derive(Clone, Debug)]
-struct Turn {
+struct Iteration {
     picture: Picture,
     packets: u64,
     touches: u64,
@@ -44,7 +44,7 @@ pub(super) struct Idle {
     /// Counts what happens. A program that polls a firmware function calls it millions of times, and each call is such:
     /// so the visits before it become invalid, and are not cleared.
     happened: u32,
-    turn: Option<Box<Turn>>,
+    iteration: Option<Box<Iteration>>,
     /// True while stores are noted.
     pub(super) is_watching: bool,
     /// Cycles that were skipped so far.
@@ -53,7 +53,13 @@ pub(super) struct Idle {
 
 impl Default for Idle {
     fn default() -> Self {
-        Self { visits: [Visits::default(); PLACES], happened: 0, turn: None, is_watching: false, skipped: 0 }
+        Self {
+            visits: [Visits::default(); PLACES],
+            happened: 0,
+            iteration: None,
+            is_watching: false,
+            skipped: 0,
+        }
     }
 }
 
@@ -75,19 +81,19 @@ impl Idle {
         if self.happened == 0 {
             self.visits = [Visits::default(); PLACES];
         }
-        self.turn = None;
+        self.iteration = None;
         self.is_watching = false;
     }
 
     /// A branch has gone back to `pc` in this cycle.
     #[inline(always)]
     pub(super) fn arrive(&mut self, pc: u32, cycle: u64) -> Arrival {
-        if let Some(turn) = &self.turn {
-            if turn.picture.pc == pc {
+        if let Some(iteration) = &self.iteration {
+            if iteration.picture.pc == pc {
                 return Arrival::Again;
             }
-            if cycle - turn.picture.cycle > LONGEST {
-                self.turn = None;
+            if cycle - iteration.picture.cycle > LONGEST {
+                self.iteration = None;
                 self.is_watching = false;
             }
             return Arrival::Pass;
@@ -102,24 +108,24 @@ impl Idle {
 
     /// Watches the iteration that begins here.
     pub(super) fn look(&mut self, picture: Picture, packets: u64, touches: u64) {
-        self.turn = Some(Box::new(Turn { picture, packets, touches, stores: Vec::new() }));
+        self.iteration = Some(Box::new(Iteration { picture, packets, touches, stores: Vec::new() }));
         self.is_watching = true;
     }
 
     /// A word is stored to that holds `old`.
     #[cold]
     pub(super) fn store(&mut self, addr: u32, old: Option<u32>) {
-        let Some(turn) = &mut self.turn else { return };
-        let is_noted = turn.stores.iter().any(|(known, _)| *known == addr);
+        let Some(iteration) = &mut self.iteration else { return };
+        let is_noted = iteration.stores.iter().any(|(known, _)| *known == addr);
         match old {
-            Some(old) if turn.stores.len() < MOST_STORES || is_noted => {
+            Some(old) if iteration.stores.len() < MOST_STORES || is_noted => {
                 if !is_noted {
-                    turn.stores.push((addr, old));
+                    iteration.stores.push((addr, old));
                 }
             }
             // A device, or too many.
             _ => {
-                self.turn = None;
+                self.iteration = None;
                 self.is_watching = false;
             }
         }
@@ -134,10 +140,10 @@ impl Idle {
         word: impl Fn(u32) -> Option<u32>,
     ) -> Option<(u64, u64)> {
         self.is_watching = false;
-        let turn = self.turn.take()?;
-        let is_same = touches == turn.touches
-            && turn.picture.is_like(now)
-            && turn.stores.iter().all(|(addr, old)| word(*addr) == Some(*old));
-        is_same.then(|| (now.cycle - turn.picture.cycle, packets - turn.packets))
+        let iteration = self.iteration.take()?;
+        let is_same = touches == iteration.touches
+            && iteration.picture.is_like(now)
+            && iteration.stores.iter().all(|(addr, old)| word(*addr) == Some(*old));
+        is_same.then(|| (now.cycle - iteration.picture.cycle, packets - iteration.packets))
     }
 }

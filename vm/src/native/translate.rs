@@ -5,7 +5,7 @@
 //! the budget go in, the budget comes back with the result as a register slot. So the budget stays in a processor
 //! register; it is written to the state for a request and read back after it.
 //!
-//! A small loop is translated twice, and so is a region of code without calls: `candidates.rs` finds them, `turns.rs`
+//! A small loop is translated twice, and so is a region of code without calls: `candidates.rs` finds them, `unroll.rs`
 //! plans several iterations on one test of the budget and few checks of addresses, `fast.rs` translates them.
 //!
 //! Where threads lose the processor as on the board, a segment is translated twice, too: `split.rs`.
@@ -24,7 +24,7 @@ mod parts;
 mod shortcut;
 mod split;
 mod strides;
-mod turns;
+mod unroll;
 mod waits;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -42,7 +42,7 @@ use cranelift_module::{FuncId, Module};
 use kmotiondef::GuestAddr;
 
 use self::parts::{CallParts, Flags, FrameParts, Registers, UnrollState, WaitParts};
-use self::turns::Plan;
+use self::unroll::Plan;
 use super::request::{Reason, Request};
 use super::state::{BYTES_PER_CALL, State};
 use crate::engine::Preemption;
@@ -433,7 +433,7 @@ impl<'a, 'b> Translator<'a, 'b> {
             }
             if let Some(plan) = plan.filter(|_| self.reachable) {
                 body.start = *plan.words.end() + 1;
-                self.turns(plan);
+                self.fast_iterations(plan);
             } else {
                 self.word(at);
             }
@@ -477,12 +477,13 @@ impl<'a, 'b> Translator<'a, 'b> {
         let is_here = |polling: &&PollingLoop| function.body.contains(&polling.first);
         self.waits.loops = loops.iter().filter(is_here).cloned().collect();
         let waits = |at: usize| self.waits.loops.iter().any(|polling| polling.words.contains(&at));
-        self.unroll.plans = turns::plans(program, function, &begins, &waits, &|op| self.cost_in_turns(op));
+        self.unroll.plans =
+            unroll::plans(program, function, &begins, &waits, &|op| self.cost_in_iterations(op));
         self.blocks = begins.into_iter().map(|at| (at, self.builder.create_block())).collect();
     }
 
     /// The cycles of an instruction besides its charge, `None` for one that the fast iterations of a loop cannot hold.
-    fn cost_in_turns(&self, op: &Op) -> Option<u32> {
+    fn cost_in_iterations(&self, op: &Op) -> Option<u32> {
         match op.kind() {
             OpKind::Table | OpKind::Block => None,
             OpKind::Call => {

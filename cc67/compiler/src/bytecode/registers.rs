@@ -96,7 +96,7 @@ pub(super) fn assign(function: &Function, prologue: &[Inst], keeps_variables: bo
     for value in kept() {
         scan.mention(value, scan.position, entry.into(), Mention::Read);
     }
-    scan.stretch(&loops);
+    scan.extend(&loops);
     scan.allocate(function)
 }
 
@@ -170,8 +170,8 @@ impl Scan {
         loops
     }
 
-    /// Stretches global intervals over the loops they touch.
-    fn stretch(&mut self, loops: &[(u32, u32)]) {
+    /// Extends global intervals over the loops they touch.
+    fn extend(&mut self, loops: &[(u32, u32)]) {
         let merged = merge(loops);
         if merged.is_empty() {
             return;

@@ -175,7 +175,7 @@ fn registers_are_shared_except_between_values_live_at_the_same_time() {
          main() { out[0] = f(5); }",
         &[185],
     );
-    // A local that keeps its value from turn to turn although the loop's body is one block.
+    // A local that keeps its value between iterations although the loop's body is one block.
     check(
         "f(int n) { int k; do { if (n == 3) k = 7; n--; } while (n); return k; } main() { out[0] = f(3); }",
         &[7],

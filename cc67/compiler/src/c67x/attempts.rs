@@ -11,7 +11,7 @@ use super::modulo::Work;
 use super::packets::Scheduled;
 use super::schedule::Order;
 use super::sides::{self, Policy};
-use super::{counters, late, pipeline, refine, turns};
+use super::{counters, late, pipeline, refine, unroll};
 use crate::ir::function::Function;
 use crate::passes::Level;
 
@@ -96,13 +96,13 @@ impl Attempts<'_> {
     /// The fastest of some ways to unroll loops and to share registers between the sides.
     fn fastest(&mut self, code: Code) -> Result<Attempt, TooLarge> {
         let has_loop = (0..).zip(&code.blocks).any(|(own, block)| block.end.targets().any(|to| to == own));
-        let (mut best, count) = self.with_turns(&code, 0, Policy::USUAL);
+        let (mut best, count) = self.with_unrolling(&code, 0, Policy::USUAL);
         let mut skipped = 0;
         for index in 0..count.min(MOST_TRIED) {
             if !self.may_continue() {
                 return best;
             }
-            let (other, _) = self.with_turns(&code, skipped | 1 << index, Policy::USUAL);
+            let (other, _) = self.with_unrolling(&code, skipped | 1 << index, Policy::USUAL);
             if other.as_ref().is_ok_and(|other| best.as_ref().map_or(true, |best| other.cost() < best.cost()))
             {
                 best = other;
@@ -113,7 +113,7 @@ impl Attempts<'_> {
             if !self.may_continue() {
                 return best;
             }
-            let (other, _) = self.with_turns(&code, skipped, policy);
+            let (other, _) = self.with_unrolling(&code, skipped, policy);
             let costs = |attempt: &Attempt| (attempt.loop_cost(), attempt.cost());
             if other.as_ref().is_ok_and(|other| best.as_ref().map_or(true, |best| costs(other) < costs(best)))
             {
@@ -129,9 +129,14 @@ impl Attempts<'_> {
     }
 
     /// An attempt in which the loops with a bit in `skipped` are not unrolled; and how many loops could be.
-    fn with_turns(&mut self, code: &Code, skipped: u32, policy: Policy) -> (Result<Attempt, TooLarge>, u32) {
+    fn with_unrolling(
+        &mut self,
+        code: &Code,
+        skipped: u32,
+        policy: Policy,
+    ) -> (Result<Attempt, TooLarge>, u32) {
         let mut code = code.clone();
-        let count = turns::run(&mut code, skipped);
+        let count = unroll::run(&mut code, skipped);
         let attempt = self.assign(code, policy).and_then(|assigned| self.schedule(assigned, Back::Register));
         (attempt, count)
     }

@@ -284,14 +284,14 @@ pub(super) struct Block {
     /// Number of loops around it.
     pub(super) depth: u32,
     /// Number of iterations of the source's loop that it executes.
-    pub(super) turns: u32,
+    pub(super) unrolled: u32,
     pub(super) span: Span,
 }
 
 impl Block {
     /// The estimated frequency of its execution.
     pub(super) fn weight(&self) -> f32 {
-        8_f32.powi(self.depth.min(5).cast_signed()) / self.turns as f32
+        8_f32.powi(self.depth.min(5).cast_signed()) / self.unrolled as f32
     }
 }
 

@@ -5,7 +5,7 @@
 //! 1. [`select`]: IR to instructions over virtual registers ([`code`]); [`forms`] has the forms of the table that can
 //!    express an instruction.
 //! 2. [`predicate`]: short branches become conditions. [`copies`]: copies of selection are replaced by their sources.
-//!    [`turns`]: short loops are unrolled. [`counters`]: the counters of loops are tested directly. [`sides`]: every
+//!    [`unroll`]: short loops are unrolled. [`counters`]: the counters of loops are tested directly. [`sides`]: every
 //!    register gets one of the two files; copies where an instruction reaches only one.
 //! 3. [`live`], [`allocate`], [`spill`]: registers of the processor, those that survive a thread switch.
 //! 4. [`frame`], [`moves`], [`expand`]: calls, the stack, the beginning and the ends; regions of [`step`]s.
@@ -49,7 +49,7 @@ mod sides;
 mod spill;
 mod step;
 pub(crate) mod text;
-mod turns;
+mod unroll;
 
 #[cfg(test)]
 mod tests;

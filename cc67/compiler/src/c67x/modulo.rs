@@ -15,7 +15,7 @@ use super::resources::Resources;
 use super::schedule::other_side;
 use super::step::Step;
 
-/// Turns that may be under way at the same time.
+/// Iterations that may overlap.
 pub(super) const MOST_STAGES: u32 = 4;
 /// The number of placements per step, on average, after which the search ends.
 const TRIES: usize = 8;
@@ -47,13 +47,13 @@ impl Overlap {
     }
 }
 
-/// A dependence: `to` issues at least `cycles` after `from` of the iteration `turns` earlier.
+/// A dependence: `to` issues at least `cycles` after `from` of the iteration `distance` earlier.
 #[derive(Clone, Copy, Debug)]
 struct Wait {
     from: usize,
     to: usize,
     cycles: i64,
-    turns: i64,
+    distance: i64,
     /// The cycles where no interrupt comes between the two; below `cycles` if `to` may come before `from`.
     sheltered: i64,
 }
@@ -150,9 +150,9 @@ impl Waits {
         for (from, edges) in graph.after.iter().take(count).enumerate() {
             for edge in edges {
                 let to = edge.to as usize;
-                let turns = i64::from(to >= count);
+                let distance = i64::from(to >= count);
                 let (cycles, sheltered) = (edge.cycles.into(), edge.sheltered.into());
-                all.push(Wait { from, to: to % count, cycles, turns, sheltered });
+                all.push(Wait { from, to: to % count, cycles, distance, sheltered });
             }
         }
         Self::sorted(all, count)
@@ -203,7 +203,7 @@ impl Waits {
             let mut is_changed = false;
             // Most waits lead forward, so one way back settles most heights.
             for wait in self.all.iter().rev() {
-                let height = heights[wait.to] + wait.sheltered - wait.turns * i64::from(period);
+                let height = heights[wait.to] + wait.sheltered - wait.distance * i64::from(period);
                 if height > heights[wait.from] {
                     heights[wait.from] = height;
                     is_changed = true;
@@ -276,8 +276,8 @@ impl Finder<'_> {
         if let Some(last) = is_before.last_mut() {
             *last = true;
         }
-        // Waits within a turn lead forward, so one way back through them is enough.
-        for wait in self.waits.all.iter().rev().filter(|wait| wait.turns == 0) {
+        // Dependences within an iteration lead forward, so one pass back through them is enough.
+        for wait in self.waits.all.iter().rev().filter(|wait| wait.distance == 0) {
             is_before[wait.from] |= is_before[wait.to];
         }
         is_before
@@ -288,14 +288,14 @@ impl Finder<'_> {
         let first = if self.is_certain[step] { self.commit * self.period } else { 0 };
         let after = self.waits.before[step].iter().filter_map(|wait| {
             let (at, _) = placed.places[wait.from]?;
-            Some(i64::from(at) + cycles(wait) - wait.turns * i64::from(self.period))
+            Some(i64::from(at) + cycles(wait) - wait.distance * i64::from(self.period))
         });
         after.fold(first, |first, cycle| first.max(u32::try_from(cycle).unwrap_or(0)))
     }
 
     /// Reports whether a dependence is met.
     fn is_met(&self, wait: &Wait, from: u32, to: u32) -> bool {
-        let to = i64::from(to) + wait.turns * i64::from(self.period);
+        let to = i64::from(to) + wait.distance * i64::from(self.period);
         let apart = to - i64::from(from);
         apart >= wait.cycles || apart >= wait.sheltered && self.is_sheltered(to, -apart)
     }

@@ -25,8 +25,8 @@ use super::step::{Access, Step};
 
 /// The largest iteration that is pipelined, in steps.
 const LARGEST: usize = 120;
-/// Turns that must be enough for a loop to win.
-const TURNS: u32 = 5;
+/// The trip count from which a pipelined loop must be faster.
+const PROFITABLE_TRIPS: u32 = 5;
 /// The estimated probability that a loop ends before all stages are active.
 const RARE: f32 = 0.1;
 
@@ -48,10 +48,10 @@ pub(super) fn schedule(
         let found = back(&known.region).is_some().then(|| {
             let found = Loop::new(known, &entering, plain.cycles, work);
             plain.is_exceeded = found.is_err();
-            let mut turns = found.ok().flatten()?;
-            turns.label = labels;
-            let (parts, after) = turns.parts()?;
-            Some((parts, after, turns.label))
+            let mut pipelined = found.ok().flatten()?;
+            pipelined.label = labels;
+            let (parts, after) = pipelined.parts()?;
+            Some((parts, after, pipelined.label))
         });
         let found = found.flatten();
         match found {
@@ -138,7 +138,7 @@ struct Loop<'a> {
 struct Instance {
     /// The cycle, from the beginning of iteration 0.
     cycle: i64,
-    turn: i64,
+    iteration: i64,
     step: usize,
 }
 
@@ -193,9 +193,9 @@ impl<'a> Loop<'a> {
             let branch = depth > 1;
             let mut now = std::mem::take(&mut rest);
             if branch {
-                // Steps of the next turn that come after the branch may change what it tests.
+                // Steps of the next iteration that come after the branch may change what it tests.
                 let at = self.branch_cycle() + (first_unknown - 1) * self.period();
-                rest = own.extract_if(.., |one| one.turn >= first_unknown && one.cycle >= at).collect();
+                rest = own.extract_if(.., |one| one.iteration >= first_unknown && one.cycle >= at).collect();
             }
             now.extend(own);
             self.sort(&mut now);
@@ -217,8 +217,9 @@ impl<'a> Loop<'a> {
         parts.push(self.last()?);
         let cycles = |parts: &[Scheduled]| parts.iter().map(|part| part.cycles).sum::<u32>();
         let plain = schedule::schedule(self.region, Order::Early, 0).cycles;
-        let overlapped = cycles(&parts) + self.plan.period * (TURNS - 1).saturating_sub(depth as u32 - 1);
-        (overlapped < plain * TURNS).then_some((parts, ends))
+        let overlapped =
+            cycles(&parts) + self.plan.period * (PROFITABLE_TRIPS - 1).saturating_sub(depth as u32 - 1);
+        (overlapped < plain * PROFITABLE_TRIPS).then_some((parts, ends))
     }
 
     fn period(&self) -> i64 {
@@ -238,15 +239,15 @@ impl<'a> Loop<'a> {
         (i64::from(self.plan.commit) + 1) * self.period() - i64::from(BRANCH)
     }
 
-    fn instance(&self, step: usize, turn: i64) -> Instance {
-        Instance { cycle: i64::from(self.plan.places[step].0) + turn * self.period(), turn, step }
+    fn instance(&self, step: usize, iteration: i64) -> Instance {
+        Instance { cycle: i64::from(self.plan.places[step].0) + iteration * self.period(), iteration, step }
     }
 
     /// Puts steps in an order in which they could happen one by one: that of their cycles, or, where one may issue before
     /// another that reads what its register had until then, that of the source.
     fn sort(&self, list: &mut [Instance]) {
         if self.plan.is_sheltered {
-            list.sort_unstable_by_key(|one| (one.turn, one.step));
+            list.sort_unstable_by_key(|one| (one.iteration, one.step));
         } else {
             list.sort_unstable();
         }
@@ -265,12 +266,12 @@ impl<'a> Loop<'a> {
         found
     }
 
-    /// The instances that complete the last `turns` iterations after the last pass; the last iteration is number 0.
-    fn endings(&self, turns: i64) -> Vec<Instance> {
+    /// The instances that complete the last `count` iterations after the last pass; the last iteration is number 0.
+    fn endings(&self, count: i64) -> Vec<Instance> {
         let mut found = Vec::new();
         for step in 0..self.branch() {
             let stage = i64::from(self.plan.stage(step));
-            let left = (0..turns).filter(|back| stage > i64::from(self.plan.commit) + back);
+            let left = (0..count).filter(|back| stage > i64::from(self.plan.commit) + back);
             found.extend(left.map(|back| self.instance(step, -back)));
         }
         self.sort(&mut found);
@@ -302,11 +303,11 @@ impl<'a> Loop<'a> {
         branch_to(inst, pred, label, step)
     }
 
-    /// The epilogue of a loop that has only the first `turns` iterations.
-    fn end_of(&self, turns: i64, label: u32) -> Option<Scheduled> {
+    /// The epilogue of a loop that has only the first `count` iterations.
+    fn end_of(&self, count: i64, label: u32) -> Option<Scheduled> {
         let step = &self.steps[self.branch()];
         let out = branch_to(step.forms.first()?, Pred::Always, self.outside, step)?;
-        let mut end = self.plain(label, &self.endings(turns), vec![out]);
+        let mut end = self.plain(label, &self.endings(count), vec![out]);
         end.weight *= RARE;
         Some(end)
     }
@@ -337,8 +338,8 @@ impl<'a> Loop<'a> {
         let start = end - 2 * self.period();
         let mut tail: Vec<Instance> = Vec::new();
         for step in 0..self.steps.len() {
-            let turns = -(depth + 2)..=i64::from(self.plan.commit) + 1;
-            let near = turns.map(|turn| self.instance(step, turn));
+            let iterations = -(depth + 2)..=i64::from(self.plan.commit) + 1;
+            let near = iterations.map(|iteration| self.instance(step, iteration));
             tail.extend(near.filter(|one| (start..end).contains(&one.cycle)));
         }
         self.sort(&mut tail);

@@ -19,7 +19,7 @@ struct Loop {
     first: usize,
     last: usize,
     /// The shortest and the longest iteration.
-    turn: (u32, u32),
+    iteration: (u32, u32),
 }
 
 impl Inspection {
@@ -38,7 +38,7 @@ impl Inspection {
             let _ = writeln!(out, "{}  {}, {} bytes", span(own), code.name, code.bytes);
             for found in code.loops() {
                 let lines = self.lines_of(code, &found);
-                let _ = write!(out, "{}    an iteration of the loop{lines}", span(found.turn));
+                let _ = write!(out, "{}    an iteration of the loop{lines}", span(found.iteration));
                 let calls = self.called(&code.blocks[found.first..=found.last]);
                 let _ = match calls.as_str() {
                     "" => writeln!(out),
@@ -142,11 +142,11 @@ impl Routine {
                 ends.insert(edge.to, index);
             }
         }
-        let turns = ends.into_iter().filter_map(|(first, last)| {
-            let turn = self.path(first, Some(last))?;
-            Some(Loop { first, last, turn })
+        let loops = ends.into_iter().filter_map(|(first, last)| {
+            let iteration = self.path(first, Some(last))?;
+            Some(Loop { first, last, iteration })
         });
-        turns.collect()
+        loops.collect()
     }
 
     /// Explains whether the stages of several iterations overlap in a loop.
@@ -209,9 +209,9 @@ impl Listing<'_> {
         let loops = code.loops();
         for (number, block) in code.blocks.iter().enumerate() {
             for found in loops.iter().filter(|found| found.first == number) {
-                let (least, most) = found.turn;
-                let turn = if least == most { most.to_string() } else { format!("{least} to {most}") };
-                let _ = writeln!(self.out, "; loop, {turn} cycles an iteration; {}", code.remark(found));
+                let (least, most) = found.iteration;
+                let shown = if least == most { most.to_string() } else { format!("{least} to {most}") };
+                let _ = writeln!(self.out, "; loop, {shown} cycles an iteration; {}", code.remark(found));
             }
             let start = code.packets[block.packets.start].time;
             for packet in &code.packets[block.packets.clone()] {

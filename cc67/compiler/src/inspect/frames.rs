@@ -13,7 +13,7 @@ pub(super) fn deepest(code: &Routine) -> Option<u32> {
     let mut open = vec![(0, 0)];
     let (mut deepest, mut steps) = (0, 0);
     while let Some((index, depth)) = open.pop() {
-        // A loop that goes deeper with every turn has no bound.
+        // A loop that goes deeper in every iteration has no bound.
         steps += 1;
         if steps > 16 * code.blocks.len() {
             return None;

@@ -79,7 +79,7 @@ impl Search<'_> {
             };
             let Some(counter) = self.counter(before, *condition, *step) else { continue };
             if is_plain(body) && !self.changes(body, counter.local) {
-                self.turns(body, counter, sink);
+                self.iterations(body, counter, sink);
             }
         }
     }
@@ -145,7 +145,7 @@ impl Search<'_> {
     }
 
     /// Reports accesses of every iteration that are outside of an array in the first or last one.
-    fn turns(&self, body: &[Stmt], counter: Counter, sink: &mut Sink) {
+    fn iterations(&self, body: &[Stmt], counter: Counter, sink: &mut Sink) {
         Walk { function: self.function, extent: Extent::Always }.stmts(body, &mut |expr| {
             for place in accesses(self.function, &self.function.exprs[expr].kind) {
                 sink.report_if(self.finding(place, Some(counter)));
@@ -180,9 +180,9 @@ impl Search<'_> {
         Some(match counter {
             None => finding,
             Some(Counter { local, first, last }) => {
-                let (value, turn) = if wrong == to { (last, "last") } else { (first, "first") };
+                let (value, iteration) = if wrong == to { (last, "last") } else { (first, "first") };
                 let name = &self.function.locals[local].name;
-                finding.note(format!("`{name}` is {value} in the {turn} iteration of the loop"))
+                finding.note(format!("`{name}` is {value} in the {iteration} iteration of the loop"))
             }
         })
     }

@@ -75,7 +75,7 @@ fn never_begins(function: &Function, before: &Stmt, condition: ExprId) -> Option
     let holds = match op {
         CompareOp::Equal => start == end,
         CompareOp::NotEqual => start != end,
-        // A number of turns that is set to 0 switches a loop off on purpose.
+        // A number of iterations that is set to 0 switches a loop off on purpose.
         CompareOp::Less => start <= end,
         CompareOp::LessEqual => start <= end,
         CompareOp::Greater => start >= end,

@@ -104,8 +104,8 @@ impl Estimate<'_> {
             }
             StmtKind::Loop { condition, body, step, .. } => {
                 let parts = condition.iter().chain(step).map(|expr| self.expr(function, *expr));
-                let turn = parts.sum::<u64>().saturating_add(self.stmts(function, body));
-                turn.saturating_mul(turns(function, stmt, before))
+                let iteration = parts.sum::<u64>().saturating_add(self.stmts(function, body));
+                iteration.saturating_mul(iterations(function, stmt, before))
             }
             // The cases are one after another: the longest is not known, all of them would be too many.
             StmtKind::Switch { value, .. } => self.expr(function, *value),
@@ -145,7 +145,7 @@ fn firmware(name: &str) -> u64 {
 }
 
 /// Number of iterations of a loop whose counter grows from a constant by one up to a constant; 1 for every other.
-fn turns(function: &Function, stmt: &Stmt, before: Option<&Stmt>) -> u64 {
+fn iterations(function: &Function, stmt: &Stmt, before: Option<&Stmt>) -> u64 {
     let StmtKind::Loop { condition: Some(condition), test: LoopTest::Before, step: Some(step), .. } =
         &stmt.kind
     else {

@@ -112,7 +112,7 @@ impl Search<'_> {
                 self.flow.join(&behind);
             }
             StmtKind::Loop { condition, test, body, step } => {
-                self.in_loop(|search| search.turn(*condition, *test, body, *step));
+                self.in_loop(|search| search.iteration(*condition, *test, body, *step));
             }
             StmtKind::Switch { value, has_default, body, .. } => {
                 self.expr(*value);
@@ -157,7 +157,7 @@ impl Search<'_> {
     }
 
     /// Analyses a loop: the facts at the start of the first iteration hold in all.
-    fn turn(&mut self, condition: Option<ExprId>, test: LoopTest, body: &[Stmt], step: Option<ExprId>) {
+    fn iteration(&mut self, condition: Option<ExprId>, test: LoopTest, body: &[Stmt], step: Option<ExprId>) {
         self.exits.push(Exits::new(None));
         let before = (test == LoopTest::Before).then(|| self.condition(condition));
         let mut behind = Flow::Unreachable;

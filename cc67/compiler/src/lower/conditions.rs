@@ -1,6 +1,6 @@
 //! Conditions to branches.
 
-use super::{Lowering, prices, types};
+use super::{Lowering, cost_table, types};
 use crate::ir::inst::{BlockId, Class, Operand};
 use crate::ir::operators::{CompareOp, Width};
 use crate::operators;
@@ -31,7 +31,7 @@ impl Lowering<'_> {
         match expr.kind {
             ExprKind::Int(value) => {
                 if (value == 0) == (sense == Sense::JumpIfFalse) {
-                    self.cost(prices::BRANCH);
+                    self.cost(cost_table::BRANCH);
                 }
                 self.builder.jump(if value == 0 { otherwise } else { then });
             }
@@ -92,10 +92,10 @@ impl Lowering<'_> {
     ) -> (BlockId, BlockId) {
         match (natural, wanted) {
             (Sense::JumpIfTrue, Sense::JumpIfFalse) => {
-                (then, self.costly_way(otherwise, prices::BRANCH as u32).unwrap_or(otherwise))
+                (then, self.costly_way(otherwise, cost_table::BRANCH as u32).unwrap_or(otherwise))
             }
             (Sense::JumpIfFalse, Sense::JumpIfTrue) => {
-                (self.costly_way(then, prices::BRANCH as u32).unwrap_or(then), otherwise)
+                (self.costly_way(then, cost_table::BRANCH as u32).unwrap_or(then), otherwise)
             }
             (Sense::JumpIfFalse, Sense::JumpIfFalse) | (Sense::JumpIfTrue, Sense::JumpIfTrue) => {
                 (then, otherwise)

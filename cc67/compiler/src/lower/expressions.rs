@@ -6,7 +6,7 @@
 
 use super::conditions::Sense;
 use super::places::Storage;
-use super::{Lowering, prices, types};
+use super::{Lowering, cost_table, types};
 use crate::ir::inst::{Address, Class, Constant, InstKind, Operand, ValueId};
 use crate::ir::operators::{BinaryOp, CompareOp, UnaryOp, Width};
 use crate::operators;
@@ -94,7 +94,7 @@ impl Lowering<'_> {
             ExprKind::Call(_) => {
                 self.value(id);
                 if let Some(class) = types::class(&self.unit.types, expr.ty) {
-                    self.cost(-prices::result(class));
+                    self.cost(-cost_table::result(class));
                 }
             }
             ExprKind::And(..) | ExprKind::Or(..) => {
@@ -108,7 +108,7 @@ impl Lowering<'_> {
                 self.branch(condition, Sense::JumpIfFalse, then, otherwise);
                 self.builder.open(then);
                 self.effect(a);
-                self.cost(prices::BRANCH);
+                self.cost(cost_table::BRANCH);
                 self.builder.jump(end);
                 self.builder.open(otherwise);
                 self.effect(b);
@@ -290,7 +290,7 @@ impl Lowering<'_> {
         self.price_kept(a, b);
         self.price_compare(a, b);
         // A comparison as a value; a test takes it back.
-        self.cost(prices::MOVE);
+        self.cost(cost_table::MOVE);
         let first = self.release(held);
         let (op, is_swapped) = compare_op(op, is_unsigned);
         let dst = self.destination(Class::I32, into);
@@ -303,7 +303,7 @@ impl Lowering<'_> {
     fn truth(&mut self, id: ExprId, into: Option<ValueId>) -> Operand {
         let (yes, no, end) = (self.builder.block(), self.builder.block(), self.builder.block());
         let is_and = matches!(self.function.exprs[id].kind, ExprKind::And(..));
-        let [by_way, by_jump] = prices::TRUTH;
+        let [by_way, by_jump] = cost_table::TRUTH;
         self.branch(id, Sense::of(is_and), yes, no);
         let dst = self.destination(Class::I32, into);
         self.builder.open(yes);
@@ -330,7 +330,7 @@ impl Lowering<'_> {
             self.branch(condition, Sense::JumpIfFalse, then, otherwise);
             self.builder.open(then);
             self.effect(a);
-            self.cost(prices::BRANCH);
+            self.cost(cost_table::BRANCH);
             self.builder.jump(end);
             self.builder.open(otherwise);
             self.effect(b);
@@ -342,7 +342,7 @@ impl Lowering<'_> {
         let dst = self.destination(class, into);
         self.builder.open(then);
         self.value_in(a, Some(dst));
-        self.cost(prices::BRANCH);
+        self.cost(cost_table::BRANCH);
         self.builder.jump(end);
         self.builder.open(otherwise);
         self.value_in(b, Some(dst));

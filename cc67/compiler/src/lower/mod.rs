@@ -10,10 +10,10 @@
 mod calls;
 mod conditions;
 mod conversions;
+mod cost;
+mod cost_table;
 mod expressions;
 mod places;
-mod prices;
-mod pricing;
 mod statements;
 mod switches;
 mod types;
@@ -28,7 +28,7 @@ use crate::ir::function::{Function, Signature, Signatures, SourceVariable};
 use crate::ir::inst::{Address, Base, BlockId, Class, InstKind, Operand, SignatureId, SlotId, ValueId};
 use crate::ir::operators::BinaryOp;
 use crate::typed::{self, ExprId, LabelId, LocalId, SymbolId, Unit};
-use pricing::Pricing;
+use cost::CostModel;
 
 /// The signatures of the functions that a unit defines.
 #[derive(Debug, Default)]
@@ -78,9 +78,9 @@ pub fn lower(
         outgoing: None,
         spine: Vec::new(),
         held: Vec::new(),
-        pricing: Pricing::new(function, timing),
+        cost_model: CostModel::new(function, timing),
     };
-    lowering.cost(prices::ENTRY);
+    lowering.cost(cost_table::ENTRY);
     lowering.enter();
     lowering.statements(&function.body);
     lowering.builder.set_span(function.end);
@@ -156,7 +156,7 @@ struct Lowering<'a> {
     /// Stack of arguments that wait for their call.
     held: Vec<Held>,
     /// The state for charging, if the vendor's code is charged.
-    pricing: Option<Pricing>,
+    cost_model: Option<CostModel>,
 }
 
 impl Lowering<'_> {

@@ -1,7 +1,7 @@
 //! Statements to blocks.
 
 use super::conditions::Sense;
-use super::{Lowering, Switch, prices};
+use super::{Lowering, Switch, cost_table};
 use crate::ir::inst::Terminator;
 use crate::typed::{ExprId, LoopTest, Stmt, StmtKind};
 
@@ -29,7 +29,7 @@ impl Lowering<'_> {
                 let cases = self.jumps.switches.last().map(|switch| &switch.cases);
                 if let Some(block) = cases.and_then(|cases| cases.get(*number as usize)).copied() {
                     // Whoever falls through jumps over the comparison with the case.
-                    self.cost(prices::BRANCH);
+                    self.cost(cost_table::BRANCH);
                     self.builder.open(block);
                 }
             }
@@ -40,13 +40,13 @@ impl Lowering<'_> {
             }
             StmtKind::Break => {
                 if let Some(block) = self.jumps.breaks.last().copied() {
-                    self.cost(prices::BRANCH);
+                    self.cost(cost_table::BRANCH);
                     self.builder.jump(block);
                 }
             }
             StmtKind::Continue => {
                 if let Some(block) = self.jumps.continues.last().copied() {
-                    self.cost(prices::BRANCH);
+                    self.cost(cost_table::BRANCH);
                     self.builder.jump(block);
                 }
             }
@@ -57,7 +57,7 @@ impl Lowering<'_> {
             }
             StmtKind::Goto(label) => {
                 let block = self.label(*label);
-                self.cost(prices::BRANCH);
+                self.cost(cost_table::BRANCH);
                 self.builder.jump(block);
             }
             StmtKind::GotoAddress(address) => self.goto_address(*address),
@@ -67,7 +67,7 @@ impl Lowering<'_> {
     /// A table of the labels that have an address; anything else stops the thread.
     fn goto_address(&mut self, address: ExprId) {
         let index = self.value(address);
-        self.cost(prices::POINTER_BRANCH);
+        self.cost(cost_table::POINTER_BRANCH);
         let nowhere = self.builder.block();
         let function = self.function;
         let mut targets = vec![nowhere];
@@ -88,7 +88,7 @@ impl Lowering<'_> {
         self.builder.open(yes);
         self.statements(then);
         if no != end {
-            self.cost(prices::BRANCH);
+            self.cost(cost_table::BRANCH);
             self.builder.jump(end);
             self.builder.open(no);
             self.statements(otherwise);
@@ -119,11 +119,11 @@ impl Lowering<'_> {
         }
         if step.is_some() && condition.is_none() {
             // The vendor's loops have their step in front of the body.
-            self.cost(prices::BRANCH);
+            self.cost(cost_table::BRANCH);
         }
         self.builder.open(top);
         if step.is_some() {
-            self.cost(prices::BRANCH);
+            self.cost(cost_table::BRANCH);
         }
         self.jumps.breaks.push(end);
         self.jumps.continues.push(next);
@@ -131,13 +131,13 @@ impl Lowering<'_> {
         self.jumps.continues.pop();
         self.jumps.breaks.pop();
         if test == LoopTest::Before {
-            self.cost(prices::BRANCH);
+            self.cost(cost_table::BRANCH);
         }
         self.builder.open(next);
         if let Some(step) = step {
             self.builder.set_span(self.function.exprs[step].span);
             self.effect(step);
-            self.cost(prices::BRANCH);
+            self.cost(cost_table::BRANCH);
         }
         if let Some(bottom) = bottom {
             self.builder.open(bottom);

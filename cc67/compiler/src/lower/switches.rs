@@ -1,6 +1,6 @@
 //! Switches: tables where the cases are dense, else a search by halves.
 
-use super::{Lowering, Switch, prices, types};
+use super::{Lowering, Switch, cost_table, types};
 use crate::ir::inst::{BlockId, Class, Constant, Operand, Terminator};
 use crate::ir::operators::{BinaryOp, CompareOp};
 use crate::typed::{Case, ExprId, Stmt};
@@ -42,7 +42,7 @@ impl Lowering<'_> {
         let end = self.builder.block();
         let default = if has_default { self.builder.block() } else { end };
         let blocks: Vec<BlockId> = cases.iter().map(|_| self.builder.block()).collect();
-        self.cost(prices::BRANCH);
+        self.cost(cost_table::BRANCH);
         let targets = self.case_ways(&blocks, default);
         let (blocks_found, default_found) = targets;
         let search = Search {
@@ -64,7 +64,7 @@ impl Lowering<'_> {
 
     /// The blocks that cost what finding the cases costs the vendor's code: it compares with one after another.
     fn case_ways(&mut self, blocks: &[BlockId], default: BlockId) -> (Vec<BlockId>, BlockId) {
-        if self.pricing.is_none() {
+        if self.cost_model.is_none() {
             return (blocks.to_vec(), default);
         }
         (blocks.iter().map(|_| self.builder.block()).collect(), self.builder.block())
@@ -84,11 +84,11 @@ impl Lowering<'_> {
         let all = ways.iter().zip(blocks).zip(1..);
         for ((way, block), tried) in all {
             self.builder.open(*way);
-            self.cost(prices::CASE * tried);
+            self.cost(cost_table::CASE * tried);
             self.builder.jump(*block);
         }
         self.builder.open(default_way);
-        self.cost(prices::CASE * blocks.len() as i32);
+        self.cost(cost_table::CASE * blocks.len() as i32);
         self.builder.jump(default);
     }
 

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use super::loops::{self, Stretch};
+use super::loops::{self, LoopRange};
 use super::strength::{self, Simplified};
 use crate::ir::function::{Block, Function};
 use crate::ir::inst::{BlockId, Constant, Inst, InstKind, Operand, Terminator, ValueId};
@@ -36,19 +36,19 @@ pub fn run(function: &mut Function) -> bool {
 fn once(function: &mut Function, budget: &mut u32) -> bool {
     let places = loops::places(function);
     let mut found = loops::find(function, &places);
-    found.sort_by_key(|stretch| std::cmp::Reverse(stretch.last - stretch.first));
-    for stretch in found {
-        let Some(entrance) = loops::entrance(function, &places, stretch) else { continue };
-        let mut machine = Machine { function, entrance, values: BTreeMap::new() };
+    found.sort_by_key(|range| std::cmp::Reverse(range.last - range.first));
+    for range in found {
+        let Some(preheader) = loops::preheader(function, &places, range) else { continue };
+        let mut machine = Machine { function, preheader, values: BTreeMap::new() };
         let most = MOST.min(*budget);
         let mut steps = most;
-        let outside = machine.run(function.layout[stretch.first], &mut steps, |id| {
-            (stretch.first as u32..=stretch.last as u32).contains(&places[id])
+        let outside = machine.run(function.layout[range.first], &mut steps, |id| {
+            (range.first as u32..=range.last as u32).contains(&places[id])
         });
         *budget -= most - steps;
         if let Some(outside) = outside {
             let values = machine.values;
-            replace(function, stretch, outside, &values);
+            replace(function, range, outside, &values);
             return true;
         }
     }
@@ -58,11 +58,11 @@ fn once(function: &mut Function, budget: &mut u32) -> bool {
 /// A block with the last values takes the place of a loop.
 fn replace(
     function: &mut Function,
-    stretch: Stretch,
+    range: LoopRange,
     outside: BlockId,
     values: &BTreeMap<ValueId, Option<Constant>>,
 ) {
-    let header = function.layout[stretch.first];
+    let header = function.layout[range.first];
     let origin = function.blocks[header].origin;
     let known = values.iter().filter_map(|(dst, value)| Some((*dst, (*value)?)));
     let insts = known.map(|(dst, value)| Inst { kind: InstKind::Copy { dst, src: value.into() }, origin });
@@ -75,13 +75,13 @@ fn replace(
             }
         });
     }
-    function.layout.insert(stretch.first, block);
+    function.layout.insert(range.first, block);
 }
 
 /// Computes as the program would.
 struct Machine<'a> {
     function: &'a Function,
-    entrance: BlockId,
+    preheader: BlockId,
     /// The constants looked up or written so far; `None` where they are unknown.
     values: BTreeMap<ValueId, Option<Constant>>,
 }
@@ -170,7 +170,7 @@ impl Machine<'_> {
 
     /// The constant that a value holds at the start of the loop.
     fn first(&self, value: ValueId) -> Option<Constant> {
-        let mut id = self.entrance;
+        let mut id = self.preheader;
         for _ in 0..BEFORE {
             let insts = &self.function.blocks[id].insts;
             if let Some(inst) = insts.iter().rev().find(|inst| inst.kind.dst() == Some(value)) {

@@ -32,28 +32,28 @@ pub fn run(function: &mut Function) -> bool {
     if loops.is_empty() {
         return false;
     }
-    loops.sort_by_key(|stretch| stretch.last - stretch.first);
+    loops.sort_by_key(|range| range.last - range.first);
     loops.truncate(MAX_LOOPS);
     let mut worker = Worker::new(function, places);
     let mut is_changed = false;
     for index in 0..loops.len() {
-        let stretch = loops[index];
-        if worker.improve(stretch) {
+        let range = loops[index];
+        if worker.improve(range) {
             is_changed = true;
-            loops[index..].iter_mut().for_each(|other| other.make_room(stretch.first));
+            loops[index..].iter_mut().for_each(|other| other.make_room(range.first));
         }
     }
     is_changed
 }
 
-/// A segment of the layout.
+/// The positions of a loop in the layout.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stretch {
+pub(super) struct LoopRange {
     pub(super) first: usize,
     pub(super) last: usize,
 }
 
-impl Stretch {
+impl LoopRange {
     /// Follows the insertion of a block at `place`.
     fn make_room(&mut self, place: usize) {
         self.first += usize::from(self.first >= place);
@@ -70,41 +70,41 @@ pub(super) fn places(function: &Function) -> SecondaryMap<BlockId, u32> {
     places
 }
 
-/// The segments from each target of a backward jump to the last such jump.
-pub(super) fn find(function: &Function, places: &SecondaryMap<BlockId, u32>) -> Vec<Stretch> {
-    let mut loops: Vec<Stretch> = Vec::new();
+/// The ranges from each target of a backward jump to the last such jump.
+pub(super) fn find(function: &Function, places: &SecondaryMap<BlockId, u32>) -> Vec<LoopRange> {
+    let mut loops: Vec<LoopRange> = Vec::new();
     for (last, id) in function.layout.iter().enumerate() {
         for target in function.blocks[*id].terminator.targets() {
             let first = places[target] as usize;
             if first > last {
                 continue;
             }
-            match loops.iter_mut().find(|stretch| stretch.first == first) {
-                Some(stretch) => stretch.last = last,
-                None => loops.push(Stretch { first, last }),
+            match loops.iter_mut().find(|range| range.first == first) {
+                Some(range) => range.last = last,
+                None => loops.push(LoopRange { first, last }),
             }
         }
     }
     loops
 }
 
-/// The block that leads into a loop, if it is the only one and leads to its first block.
-pub(super) fn entrance(
+/// Returns the preheader of a loop: the only block that leads into it, if it leads to the first block.
+pub(super) fn preheader(
     function: &Function,
     places: &SecondaryMap<BlockId, u32>,
-    stretch: Stretch,
+    range: LoopRange,
 ) -> Option<BlockId> {
-    let header = function.layout[stretch.first];
-    let is_inside = |id: BlockId| (stretch.first as u32..=stretch.last as u32).contains(&places[id]);
-    let mut entrance = None;
+    let header = function.layout[range.first];
+    let is_inside = |id: BlockId| (range.first as u32..=range.last as u32).contains(&places[id]);
+    let mut preheader = None;
     for id in function.layout.iter().filter(|id| !is_inside(**id)) {
         for target in function.blocks[*id].terminator.targets().filter(|target| is_inside(*target)) {
-            if target != header || entrance.replace(*id).is_some() {
+            if target != header || preheader.replace(*id).is_some() {
                 return None;
             }
         }
     }
-    entrance
+    preheader
 }
 
 /// The state for a function, and for the current loop.
@@ -135,33 +135,33 @@ impl<'a> Worker<'a> {
     }
 
     /// Works on one loop; returns whether a block was put before it.
-    fn improve(&mut self, stretch: Stretch) -> bool {
-        if !self.has_one_entrance(stretch) {
+    fn improve(&mut self, range: LoopRange) -> bool {
+        if !self.has_one_entry(range) {
             return false;
         }
-        self.count_inside(stretch, |count| *count += 1);
-        self.hoist(stretch);
-        self.carry_sums(stretch);
-        self.count_inside(stretch, |count| *count = 0);
+        self.count_inside(range, |count| *count += 1);
+        self.hoist(range);
+        self.carry_sums(range);
+        self.count_inside(range, |count| *count = 0);
         let is_changed = !self.before.is_empty();
         if is_changed {
-            self.insert_before(stretch);
+            self.insert_before(range);
         }
         is_changed
     }
 
-    fn has_one_entrance(&self, stretch: Stretch) -> bool {
-        let inside = stretch.first as u32 + 1..=stretch.last as u32;
+    fn has_one_entry(&self, range: LoopRange) -> bool {
+        let inside = range.first as u32 + 1..=range.last as u32;
         let (before, behind) =
-            (&self.function.layout[..stretch.first], &self.function.layout[stretch.last + 1..]);
+            (&self.function.layout[..range.first], &self.function.layout[range.last + 1..]);
         (before.iter().chain(behind))
             .flat_map(|id| self.function.blocks[*id].terminator.targets())
             .all(|target| !inside.contains(&self.places[target]))
     }
 
     /// Hands the count of every value that the loop writes to `change`, once for each write.
-    fn count_inside(&mut self, stretch: Stretch, change: impl Fn(&mut u32)) {
-        for id in &self.function.layout[stretch.first..=stretch.last] {
+    fn count_inside(&mut self, range: LoopRange, change: impl Fn(&mut u32)) {
+        for id in &self.function.layout[range.first..=range.last] {
             for dst in self.function.blocks[*id].insts.iter().filter_map(|inst| inst.kind.dst()) {
                 change(&mut self.writes_inside[dst]);
             }
@@ -169,8 +169,8 @@ impl<'a> Worker<'a> {
     }
 
     /// Takes out what does not change.
-    fn hoist(&mut self, stretch: Stretch) {
-        for place in stretch.first..=stretch.last {
+    fn hoist(&mut self, range: LoopRange) {
+        for place in range.first..=range.last {
             let id = self.function.layout[place];
             let Function { blocks, values, .. } = &mut *self.function;
             let (writes, writes_inside) = (&self.writes, &mut self.writes_inside);
@@ -201,14 +201,14 @@ impl<'a> Worker<'a> {
     }
 
     /// Puts a block with what was taken out in front of the loop.
-    fn insert_before(&mut self, stretch: Stretch) {
+    fn insert_before(&mut self, range: LoopRange) {
         let insts = std::mem::take(&mut self.before);
         let function = &mut *self.function;
-        let header = function.layout[stretch.first];
+        let header = function.layout[range.first];
         let origin = function.blocks[header].origin;
         let block = function.blocks.push(Block { insts, terminator: Terminator::Jump(header), origin });
         for (place, id) in function.layout.iter().enumerate() {
-            if !(stretch.first..=stretch.last).contains(&place) {
+            if !(range.first..=range.last).contains(&place) {
                 function.blocks[*id].terminator.visit_targets(|target| {
                     if *target == header {
                         *target = block;
@@ -216,8 +216,8 @@ impl<'a> Worker<'a> {
                 });
             }
         }
-        function.layout.insert(stretch.first, block);
-        for (place, id) in function.layout.iter().enumerate().skip(stretch.first) {
+        function.layout.insert(range.first, block);
+        for (place, id) in function.layout.iter().enumerate().skip(range.first) {
             self.places[*id] = place as u32;
         }
     }

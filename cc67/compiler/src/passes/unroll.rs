@@ -8,25 +8,25 @@
 
 use cranelift_entity::SecondaryMap;
 
-use super::loops::{self, Stretch};
+use super::loops::{self, LoopRange};
 use crate::ir::function::{Block, Function, table};
 use crate::ir::inst::{ArgumentRange, BlockId, Inst, InstKind, Operand, Terminator, ValueId};
 use crate::ir::operators::{BinaryOp, CompareOp};
 
-/// The most iterations that are counted.
-const MOST_TURNS: u32 = 1 << 16;
-/// Instructions of a loop that disappears.
-const WHOLE: u32 = 120;
-/// Turns of it.
-const WHOLE_TURNS: u32 = 32;
+/// The largest trip count that is determined.
+const MAX_TRIP_COUNT: u32 = 1 << 16;
+/// The most instructions of a fully unrolled loop.
+const MAX_FULL_UNROLL_INSTS: u32 = 120;
+/// The largest trip count of a fully unrolled loop.
+const MAX_FULL_UNROLL_TRIPS: u32 = 32;
 /// The most instructions of a partly unrolled loop.
-const SEVERAL: u32 = 96;
+const MAX_PARTIAL_UNROLL_INSTS: u32 = 96;
 /// The most instructions of a partly unrolled loop of one block, whose iterations overlap anyway.
-const SEVERAL_OF_ONE: u32 = 40;
-/// Turns that it takes as one.
-const MOST_COPIES: u32 = 8;
+const MAX_PARTIAL_UNROLL_INSTS_OF_ONE_BLOCK: u32 = 40;
+/// The most iterations that become one.
+const MAX_UNROLL_FACTOR: u32 = 8;
 /// The largest function, in instructions, whose loops grow.
-const LARGEST: usize = 3000;
+const MAX_FUNCTION_INSTS: usize = 3000;
 
 /// Unrolls loops; returns whether anything changed.
 pub fn run(function: &mut Function) -> bool {
@@ -35,21 +35,21 @@ pub fn run(function: &mut Function) -> bool {
     let mut done: Vec<BlockId> = Vec::new();
     loop {
         let size: usize = function.layout.iter().map(|id| function.blocks[*id].insts.len() + 1).sum();
-        if size > LARGEST {
+        if size > MAX_FUNCTION_INSTS {
             return is_changed;
         }
         let places = loops::places(function);
         let mut found = loops::find(function, &places);
-        found.sort_by_key(|stretch| stretch.last - stretch.first);
-        let next = found.into_iter().find_map(|stretch| {
-            let header = function.layout[stretch.first];
+        found.sort_by_key(|range| range.last - range.first);
+        let next = found.into_iter().find_map(|range| {
+            let header = function.layout[range.first];
             let is_new = !done.contains(&header);
-            is_new.then(|| (stretch, header, plan(function, &places, stretch)))
+            is_new.then(|| (range, header, plan(function, &places, range)))
         });
-        let Some((stretch, header, plan)) = next else { return is_changed };
+        let Some((range, header, plan)) = next else { return is_changed };
         done.push(header);
         if let Some(plan) = plan {
-            Unroller::new(function, stretch).run(plan);
+            Unroller::new(function, range).run(plan);
             is_changed = true;
             if plan.is_whole {
                 // What is left may make an outer loop one block.
@@ -64,38 +64,39 @@ pub fn run(function: &mut Function) -> bool {
 /// The unrolling of a loop.
 #[derive(Clone, Copy, Debug)]
 struct Plan {
-    /// Turns in front of the loop, or all of them.
+    /// Iterations before the loop, or all of them.
     before: u32,
-    /// Turns that the loop takes as one.
+    /// Iterations of the old loop in one of the new loop.
     copies: u32,
     is_whole: bool,
 }
 
-fn plan(function: &Function, places: &SecondaryMap<BlockId, u32>, stretch: Stretch) -> Option<Plan> {
-    let turns = turns(function, places, stretch)?;
-    let blocks = &function.layout[stretch.first..=stretch.last];
+fn plan(function: &Function, places: &SecondaryMap<BlockId, u32>, range: LoopRange) -> Option<Plan> {
+    let trips = trip_count(function, places, range)?;
+    let blocks = &function.layout[range.first..=range.last];
     let insts = blocks.iter().map(|id| &function.blocks[*id].insts);
     let has_call = insts.clone().flatten().any(|inst| matches!(inst.kind, InstKind::Call { .. }));
     let size: u32 = insts.map(|insts| insts.len() as u32 + 1).sum();
-    if turns == 1 || turns <= WHOLE_TURNS && turns * size <= WHOLE && !has_call {
-        return Some(Plan { before: turns, copies: 0, is_whole: true });
+    if trips == 1 || trips <= MAX_FULL_UNROLL_TRIPS && trips * size <= MAX_FULL_UNROLL_INSTS && !has_call {
+        return Some(Plan { before: trips, copies: 0, is_whole: true });
     }
     // A call costs more than the jump back.
     if has_call {
         return None;
     }
-    let most = if blocks.len() == 1 { SEVERAL_OF_ONE } else { SEVERAL };
-    let fits = |copies: &u32| (copies + turns % copies) * size <= most && turns >= 2 * copies;
-    let copies = (2..=MOST_COPIES).rev().filter(fits);
+    let most =
+        if blocks.len() == 1 { MAX_PARTIAL_UNROLL_INSTS_OF_ONE_BLOCK } else { MAX_PARTIAL_UNROLL_INSTS };
+    let fits = |copies: &u32| (copies + trips % copies) * size <= most && trips >= 2 * copies;
+    let copies = (2..=MAX_UNROLL_FACTOR).rev().filter(fits);
     // One that leaves nothing over is better, unless it is much smaller.
-    let copies = copies.max_by_key(|copies| if turns % copies == 0 { 2 * copies } else { *copies })?;
-    Some(Plan { before: turns % copies, copies, is_whole: false })
+    let copies = copies.max_by_key(|copies| if trips % copies == 0 { 2 * copies } else { *copies })?;
+    Some(Plan { before: trips % copies, copies, is_whole: false })
 }
 
-/// Number of iterations of a loop, if it is known.
-fn turns(function: &Function, places: &SecondaryMap<BlockId, u32>, stretch: Stretch) -> Option<u32> {
-    let (header, latch) = (function.layout[stretch.first], function.layout[stretch.last]);
-    let entrance = entrance(function, places, stretch)?;
+/// Returns the trip count of a loop, if it is known.
+fn trip_count(function: &Function, places: &SecondaryMap<BlockId, u32>, range: LoopRange) -> Option<u32> {
+    let (header, latch) = (function.layout[range.first], function.layout[range.last]);
+    let preheader = preheader(function, places, range)?;
     let Terminator::Branch { condition: Operand::Value(condition), then, otherwise } =
         function.blocks[latch].terminator
     else {
@@ -107,7 +108,7 @@ fn turns(function: &Function, places: &SecondaryMap<BlockId, u32>, stretch: Stre
         (true, true) | (false, false) => return None,
     };
     let outside = if goes_on { otherwise } else { then };
-    if (stretch.first as u32..=stretch.last as u32).contains(&places[outside]) {
+    if (range.first as u32..=range.last as u32).contains(&places[outside]) {
         return None;
     }
     let insts = &function.blocks[latch].insts;
@@ -119,7 +120,7 @@ fn turns(function: &Function, places: &SecondaryMap<BlockId, u32>, stretch: Stre
     let writes = |id: &BlockId| {
         function.blocks[*id].insts.iter().filter(|inst| inst.kind.dst() == Some(counter)).count()
     };
-    let inside = &function.layout[stretch.first..=stretch.last];
+    let inside = &function.layout[range.first..=range.last];
     if inside.iter().map(writes).sum::<usize>() != 1 || function.params.contains(&counter) {
         return None;
     }
@@ -131,27 +132,27 @@ fn turns(function: &Function, places: &SecondaryMap<BlockId, u32>, stretch: Stre
         }
         (op == BinaryOp::Subtract).then(|| step.wrapping_neg())
     })?;
-    let before = &function.blocks[entrance];
+    let before = &function.blocks[preheader];
     if !matches!(before.terminator, Terminator::Jump(_)) {
         return None;
     }
     let start = before.insts.iter().rev().find(|inst| inst.kind.dst() == Some(counter))?;
     let InstKind::Copy { src, .. } = start.kind else { return None };
     let mut value = src.as_int()?;
-    for turn in 1..=MOST_TURNS {
+    for trips in 1..=MAX_TRIP_COUNT {
         value = value.wrapping_add(step);
         if holds(op, value, limit) != goes_on {
-            return Some(turn);
+            return Some(trips);
         }
     }
     None
 }
 
 /// The preheader of a loop, if the loop has one, and its last block is the only latch and exit.
-fn entrance(function: &Function, places: &SecondaryMap<BlockId, u32>, stretch: Stretch) -> Option<BlockId> {
-    let (header, latch) = (function.layout[stretch.first], function.layout[stretch.last]);
-    let is_inside = |id: BlockId| (stretch.first as u32..=stretch.last as u32).contains(&places[id]);
-    for id in &function.layout[stretch.first..stretch.last] {
+fn preheader(function: &Function, places: &SecondaryMap<BlockId, u32>, range: LoopRange) -> Option<BlockId> {
+    let (header, latch) = (function.layout[range.first], function.layout[range.last]);
+    let is_inside = |id: BlockId| (range.first as u32..=range.last as u32).contains(&places[id]);
+    for id in &function.layout[range.first..range.last] {
         let terminator = &function.blocks[*id].terminator;
         let leaves = matches!(terminator, Terminator::Return(_) | Terminator::Unreachable)
             || terminator.targets().any(|target| target == header || !is_inside(target));
@@ -159,7 +160,7 @@ fn entrance(function: &Function, places: &SecondaryMap<BlockId, u32>, stretch: S
             return None;
         }
     }
-    loops::entrance(function, places, stretch)
+    loops::preheader(function, places, range)
 }
 
 const fn holds(op: CompareOp, a: i32, b: i32) -> bool {
@@ -175,7 +176,7 @@ const fn holds(op: CompareOp, a: i32, b: i32) -> bool {
 
 struct Unroller<'a> {
     function: &'a mut Function,
-    stretch: Stretch,
+    range: LoopRange,
     /// The present name of each value that an iteration writes.
     names: SecondaryMap<ValueId, Option<ValueId>>,
     /// The block alone that mentions a value, which it writes first.
@@ -183,15 +184,15 @@ struct Unroller<'a> {
 }
 
 impl<'a> Unroller<'a> {
-    fn new(function: &'a mut Function, stretch: Stretch) -> Self {
+    fn new(function: &'a mut Function, range: LoopRange) -> Self {
         let mut names = SecondaryMap::new();
         names.resize(function.values.len());
         let own = own(function);
-        Self { function, stretch, names, own }
+        Self { function, range, names, own }
     }
 
     fn run(mut self, plan: Plan) {
-        let blocks: Vec<BlockId> = self.function.layout[self.stretch.first..=self.stretch.last].to_vec();
+        let blocks: Vec<BlockId> = self.function.layout[self.range.first..=self.range.last].to_vec();
         let (header, latch) = (blocks[0], blocks[blocks.len() - 1]);
         let outside = self.function.blocks[latch].terminator.targets().find(|target| *target != header);
         let Some(outside) = outside else { return };
@@ -200,9 +201,9 @@ impl<'a> Unroller<'a> {
             self.one_block(plan, blocks[0], outside);
             return;
         }
-        // The last turn is in the old blocks; the others are in new ones in front of them.
+        // The last iteration is in the old blocks; the others are in new ones in front of them.
         let mut layout = Vec::new();
-        let mut turns: Vec<Vec<BlockId>> = Vec::new();
+        let mut iterations: Vec<Vec<BlockId>> = Vec::new();
         let count = if plan.is_whole { plan.before } else { plan.before + plan.copies };
         for _ in 1..count {
             let copies: Vec<BlockId> = bodies
@@ -214,12 +215,12 @@ impl<'a> Unroller<'a> {
                 })
                 .collect();
             layout.extend(&copies);
-            turns.push(copies);
+            iterations.push(copies);
         }
-        turns.push(blocks.clone());
-        let back = turns[if plan.is_whole { 0 } else { plan.before as usize }][0];
-        for (turn, ids) in turns.iter().enumerate() {
-            let is_last = turn + 1 == turns.len();
+        iterations.push(blocks.clone());
+        let back = iterations[if plan.is_whole { 0 } else { plan.before as usize }][0];
+        for (iteration, ids) in iterations.iter().enumerate() {
+            let is_last = iteration + 1 == iterations.len();
             for (index, body) in bodies.iter().enumerate() {
                 let mut body = body.clone();
                 if !is_last {
@@ -231,7 +232,7 @@ impl<'a> Unroller<'a> {
                     }
                 });
                 if index + 1 == bodies.len() {
-                    body.terminator = match turns.get(turn + 1) {
+                    body.terminator = match iterations.get(iteration + 1) {
                         Some(next) => Terminator::Jump(next[0]),
                         None if plan.is_whole => Terminator::Jump(outside),
                         None => back_to(body.terminator, outside, back),
@@ -240,14 +241,14 @@ impl<'a> Unroller<'a> {
                 self.function.blocks[ids[index]] = body;
             }
         }
-        self.enter(header, turns[0][0]);
-        self.function.layout.splice(self.stretch.first..self.stretch.first, layout);
+        self.enter(header, iterations[0][0]);
+        self.function.layout.splice(self.range.first..self.range.first, layout);
     }
 
     /// Redirects jumps from outside to the first iteration.
     fn enter(&mut self, header: BlockId, first: BlockId) {
-        let before = &self.function.layout[..self.stretch.first];
-        let after = &self.function.layout[self.stretch.last + 1..];
+        let before = &self.function.layout[..self.range.first];
+        let after = &self.function.layout[self.range.last + 1..];
         for id in before.iter().chain(after) {
             self.function.blocks[*id].terminator.visit_targets(|target| {
                 if *target == header {
@@ -260,30 +261,30 @@ impl<'a> Unroller<'a> {
     /// A loop of one block.
     fn one_block(&mut self, plan: Plan, id: BlockId, outside: BlockId) {
         let body = self.function.blocks[id].clone();
-        let turns = |worker: &mut Self, count: u32| {
+        let iterations = |worker: &mut Self, count: u32| {
             let mut insts = Vec::with_capacity(body.insts.len() * count as usize);
-            for turn in 1..=count {
-                worker.turn(&body.insts, turn == count, &mut insts);
+            for iteration in 1..=count {
+                worker.iteration(&body.insts, iteration == count, &mut insts);
             }
             insts
         };
-        let before = turns(self, plan.before);
+        let before = iterations(self, plan.before);
         let origin = body.origin;
         if plan.is_whole {
             self.function.blocks[id] = Block { insts: before, terminator: Terminator::Jump(outside), origin };
             return;
         }
-        self.function.blocks[id].insts = turns(self, plan.copies);
+        self.function.blocks[id].insts = iterations(self, plan.copies);
         if plan.before > 0 {
             let block = Block { insts: before, terminator: Terminator::Jump(id), origin };
             let block = self.function.blocks.push(block);
             self.enter(id, block);
-            self.function.layout.insert(self.stretch.first, block);
+            self.function.layout.insert(self.range.first, block);
         }
     }
 
     /// Copies an iteration of a loop of one block; the last writes of the last iteration keep their old names.
-    fn turn(&mut self, body: &[Inst], is_last: bool, out: &mut Vec<Inst>) {
+    fn iteration(&mut self, body: &[Inst], is_last: bool, out: &mut Vec<Inst>) {
         for (index, inst) in body.iter().enumerate() {
             let mut inst = *inst;
             self.rename_reads(&mut inst);

@@ -378,7 +378,7 @@ impl Sema<'_> {
         }
         let depth = stack.len();
         let mut kept = None;
-        for turn in 0..times {
+        for iteration in 0..times {
             self.check_leaves(leaves)?;
             match &item.initializer {
                 Initializer::List { items, span } => {
@@ -393,7 +393,7 @@ impl Sema<'_> {
             }
             if times > 1 {
                 stack.truncate(depth);
-                kept = self.evaluate_once(leaves.last_mut(), kept, turn == 0);
+                kept = self.evaluate_once(leaves.last_mut(), kept, iteration == 0);
             }
         }
         Some(())

@@ -1,6 +1,6 @@
 //! Backwards: the past is executed again from a snapshot, and the last stop before the present is the one.
 //!
-//! What is searched is the stretch from one snapshot to the next, the latest first. Stops are counted on a first way;
+//! What is searched is the interval from one snapshot to the next, the latest first. Stops are counted on a first pass;
 //! on a second one the session goes to the one that is needed. Steps have more stops than can be kept, so only the last ticks are
 //! searched at first, then more.
 
@@ -202,7 +202,7 @@ impl<T: Target> Debugger<T> {
         }
     }
 
-    /// Searches one stretch of the past; the session is where it was found then.
+    /// Searches one interval of the past; the session is where it was found then.
     fn search(&mut self, place: u64, begin: &Position, bound: &Position, wanted: &Wanted) -> Option<Reason> {
         let mut window = if wanted.is_stop() { u64::MAX } else { WINDOW };
         loop {
@@ -219,7 +219,7 @@ impl<T: Target> Debugger<T> {
         }
     }
 
-    /// Executes a stretch again, held from the end of tick `from` on; to the hold of a number, or else to its end.
+    /// Executes an interval again, held from the end of tick `from` on; to the hold of a number, or else to its end.
     fn way(
         &mut self,
         place: u64,

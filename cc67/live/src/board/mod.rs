@@ -51,7 +51,7 @@ use turns::Turns;
 /// The interval at which the board is run up to the clock.
 const BEAT: Duration = Duration::from_millis(8);
 /// The time for which it may run in one interval, so that it still responds when it cannot keep up.
-const STRETCH: Duration = Duration::from_millis(25);
+const MAX_RUN: Duration = Duration::from_millis(25);
 /// Ticks between two looks at how long it has run.
 const TICKS_AT_ONCE: u64 = 500;
 /// Requests in one beat.
@@ -427,7 +427,7 @@ impl<T: Target> ViewState<T> {
         let begin = now();
         let due = self.clock.due(session.tick());
         let due = limit.map_or(due, |limit| due.min(limit));
-        while session.tick() < due && begin.elapsed() < STRETCH {
+        while session.tick() < due && begin.elapsed() < MAX_RUN {
             self.run_to(session, due.min(Ticks::new(session.tick().get() + TICKS_AT_ONCE)));
         }
     }

@@ -99,7 +99,7 @@ pub(crate) fn line(
     timing: &Timing,
 ) -> Result<(), Message> {
     let letters = [0, 1, 2, 3, 4, 5, 6, 7];
-    let Some(entry) = stretch(memory, TrajectoryMode::Linear, letters, timing) else { return Ok(()) };
+    let Some(entry) = begin_segment(memory, TrajectoryMode::Linear, letters, timing) else { return Ok(()) };
     let has_y = system::letters(memory)[1].is_some();
     let coefficients = [ParametricCoeff::COORD_X, ParametricCoeff::COORD_Y];
     for (coefficients, letter) in coefficients.into_iter().zip(0..).take(if has_y { 2 } else { 1 }) {
@@ -123,7 +123,7 @@ pub(crate) fn arc(
 ) -> Result<(), Message> {
     let [cosine, sine, rest] = circle.plane.letters();
     let letters = [cosine, sine, rest, 3, 4, 5, 6, 7];
-    let Some(entry) = stretch(memory, TrajectoryMode::Circular, letters, timing) else { return Ok(()) };
+    let Some(entry) = begin_segment(memory, TrajectoryMode::Circular, letters, timing) else { return Ok(()) };
     let turn = f64::from(circle.turn);
     let [cosine_angle, sine_angle] = [circle.angle + FRAC_PI_2, circle.angle].map(f64::from);
     let [radius_x, radius_y] = circle.radii.map(f64::from);
@@ -148,8 +148,8 @@ pub(crate) fn command(memory: &mut GuestMemory, command: Command) -> Result<(), 
     buffer::advance(memory)
 }
 
-/// Begins the next entry with its timing and the axes of its slots; a stretch without duration is left out.
-fn stretch(
+/// Begins the next entry with its timing and the axes of its slots; a segment without duration is left out.
+fn begin_segment(
     memory: &mut GuestMemory,
     mode: TrajectoryMode,
     letters: [usize; LETTERS],

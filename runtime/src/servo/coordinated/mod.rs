@@ -3,7 +3,7 @@
 //! A path is a list of [`segment`]s in guest memory, put there by the PC or by the program itself. Every tick the path
 //! time advances by the time base, whose ratio to a tick's length is the feed override; the segment at that time says
 //! where each axis is. All of this is in guest memory and live: a program may build the list and start it with nothing
-//! but assignments. Only the last stretch of a smoothed path is kept here.
+//! but assignments. Only the last segment of a smoothed path is kept here.
 //!
 //! Source: `coordinated-motion.md`; where it differs from the recorded runs (`coord.jsonl`), the runs win.
 
@@ -34,6 +34,6 @@ pub(crate) trait Bits {
 /// The state of coordinated motion from tick to tick, besides guest memory.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Coordinated {
-    /// The last stretch of a smoothed path, while it lasts.
+    /// The last segment of a smoothed path, while it lasts.
     spline: Option<smoothing::Spline>,
 }

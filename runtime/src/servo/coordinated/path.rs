@@ -21,7 +21,7 @@ const HELD_SHORT: f64 = 1e-6;
 /// The position on the path after its commands have been executed.
 #[derive(Clone, Copy, Debug)]
 enum Halt {
-    /// In a stretch.
+    /// In a segment.
     Segment(Entry),
     /// At a command that waits.
     Wait(Entry),
@@ -85,7 +85,7 @@ impl Coordinated {
         }
     }
 
-    /// One tick of the last stretch, if there is one; after it the path is done.
+    /// One tick of the last segment, if there is one; after it the path is done.
     fn follow_spline(&mut self, memory: &mut GuestMemory) {
         self.spline.take_if(|spline| !spline.step(memory));
         if self.spline.is_none() {
@@ -129,7 +129,7 @@ fn is_held_open(memory: &GuestMemory) -> bool {
     memory.get(CS0_HOLD_AT_END) != 0
 }
 
-/// Rests at a command or at a held end. Only backwards does the path time continue, into the stretch before. A path that
+/// Rests at a command or at a held end. Only backwards does the path time continue, into the segment before. A path that
 /// has not moved yet keeps its time base.
 fn wait(memory: &mut GuestMemory, entry: Entry) {
     memory.set(COORD_SYSTEM0, entry.address());
@@ -163,7 +163,7 @@ fn pass_commands(memory: &mut GuestMemory, bits: &mut impl Bits, mut entry: Entr
     Halt::Wait(entry)
 }
 
-/// Enters the stretches that the path time has reached, with the commands between them.
+/// Enters the segments that the path time has reached, with the commands between them.
 fn go_on(memory: &mut GuestMemory, bits: &mut impl Bits, mut entry: Entry) -> Halt {
     for _ in 0..MAX_SEGMENTS {
         let (t, duration) = (memory.get(CS0_T), entry.duration(memory));
@@ -187,7 +187,7 @@ fn go_on(memory: &mut GuestMemory, bits: &mut impl Bits, mut entry: Entry) -> Ha
     Halt::Segment(entry)
 }
 
-/// Goes back over the stretches that the path time has left. The axes stop abruptly at the beginning of the first one,
+/// Goes back over the segments that the path time has left. The axes stop abruptly at the beginning of the first one,
 /// where the time base stays what it is.
 fn go_back(memory: &mut GuestMemory, mut entry: Entry) -> Entry {
     for _ in 0..MAX_SEGMENTS {
@@ -207,7 +207,7 @@ fn go_back(memory: &mut GuestMemory, mut entry: Entry) -> Entry {
     entry
 }
 
-/// The stretch before an entry. Of the commands between them only rapids are undone.
+/// The segment before an entry. Of the commands between them only rapids are undone.
 fn stretch_before(memory: &mut GuestMemory, mut entry: Entry) -> Option<Entry> {
     let mut rapid = None;
     for _ in 0..MAX_SEGMENTS {
@@ -227,7 +227,7 @@ fn stretch_before(memory: &mut GuestMemory, mut entry: Entry) -> Option<Entry> {
     None
 }
 
-/// Puts the axes of a stretch where they are at the path time; any other entry moves none.
+/// Puts the axes of a segment where they are at the path time; any other entry moves none.
 fn evaluate(memory: &mut GuestMemory, entry: Entry) {
     memory.set(COORD_SYSTEM0, entry.address());
     for (axis, position) in entry.positions(memory, memory.get(CS0_T)).into_iter().flatten() {

@@ -32,13 +32,13 @@ const ARC_LETTERS: [(Field<u8>, Field<TripCircleLinear>); 2] = [
 pub(crate) enum Kind {
     /// The end of the path; so is any mode without a meaning.
     Off,
-    /// A stretch of the path.
+    /// A segment of the path.
     Segment(Shape),
     /// A command that takes no path time.
     Command(Command),
 }
 
-/// The form of a stretch.
+/// The form of a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shape {
     /// Every letter is linear in the parameter.
@@ -121,7 +121,7 @@ impl Entry {
         memory.set(self.field(ParametricCoeff::TRAJECTORY_MODE), TrajectoryMode::Off.get() as i8);
     }
 
-    /// Seconds of path time it takes; none unless it is a stretch.
+    /// Seconds of path time it takes; none unless it is a segment.
     pub(crate) fn duration(self, memory: &GuestMemory) -> f64 {
         match self.kind(memory) {
             Kind::Segment(_) => memory.get(self.field(ParametricCoeff::T)),

@@ -48,8 +48,8 @@ fn stopping_everywhere_does_not_change_a_run() {
         }
     }
     let (_, seen) = run(&[SUB], 40);
-    let turns: Vec<_> = seen.iter().map(|(_, count)| *count).collect();
-    assert_eq!(turns, [1, 2, 3, 4, 5], "before the packet, once a turn");
+    let counts: Vec<_> = seen.iter().map(|(_, count)| *count).collect();
+    assert_eq!(counts, [1, 2, 3, 4, 5], "before the packet, once an iteration");
     assert!(seen.iter().all(|(pc, _)| *pc == SUB));
 }
 

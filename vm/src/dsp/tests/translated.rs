@@ -232,7 +232,7 @@ fn a_translated_loop_can_be_left_before_any_packet() {
         let looped = check_borders(&INTEGER, &regs, &[step]);
         assert!(looped > 4_000, "{looped}");
     }
-    // Software-pipelined: products of doubles, results on their way to the same registers from two turns.
+    // Software-pipelined: products of doubles, results on their way to the same registers from two iterations.
     let regs = [(Reg::a(4), 0x8007_0000), (Reg::b(4), 0x8007_0008), (Reg::a(6), 1000)];
     for step in 70..80 {
         let looped = check_borders(&DOUBLE, &regs, &[step, 2 * step]);
@@ -259,7 +259,7 @@ fn a_fault_in_a_loop_keeps_the_results_in_flight() {
 
 #[test]
 fn repeatedly_overwritten_code_runs_the_same() {
-    // Each turn stores one of two constants over the MVK after it.
+    // Each iteration stores one of two constants over the MVK after it.
     let text = "ADDK .S2 -1,B0\nXOR .L1 A6,A7,A6\nSTW .D1T1 A6,*A5\nNOP 5\nMVK .S1 1,A8\nADD .L1 A8,A9,A9\n\
                 [B0] B .S2 B31\nNOP 5\nB .S2 B3\nNOP 5\n";
     let words = words(text);

@@ -16,8 +16,8 @@ use crate::text::assemble;
 use crate::thread::Threads;
 use crate::verify::verify;
 
-/// Turns of the loop that has every handler once.
-const TURNS: u32 = 20_000;
+/// Iterations of the loop that has every handler once.
+const ITERATIONS: u32 = 20_000;
 
 /// The host's stack, in bytes: too small for a frame an iteration.
 const HOST_STACK: usize = 0x4_0000;
@@ -144,8 +144,8 @@ fn everything() -> String {
     let calls = [("i32", "r0"), ("i64", "l4"), ("f32", "f8"), ("f64", "d12")];
     let calls: String = calls.iter().map(|(class, register)| call(class, register)).collect();
     format!(
-        "{HEAD}@main: func sig0, 16, 2\ntypes 0xffaa5500\ncharge 9\nconst_i32 r3, {TURNS}\n@turn: {pieces}{calls}{MORE}\
-         call fn@nothing\ncharge 2000\nadd_i32_imm r3, r3, -1\nbr_if r3, @turn\ncharge 9\nret\n"
+        "{HEAD}@main: func sig0, 16, 2\ntypes 0xffaa5500\ncharge 9\nconst_i32 r3, {ITERATIONS}\n@iteration: {pieces}{calls}{MORE}\
+         call fn@nothing\ncharge 2000\nadd_i32_imm r3, r3, -1\nbr_if r3, @iteration\ncharge 9\nret\n"
     )
 }
 
@@ -159,7 +159,7 @@ fn run_everything() -> Stop {
     let (mut engine, mut firmware) = (BytecodeEngine::default(), Fake::new());
     let started = engine.start(id, &program, entry, id.stack(false), &firmware);
     assert_eq!(started, Ok(()));
-    let length = Cycles::new(i64::from(TURNS) * 2_000_000);
+    let length = Cycles::new(i64::from(ITERATIONS) * 2_000_000);
     let mut slice = Slice {
         memory: &mut GuestMemory::new(),
         threads: &mut Threads::new(),

@@ -5,10 +5,10 @@ use crate::engine::Stop;
 use crate::trap::TrapKind;
 
 /// A loop that executes `body` with an address in `r0` and the iterations left in `r1`; `r2`, `r3` and `d4` are free.
-fn walk(from: u32, step: i32, turns: u32, body: &str) -> String {
+fn walk(from: u32, step: i32, iterations: u32, body: &str) -> String {
     let from = from.cast_signed();
     format!(
-        "@main: func sig0, 5, 0\ntypes 0x300\ncharge 9\nconst_i32 r0, {from}\nconst_i32 r1, {turns}\n\
+        "@main: func sig0, 5, 0\ntypes 0x300\ncharge 9\nconst_i32 r0, {from}\nconst_i32 r1, {iterations}\n\
          @up: charge 50\n{body}\nadd_i32_imm r0, r0, {step}\nadd_i32_imm r1, r1, -1\nbr_if r1, @up\n\
          charge 9\nstore_i32_at r2, 0x10000000\nret"
     )
@@ -17,7 +17,7 @@ fn walk(from: u32, step: i32, turns: u32, body: &str) -> String {
 /// Runs `functions` on both engines in one slice, and in many.
 fn stop_of(functions: &str) -> Stop {
     let all_at_once = lockstep(functions, &[1_000_000]);
-    // Slices that end in the middle of the turns that run at once, in front of them and behind them.
+    // Slices that end in the middle of the iterations that run at once, in front of them and behind them.
     let budgets: Vec<i64> = (0..400).map(|slice| 1 + slice % 29 * 17).collect();
     assert_eq!(lockstep(functions, &budgets), all_at_once, "{functions}");
     all_at_once
@@ -47,8 +47,8 @@ fn memory_is_read_and_written_in_every_region() {
 
 #[test]
 fn the_end_of_memory_traps_in_the_iteration_that_reaches_it() {
-    for turns in 0..5 {
-        let from = 0x8100_0000 - 4 * turns;
+    for iterations in 0..5 {
+        let from = 0x8100_0000 - 4 * iterations;
         let load = trap_of(&walk(from, 4, 20, "load_i32 r2, r0, +0"));
         assert!(matches!(load, TrapKind::Unmapped { addr, .. } if addr.get() == 0x8100_0000), "{load}");
         let both = trap_of(&walk(from, 4, 20, "store_i32 r1, r0, +0\nload_i32 r2, r0, +4"));
@@ -58,10 +58,10 @@ fn the_end_of_memory_traps_in_the_iteration_that_reaches_it() {
 
 #[test]
 fn program_text_is_protected_in_every_iteration() {
-    for turns in 0..5 {
-        let up = walk(0x8005_0000 - 4 * turns, 4, 20, "store_i32 r1, r0, +0");
+    for iterations in 0..5 {
+        let up = walk(0x8005_0000 - 4 * iterations, 4, 20, "store_i32 r1, r0, +0");
         assert!(matches!(trap_of(&up), TrapKind::WriteProtected { .. }));
-        let down = walk(0x8005_0200 + 4 * turns, -4, 200, "load_i32 r3, r0, +0\nstore_i32 r3, r0, +0");
+        let down = walk(0x8005_0200 + 4 * iterations, -4, 200, "load_i32 r3, r0, +0\nstore_i32 r3, r0, +0");
         assert!(matches!(trap_of(&down), TrapKind::WriteProtected { .. }));
         let constant = "load_i32 r3, r0, +0\nstore_i32_at r3, 0x80050008";
         assert!(matches!(trap_of(&walk(0x8010_0000, 4, 9, constant)), TrapKind::WriteProtected { .. }));
@@ -116,9 +116,9 @@ fn iterations_cost_what_their_path_costs() {
 
 #[test]
 fn a_loop_may_be_entered_at_its_condition() {
-    for turns in [0, 1, 3, 4, 9] {
+    for iterations in [0, 1, 3, 4, 9] {
         let functions = format!(
-            "@main: func sig0, 4, 0\ntypes 0\ncharge 9\nconst_i32 r0, 0x10000100\nconst_i32 r1, {turns}\nbr @test\n\
+            "@main: func sig0, 4, 0\ntypes 0\ncharge 9\nconst_i32 r0, 0x10000100\nconst_i32 r1, {iterations}\nbr @test\n\
              @up: charge 20\nload_i32 r2, r0, +0\nadd_i32 r2, r2, r1\nstore_i32 r2, r0, +4\nadd_i32_imm r0, r0, 4\n\
              add_i32_imm r1, r1, -1\n@test: charge 7\nbr_unless r1, @end\ncharge 7\nload_i32 r3, r0, +0\n\
              lt_i32_s r3, r3, r0\nbr_if r3, @up\n@end: charge 9\nret"

@@ -105,13 +105,13 @@ fn without_arguments(program: &Program, words: Range<usize>) -> usize {
 }
 
 /// The segments of a block, between charges, calls and branches, that make several accesses.
-pub(super) fn straight_stretches(
+pub(super) fn straight_segments(
     program: &Program,
     function: &Function,
     begins: &BTreeSet<usize>,
     cost: &dyn Fn(&Op) -> Option<u32>,
 ) -> Vec<RangeInclusive<usize>> {
-    let mut stretches = Vec::new();
+    let mut segments = Vec::new();
     let (mut first, mut last, mut accesses) = (function.body.start, 0, 0);
     for at in function.body.clone() {
         let op = program.ops()[at];
@@ -119,7 +119,7 @@ pub(super) fn straight_stretches(
         if ends || begins.contains(&at) {
             // What follows the last access is not translated twice.
             if accesses > 1 {
-                stretches.push(first..=last);
+                segments.push(first..=last);
             }
             (first, accesses) = (at + usize::from(ends), 0);
         }
@@ -127,7 +127,7 @@ pub(super) fn straight_stretches(
             (last, accesses) = (at, accesses + 1);
         }
     }
-    stretches
+    segments
 }
 
 /// Reports whether an instruction passes an argument to the call after it.

@@ -1,6 +1,6 @@
 //! Several iterations of a loop at once: the budget is tested at their start, addresses at their first use.
 //!
-//! [`turns`](super::turns) selects the loops and collects the facts that hold in them. Here their words are translated
+//! [`unroll`](super::unroll) selects the loops and collects the facts that hold in them. Here their words are translated
 //! once for each iteration, by the same methods as elsewhere; the few methods that differ test [`Translator::fast`].
 //! After the fast iterations comes the ordinary loop, for the cases that they cannot handle and for the last iterations
 //! of a slice.
@@ -16,21 +16,21 @@ use super::super::state::{State, Window};
 use super::Translator;
 use super::accesses::Root;
 use super::strides::Stride;
-use super::turns::{Group, Plan, TurnWord};
+use super::unroll::{Group, IterationWord, Plan};
 use crate::kind::Width;
 use crate::operand::RegI32;
 
 /// The state of translating fast iterations.
 pub(super) struct Fast {
     plan: Plan,
-    turn: usize,
+    iteration: usize,
     /// Cycles that have been charged but not taken from the budget.
     spent: u32,
     /// The roots that have been checked, with the address in the host of the first byte of their group.
     checked: BTreeMap<Root, Value>,
     /// The checked pointers on every path to a block that has been translated.
-    arriving: BTreeMap<TurnWord, BTreeMap<Root, Value>>,
-    blocks: BTreeMap<TurnWord, Block>,
+    arriving: BTreeMap<IterationWord, BTreeMap<Root, Value>>,
+    blocks: BTreeMap<IterationWord, Block>,
     /// The words at which the loop as it is takes over.
     bails: BTreeMap<usize, Block>,
 }
@@ -45,8 +45,8 @@ pub(super) struct BudgetEdge {
 
 impl Translator<'_, '_> {
     /// Translates a loop or a straight segment; its first block has been entered.
-    pub(super) fn turns(&mut self, plan: Plan) {
-        let (words, order, turns) = (plan.words.clone(), plan.order.clone(), plan.turns);
+    pub(super) fn fast_iterations(&mut self, plan: Plan) {
+        let (words, order, iterations) = (plan.words.clone(), plan.order.clone(), plan.iterations);
         let entry = plan.entry();
         let (fast, ordinary) = (self.builder.create_block(), self.builder.create_block());
         let is_tested = plan.cost > 0;
@@ -60,12 +60,12 @@ impl Translator<'_, '_> {
         }
         self.reachable = false;
         self.unroll.fast = Some(self.fast_blocks(plan, fast));
-        for turn in 0..turns.max(1) {
+        for iteration in 0..iterations.max(1) {
             for at in &order {
-                self.fast_word(turn, *at);
+                self.fast_word(iteration, *at);
             }
         }
-        if turns > 0 && self.reachable {
+        if iterations > 0 && self.reachable {
             self.go_to(entry);
         }
         if self.reachable {
@@ -100,12 +100,12 @@ impl Translator<'_, '_> {
     }
 
     fn fast_blocks(&mut self, plan: Plan, first: Block) -> Fast {
-        let mut blocks: BTreeMap<TurnWord, Block> =
+        let mut blocks: BTreeMap<IterationWord, Block> =
             plan.entries.keys().map(|place| (*place, self.builder.create_block())).collect();
         blocks.insert((0, plan.entry()), first);
         Fast {
             plan,
-            turn: 0,
+            iteration: 0,
             spent: 0,
             checked: BTreeMap::new(),
             arriving: BTreeMap::new(),
@@ -115,17 +115,17 @@ impl Translator<'_, '_> {
     }
 
     /// Translates one word of one iteration.
-    fn fast_word(&mut self, turn: usize, at: usize) {
+    fn fast_word(&mut self, iteration: usize, at: usize) {
         let Some(fast) = &mut self.unroll.fast else { return };
-        if let Some(block) = fast.blocks.get(&(turn, at)).copied() {
+        if let Some(block) = fast.blocks.get(&(iteration, at)).copied() {
             if self.reachable {
                 self.go_to(at);
             }
             self.begin(block);
             if let Some(fast) = &mut self.unroll.fast {
-                fast.spent = fast.plan.entries.get(&(turn, at)).copied().unwrap_or(0);
-                fast.checked = fast.arriving.remove(&(turn, at)).unwrap_or_default();
-                fast.turn = turn;
+                fast.spent = fast.plan.entries.get(&(iteration, at)).copied().unwrap_or(0);
+                fast.checked = fast.arriving.remove(&(iteration, at)).unwrap_or_default();
+                fast.iteration = iteration;
             }
         }
         self.word(at);
@@ -155,7 +155,7 @@ impl Translator<'_, '_> {
     /// The block to branch to in order to get to the word `to`; [`finish_edges`](Self::finish_edges) must follow.
     pub(super) fn edge(&mut self, to: usize) -> Block {
         let Some(fast) = &mut self.unroll.fast else { return self.block_of(to) };
-        let (block, kept, is_rare) = match fast.plan.target(fast.turn, to) {
+        let (block, kept, is_rare) = match fast.plan.target(fast.iteration, to) {
             Some(place) => {
                 let checked = &fast.checked;
                 let same = |root: &Root, value: &mut Value| checked.get(root) == Some(value);
@@ -217,7 +217,7 @@ impl Translator<'_, '_> {
         is_store: bool,
     ) -> Option<(Value, i32)> {
         let fast = self.unroll.fast.as_ref()?;
-        let access = *fast.plan.accesses.get(&(fast.turn, self.at))?;
+        let access = *fast.plan.accesses.get(&(fast.iteration, self.at))?;
         let shared = fast.plan.groups.get(&access.root).copied();
         let shared = shared.filter(|group| group.covers(access.at, width, is_store));
         if let (Some(group), Some(pointer)) = (shared, fast.checked.get(&access.root)) {

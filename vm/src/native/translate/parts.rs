@@ -7,7 +7,7 @@ use cranelift_frontend::Variable;
 
 use super::fast::{BudgetEdge, Fast};
 use super::shortcut::{Attempt, ShortcutWords};
-use super::turns::Plan;
+use super::unroll::Plan;
 use crate::polling::PollingLoop;
 
 /// The variables that hold the registers of the program.

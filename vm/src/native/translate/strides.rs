@@ -41,13 +41,13 @@ impl Strides {
     }
 }
 
-/// The root that each element of `turns`, as sorted sums, has in addition to the previous one; `None` if they are not
+/// The root that each element of `iterations`, as sorted sums, has in addition to the previous one; `None` if they are not
 /// such a series.
-pub(super) fn common_step(turns: &[Vec<Root>]) -> Option<Root> {
-    let (first, second) = (turns.first()?, turns.get(1)?);
+pub(super) fn common_step(iterations: &[Vec<Root>]) -> Option<Root> {
+    let (first, second) = (iterations.first()?, iterations.get(1)?);
     let step = *second.iter().find(|root| count(second, **root) > count(first, **root))?;
     let mut expected = first.clone();
-    let is_row = turns.iter().all(|terms| {
+    let is_row = iterations.iter().all(|terms| {
         let is_next = *terms == expected;
         expected.push(step);
         expected.sort_unstable();

@@ -142,7 +142,7 @@ impl Selector<'_> {
             self.span = block.origin.span;
             let end = self.terminator(&block.terminator, fused);
             let insts = std::mem::take(&mut self.out);
-            self.code.blocks.push(Block { insts, end, depth, turns: 1, span: block.origin.span });
+            self.code.blocks.push(Block { insts, end, depth, unrolled: 1, span: block.origin.span });
         }
         self.enter();
     }
@@ -171,7 +171,7 @@ impl Selector<'_> {
         }
         self.code.tables.iter_mut().flatten().for_each(up);
         let span = self.function.span;
-        self.code.blocks.insert(0, Block { insts: early, end: End::Jump(1), depth: 0, turns: 1, span });
+        self.code.blocks.insert(0, Block { insts: early, end: End::Jump(1), depth: 0, unrolled: 1, span });
     }
 
     fn parameters(&mut self) {

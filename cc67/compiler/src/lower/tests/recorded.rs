@@ -21,7 +21,7 @@ use crate::driver::generate;
 use crate::firmware::{BuiltIn, FirmwareKind, FirmwareSymbols};
 use crate::ir::inst;
 use crate::link;
-use crate::lower::{prices, testing};
+use crate::lower::{cost_table, testing};
 use crate::passes::Level;
 
 /// A firmware whose functions take as long as the board's and do nothing, and that adds up slices.
@@ -119,7 +119,7 @@ fn spent(source: &str, level: Level, waits: WaitStates) -> i64 {
     machine.start(linked.thread).expect("loaded");
     machine.run_until(Ticks::new(60));
     assert!(machine.firmware().traps.is_empty(), "{:?}\n{source}", machine.firmware().traps);
-    machine.firmware().spent - i64::from(prices::ENTRY)
+    machine.firmware().spent - i64::from(cost_table::ENTRY)
 }
 
 fn rows(kind: &str) -> Vec<Json> {

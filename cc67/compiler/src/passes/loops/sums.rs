@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use cranelift_entity::EntitySet;
 
-use super::{Stretch, Worker};
+use super::{LoopRange, Worker};
 use crate::ir::inst::{Class, Inst, InstKind, Operand, ValueId};
 use crate::ir::operators::BinaryOp;
 
@@ -29,17 +29,17 @@ struct Linear {
 
 impl Worker<'_> {
     /// Replaces expressions that grow evenly by sums.
-    pub(super) fn carry_sums(&mut self, stretch: Stretch) {
-        let counters = self.counters(stretch);
+    pub(super) fn carry_sums(&mut self, range: LoopRange) {
+        let counters = self.counters(range);
         if counters.is_empty() {
             return;
         }
-        let linear = self.linear_values(stretch, &counters);
+        let linear = self.linear_values(range, &counters);
         if linear.values().all(|sum| sum.cost < WORTH) {
             return;
         }
         let wanted = self.read_as_such(&linear);
-        let header = self.function.layout[stretch.first];
+        let header = self.function.layout[range.first];
         let mut steps: BTreeMap<ValueId, Vec<(ValueId, i32)>> = BTreeMap::new();
         let mut insts = std::mem::take(&mut self.function.blocks[header].insts);
         let mut count = 0;
@@ -61,13 +61,13 @@ impl Worker<'_> {
         }
         self.function.blocks[header].insts = insts;
         if count > 0 {
-            self.insert_steps(stretch, &steps);
+            self.insert_steps(range, &steps);
         }
     }
 
     /// The values that are written once in the loop, by adding a constant to them.
-    fn counters(&self, stretch: Stretch) -> BTreeMap<ValueId, i32> {
-        let blocks = &self.function.layout[stretch.first..=stretch.last];
+    fn counters(&self, range: LoopRange) -> BTreeMap<ValueId, i32> {
+        let blocks = &self.function.layout[range.first..=range.last];
         (blocks.iter().flat_map(|id| &self.function.blocks[*id].insts))
             .filter_map(|inst| {
                 let InstKind::Binary { op, dst, a: Operand::Value(a), b } = inst.kind else { return None };
@@ -94,11 +94,11 @@ impl Worker<'_> {
     /// The values, each written once, that grow evenly with a counter.
     fn linear_values(
         &self,
-        stretch: Stretch,
+        range: LoopRange,
         counters: &BTreeMap<ValueId, i32>,
     ) -> BTreeMap<ValueId, Linear> {
         let mut linear: BTreeMap<ValueId, Linear> = BTreeMap::new();
-        for id in &self.function.layout[stretch.first..=stretch.last] {
+        for id in &self.function.layout[range.first..=range.last] {
             for inst in &self.function.blocks[*id].insts {
                 let InstKind::Binary { op, dst, a, b } = inst.kind else { continue };
                 if self.writes[dst] != 1 || self.function.values[dst] != Class::I32 {
@@ -190,8 +190,8 @@ impl Worker<'_> {
     }
 
     /// Lets each sum grow where its counter does.
-    fn insert_steps(&mut self, stretch: Stretch, steps: &BTreeMap<ValueId, Vec<(ValueId, i32)>>) {
-        for place in stretch.first..=stretch.last {
+    fn insert_steps(&mut self, range: LoopRange, steps: &BTreeMap<ValueId, Vec<(ValueId, i32)>>) {
+        for place in range.first..=range.last {
             let id = self.function.layout[place];
             let insts = std::mem::take(&mut self.function.blocks[id].insts);
             let mut out = Vec::with_capacity(insts.len() + steps.len());

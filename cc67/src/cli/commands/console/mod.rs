@@ -41,8 +41,8 @@ use crate::cli::session::{Rig, Setup, Work};
 
 /// The interval at which a board that keeps pace with the clock is run.
 const BEAT: Duration = Duration::from_millis(10);
-/// Ticks that a board which does not keep pace runs before the next look at the keyboard.
-const STRETCH: u64 = 1111;
+/// Ticks that a board which does not keep pace runs before the keyboard is polled again.
+const TICKS_PER_POLL: u64 = 1111;
 
 /// Arguments of `cc67 console`.
 #[derive(Debug, Args)]
@@ -219,7 +219,7 @@ impl<'a, T: Target> Console<'a, T> {
                 return self.leave();
             }
             // A board that falls behind leaves room for the keyboard.
-            self.advance(pace.due().min(Ticks::new(self.rig.session.tick().get() + STRETCH)));
+            self.advance(pace.due().min(Ticks::new(self.rig.session.tick().get() + TICKS_PER_POLL)));
         }
     }
 
@@ -231,7 +231,7 @@ impl<'a, T: Target> Console<'a, T> {
             if self.take(input, next, &mut interrupted) == Flow::Leave {
                 return self.leave();
             }
-            self.advance(Ticks::new(self.rig.session.tick().get() + STRETCH));
+            self.advance(Ticks::new(self.rig.session.tick().get() + TICKS_PER_POLL));
         }
     }
 

@@ -25,10 +25,10 @@ use crate::cli::io::terminal;
 
 /// The interval at which a board at the pace of a clock is run while there is no request.
 const BEAT: Duration = Duration::from_millis(10);
-/// The same while somebody waits for the board, or for the clock.
+/// That interval while a client waits for the board, or for the clock.
 const SHORT_BEAT: Duration = Duration::from_millis(1);
-/// Ticks that the board runs before the next look at what is asked.
-const STRETCH: u64 = 111;
+/// Ticks that the board runs before requests are polled again.
+const TICKS_PER_POLL: u64 = 111;
 /// Ticks that the board may be ahead of a clock at the board's own pace, before requests wait for the clock: 1 ms.
 const AHEAD: f64 = 11.0;
 /// The time for which the board runs before requests are polled again.
@@ -388,7 +388,7 @@ impl<'a, T: Target> Desk<'a, T> {
                 }
                 return;
             }
-            let part = STRETCH.min(due - tick.get());
+            let part = TICKS_PER_POLL.min(due - tick.get());
             self.board.feed();
             if self.board.is_feeding() {
                 self.board.until(part, |board| !board.is_receiving());
@@ -414,13 +414,13 @@ impl<'a, T: Target> Desk<'a, T> {
         if self.board.is_feeding() {
             while self.board.is_feeding() && self.inbox.notes.is_empty() {
                 self.board.feed();
-                self.board.until(STRETCH, |board| !board.is_receiving());
+                self.board.until(TICKS_PER_POLL, |board| !board.is_receiving());
                 self.board.forward();
                 self.inbox.collect();
             }
             self.board.until(EXCHANGE, |_| false);
         }
-        let ticks = self.ticks_wanted().min(STRETCH);
+        let ticks = self.ticks_wanted().min(TICKS_PER_POLL);
         let begin = self.board.tick().get();
         self.board.until(ticks, |board| board.link.has_line());
         let passed = self.board.tick().get() - begin;

@@ -300,7 +300,7 @@ fn bars(chart: &Chart, strip: &Strip) -> Vec<(i32, i32)> {
     bars
 }
 
-/// The points without those in the middle of a horizontal stretch.
+/// The points without those in the middle of a horizontal segment.
 fn without_flat(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     let mut kept: Vec<(f64, f64)> = Vec::with_capacity(points.len());
     for point in points {

@@ -86,7 +86,7 @@ fn page_line(line: &Line, range: (f64, f64), most: usize) -> PageLine<'_> {
     PageLine { name: &line.name, t, v }
 }
 
-/// The points without those within a stretch where the value stays the same: the line is the same without them.
+/// The points without those within an interval of constant value: the line is the same without them.
 fn corners(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     let mut kept: Vec<(f64, f64)> = Vec::new();
     for point in points {

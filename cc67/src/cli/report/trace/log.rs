@@ -110,11 +110,11 @@ impl Log {
     }
 }
 
-/// Adds a sample; of those in a stretch of time `step` long only the last one is kept: what holds at its end.
+/// Adds a sample; of those in an interval of `step` only the last one is kept: what holds at its end.
 fn keep(samples: &mut Vec<(Cycles, Vec<f64>)>, step: Cycles, sample: (Cycles, Vec<f64>)) {
-    let stretch = |at: Cycles| (at.get() - 1).div_euclid(step.get());
+    let interval = |at: Cycles| (at.get() - 1).div_euclid(step.get());
     match samples.last_mut() {
-        Some(last) if stretch(last.0) == stretch(sample.0) => *last = sample,
+        Some(last) if interval(last.0) == interval(sample.0) => *last = sample,
         _ => samples.push(sample),
     }
 }
@@ -184,7 +184,7 @@ mod tests {
         }
         assert_eq!(log.step, ticks(8));
         assert!((SAMPLES / 2..=SAMPLES).contains(&log.samples.len()), "{}", log.samples.len());
-        // What is kept stands at the ends of stretches of eight ticks.
+        // What is kept stands at the ends of intervals of eight ticks.
         assert!(
             log.samples
                 .iter()

@@ -1,6 +1,6 @@
 //! The costs of the vendor's code for each operation, in cycles without wait states (`spec/costs.md` section 6).
 //!
-//! [`super::pricing`] says where each is charged.
+//! [`super::cost`] says where each is charged.
 
 use crate::ir::inst::Class;
 use crate::operators::BinaryOp;

@@ -39,14 +39,14 @@ pub(super) fn run(code: &mut Code, skipped: u32) -> u32 {
         }
         let body = std::mem::take(&mut code.blocks[number].insts);
         let mut worker =
-            Turns { code, facts, out: body.clone(), names: SecondaryMap::new(), fresh: Vec::new() };
+            Unroller { code, facts, out: body.clone(), names: SecondaryMap::new(), fresh: Vec::new() };
         let mut condition = back;
         for _ in 1..copies {
-            condition = worker.turn(&body, condition);
+            condition = worker.iteration(&body, condition);
         }
         let out = worker.out;
         code.blocks[number].insts = out;
-        code.blocks[number].turns = copies as u32;
+        code.blocks[number].unrolled = copies as u32;
         if let Some(read) = code.blocks[number].end.read_mut() {
             *read = condition.0;
         }
@@ -142,7 +142,7 @@ fn facts(
     Some(Facts { carried, condition: back.0, last, tested: tested.len() })
 }
 
-struct Turns<'a> {
+struct Unroller<'a> {
     code: &'a mut Code,
     facts: Facts,
     out: Vec<Inst>,
@@ -152,12 +152,12 @@ struct Turns<'a> {
     fresh: Vec<VReg>,
 }
 
-impl Turns<'_> {
+impl Unroller<'_> {
     /// Adds an iteration under a condition; returns that of the next one.
-    fn turn(&mut self, body: &[Inst], condition: (VReg, bool)) -> (VReg, bool) {
+    fn iteration(&mut self, body: &[Inst], condition: (VReg, bool)) -> (VReg, bool) {
         self.fresh.clear();
         let next = self.reg_like(self.facts.condition);
-        // If the turn does not happen, there is no next one.
+        // If the iteration does not take place, there is no next one.
         let never = i32::from(condition.1);
         let span = body.first().map_or(self.code.blocks[0].span, |inst| inst.span);
         self.out.push(Inst::new(Kind::Mvk, next.into(), Arg::number(never), Arg::None, span));
@@ -239,7 +239,7 @@ impl Turns<'_> {
             Arg::None | Arg::Value(_) => {}
         }
         if is_memory {
-            // Nobody reads the register where the turn does not happen.
+            // Nobody reads the register if the iteration does not take place.
             self.out.push(Inst::new(Kind::Begin, name.into(), Arg::None, Arg::None, inst.span));
             inst.condition = condition;
         }

@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
 use super::accesses::{Accessed, Root, accessed};
-use super::candidates::{MAX_WORDS, innermost_loops, regions, straight_stretches};
+use super::candidates::{MAX_WORDS, innermost_loops, regions, straight_segments};
 use super::strides::{Strides, common_step};
 use crate::kind::{Name, OpKind, Width};
 use crate::meter;
@@ -25,13 +25,13 @@ use crate::operand::RegI32;
 use crate::program::{Function, Program};
 
 /// The most words of all fast iterations of a loop together.
-const MAX_WORDS_OF_TURNS: usize = 128;
+const MAX_WORDS_OF_ITERATIONS: usize = 128;
 
 /// The most iterations that run at once, and those of a loop of so few words that its test and its jump weigh more.
 ///
 /// With more iterations more values are live than there are registers.
-const MAX_TURNS: usize = 4;
-const MAX_SMALL_TURNS: usize = 8;
+const MAX_ITERATIONS: usize = 4;
+const MAX_SMALL_ITERATIONS: usize = 8;
 const SMALL: usize = 8;
 
 /// The largest distance of an access from its root, in bytes, and the largest number of roots that a root is made of.
@@ -39,7 +39,7 @@ const MAX_DISTANCE: u32 = 1 << 16;
 const MAX_TERMS: usize = 12;
 
 /// A position in the fast iterations: the iteration, and the word.
-pub(super) type TurnWord = (usize, usize);
+pub(super) type IterationWord = (usize, usize);
 
 /// A register as a root and a distance from it.
 type SymbolicValue = (Root, i32);
@@ -76,15 +76,15 @@ pub(super) struct Plan {
     /// The words in the order of an iteration.
     pub(super) order: Vec<usize>,
     /// Number of iterations; 0 for a region that is not a loop.
-    pub(super) turns: usize,
+    pub(super) iterations: usize,
     /// The most cycles that they cost; 0 for a segment without charges.
     pub(super) cost: u32,
     /// True for a loop with one exit, as counted loops are: most of their iterations do not leave it.
     pub(super) is_counted: bool,
     /// The blocks that can be reached, with the cycles that were charged but not yet taken when they begin.
-    pub(super) entries: BTreeMap<TurnWord, u32>,
+    pub(super) entries: BTreeMap<IterationWord, u32>,
     /// The accesses through registers.
-    pub(super) accesses: BTreeMap<TurnWord, Access>,
+    pub(super) accesses: BTreeMap<IterationWord, Access>,
     /// By root, those of their accesses that one check can cover.
     pub(super) groups: BTreeMap<Root, Group>,
     /// The roots that lie at equal distances.
@@ -117,7 +117,7 @@ pub(super) fn plans(
             plans.insert(*words.start(), plan);
         }
     }
-    for words in straight_stretches(program, function, begins, cost) {
+    for words in straight_segments(program, function, begins, cost) {
         if is_planned(&plans, *words.start()) {
             continue;
         }
@@ -158,7 +158,7 @@ struct Planner<'a> {
     roots: Root,
     known_roots: BTreeMap<Made, Root>,
     sums: BTreeMap<Root, Vec<Root>>,
-    arriving: BTreeMap<TurnWord, Known>,
+    arriving: BTreeMap<IterationWord, Known>,
     plan: Plan,
     registers: usize,
 }
@@ -184,7 +184,7 @@ impl<'a> Planner<'a> {
         let plan = Plan {
             order: Vec::new(),
             words,
-            turns: 0,
+            iterations: 0,
             cost: sum,
             is_counted: false,
             entries: BTreeMap::new(),
@@ -216,25 +216,25 @@ impl<'a> Planner<'a> {
         let (first, last) = (*self.plan.words.start(), *self.plan.words.end());
         self.plan.order = (entry..=last).chain(first..entry).collect();
         let words = self.plan.order.len();
-        let most = if words <= SMALL { MAX_SMALL_TURNS } else { MAX_TURNS };
-        self.plan.turns = if is_loop { (MAX_WORDS_OF_TURNS / words).clamp(1, most) } else { 0 };
-        self.plan.cost = self.plan.cost.checked_mul(self.plan.turns.max(1) as u32)?;
+        let most = if words <= SMALL { MAX_SMALL_ITERATIONS } else { MAX_ITERATIONS };
+        self.plan.iterations = if is_loop { (MAX_WORDS_OF_ITERATIONS / words).clamp(1, most) } else { 0 };
+        self.plan.cost = self.plan.cost.checked_mul(self.plan.iterations.max(1) as u32)?;
         self.plan.is_counted = is_loop && self.exits() == 1;
         let symbols = (0..self.registers).map(|_| self.root()).collect();
         self.arriving.insert((0, entry), Known { spent: 0, symbols });
         let mut known = None;
-        for turn in 0..self.plan.turns.max(1) {
+        for iteration in 0..self.plan.iterations.max(1) {
             for at in self.plan.order.clone() {
                 if at == entry || self.begins.contains(&at) {
                     if let Some(known) = known.take() {
-                        self.arrive((turn, at), known);
+                        self.arrive((iteration, at), known);
                     }
-                    known = self.arriving.remove(&(turn, at));
+                    known = self.arriving.remove(&(iteration, at));
                     if let Some(known) = &known {
-                        self.plan.entries.insert((turn, at), known.spent);
+                        self.plan.entries.insert((iteration, at), known.spent);
                     }
                 }
-                known = known.and_then(|known| self.word(turn, at, known));
+                known = known.and_then(|known| self.word(iteration, at, known));
             }
         }
         self.plan.strides = self.strides();
@@ -257,20 +257,20 @@ impl<'a> Planner<'a> {
     }
 
     /// Follows one instruction; yields what is known after it, if it continues there.
-    fn word(&mut self, turn: usize, at: usize, mut known: Known) -> Option<Known> {
+    fn word(&mut self, iteration: usize, at: usize, mut known: Known) -> Option<Known> {
         let op = self.program.ops()[at];
         known.spent += (self.cost)(&op).unwrap_or(0);
         if let Some(access) = accessed(&op) {
-            self.note(turn, at, access, &known);
+            self.note(iteration, at, access, &known);
         }
         if let Op::Charge { cycles } = op {
             known.spent += cycles.0;
         }
         if let Some(to) = meter::branch_target(&op) {
             if op.kind() == OpKind::Branch {
-                self.leave(turn, at + 1, known.clone());
+                self.leave(iteration, at + 1, known.clone());
             }
-            self.leave(turn, to.0 as usize, known);
+            self.leave(iteration, to.0 as usize, known);
             return None;
         }
         if let Some(dst) = int_destination(&op) {
@@ -341,14 +341,14 @@ impl<'a> Planner<'a> {
         let assigned: BTreeSet<usize> =
             self.plan.words.clone().filter_map(|at| int_destination(&self.program.ops()[at])).collect();
         let steps = |root: Root| {
-            // The first roots are what the registers hold when the turns begin.
+            // The first roots are what the registers hold when the iterations begin.
             let register = (root as usize).checked_sub(1).filter(|register| *register < self.registers)?;
             (!assigned.contains(&register)).then_some(RegI32(register as u16))
         };
         let mut strides = Strides::default();
-        for at in self.plan.order.iter().filter(|_| self.plan.turns > 1) {
-            let access = |turn: usize| self.plan.accesses.get(&(turn, *at));
-            let Some(accesses) = (0..self.plan.turns).map(access).collect::<Option<Vec<_>>>() else {
+        for at in self.plan.order.iter().filter(|_| self.plan.iterations > 1) {
+            let access = |iteration: usize| self.plan.accesses.get(&(iteration, *at));
+            let Some(accesses) = (0..self.plan.iterations).map(access).collect::<Option<Vec<_>>>() else {
                 continue;
             };
             let roots: Vec<Root> = accesses.iter().map(|access| access.root).collect();
@@ -365,14 +365,14 @@ impl<'a> Planner<'a> {
     }
 
     /// A branch to `to`.
-    fn leave(&mut self, turn: usize, to: usize, known: Known) {
-        if let Some(place) = self.plan.target(turn, to) {
+    fn leave(&mut self, iteration: usize, to: usize, known: Known) {
+        if let Some(place) = self.plan.target(iteration, to) {
             self.arrive(place, known);
         }
     }
 
     /// Merges facts at a join: those that hold on all paths remain.
-    fn arrive(&mut self, place: TurnWord, known: Known) {
+    fn arrive(&mut self, place: IterationWord, known: Known) {
         let Some(mut met) = self.arriving.remove(&place) else {
             self.arriving.insert(place, known);
             return;
@@ -387,10 +387,10 @@ impl<'a> Planner<'a> {
     }
 
     /// Notes an access and widens the group of its root, if their alignments agree.
-    fn note(&mut self, turn: usize, at: usize, (base, off, width, is_store): Accessed, known: &Known) {
+    fn note(&mut self, iteration: usize, at: usize, (base, off, width, is_store): Accessed, known: &Known) {
         let (root, base) = known.symbols[base.index()];
         let begin = base.wrapping_add(i32::from(off.0));
-        self.plan.accesses.insert((turn, at), Access { root, at: begin, base });
+        self.plan.accesses.insert((iteration, at), Access { root, at: begin, base });
         let size = width.bytes();
         let end = begin + size.cast_signed();
         let group = self.plan.groups.entry(root).or_insert(Group {
@@ -426,12 +426,12 @@ impl Plan {
         self.accesses.values().any(|access| !seen.insert(access.root))
     }
 
-    /// The position in the fast iterations at which a branch of `turn` to the word `to` continues, if it is in them.
-    pub(super) fn target(&self, turn: usize, to: usize) -> Option<TurnWord> {
+    /// The position in the fast iterations at which a branch of `iteration` to the word `to` continues, if it is in them.
+    pub(super) fn target(&self, iteration: usize, to: usize) -> Option<IterationWord> {
         if to == self.entry() {
-            return (turn + 1 < self.turns).then_some((turn + 1, to));
+            return (iteration + 1 < self.iterations).then_some((iteration + 1, to));
         }
-        self.words.contains(&to).then_some((turn, to))
+        self.words.contains(&to).then_some((iteration, to))
     }
 }
 

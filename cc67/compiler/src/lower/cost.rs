@@ -7,7 +7,7 @@
 use cranelift_entity::SecondaryMap;
 use kmotiondef::timing::{Timing, WaitStates};
 
-use super::prices;
+use super::cost_table;
 use super::{Lowering, types};
 use crate::firmware::{BuiltIn, FirmwareSymbols};
 use crate::ir::function::table;
@@ -19,13 +19,13 @@ use crate::typed::{self, ExprId, ExprKind, LocalId, PlaceId, PlaceKind, SymbolId
 const SDRAM: u32 = 0x8000_0000;
 
 /// The state for charging a function.
-pub(super) struct Pricing {
+pub(super) struct CostModel {
     waits: WaitStates,
     /// True for each expression that calls or divides, which changes every register.
     calls: SecondaryMap<ExprId, bool>,
 }
 
-impl Pricing {
+impl CostModel {
     /// Collects the facts for charging `function`; `None` if time is not the vendor's.
     pub(super) fn new(function: &typed::Function, timing: Timing) -> Option<Self> {
         let waits = timing.wait_states()?;
@@ -122,25 +122,25 @@ enum Nature {
 impl Lowering<'_> {
     /// Charges cycles.
     pub(super) fn cost(&mut self, cycles: i32) {
-        if self.pricing.is_some() {
+        if self.cost_model.is_some() {
             self.builder.cost(cycles);
         }
     }
 
     /// Charges the wait for words of SDRAM.
     fn wait(&mut self, words: i32) {
-        let waits = self.pricing.as_ref().map_or(0, |pricing| pricing.waits.sdram);
+        let waits = self.cost_model.as_ref().map_or(0, |cost_model| cost_model.waits.sdram);
         self.cost(words.saturating_mul(waits.cast_signed()));
     }
 
     /// A block that charges `cycles`, if there are any, and continues at `to`.
     pub(super) fn costly_way(&mut self, to: BlockId, cycles: u32) -> Option<BlockId> {
-        self.pricing.as_ref()?;
+        self.cost_model.as_ref()?;
         Some(self.builder.way(to, cycles))
     }
 
     fn calls(&self, id: ExprId) -> bool {
-        self.pricing.as_ref().is_some_and(|pricing| pricing.calls[id])
+        self.cost_model.as_ref().is_some_and(|cost_model| cost_model.calls[id])
     }
 
     fn class_of(&self, id: ExprId) -> Class {
@@ -149,8 +149,8 @@ impl Lowering<'_> {
 
     /// Charges a constant.
     pub(super) fn price_constant(&mut self, class: Class) {
-        self.cost(prices::constant(class));
-        self.wait(prices::constant_words(class));
+        self.cost(cost_table::constant(class));
+        self.wait(cost_table::constant_words(class));
     }
 
     /// Reports whether accesses of a symbol wait for memory.
@@ -161,14 +161,14 @@ impl Lowering<'_> {
     }
 
     fn reach_local(&self, local: LocalId, offset: u32, steps: i32) -> Reach {
-        let steps = prices::STEP * (steps + i32::from(offset != 0));
+        let steps = cost_table::STEP * (steps + i32::from(offset != 0));
         if self.function.locals[local].by_pointer {
             let fixed = 7 + steps;
             return Reach::Through { fixed, waits: false };
         }
         match steps {
             0 => Reach::Local,
-            _ => Reach::Through { fixed: prices::LOCAL_ADDRESS + steps, waits: false },
+            _ => Reach::Through { fixed: cost_table::LOCAL_ADDRESS + steps, waits: false },
         }
     }
 
@@ -194,7 +194,7 @@ impl Lowering<'_> {
                 ExprKind::Address(inner) => place = inner,
                 ExprKind::Int(_) => return Reach::Global { waits: false },
                 _ => {
-                    let fixed = prices::STEP * steps;
+                    let fixed = cost_table::STEP * steps;
                     return Reach::Through { fixed, waits: self.pointee_waits(base) };
                 }
             }
@@ -242,27 +242,27 @@ impl Lowering<'_> {
 
     /// Charges a load of a place, besides the expressions in its address.
     pub(super) fn price_load(&mut self, place: PlaceId) {
-        if self.pricing.is_none() {
+        if self.cost_model.is_none() {
             return;
         }
         let class = self.class_or_int(self.function.places[place].ty);
         let waits = match self.reach(place) {
             Reach::Local => {
-                self.cost(prices::either(class, 7, 8));
+                self.cost(cost_table::either(class, 7, 8));
                 false
             }
             Reach::Global { waits } => {
-                self.cost(prices::either(class, 7, 8));
+                self.cost(cost_table::either(class, 7, 8));
                 waits
             }
             Reach::Through { fixed, waits } => {
-                self.cost(fixed + prices::either(class, 5, 6));
+                self.cost(fixed + cost_table::either(class, 5, 6));
                 waits
             }
         };
-        self.wait(if waits { prices::words(class) } else { 0 });
+        self.wait(if waits { cost_table::words(class) } else { 0 });
         if let PlaceKind::Bits(..) = self.function.places[place].kind {
-            self.cost(2 * prices::STEP);
+            self.cost(2 * cost_table::STEP);
         }
     }
 
@@ -275,12 +275,12 @@ impl Lowering<'_> {
 
     /// Charges the address of a place as a value.
     pub(super) fn price_address(&mut self, place: PlaceId) {
-        if self.pricing.is_none() {
+        if self.cost_model.is_none() {
             return;
         }
         self.cost(match self.reach(place) {
-            Reach::Local => prices::LOCAL_ADDRESS,
-            Reach::Global { .. } => prices::GLOBAL_ADDRESS,
+            Reach::Local => cost_table::LOCAL_ADDRESS,
+            Reach::Global { .. } => cost_table::GLOBAL_ADDRESS,
             Reach::Through { fixed, .. } => fixed,
         });
     }
@@ -290,21 +290,21 @@ impl Lowering<'_> {
         let class = self.class_or_int(self.function.places[place].ty);
         let waits = match self.reach(place) {
             Reach::Local => {
-                self.cost(prices::either(class, 3, 5));
+                self.cost(cost_table::either(class, 3, 5));
                 false
             }
             Reach::Global { waits } => {
-                self.cost(prices::either(class, 3, 4));
+                self.cost(cost_table::either(class, 3, 4));
                 waits
             }
             Reach::Through { waits, .. } => {
-                self.cost(prices::either(class, 1, 2));
+                self.cost(cost_table::either(class, 1, 2));
                 waits
             }
         };
-        self.wait(if waits { prices::words(class) } else { 0 });
+        self.wait(if waits { cost_table::words(class) } else { 0 });
         if let PlaceKind::Bits(..) = self.function.places[place].kind {
-            self.cost(7 + 5 * prices::STEP);
+            self.cost(7 + 5 * cost_table::STEP);
         }
     }
 
@@ -314,28 +314,28 @@ impl Lowering<'_> {
 
     /// Charges an assignment, its value apart.
     pub(super) fn price_assignment(&mut self, place: PlaceId, value: ExprId) {
-        if self.pricing.is_none() {
+        if self.cost_model.is_none() {
             return;
         }
         if self.is_through(place) {
             self.price_reach(place);
             let class = self.class_of(value);
             if self.calls(value) {
-                self.cost(prices::SAVE_ADDRESS);
+                self.cost(cost_table::SAVE_ADDRESS);
             } else if class == Class::F32 && self.nature(value) == Nature::Computed {
-                self.cost(prices::CROWDED_SINGLE);
+                self.cost(cost_table::CROWDED_SINGLE);
             }
             // As recorded: `a[i] = 16 - i` into doubles takes one cycle more than `a[i] = i`.
             let is_converted = matches!(self.function.exprs[value].kind,
                 ExprKind::Convert(inner) if class == Class::F64 && self.nature(inner) == Nature::Computed);
-            self.cost(i32::from(is_converted) * prices::MOVE);
+            self.cost(i32::from(is_converted) * cost_table::MOVE);
         }
         self.price_store(place);
     }
 
     /// Charges `place = place op operand`, its operand apart.
     pub(super) fn price_update(&mut self, update: &typed::Update) {
-        if self.pricing.is_none() {
+        if self.cost_model.is_none() {
             return;
         }
         let place = update.place;
@@ -343,16 +343,16 @@ impl Lowering<'_> {
         let (stored, computed) = (self.class_or_int(ty), self.class_or_int(update.computed));
         self.price_load(place);
         if self.is_through(place) && self.calls(update.operand) {
-            self.cost(prices::SAVE_ADDRESS);
+            self.cost(cost_table::SAVE_ADDRESS);
         }
-        self.cost(prices::convert(stored, computed) + prices::convert(computed, stored));
+        self.cost(cost_table::convert(stored, computed) + cost_table::convert(computed, stored));
         if update.result == typed::UpdateResult::Old {
-            self.cost(prices::KEEP_OLD);
+            self.cost(cost_table::KEEP_OLD);
         }
         let is_element = self.nature(update.operand) == Nature::Element;
         self.cost(match computed {
-            Class::F64 if is_element => prices::CROWDED,
-            Class::F32 if is_element => prices::CROWDED_SINGLE,
+            Class::F64 if is_element => cost_table::CROWDED,
+            Class::F32 if is_element => cost_table::CROWDED_SINGLE,
             Class::I32 | Class::I64 | Class::F32 | Class::F64 => 0,
         });
         self.price_operator(update.op, computed, update.operand);
@@ -380,11 +380,11 @@ impl Lowering<'_> {
         };
         let is_shift = op == BinaryOp::Multiply && constant.is_some_and(is_power);
         self.cost(if is_idle {
-            -prices::constant(class)
+            -cost_table::constant(class)
         } else if is_shift {
-            prices::binary(BinaryOp::ShiftLeft, class)
+            cost_table::binary(BinaryOp::ShiftLeft, class)
         } else {
-            prices::binary(op, class)
+            cost_table::binary(op, class)
         });
     }
 
@@ -395,16 +395,16 @@ impl Lowering<'_> {
         }
         self.cost(match self.nature(a) {
             Nature::Simple => 0,
-            Nature::Element => prices::SAVE_ADDRESS,
+            Nature::Element => cost_table::SAVE_ADDRESS,
             // A result is saved from where it is, without being taken first.
-            Nature::Result => prices::save(self.class_of(a)) - prices::result(self.class_of(a)),
-            Nature::Computed => prices::save(self.class_of(a)),
+            Nature::Result => cost_table::save(self.class_of(a)) - cost_table::result(self.class_of(a)),
+            Nature::Computed => cost_table::save(self.class_of(a)),
         });
     }
 
     /// Charges a binary operator, its operands apart.
     pub(super) fn price_binary(&mut self, id: ExprId) {
-        if self.pricing.is_none() {
+        if self.cost_model.is_none() {
             return;
         }
         let ExprKind::Binary(op, a, b) = self.function.exprs[id].kind else { return };
@@ -413,16 +413,16 @@ impl Lowering<'_> {
         let (left, right) = (self.nature(a), self.nature(b));
         let both = left != Nature::Simple && left != Nature::Element && right == Nature::Computed;
         self.cost(match class {
-            Class::F64 if right == Nature::Element => prices::CROWDED,
-            Class::F64 if both && !self.calls(b) => prices::CROWDED,
-            Class::F32 if right == Nature::Element => prices::CROWDED_SINGLE,
+            Class::F64 if right == Nature::Element => cost_table::CROWDED,
+            Class::F64 if both && !self.calls(b) => cost_table::CROWDED,
+            Class::F32 if right == Nature::Element => cost_table::CROWDED_SINGLE,
             Class::I32 | Class::I64 | Class::F32 | Class::F64 => 0,
         });
         // As recorded: the dividend is moved to the argument's register, an index to where it is scaled.
         let divides = matches!(op, BinaryOp::Divide | BinaryOp::Remainder);
         let is_index = self.unit.types.is_pointer(ty) && self.is_shifted_sum(b);
         let is_moved = class == Class::I32 && if divides { left == Nature::Computed } else { is_index };
-        self.cost(i32::from(is_moved) * prices::MOVE);
+        self.cost(i32::from(is_moved) * cost_table::MOVE);
         self.price_operator(op, class, b);
     }
 
@@ -439,22 +439,22 @@ impl Lowering<'_> {
     pub(super) fn price_unary(&mut self, operand: ExprId, op: UnaryOp) {
         let class = self.class_of(operand);
         match (op, class) {
-            (UnaryOp::Negate | UnaryOp::Complement, Class::I32 | Class::I64) => self.cost(prices::STEP),
+            (UnaryOp::Negate | UnaryOp::Complement, Class::I32 | Class::I64) => self.cost(cost_table::STEP),
             // 0 minus the value.
             (UnaryOp::Negate | UnaryOp::Complement, Class::F32 | Class::F64) => {
                 self.price_constant(class);
-                self.cost(prices::binary(BinaryOp::Subtract, class));
+                self.cost(cost_table::binary(BinaryOp::Subtract, class));
             }
             (UnaryOp::Not, _) => {
                 let is_comparison = matches!(self.function.exprs[operand].kind, ExprKind::Compare(..));
-                self.cost(if is_comparison { 0 } else { prices::BRANCH + prices::TRUTH[0] });
+                self.cost(if is_comparison { 0 } else { cost_table::BRANCH + cost_table::TRUTH[0] });
             }
         }
     }
 
     /// Charges a comparison, its operands apart.
     pub(super) fn price_compare(&mut self, a: ExprId, b: ExprId) {
-        if self.pricing.is_none() {
+        if self.cost_model.is_none() {
             return;
         }
         let class = self.class_of(a);
@@ -462,57 +462,59 @@ impl Lowering<'_> {
         let elements = [left, right].into_iter().filter(|nature| *nature == Nature::Element).count();
         let both = left != Nature::Simple && right == Nature::Computed && elements == 0;
         self.cost(match class {
-            Class::F64 if elements > 0 => prices::CROWDED_COMPARE[elements - 1],
-            Class::F64 if both => prices::CROWDED,
-            Class::I32 | Class::I64 | Class::F32 if both => prices::MOVE,
+            Class::F64 if elements > 0 => cost_table::CROWDED_COMPARE[elements - 1],
+            Class::F64 if both => cost_table::CROWDED,
+            Class::I32 | Class::I64 | Class::F32 if both => cost_table::MOVE,
             Class::I32 | Class::I64 | Class::F32 | Class::F64 => 0,
         });
-        self.cost(prices::compare(class));
+        self.cost(cost_table::compare(class));
     }
 
     /// Charges the test of a value that decides a branch.
     pub(super) fn price_test(&mut self, condition: ExprId) {
-        if self.pricing.is_none() {
+        if self.cost_model.is_none() {
             return;
         }
         let class = self.class_of(condition);
         match &self.function.exprs[condition].kind {
             // The comparison itself decides; it is no value.
-            ExprKind::Compare(..) => self.cost(-prices::MOVE),
+            ExprKind::Compare(..) => self.cost(-cost_table::MOVE),
             // As recorded: `while (i--)` takes a cycle more.
-            ExprKind::Update(update) if update.result == typed::UpdateResult::Old => self.cost(prices::MOVE),
+            ExprKind::Update(update) if update.result == typed::UpdateResult::Old => {
+                self.cost(cost_table::MOVE);
+            }
             _ => {}
         }
         if class != Class::I32 {
             self.price_constant(class);
-            self.cost(prices::compare(class));
+            self.cost(cost_table::compare(class));
         }
-        self.cost(prices::BRANCH);
+        self.cost(cost_table::BRANCH);
     }
 
     /// Charges the comparison with 0 in front of a test, which is made without one.
     pub(super) fn price_zero_test(&mut self) {
-        self.cost(prices::constant(Class::I32) + prices::compare(Class::I32));
+        self.cost(cost_table::constant(Class::I32) + cost_table::compare(Class::I32));
     }
 
     /// Charges a conversion.
     pub(super) fn price_conversion(&mut self, operand: ExprId, to: Class) {
-        if self.pricing.is_none() {
+        if self.cost_model.is_none() {
             return;
         }
         let from = self.class_of(operand);
         if self.is_int(operand) && from == Class::I32 {
             // The constant is converted, not the value.
-            self.cost(-prices::constant(from));
+            self.cost(-cost_table::constant(from));
             self.price_constant(to);
             return;
         }
-        self.cost(prices::convert(from, to));
+        self.cost(cost_table::convert(from, to));
     }
 
     /// Charges the passing of the arguments of a call, their values apart, and the branch of the call.
     pub(super) fn price_call(&mut self, call: &typed::Call) {
-        if self.pricing.is_none() {
+        if self.cost_model.is_none() {
             return;
         }
         let is_firmware = match call.callee {
@@ -521,11 +523,11 @@ impl Lowering<'_> {
                 matches!(symbol.definition, typed::Definition::None) && BuiltIn.find(&symbol.name).is_some()
             }
             typed::Callee::Pointer(_) => {
-                self.cost(prices::POINTER_BRANCH - prices::BRANCH);
+                self.cost(cost_table::POINTER_BRANCH - cost_table::BRANCH);
                 false
             }
         };
-        self.cost(prices::BRANCH);
+        self.cost(cost_table::BRANCH);
         let variable = call.variable.as_deref().unwrap_or(&[]);
         // What is computed waits for what is called for a later argument.
         let all: Vec<ExprId> = call.arguments.iter().chain(variable).copied().collect();
@@ -533,12 +535,12 @@ impl Lowering<'_> {
         for (position, argument) in all.into_iter().enumerate() {
             let class = self.class_of(argument);
             let is_kept = matches!(self.nature(argument), Nature::Computed | Nature::Result);
-            self.cost(if is_kept && position < last { prices::save(class) } else { 0 });
-            self.cost(prices::argument(class, is_firmware));
+            self.cost(if is_kept && position < last { cost_table::save(class) } else { 0 });
+            self.cost(cost_table::argument(class, is_firmware));
             self.price_moved(argument);
         }
         if call.variable.is_some() {
-            self.cost(prices::VARIABLE_ARGUMENTS + variable.len() as i32);
+            self.cost(cost_table::VARIABLE_ARGUMENTS + variable.len() as i32);
         }
     }
 
@@ -548,33 +550,33 @@ impl Lowering<'_> {
         let is_comparison = matches!(self.function.exprs[value].kind, ExprKind::Compare(..));
         self.cost(match self.nature(value) {
             Nature::Simple | Nature::Element => 0,
-            Nature::Result => -prices::result(class),
+            Nature::Result => -cost_table::result(class),
             Nature::Computed if is_comparison => 0,
-            Nature::Computed => prices::either(class, prices::MOVE, 2 * prices::MOVE),
+            Nature::Computed => cost_table::either(class, cost_table::MOVE, 2 * cost_table::MOVE),
         });
     }
 
     /// Charges taking the result of a call.
     pub(super) fn price_result(&mut self, class: Option<Class>) {
         if let Some(class) = class {
-            self.cost(prices::result(class));
+            self.cost(cost_table::result(class));
         }
     }
 
     /// Charges a `return`, its value apart.
     pub(super) fn price_return(&mut self, value: Option<ExprId>) {
-        if self.pricing.is_none() {
+        if self.cost_model.is_none() {
             return;
         }
         if let Some(value) = value {
             self.price_moved(value);
         }
-        self.cost(prices::BRANCH);
+        self.cost(cost_table::BRANCH);
     }
 
     /// Charges the copy or the clearing of an object, its addresses apart.
     pub(super) fn price_block(&mut self, bytes: u32, is_copy: bool) {
-        self.cost(if is_copy { prices::copy(bytes) } else { prices::clear(bytes) });
+        self.cost(if is_copy { cost_table::copy(bytes) } else { cost_table::clear(bytes) });
         let words = (bytes / 4).cast_signed();
         self.wait(if is_copy { 2 * words } else { words });
     }
