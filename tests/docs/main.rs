@@ -4,7 +4,5 @@ mod book;
 mod commands;
 mod messages;
 mod mistakes;
+mod phrases;
 mod programs;
-
-#[path = "../tidy/tokens.rs"]
-mod tokens;

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use crate::tokens::{Token, closing, tokens};
+use harness::tokens::{Token, closing, tokens};
 
 /// The constructors of a diagnostic, and the kind that each makes.
 const KINDS: &[(&str, &str)] = &[

@@ -10,6 +10,7 @@ pub mod oracles;
 pub mod polling;
 pub mod random;
 pub mod stages;
+pub mod tokens;
 pub mod usage;
 pub mod vendor;
 
@@ -25,6 +26,12 @@ use std::sync::atomic::{AtomicU32, Ordering};
 #[must_use]
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package lies in the workspace")
+}
+
+/// Returns a path from the root of the workspace, with `/` between its parts.
+#[must_use]
+pub fn relative(path: &Path) -> String {
+    path.strip_prefix(root()).expect("the path lies in the workspace").to_string_lossy().replace('\\', "/")
 }
 
 /// Returns whether tests that have a long form take it: where `CC67_LONG` is in the environment.
@@ -226,7 +233,7 @@ impl Drop for Scratch {
     }
 }
 
-/// Every file below `folder` with the extension, sorted by path.
+/// Returns every file below a folder with the extension, sorted; hidden folders and `target` are left out.
 #[must_use]
 pub fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
@@ -234,9 +241,10 @@ pub fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     while let Some(folder) = folders.pop() {
         for entry in fs::read_dir(&folder).expect("the folder is readable") {
             let path = entry.expect("the entry is readable").path();
-            if path.is_dir() {
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            if path.is_dir() && name != "target" && !name.starts_with('.') {
                 folders.push(path);
-            } else if path.extension().is_some_and(|found| found == extension) {
+            } else if path.extension().is_some_and(|e| e == extension) {
                 found.push(path);
             }
         }

@@ -1,129 +1,130 @@
-//! Arrows inside a crate point downwards, and nothing goes round.
+//! Imports inside a crate point downwards in `layers.txt`, and there are no cycles.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::circles::{self, Graph};
 use crate::imports::{self, Imports};
-use crate::layers::{CIRCLES, FILES_IN_A_CIRCLE, LAYERS, Row, UPWARDS};
 
 /// Files that may reach each other: two that describe one thing, and one that joins them.
-const ALLOWED: usize = 3;
+const MAX_FILES_IN_A_CYCLE: usize = 3;
 
-/// The row and the room of a file; the longest path of a room that fits.
-fn room_of<'a>(rows: &'a [Row], file: &str) -> Option<(usize, &'a str)> {
+/// The layers of a crate, from top to bottom: the name of each, and its rooms.
+struct Layers {
+    krate: &'static str,
+    rows: Vec<(&'static str, Vec<&'static str>)>,
+}
+
+fn layers() -> Vec<Layers> {
+    let mut all: Vec<Layers> = Vec::new();
+    for line in include_str!("layers.txt").lines().filter(|line| !line.is_empty() && !line.starts_with('#')) {
+        if let Some(krate) = line.strip_prefix('[').and_then(|line| line.strip_suffix(']')) {
+            all.push(Layers { krate, rows: Vec::new() });
+        } else {
+            let (name, rooms) = line.split_once(": ").unwrap_or_else(|| panic!("layers.txt: {line}"));
+            let rows = &mut all.last_mut().expect("the first line names a crate").rows;
+            rows.push((name, rooms.split(' ').collect()));
+        }
+    }
+    all
+}
+
+/// The number of the row of a file; the longest path of a room that fits counts.
+fn row_of(layers: &Layers, file: &str) -> Option<usize> {
     let stem = file.strip_suffix(".rs").unwrap_or(file);
     let fits =
         |room: &str| stem.strip_prefix(room).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
-    let rooms =
-        rows.iter().enumerate().flat_map(|(row, (_, rooms))| rooms.iter().map(move |room| (row, *room)));
-    rooms.filter(|(_, room)| fits(room)).max_by_key(|(_, room)| room.len())
-}
-
-/// What is wrong with the arrows of a crate; the exceptions that were met are added to `met`.
-fn upward(krate: &str, rows: &[Row], imports: &Imports, met: &mut BTreeSet<(String, String)>) -> Vec<String> {
-    let mut wrong = Vec::new();
-    for file in imports.files.iter().filter(|file| *file != "lib.rs") {
-        if room_of(rows, file).is_none() {
-            wrong.push(format!("{krate}/src/{file} is in no row of tests/tidy/layers.rs"));
-        }
-    }
-    for (from, targets) in &imports.arrows {
-        for (to, lines) in targets {
-            let (Some((row, room)), Some((above, other))) = (room_of(rows, from), room_of(rows, to)) else {
-                continue;
-            };
-            if above >= row {
-                continue;
-            }
-            if UPWARDS.contains(&(krate, room, other)) {
-                met.insert((room.to_owned(), other.to_owned()));
-                continue;
-            }
-            let (name, upper) = (rows[row].0, rows[above].0);
-            wrong.push(format!(
-                "{krate}/src/{from}:{} in row `{name}` imports {to} of row `{upper}` above: (\"{krate}\", \"{room}\", \"{other}\")",
-                lines[0]
-            ));
-        }
-    }
-    wrong
+    let rooms = layers
+        .rows
+        .iter()
+        .enumerate()
+        .flat_map(|(row, (_, rooms))| rooms.iter().map(move |room| (row, room)));
+    rooms.filter(|(_, room)| fits(room)).max_by_key(|(_, room)| room.len()).map(|(row, _)| row)
 }
 
 #[test]
 fn imports_inside_a_crate_point_downwards() {
     let mut wrong = Vec::new();
-    for (krate, rows) in LAYERS {
-        let mut met = BTreeSet::new();
-        wrong.extend(upward(krate, rows, &imports::read(krate), &mut met));
-        for (_, from, to) in UPWARDS.iter().filter(|(name, ..)| name == krate) {
-            if !met.contains(&((*from).to_owned(), (*to).to_owned())) {
-                println!("{krate}: {from} imports {to} no more: take it out of UPWARDS");
+    for layers in layers() {
+        let (krate, imports) = (layers.krate, imports::read(layers.krate));
+        for file in imports.files.iter().filter(|file| *file != "lib.rs" && row_of(&layers, file).is_none()) {
+            wrong.push(format!("{krate}/src/{file} is in no row of tests/tidy/layers.txt"));
+        }
+        for (from, targets) in &imports.arrows {
+            for (to, line) in targets {
+                let (Some(row), Some(above)) = (row_of(&layers, from), row_of(&layers, to)) else { continue };
+                if above < row {
+                    let (name, upper) = (layers.rows[row].0, layers.rows[above].0);
+                    wrong.push(format!(
+                        "{krate}/src/{from}:{line} in row `{name}` imports {to} of row `{upper}` above"
+                    ));
+                }
             }
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
+
+type Graph = BTreeMap<String, BTreeSet<String>>;
 
 /// The graph of rooms: what is directly in `src`.
 fn rooms(imports: &Imports) -> Graph {
     let room = |file: &str| file.split('/').next().unwrap_or(file).trim_end_matches(".rs").to_owned();
     let mut graph = Graph::new();
-    for (from, targets) in &imports.arrows {
-        for to in targets.keys() {
-            if room(from) != room(to) && ![room(from), room(to)].contains(&"lib".to_owned()) {
-                graph.entry(room(from)).or_default().insert(room(to));
-            }
+    for (from, to) in
+        imports.arrows.iter().flat_map(|(from, targets)| targets.keys().map(move |to| (from, to)))
+    {
+        if room(from) != room(to) && ![room(from), room(to)].contains(&"lib".to_owned()) {
+            graph.entry(room(from)).or_default().insert(room(to));
         }
     }
     graph
 }
 
-fn file_graph(imports: &Imports) -> Graph {
-    imports.arrows.iter().map(|(from, targets)| (from.clone(), targets.keys().cloned().collect())).collect()
+/// The nodes that a node leads to.
+fn reached<'a>(graph: &'a Graph, from: &'a str) -> BTreeSet<&'a str> {
+    let mut found = BTreeSet::new();
+    let mut pending = vec![from];
+    while let Some(node) = pending.pop() {
+        let next = graph.get(node).into_iter().flatten();
+        pending.extend(next.filter(|next| found.insert(next.as_str())).map(String::as_str));
+    }
+    found
+}
+
+/// The groups of more than one node that reach each other.
+fn cycles(graph: &Graph) -> BTreeSet<Vec<&str>> {
+    let reach: BTreeMap<&str, BTreeSet<&str>> =
+        graph.keys().map(|node| (node.as_str(), reached(graph, node))).collect();
+    let returns = |node: &str, other: &str| reach.get(other).is_some_and(|back| back.contains(node));
+    let groups = reach.iter().map(|(node, theirs)| {
+        theirs.iter().copied().filter(|other| returns(node, other)).collect::<Vec<_>>()
+    });
+    groups.filter(|group| group.len() > 1).collect()
 }
 
 #[test]
 fn no_rooms_of_a_crate_form_an_import_cycle() {
-    let mut wrong = Vec::new();
-    for (krate, _) in LAYERS {
+    for Layers { krate, .. } in layers() {
         let graph = rooms(&imports::read(krate));
-        for group in circles::groups(&graph) {
-            let names: Vec<&str> = group.iter().map(String::as_str).collect();
-            let is_known = CIRCLES
-                .iter()
-                .any(|(name, known)| name == krate && names.iter().all(|room| known.contains(room)));
-            println!("{krate}: {} rooms in a circle: {}", names.len(), names.join(", "));
-            if !is_known {
-                wrong.push(format!("{krate}: the rooms {} import each other", names.join(", ")));
-            }
-        }
+        assert_eq!(cycles(&graph), BTreeSet::new(), "{krate}: rooms that import each other");
     }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]
 fn no_import_cycle_has_more_than_three_files() {
-    let known: BTreeMap<&str, usize> = FILES_IN_A_CIRCLE.iter().copied().collect();
-    let mut longest: (usize, String) = (0, String::new());
-    let mut wrong = Vec::new();
-    for (krate, _) in LAYERS {
-        let graph = file_graph(&imports::read(krate));
-        for group in circles::groups(&graph) {
-            let way = circles::longest(&graph, &group);
-            let shown = format!(
-                "{krate}: {} files reach each other; a way of {}: {}",
-                group.len(),
-                way.len(),
-                way.join(" → ")
-            );
-            if group.len() > known.get(krate).copied().unwrap_or(ALLOWED).max(ALLOWED) {
-                wrong.push(shown.clone());
-            }
-            if way.len() > longest.0 {
-                longest = (way.len(), shown);
-            }
+    for Layers { krate, .. } in layers() {
+        let arrows = imports::read(krate).arrows.into_iter();
+        let graph: Graph = arrows.map(|(from, targets)| (from, targets.into_keys().collect())).collect();
+        for group in cycles(&graph) {
+            assert!(group.len() <= MAX_FILES_IN_A_CYCLE, "{krate}: files that import each other: {group:?}");
         }
     }
-    println!("the longest: {}", longest.1);
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn cycles_are_found() {
+    let arrows = [("a", vec!["b"]), ("b", vec!["c", "d"]), ("c", vec!["a"]), ("d", vec!["e"])];
+    let graph: Graph = (arrows.into_iter())
+        .map(|(from, to)| (from.to_owned(), to.into_iter().map(str::to_owned).collect()))
+        .collect();
+    assert_eq!(cycles(&graph), BTreeSet::from([vec!["a", "b", "c"]]));
 }

@@ -5,7 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 
-use super::{files, relative, root};
+use crate::{files, relative, root};
 
 /// The comments of a source file, those of adjacent lines joined by a blank.
 fn comments(text: &str) -> String {
@@ -98,38 +98,6 @@ fn every_cited_page_and_section_is_in_the_book() {
         }
     }
     assert!(count >= 100, "only {count} citations");
-    assert!(broken.is_empty(), "{}", broken.join("\n"));
-}
-
-/// Folders that a path in the book begins with.
-const FOLDERS: [&str; 7] = ["kmotiondef/", "coff/", "vm/", "runtime/", "cc67/", "tests/", "c-programs/"];
-
-/// The paths of the repository that a page names between backquotes, outside of blocks.
-fn paths(page: &str) -> Vec<&str> {
-    let mut is_code = false;
-    let mut found = Vec::new();
-    for line in page.lines() {
-        is_code ^= line.starts_with("```");
-        if !is_code {
-            let quoted = line.split('`').skip(1).step_by(2);
-            found.extend(quoted.filter(|text| FOLDERS.iter().any(|folder| text.starts_with(folder))));
-        }
-    }
-    let is_path = |text: &&str| text.chars().all(|c| c.is_ascii_alphanumeric() || "/._-".contains(c));
-    found.into_iter().filter(is_path).collect()
-}
-
-#[test]
-fn paths_named_in_the_book_exist() {
-    let mut broken = Vec::new();
-    for file in files(&root().join("cc67/book/src"), "md").into_iter().chain([root().join("README.md")]) {
-        let text = fs::read_to_string(&file).expect("pages are UTF-8");
-        let dead = paths(&text).into_iter().filter(|path| {
-            let path = root().join(path);
-            !path.exists() && !path.with_extension("rs").exists()
-        });
-        broken.extend(dead.map(|path| format!("{} names {path}, which does not exist", relative(&file))));
-    }
     assert!(broken.is_empty(), "{}", broken.join("\n"));
 }
 

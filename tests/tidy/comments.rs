@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::{files, root};
+use crate::{files, root};
 
 /// The first words of noun clauses, which name a thing only by a question about it.
 const QUESTIONS: [&str; 7] = ["What", "Where", "Whether", "How", "Who", "Why", "Which"];

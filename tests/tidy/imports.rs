@@ -1,87 +1,77 @@
-//! Who imports whom inside a crate, file by file.
+//! Imports inside a crate, file by file.
 //!
 //! An arrow is a `use` or a path in the code that begins with `crate`, `super` or the crate's own name. A name that is
-//! imported again on the way is followed to the file that defines it. That a module names its own children is not an arrow;
-//! tests are left out.
+//! imported again on the way is followed to the file that defines it. That a module names its own children is not an
+//! arrow; tests are left out.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::Path;
 
-use crate::tokens::{Token, closing, tokens};
+use proc_macro2::{TokenStream, TokenTree};
+use syn::visit::{self, Visit};
+use syn::{Attribute, File, Item, ItemMacro, ItemUse, Macro, Path, UseTree};
+
 use crate::{files, root};
 
 /// The files of a crate and the arrows between them; files are named from `src` on.
 #[derive(Debug, Default)]
 pub(crate) struct Imports {
-    /// The lines in which each file names each other one.
-    pub(crate) arrows: BTreeMap<String, BTreeMap<String, Vec<usize>>>,
+    /// The files that each file names, and the line of the first place.
+    pub(crate) arrows: BTreeMap<String, BTreeMap<String, usize>>,
     /// Every file.
     pub(crate) files: BTreeSet<String>,
-}
-
-/// The name of a crate in paths.
-fn name_of(folder: &str) -> String {
-    match folder {
-        "cc67" => "cc67".to_owned(),
-        folder => folder.rsplit('/').next().unwrap_or(folder).to_owned(),
-    }
 }
 
 /// One file as a module.
 #[derive(Debug, Default)]
 struct Module {
     file: String,
-    tokens: Vec<Token>,
     /// The path of each name that is imported.
     uses: BTreeMap<String, Vec<String>>,
     /// Every path that is imported or written out, with its line.
     paths: Vec<(Vec<String>, usize)>,
+    /// The macros that it defines.
+    macros: Vec<String>,
 }
 
 /// Reads the crate in `folder`.
 pub(crate) fn read(folder: &str) -> Imports {
     let src = root().join(folder).join("src");
     let mut modules: BTreeMap<Vec<String>, Module> = BTreeMap::new();
-    let mut macros = BTreeMap::new();
     for path in files(&src, "rs") {
-        let file = relative_to(&path, &src);
+        let file = path.strip_prefix(&src).expect("it lies there").to_string_lossy().replace('\\', "/");
         if is_test(&file) {
             continue;
         }
         let text = fs::read_to_string(&path).expect("sources are UTF-8");
-        let module = Module::new(file, &text);
-        for pair in module.tokens.windows(3) {
-            if pair[0].text == "macro_rules" {
-                macros.insert(pair[2].text.clone(), module.file.clone());
-            }
-        }
+        let syntax: File =
+            syn::parse_file(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        let mut module = Module { file, ..Module::default() };
+        module.visit_file(&syntax);
         modules.insert(module_path(&module.file), module);
     }
-    let reader = Resolver { name: name_of(folder), modules: &modules, macros: &macros };
+    let macros =
+        modules.values().flat_map(|module| module.macros.iter().map(|name| (name.as_str(), &*module.file)));
+    let name = folder.rsplit('/').next().unwrap_or(folder);
+    let resolver = Resolver { name, modules: &modules, macros: macros.collect() };
     let mut imports =
         Imports { files: modules.values().map(|module| module.file.clone()).collect(), ..Imports::default() };
     for (at, module) in &modules {
         for (path, line) in &module.paths {
-            if let Some(target) = reader.resolve(at, path, 0).filter(|target| *target != module.file) {
-                let lines = imports.arrows.entry(module.file.clone()).or_default().entry(target).or_default();
-                lines.push(*line);
+            if let Some(target) = resolver.resolve(at, path, 0).filter(|target| *target != module.file) {
+                imports.arrows.entry(module.file.clone()).or_default().entry(target).or_insert(*line);
             }
         }
     }
     imports
 }
 
-fn relative_to(path: &Path, folder: &Path) -> String {
-    path.strip_prefix(folder).expect("it lies there").to_string_lossy().replace('\\', "/")
-}
-
-/// Whether a file holds only tests, or what only tests need.
+/// Returns whether a file holds only tests, or tools of tests.
 pub(crate) fn is_test(file: &str) -> bool {
     file.split('/').any(|part| matches!(part, "tests" | "tests.rs" | "testing" | "testing.rs"))
 }
 
-/// The path of the module that a file holds: none for the root of the crate.
+/// The path of the module that a file holds; empty for the root of the crate.
 fn module_path(file: &str) -> Vec<String> {
     let stem = file.strip_suffix(".rs").unwrap_or(file);
     let mut parts: Vec<String> = stem.split('/').map(str::to_owned).collect();
@@ -91,111 +81,126 @@ fn module_path(file: &str) -> Vec<String> {
     parts
 }
 
+/// Returns whether an item is only for tests.
+fn is_for_tests(attributes: &[Attribute]) -> bool {
+    attributes.iter().any(|attribute| {
+        let Ok(list) = attribute.meta.require_list() else { return attribute.path().is_ident("test") };
+        let words = list.tokens.to_string();
+        list.path.is_ident("cfg") && words.contains("test") && !words.contains("not")
+    })
+}
+
+impl<'ast> Visit<'ast> for Module {
+    fn visit_item(&mut self, item: &'ast Item) {
+        let attributes = match item {
+            Item::Fn(item) => &item.attrs,
+            Item::Impl(item) => &item.attrs,
+            Item::Macro(item) => &item.attrs,
+            Item::Mod(item) => &item.attrs,
+            Item::Struct(item) => &item.attrs,
+            Item::Use(item) => &item.attrs,
+            _ => return visit::visit_item(self, item),
+        };
+        if !is_for_tests(attributes) {
+            visit::visit_item(self, item);
+        }
+    }
+
+    fn visit_item_use(&mut self, item: &'ast ItemUse) {
+        self.tree(&item.tree, &mut Vec::new());
+    }
+
+    fn visit_item_macro(&mut self, item: &'ast ItemMacro) {
+        self.macros.extend(item.ident.as_ref().map(ToString::to_string));
+        visit::visit_item_macro(self, item);
+    }
+
+    fn visit_macro(&mut self, item: &'ast Macro) {
+        self.visit_path(&item.path);
+        self.tokens(item.tokens.clone());
+    }
+
+    fn visit_visibility(&mut self, _: &'ast syn::Visibility) {
+        // Who sees an item is no arrow.
+    }
+
+    fn visit_path(&mut self, path: &'ast Path) {
+        if path.segments.len() > 1 {
+            let line = path.segments[0].ident.span().start().line;
+            self.paths.push((path.segments.iter().map(|segment| segment.ident.to_string()).collect(), line));
+        }
+        visit::visit_path(self, path);
+    }
+}
+
 impl Module {
-    fn new(file: String, text: &str) -> Self {
-        let mut module = Self { file, tokens: tokens(text), ..Self::default() };
-        let mut at = 0;
-        while at < module.tokens.len() {
-            at = module.path_at(at);
-        }
-        module
-    }
-
-    /// Reads the import or path that begins at `at`; where to continue.
-    fn path_at(&mut self, at: usize) -> usize {
-        let text = |index: usize| self.tokens.get(index).map_or("", |token| token.text.as_str());
-        if text(at) == "use" && !matches!(text(at + 1), "<" | ">" | ",") {
-            let end = (at..self.tokens.len()).find(|index| text(*index) == ";").unwrap_or(self.tokens.len());
-            let tree: Vec<Token> = self.tokens[at + 1..end].to_vec();
-            self.tree(&tree, &[]);
-            return end;
-        }
-        if text(at) == "pub" && text(at + 1) == "(" {
-            // Who sees an item is no arrow.
-            return closing(&self.tokens, at + 1);
-        }
-        if text(at + 1) != "::" || !is_word(text(at)) {
-            return at + 1;
-        }
-        let mut path = vec![text(at).to_owned()];
-        let mut end = at + 1;
-        while text(end) == "::" && is_word(text(end + 1)) {
-            path.push(text(end + 1).to_owned());
-            end += 2;
-        }
-        if path.len() > 1 {
-            self.paths.push((path, self.tokens[at].line));
-        }
-        end
-    }
-
     /// Reads what is between `use` and `;`.
-    fn tree(&mut self, tree: &[Token], head: &[String]) {
-        let mut path = head.to_vec();
-        let Some(line) = tree.first().map(|token| token.line) else { return };
-        let mut at = 0;
-        while at < tree.len() {
-            match tree[at].text.as_str() {
-                "{" => {
-                    for part in parts(&tree[at + 1..closing(tree, at) - 1]) {
-                        self.tree(part, &path);
-                    }
-                    return;
-                }
-                "as" => {
-                    let name = tree.get(at + 1).map_or(String::new(), |token| token.text.clone());
-                    return self.import(name, path, line);
-                }
-                "*" => return self.paths.push((path, line)),
-                "self" if !path.is_empty() => {}
-                word if is_word(word) => path.push(word.to_owned()),
-                _ => {}
+    fn tree(&mut self, tree: &UseTree, head: &mut Vec<String>) {
+        let (name, line) = match tree {
+            UseTree::Path(path) => {
+                head.push(path.ident.to_string());
+                self.tree(&path.tree, head);
+                head.pop();
+                return;
             }
-            at += 1;
-        }
-        if let Some(name) = path.last().cloned() {
-            self.import(name, path, line);
-        }
-    }
-
-    fn import(&mut self, name: String, path: Vec<String>, line: usize) {
+            UseTree::Group(group) => return group.items.iter().for_each(|tree| self.tree(tree, head)),
+            UseTree::Glob(glob) => {
+                return self.paths.push((head.clone(), glob.star_token.spans[0].start().line));
+            }
+            UseTree::Name(name) => (&name.ident, name.ident.span().start().line),
+            UseTree::Rename(name) => (&name.ident, name.ident.span().start().line),
+        };
+        let mut path = head.clone();
+        path.extend((name != "self").then(|| name.to_string()));
+        let known_as = match tree {
+            UseTree::Rename(name) => Some(name.rename.to_string()),
+            _ => path.last().cloned(),
+        };
         self.paths.push((path.clone(), line));
-        self.uses.entry(name).or_insert(path);
-    }
-}
-
-fn is_word(text: &str) -> bool {
-    text.starts_with(|c: char| c.is_alphabetic() || c == '_')
-}
-
-/// The parts of a list between its commas.
-fn parts(tokens: &[Token]) -> Vec<&[Token]> {
-    let (mut found, mut start, mut at) = (Vec::new(), 0, 0);
-    while at < tokens.len() {
-        match tokens[at].text.as_str() {
-            "{" => at = closing(tokens, at),
-            "," => {
-                found.push(&tokens[start..at]);
-                (start, at) = (at + 1, at + 1);
-            }
-            _ => at += 1,
+        if let Some(name) = known_as {
+            self.uses.entry(name).or_insert(path);
         }
     }
-    found.push(&tokens[start..]);
-    found
+
+    /// Finds paths in the tokens of a macro.
+    fn tokens(&mut self, tokens: TokenStream) {
+        let (mut path, mut line, mut colons) = (Vec::new(), 0, 0);
+        for tree in tokens {
+            match tree {
+                TokenTree::Punct(sign) if sign.as_char() == ':' => colons += 1,
+                TokenTree::Ident(ident) => {
+                    if colons != 2 {
+                        self.paths.extend((path.len() > 1).then(|| (std::mem::take(&mut path), line)));
+                        path.clear();
+                        line = ident.span().start().line;
+                    }
+                    path.push(ident.to_string());
+                    colons = 0;
+                }
+                other => {
+                    self.paths.extend((path.len() > 1).then(|| (std::mem::take(&mut path), line)));
+                    path.clear();
+                    colons = 0;
+                    if let TokenTree::Group(group) = other {
+                        self.tokens(group.stream());
+                    }
+                }
+            }
+        }
+        self.paths.extend((path.len() > 1).then_some((path, line)));
+    }
 }
 
 struct Resolver<'a> {
-    name: String,
+    name: &'a str,
     modules: &'a BTreeMap<Vec<String>, Module>,
-    macros: &'a BTreeMap<String, String>,
+    macros: BTreeMap<&'a str, &'a str>,
 }
 
 impl Resolver<'_> {
     /// The file that a path of the module `at` leads to; none for paths that are not arrows.
     fn resolve(&self, at: &[String], path: &[String], depth: usize) -> Option<String> {
-        let (first, rest) = path.split_first()?;
-        let mut rest = rest;
+        let (first, mut rest) = path.split_first()?;
         let start = match first.as_str() {
             "crate" => Vec::new(),
             name if name == self.name => Vec::new(),
@@ -227,15 +232,15 @@ impl Resolver<'_> {
                 further.extend_from_slice(&path[index + 1..]);
                 return self.reexport(&at, &further, depth + 1).or_else(|| Some(module.file.clone()));
             }
-            if let Some(file) = self.macros.get(segment) {
-                return Some(file.clone());
+            if let Some(file) = self.macros.get(segment.as_str()) {
+                return Some((*file).to_owned());
             }
             break;
         }
         self.modules.get(&at).map(|module| module.file.clone())
     }
 
-    /// Where a name that the module `at` imports comes from; its own children count here.
+    /// Returns the file that defines a name that the module `at` imports; its own children count here.
     fn reexport(&self, at: &[String], path: &[String], depth: usize) -> Option<String> {
         self.resolve(at, path, depth).or_else(|| {
             let mut child = at.to_vec();

@@ -28,7 +28,7 @@
 //! | [`parse`], [`pp`], [`ast`], [`operators`] | the front end; the operators of C and their meanings |
 //! | [`diag`], [`words`], [`names`], [`files`], [`source`], `index` | messages, spelling, names, positions, indexes |
 //!
-//! A room uses only rooms in its own row or in rows below it (`tests/tidy/layers.rs`).
+//! A room uses only rooms in its own row or in rows below it (`tests/tidy/layers.txt`).
 //!
 //! Invariants:
 //! - This crate knows no board: the image is the interface to the machine.

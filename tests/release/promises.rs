@@ -9,7 +9,7 @@ use std::path::Path;
 
 use crate::{files, relative, root};
 
-/// What makes a line of a page a promise.
+/// Words that make a line of a page a promise.
 const WORDS: &[&str] = &[
     "F5",
     "Ctrl+Shift+B",
@@ -51,7 +51,7 @@ struct Promise {
 
 /// The rows of the table.
 fn promises() -> Vec<Promise> {
-    let text = fs::read_to_string(root().join("tests/tidy/promises.tsv")).expect("the table is there");
+    let text = fs::read_to_string(root().join("tests/release/promises.tsv")).expect("the table is there");
     let rows = text.lines().skip(1).map(|line| {
         let [page, text, kept_by] = line.split('\t').collect::<Vec<_>>()[..] else {
             panic!("three columns: {line}")
@@ -109,7 +109,7 @@ fn every_promise_of_a_page_is_in_the_table() {
             }
         }
     }
-    assert!(open.is_empty(), "promises without a row in tests/tidy/promises.tsv:\n{}", open.join("\n"));
+    assert!(open.is_empty(), "promises without a row in tests/release/promises.tsv:\n{}", open.join("\n"));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //!
 //! `cc67/THIRD-PARTY.txt` goes into every package, archive and wheel. It has the licence of each crate that the command, the
 //! C interface or the Python package is linked with, on any system, and the texts as the crates have them;
-//! `CC67_WRITE_NOTICES=1 cargo test --test tidy notices` writes it.
+//! `CC67_WRITE_NOTICES=1 cargo test --test release notices` writes it.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -48,7 +48,7 @@ fn unpacked((name, version): &Package) -> PathBuf {
         .unwrap_or_else(|| panic!("{folder} is not there: `cargo fetch --locked` gets it"))
 }
 
-/// Whether a file holds a licence, by its name.
+/// Returns whether a file holds a licence, by its name.
 fn is_licence(name: &str) -> bool {
     const BEGINNINGS: &[&str] = &["licen", "copying", "notice", "unlicense", "copyright", "ofl", "ufl"];
     let name = name.to_lowercase();
@@ -130,6 +130,6 @@ fn notices_name_every_crate_of_the_executables() {
     let different = now.lines().zip(written.lines()).find(|(now, written)| now != written);
     assert!(
         now == written,
-        "cc67/THIRD-PARTY.txt is out of date, first here: {different:?}; `CC67_WRITE_NOTICES=1 cargo test --test tidy notices` writes it"
+        "cc67/THIRD-PARTY.txt is out of date, first here: {different:?}; `CC67_WRITE_NOTICES=1 cargo test --test release notices` writes it"
     );
 }

@@ -6,14 +6,14 @@
 use std::collections::BTreeMap;
 use std::fs;
 
-use super::tokens::texts;
-use super::{files, relative, root};
+use harness::tokens::texts;
+use harness::{files, relative, root};
 
 /// A phrase of the list.
 struct Phrase {
     /// For each word what it may be; empty for any.
     words: Vec<Vec<String>>,
-    /// What to write instead.
+    /// The usual words.
     usual: String,
     /// After one of these words it is fine.
     after: Vec<String>,
@@ -38,7 +38,7 @@ impl Phrase {
         }
     }
 
-    /// Whether it begins at a place of a text.
+    /// Returns whether it begins at a position of a text.
     fn is_at(&self, text: &[Word], at: usize) -> bool {
         let Some(found) = text.get(at..at + self.words.len()) else { return false };
         let has = |list: &[String], word: Option<&Word>| word.is_some_and(|word| list.contains(&word.text));
@@ -90,7 +90,7 @@ fn words(page: &str) -> Vec<Word> {
 }
 
 fn phrases() -> Vec<Phrase> {
-    let list = fs::read_to_string(root().join("tests/tidy/worn-phrases.tsv")).expect("the list exists");
+    let list = fs::read_to_string(root().join("tests/docs/worn-phrases.tsv")).expect("the list exists");
     list.lines().filter(|line| line.contains('\t')).map(Phrase::parse).collect()
 }
 
@@ -143,7 +143,7 @@ fn no_source_has_a_worn_phrase_in_a_string_or_a_doc_comment() {
     for file in files(root(), "rs") {
         let path = relative(&file);
         // Its test has some.
-        if path == "tests/tidy/phrases.rs" {
+        if path == "tests/docs/phrases.rs" {
             continue;
         }
         let text = fs::read_to_string(&file).expect("sources are UTF-8");

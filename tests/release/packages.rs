@@ -4,8 +4,9 @@
 
 use std::fs;
 use std::path::{Component, Path, PathBuf};
+use std::process::Command;
 
-use crate::{code, files, relative, root};
+use crate::{files, relative, root};
 
 /// The folders of the workspace's crates.
 fn members() -> Vec<String> {
@@ -106,7 +107,7 @@ fn file_statements(code: &str) -> impl Iterator<Item = &str> {
         .filter(|text| !text.starts_with("use ") && (text.contains("fs::") || text.contains("read_dir(")))
 }
 
-/// What is wrong with a build script: errors of files that it passes over.
+/// Returns the statements of a build script that swallow errors: errors of files that it passes over.
 fn swallowed(code: &str) -> Vec<String> {
     let mut found: Vec<_> = file_statements(code)
         .filter(|text| !text.contains('?') || text.contains(".ok()") || text.contains("unwrap_or"))
@@ -154,7 +155,7 @@ fn included(code: &str) -> Vec<&str> {
         .collect()
 }
 
-/// Whether a source is only for tests, which stay in the repository and may use all of it.
+/// Returns whether a source is only for tests, which stay in the repository and may use all of it.
 fn is_test(file: &Path) -> bool {
     if file.ends_with("tests.rs") || file.components().any(|part| part.as_os_str() == "tests") {
         return true;
@@ -198,4 +199,63 @@ fn packages_read_nothing_outside_of_themselves() {
             assert!(!climbs, "{name} goes from its package to another folder");
         }
     }
+}
+
+/// Source text without line comments, so that prose may mention what code may not.
+fn code(path: &Path) -> String {
+    let text = fs::read_to_string(path).expect("sources are UTF-8");
+    text.lines().map(|line| line.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n")
+}
+
+/// The crates that a package needs to be built, of ours and of others.
+fn needed_by(package: &str) -> Vec<String> {
+    let output = Command::new(env!("CARGO"))
+        .args(["tree", "--offline", "--locked", "--edges", "normal", "--prefix", "none", "--format", "{p}"])
+        .args(["--package", package])
+        .current_dir(root())
+        .output()
+        .expect("cargo starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).expect("names of crates are ASCII");
+    let mut names: Vec<_> =
+        text.lines().filter_map(|line| line.split(' ').next().map(str::to_owned)).collect();
+    names.sort();
+    names.dedup();
+    names
+}
+
+#[test]
+fn embedding_a_board_builds_no_terminal_picture_web_or_cli_crate() {
+    const OF_THE_COMMAND: &[&str] = &[
+        "ab_glyph",
+        "anstream",
+        "anstyle",
+        "axum",
+        "cc67",
+        "clap",
+        "clap_builder",
+        "clap_complete",
+        "clap_mangen",
+        "console",
+        "crossterm",
+        "env_logger",
+        "epaint_default_fonts",
+        "hyper",
+        "image",
+        "indicatif",
+        "inferno",
+        "plotters",
+        "png",
+        "ratatui",
+        "rustyline",
+        "similar",
+        "termcolor",
+        "tiny_http",
+        "tokio",
+        "tungstenite",
+    ];
+    let needed = needed_by("cc67-host");
+    assert!(needed.iter().any(|name| name == "cc67-runtime"), "{needed:?}");
+    let found: Vec<_> = needed.iter().filter(|name| OF_THE_COMMAND.contains(&name.as_str())).collect();
+    assert!(found.is_empty(), "cc67-host needs {found:?}");
 }
