@@ -5,6 +5,8 @@
 //! parameter. `dispatch::execute` goes from instruction to instruction, calls and returns
 //! included, until something else is needed than registers and RAM; the loop around it sees to that.
 
+#![deny(clippy::wildcard_enum_match_arm, reason = "a new instruction, operator or mode must be decided")]
+
 mod activation;
 mod arith;
 mod code;

@@ -22,6 +22,8 @@
 //! Where threads lose the processor as on the board ([`Preemption::Instructions`](crate::engine::Preemption)), a
 //! segment that the budget does not cover is executed in [steps] up to the cycle in which the slice ends.
 
+#![deny(clippy::wildcard_enum_match_arm, reason = "a new instruction, operator or mode must be decided")]
+
 use std::ops::Range;
 
 use crate::kind::{Name, OpKind};
@@ -46,7 +48,7 @@ pub fn stated_points(ops: &[Op], body: Range<usize>) -> Vec<(usize, u32)> {
 }
 
 /// The cycles that an instruction charges.
-const fn stated(op: &Op) -> u32 {
+pub(crate) const fn stated(op: &Op) -> u32 {
     if let Op::Charge { cycles } = op { cycles.0 } else { 0 }
 }
 

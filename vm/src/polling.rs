@@ -12,6 +12,8 @@
 //! A loop is found by its backward branches. It need not have a single entry, and it may contain other loops: an engine
 //! counts an iteration only if all of it was in the words found here.
 
+#![deny(clippy::wildcard_enum_match_arm, reason = "a new instruction, operator or mode must be decided")]
+
 mod clock;
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,5 +1,7 @@
 //! A verified program: what the loader hands to the machine.
 
+#![deny(clippy::wildcard_enum_match_arm, reason = "a new instruction, operator or mode must be decided")]
+
 use std::ops::Range;
 
 use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT};
@@ -7,6 +9,8 @@ use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 
 use crate::firmware::{Pure, Signature};
 use crate::guard;
+use crate::kind::OpKind;
+use crate::meter;
 use crate::op::{Op, WORD};
 use crate::operand::{Class, FuncRef, SigRef};
 
@@ -99,11 +103,29 @@ impl Program {
     pub(crate) fn longest_step(&self, pure: &dyn Fn(GuestAddr) -> Option<Pure>) -> Cycles {
         let (mut charge, mut call) = (Cycles::default(), Cycles::default());
         for op in &self.ops {
-            if let Op::Charge { cycles } = op {
-                charge = charge.max(Cycles::new(cycles.0.into()));
-            } else if let Op::CallFw { addr, .. } = op {
-                let cost = pure(GuestAddr::new(addr.0)).map_or(Cycles::default(), |pure| pure.cost);
-                call = call.max(cost);
+            match op.kind() {
+                OpKind::Charge => charge = charge.max(Cycles::new(meter::stated(op).into())),
+                OpKind::Call => {
+                    let cost = firmware_callee(op).and_then(pure).map_or(Cycles::default(), |pure| pure.cost);
+                    call = call.max(cost);
+                }
+                OpKind::Structure
+                | OpKind::Constant
+                | OpKind::Move
+                | OpKind::Address
+                | OpKind::Arithmetic
+                | OpKind::Negation
+                | OpKind::Conversion
+                | OpKind::Load(_)
+                | OpKind::Store(_)
+                | OpKind::Block
+                | OpKind::Jump
+                | OpKind::Branch
+                | OpKind::Table
+                | OpKind::Argument(_)
+                | OpKind::Result(_)
+                | OpKind::Return(_)
+                | OpKind::Stop => {}
             }
         }
         charge + call
@@ -190,4 +212,9 @@ impl Program {
         let function = self.functions.get(next.checked_sub(1)?)?;
         (word < function.body.end).then_some(function)
     }
+}
+
+/// The address of the firmware function that an instruction calls.
+fn firmware_callee(op: &Op) -> Option<GuestAddr> {
+    if let Op::CallFw { addr, .. } = op { Some(GuestAddr::new(addr.0)) } else { None }
 }

@@ -4,6 +4,8 @@
 //! arguments as its callees expect them, and charges what it costs ([`meter`](crate::meter)).
 //! What depends on values (addresses, pointers to functions, divisors, depth of calls) is
 //! checked where it happens. Reading a register that was never written yields 0.
+
+#![deny(clippy::wildcard_enum_match_arm, reason = "a new instruction, operator or mode must be decided")]
 #![cfg_attr(
     not(test),
     deny(

@@ -2,6 +2,8 @@
 //!
 //! Source: axes-and-motion.md sections 11 and 12.
 
+#![deny(clippy::wildcard_enum_match_arm, reason = "a new instruction, operator or mode must be decided")]
+
 use kmotiondef::limits::{MAX_PWM_VALUE, MAX_PWMC_VALUE, MAXV};
 use kmotiondef::modes::OutputMode;
 use kmotiondef::structs::Chan;

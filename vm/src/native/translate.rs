@@ -13,6 +13,8 @@
 //! The arms of the instructions are in `arith.rs`, `memory.rs` and `control.rs`, one method an instruction, named as in
 //! the table.
 
+#![deny(clippy::wildcard_enum_match_arm, reason = "a new instruction, operator or mode must be decided")]
+
 mod accesses;
 mod arith;
 mod candidates;

@@ -5,6 +5,8 @@
 //! the charges. [`Generator`] does so for all functions of a unit. What comes in is IR, what goes out is [`Text`],
 //! [relocations](crate::relocation) and constants; [`references`] says what a program's instructions refer to.
 
+#![deny(clippy::wildcard_enum_match_arm, reason = "a new instruction, operator or mode must be decided")]
+
 pub(crate) mod head;
 mod legalize;
 mod meter;

@@ -15,152 +15,100 @@ pub(super) fn illegal() -> Op {
 /// The instruction with a constant of 16 bits as its second operand.
 pub(super) type Immediate = fn(RegI32, RegI32, Imm16) -> Op;
 
-/// The immediate form of an operator on 32 bits, if there is one; of `x - c` that is `x + -c`.
-pub(super) fn immediate(op: BinaryOp) -> Option<Immediate> {
-    match op {
-        BinaryOp::Add => Some(|dst, a, imm| Op::AddI32Imm { dst, a, imm }),
-        BinaryOp::Multiply => Some(|dst, a, imm| Op::MulI32Imm { dst, a, imm }),
-        BinaryOp::And => Some(|dst, a, imm| Op::AndI32Imm { dst, a, imm }),
-        BinaryOp::ShiftLeft => Some(|dst, a, imm| Op::ShlI32Imm { dst, a, imm }),
-        BinaryOp::ShiftRight => Some(|dst, a, imm| Op::ShrI32SImm { dst, a, imm }),
-        BinaryOp::ShiftRightUnsigned => Some(|dst, a, imm| Op::ShrI32UImm { dst, a, imm }),
-        BinaryOp::Subtract
-        | BinaryOp::Divide
-        | BinaryOp::DivideUnsigned
-        | BinaryOp::Remainder
-        | BinaryOp::RemainderUnsigned
-        | BinaryOp::Or
-        | BinaryOp::Xor => None,
-    }
+/// Expands a column of a table: the instruction with this name, or the illegal one for `-`.
+macro_rules! instruction {
+    (-, $dst:ident, $a:ident, $b:ident) => {
+        illegal()
+    };
+    ($op:ident, $dst:ident, $a:ident, $b:ident) => {
+        Op::$op { $dst, $a, $b }
+    };
 }
 
-pub(super) fn binary_i32(op: BinaryOp, dst: RegI32, a: RegI32, b: RegI32) -> Op {
-    match op {
-        BinaryOp::Add => Op::AddI32 { dst, a, b },
-        BinaryOp::Subtract => Op::SubI32 { dst, a, b },
-        BinaryOp::Multiply => Op::MulI32 { dst, a, b },
-        BinaryOp::Divide => Op::DivI32S { dst, a, b },
-        BinaryOp::DivideUnsigned => Op::DivI32U { dst, a, b },
-        BinaryOp::Remainder => Op::RemI32S { dst, a, b },
-        BinaryOp::RemainderUnsigned => Op::RemI32U { dst, a, b },
-        BinaryOp::And => Op::AndI32 { dst, a, b },
-        BinaryOp::Or => Op::OrI32 { dst, a, b },
-        BinaryOp::Xor => Op::XorI32 { dst, a, b },
-        BinaryOp::ShiftLeft => Op::ShlI32 { dst, a, b },
-        BinaryOp::ShiftRight => Op::ShrI32S { dst, a, b },
-        BinaryOp::ShiftRightUnsigned => Op::ShrI32U { dst, a, b },
-    }
+/// Expands the column of instructions with a constant.
+macro_rules! immediate {
+    (-) => {
+        None
+    };
+    ($op:ident) => {
+        Some(|dst, a, imm| Op::$op { dst, a, imm })
+    };
 }
 
-/// Every operator but the shifts.
-pub(super) fn binary_i64(op: BinaryOp, dst: RegI64, a: RegI64, b: RegI64) -> Op {
-    match op {
-        BinaryOp::Add => Op::AddI64 { dst, a, b },
-        BinaryOp::Subtract => Op::SubI64 { dst, a, b },
-        BinaryOp::Multiply => Op::MulI64 { dst, a, b },
-        BinaryOp::Divide => Op::DivI64S { dst, a, b },
-        BinaryOp::DivideUnsigned => Op::DivI64U { dst, a, b },
-        BinaryOp::Remainder => Op::RemI64S { dst, a, b },
-        BinaryOp::RemainderUnsigned => Op::RemI64U { dst, a, b },
-        BinaryOp::And => Op::AndI64 { dst, a, b },
-        BinaryOp::Or => Op::OrI64 { dst, a, b },
-        BinaryOp::Xor => Op::XorI64 { dst, a, b },
-        BinaryOp::ShiftLeft | BinaryOp::ShiftRight | BinaryOp::ShiftRightUnsigned => illegal(),
-    }
+/// Expands the table of binary operators into a function for each column.
+macro_rules! binary_operators {
+    ($($op:ident: $i32:tt $immediate:tt $i64:tt $shift:tt $f32:tt $f64:tt;)*) => {
+        /// The immediate form of an operator on 32 bits, if there is one; of `x - c` that is `x + -c`.
+        pub(super) fn immediate(op: BinaryOp) -> Option<Immediate> {
+            match op { $(BinaryOp::$op => immediate!($immediate),)* }
+        }
+
+        pub(super) fn binary_i32(op: BinaryOp, dst: RegI32, a: RegI32, b: RegI32) -> Op {
+            match op { $(BinaryOp::$op => instruction!($i32, dst, a, b),)* }
+        }
+
+        /// Every operator but the shifts.
+        pub(super) fn binary_i64(op: BinaryOp, dst: RegI64, a: RegI64, b: RegI64) -> Op {
+            match op { $(BinaryOp::$op => instruction!($i64, dst, a, b),)* }
+        }
+
+        pub(super) fn shift_i64(op: BinaryOp, dst: RegI64, a: RegI64, b: RegI32) -> Op {
+            match op { $(BinaryOp::$op => instruction!($shift, dst, a, b),)* }
+        }
+
+        pub(super) fn binary_f32(op: BinaryOp, dst: RegF32, a: RegF32, b: RegF32) -> Op {
+            match op { $(BinaryOp::$op => instruction!($f32, dst, a, b),)* }
+        }
+
+        pub(super) fn binary_f64(op: BinaryOp, dst: RegF64, a: RegF64, b: RegF64) -> Op {
+            match op { $(BinaryOp::$op => instruction!($f64, dst, a, b),)* }
+        }
+    };
 }
 
-pub(super) fn shift_i64(op: BinaryOp, dst: RegI64, a: RegI64, b: RegI32) -> Op {
-    match op {
-        BinaryOp::ShiftLeft => Op::ShlI64 { dst, a, b },
-        BinaryOp::ShiftRight => Op::ShrI64S { dst, a, b },
-        BinaryOp::ShiftRightUnsigned => Op::ShrI64U { dst, a, b },
-        BinaryOp::Add
-        | BinaryOp::Subtract
-        | BinaryOp::Multiply
-        | BinaryOp::Divide
-        | BinaryOp::DivideUnsigned
-        | BinaryOp::Remainder
-        | BinaryOp::RemainderUnsigned
-        | BinaryOp::And
-        | BinaryOp::Or
-        | BinaryOp::Xor => illegal(),
-    }
+// On 32 bits, with a constant, on 64 bits, on 64 bits by a count of 32 bits, on singles, on doubles.
+binary_operators! {
+    Add: AddI32 AddI32Imm AddI64 - AddF32 AddF64;
+    Subtract: SubI32 - SubI64 - SubF32 SubF64;
+    Multiply: MulI32 MulI32Imm MulI64 - MulF32 MulF64;
+    Divide: DivI32S - DivI64S - DivF32 DivF64;
+    DivideUnsigned: DivI32U - DivI64U - - -;
+    Remainder: RemI32S - RemI64S - - -;
+    RemainderUnsigned: RemI32U - RemI64U - - -;
+    And: AndI32 AndI32Imm AndI64 - - -;
+    Or: OrI32 - OrI64 - - -;
+    Xor: XorI32 - XorI64 - - -;
+    ShiftLeft: ShlI32 ShlI32Imm - ShlI64 - -;
+    ShiftRight: ShrI32S ShrI32SImm - ShrI64S - -;
+    ShiftRightUnsigned: ShrI32U ShrI32UImm - ShrI64U - -;
 }
 
-/// The operators that floats have.
-pub(super) fn binary_f32(op: BinaryOp, dst: RegF32, a: RegF32, b: RegF32) -> Op {
-    match op {
-        BinaryOp::Add => Op::AddF32 { dst, a, b },
-        BinaryOp::Subtract => Op::SubF32 { dst, a, b },
-        BinaryOp::Multiply => Op::MulF32 { dst, a, b },
-        BinaryOp::Divide => Op::DivF32 { dst, a, b },
-        BinaryOp::DivideUnsigned
-        | BinaryOp::Remainder
-        | BinaryOp::RemainderUnsigned
-        | BinaryOp::And
-        | BinaryOp::Or
-        | BinaryOp::Xor
-        | BinaryOp::ShiftLeft
-        | BinaryOp::ShiftRight
-        | BinaryOp::ShiftRightUnsigned => illegal(),
-    }
+/// Expands the table of comparisons into a function for each column.
+macro_rules! comparisons {
+    ($($op:ident: $i32:ident $i64:ident $f32:ident $f64:ident;)*) => {
+        pub(super) fn compare_i32(op: CompareOp, dst: RegI32, a: RegI32, b: RegI32) -> Op {
+            match op { $(CompareOp::$op => Op::$i32 { dst, a, b },)* }
+        }
+
+        pub(super) fn compare_i64(op: CompareOp, dst: RegI32, a: RegI64, b: RegI64) -> Op {
+            match op { $(CompareOp::$op => Op::$i64 { dst, a, b },)* }
+        }
+
+        pub(super) fn compare_f32(op: CompareOp, dst: RegI32, a: RegF32, b: RegF32) -> Op {
+            match op { $(CompareOp::$op => Op::$f32 { dst, a, b },)* }
+        }
+
+        pub(super) fn compare_f64(op: CompareOp, dst: RegI32, a: RegF64, b: RegF64) -> Op {
+            match op { $(CompareOp::$op => Op::$f64 { dst, a, b },)* }
+        }
+    };
 }
 
-/// The operators that floats have.
-pub(super) fn binary_f64(op: BinaryOp, dst: RegF64, a: RegF64, b: RegF64) -> Op {
-    match op {
-        BinaryOp::Add => Op::AddF64 { dst, a, b },
-        BinaryOp::Subtract => Op::SubF64 { dst, a, b },
-        BinaryOp::Multiply => Op::MulF64 { dst, a, b },
-        BinaryOp::Divide => Op::DivF64 { dst, a, b },
-        BinaryOp::DivideUnsigned
-        | BinaryOp::Remainder
-        | BinaryOp::RemainderUnsigned
-        | BinaryOp::And
-        | BinaryOp::Or
-        | BinaryOp::Xor
-        | BinaryOp::ShiftLeft
-        | BinaryOp::ShiftRight
-        | BinaryOp::ShiftRightUnsigned => illegal(),
-    }
-}
-
-pub(super) fn compare_i32(op: CompareOp, dst: RegI32, a: RegI32, b: RegI32) -> Op {
-    match op {
-        CompareOp::Equal => Op::EqI32 { dst, a, b },
-        CompareOp::NotEqual => Op::NeI32 { dst, a, b },
-        CompareOp::Less => Op::LtI32S { dst, a, b },
-        CompareOp::LessEqual => Op::LeI32S { dst, a, b },
-        CompareOp::LessUnsigned => Op::LtI32U { dst, a, b },
-        CompareOp::LessEqualUnsigned => Op::LeI32U { dst, a, b },
-    }
-}
-
-pub(super) fn compare_i64(op: CompareOp, dst: RegI32, a: RegI64, b: RegI64) -> Op {
-    match op {
-        CompareOp::Equal => Op::EqI64 { dst, a, b },
-        CompareOp::NotEqual => Op::NeI64 { dst, a, b },
-        CompareOp::Less => Op::LtI64S { dst, a, b },
-        CompareOp::LessEqual => Op::LeI64S { dst, a, b },
-        CompareOp::LessUnsigned => Op::LtI64U { dst, a, b },
-        CompareOp::LessEqualUnsigned => Op::LeI64U { dst, a, b },
-    }
-}
-
-pub(super) fn compare_f32(op: CompareOp, dst: RegI32, a: RegF32, b: RegF32) -> Op {
-    match op {
-        CompareOp::Equal => Op::EqF32 { dst, a, b },
-        CompareOp::NotEqual => Op::NeF32 { dst, a, b },
-        CompareOp::Less | CompareOp::LessUnsigned => Op::LtF32 { dst, a, b },
-        CompareOp::LessEqual | CompareOp::LessEqualUnsigned => Op::LeF32 { dst, a, b },
-    }
-}
-
-pub(super) fn compare_f64(op: CompareOp, dst: RegI32, a: RegF64, b: RegF64) -> Op {
-    match op {
-        CompareOp::Equal => Op::EqF64 { dst, a, b },
-        CompareOp::NotEqual => Op::NeF64 { dst, a, b },
-        CompareOp::Less | CompareOp::LessUnsigned => Op::LtF64 { dst, a, b },
-        CompareOp::LessEqual | CompareOp::LessEqualUnsigned => Op::LeF64 { dst, a, b },
-    }
+comparisons! {
+    Equal: EqI32 EqI64 EqF32 EqF64;
+    NotEqual: NeI32 NeI64 NeF32 NeF64;
+    Less: LtI32S LtI64S LtF32 LtF64;
+    LessEqual: LeI32S LeI64S LeF32 LeF64;
+    LessUnsigned: LtI32U LtI64U LtF32 LtF64;
+    LessEqualUnsigned: LeI32U LeI64U LeF32 LeF64;
 }

@@ -26,20 +26,20 @@ pub(crate) enum Reference {
 /// Returns the reference of the instruction with number `word`.
 pub(crate) fn reference(program: &Program, word: usize) -> Reference {
     let Some(op) = program.ops().get(word) else { return Reference::Nothing };
-    if let Op::Call { func } = op {
-        Reference::Call(program.base().get() + func.0 * WORD as u32)
-    } else if let Op::CallFw { addr, .. } = op {
-        Reference::Firmware(addr.0)
-    } else if let Op::CallPtr { sig, .. } = op {
-        Reference::Pointer(*sig)
-    } else if let Op::ConstI32 { imm, .. } = op {
-        Reference::Number(imm.0.cast_unsigned())
-    } else if let Op::ConstF64 { pool, .. } = op {
-        let bits = program.pool().get(pool.0 as usize);
-        bits.map_or(Reference::Nothing, |bits| Reference::Float(f64::from_bits(*bits)))
-    } else if let Op::ConstF32 { bits, .. } = op {
-        Reference::Single(f32::from_bits(bits.0))
-    } else {
-        Reference::Nothing
+    #[expect(
+        clippy::wildcard_enum_match_arm,
+        reason = "other instructions name nothing outside of their operands"
+    )]
+    match op {
+        Op::Call { func } => Reference::Call(program.base().get() + func.0 * WORD as u32),
+        Op::CallFw { addr, .. } => Reference::Firmware(addr.0),
+        Op::CallPtr { sig, .. } => Reference::Pointer(*sig),
+        Op::ConstI32 { imm, .. } => Reference::Number(imm.0.cast_unsigned()),
+        Op::ConstF64 { pool, .. } => {
+            let bits = program.pool().get(pool.0 as usize);
+            bits.map_or(Reference::Nothing, |bits| Reference::Float(f64::from_bits(*bits)))
+        }
+        Op::ConstF32 { bits, .. } => Reference::Single(f32::from_bits(bits.0)),
+        _ => Reference::Nothing,
     }
 }

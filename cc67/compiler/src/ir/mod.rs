@@ -9,6 +9,8 @@
 //! Constants are operands, not instructions. Memory is reached only by `load`, `store`,
 //! `copy_memory`, `clear_memory` and calls; no pass may drop, merge or move one of these.
 
+#![deny(clippy::wildcard_enum_match_arm, reason = "a new instruction, operator or mode must be decided")]
+
 mod arithmetic;
 pub mod builder;
 mod classes;

@@ -220,7 +220,10 @@ impl<'a> Copier<'a> {
                     }
                     Terminator::Jump(behind)
                 }
-                other => self.terminator(other.clone()),
+                other @ (Terminator::Jump(_)
+                | Terminator::Branch { .. }
+                | Terminator::Table { .. }
+                | Terminator::Unreachable) => self.terminator(other.clone()),
             };
             let copy = self.blocks[*id];
             self.to.blocks[copy].insts = insts;

@@ -4,6 +4,8 @@
 //! pass over its function, up to a limit. They work on values only: loads, stores and calls keep their number and order
 //! (specification, `dialect.md` 1.5); only calls of small functions are inlined.
 
+#![deny(clippy::wildcard_enum_match_arm, reason = "a new instruction, operator or mode must be decided")]
+
 pub mod dead;
 pub mod divide;
 pub mod evaluate;

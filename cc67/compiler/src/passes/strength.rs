@@ -45,7 +45,7 @@ pub(super) fn binary(op: BinaryOp, a: Operand, b: Operand, class: Class) -> Simp
         (Operand::Constant(x), Operand::Constant(y)) => Simplified::from(binary_constant(op, x, y)),
         (Operand::Constant(_), Operand::Value(_)) if op.is_commutative() => match right_constant(op, b, a) {
             Simplified::No => Simplified::Binary(op, b, a),
-            better => better,
+            better @ (Simplified::Operand(_) | Simplified::Binary(..) | Simplified::Compare(..)) => better,
         },
         (Operand::Value(_), Operand::Constant(_)) => right_constant(op, a, b),
         (Operand::Value(x), Operand::Value(y)) if x == y && class.is_integer() => same(op, a, class),

@@ -284,25 +284,24 @@ impl<'a> Planner<'a> {
     /// Equal sums and products of roots are the same root, and a constant in a factor is one in the product.
     fn result(&mut self, op: &Op, symbols: &[SymbolicValue]) -> SymbolicValue {
         let of = |register: RegI32| symbols[register.index()];
-        // What is not followed makes a value of its own, which is right for every instruction.
-        let (root, distance) = if let Op::MovI32 { src, .. } = *op {
-            of(src)
-        } else if let Op::AddI32Imm { a, imm, .. } = *op {
-            (of(a).0, of(a).1.wrapping_add(imm.0.into()))
-        } else if let Op::MulI32Imm { a, imm, .. } = *op {
-            self.product(of(a), imm.0.into())
-        } else if let Op::ShlI32Imm { a, imm, .. } = *op
-            && (0..16).contains(&imm.0)
-        {
-            self.product(of(a), 1 << imm.0)
-        } else if let Op::AddI32 { a, b, .. } = *op {
-            let ((a, from), (b, by)) = (of(a), of(b));
-            (self.sum(a, b), from.wrapping_add(by))
-        } else if let Op::SubI32 { a, b, .. } = *op {
-            let ((a, from), (b, by)) = (of(a), of(b));
-            (self.made(Made::Difference(a, b)), from.wrapping_sub(by))
-        } else {
-            self.root()
+        #[expect(
+            clippy::wildcard_enum_match_arm,
+            reason = "a value of its own is right for every instruction"
+        )]
+        let (root, distance) = match *op {
+            Op::MovI32 { src, .. } => of(src),
+            Op::AddI32Imm { a, imm, .. } => (of(a).0, of(a).1.wrapping_add(imm.0.into())),
+            Op::MulI32Imm { a, imm, .. } => self.product(of(a), imm.0.into()),
+            Op::ShlI32Imm { a, imm, .. } if (0..16).contains(&imm.0) => self.product(of(a), 1 << imm.0),
+            Op::AddI32 { a, b, .. } => {
+                let ((a, from), (b, by)) = (of(a), of(b));
+                (self.sum(a, b), from.wrapping_add(by))
+            }
+            Op::SubI32 { a, b, .. } => {
+                let ((a, from), (b, by)) = (of(a), of(b));
+                (self.made(Made::Difference(a, b)), from.wrapping_sub(by))
+            }
+            _ => self.root(),
         };
         if distance.unsigned_abs() < MAX_DISTANCE { (root, distance) } else { self.root() }
     }

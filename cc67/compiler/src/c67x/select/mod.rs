@@ -4,6 +4,8 @@
 //! inside a loop they are made in front of the first block, and the allocator makes them again where it has no
 //! register for them.
 
+#![deny(clippy::wildcard_enum_match_arm, reason = "a new instruction, operator or mode must be decided")]
+
 mod call;
 mod constants;
 mod convert;
