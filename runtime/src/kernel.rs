@@ -6,7 +6,7 @@ use kmotiondef::AccessSize;
 use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, FirmwareFunction, Function, function_at};
 use kmotiondef::function::{Attributes, Polled};
 use kmotiondef::limits::MAX_GATHER_DATA;
-use kmotiondef::map::{FPGA, TIMER0};
+use kmotiondef::map::{FPGA, PROGRAM_SIZE, TIMER0, program_base};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::{
     CURRENT_THREAD, LAST_TIMER0, NEXT_AVAIL_IN, NEXT_AVAIL_OUT, SERVO_TICK, USER_CALL_BACK,
@@ -22,7 +22,7 @@ use vm::scheduler::Turn;
 use vm::trap::{Trap, TrapKind};
 
 use crate::commands::Scripts;
-use crate::firmware::calls::WrongWait;
+use crate::firmware::calls::{SmallMove, WrongWait, WrongZero};
 use crate::firmware::dispatch::{Answer, HANDLERS, signatures};
 use crate::firmware::later::{self, Callee, Callees, LATER_FUNCTIONS};
 use crate::firmware::level::ModelledBoard;
@@ -48,6 +48,11 @@ use crate::world::trace::{Record, View};
 
 /// The address after the gather buffer. Nothing but a program writes there.
 const GATHER_END: GuestAddr = GuestAddr::new(0x8010_2010 + 8 * MAX_GATHER_DATA as u32);
+
+/// The address after `persist.UserData`, its elements, and words after it that nothing but a program writes.
+const USER_DATA_END: u32 = 0x1001_7020;
+const USER_DATA_ELEMENTS: u32 = 200;
+const AFTER_USER_DATA: u32 = 100;
 
 /// The cost of a register access beyond the instruction if time is not the board's: 200 ns, a timer 100 ns.
 const FPGA_CYCLES: Cycles = Cycles::new(40);
@@ -155,7 +160,7 @@ impl Kernel {
     /// Tells what only the end of a run makes certain.
     pub(crate) fn sum_up(&mut self, context: &TickContext<'_>) {
         self.settle_notices(context.now);
-        let Parts { out, machine, io, calls, races, pc, .. } = &mut self.parts;
+        let Parts { out, machine, io, calls, races, pc, level, .. } = &mut self.parts;
         let held = String::from_utf8_lossy(out.console.held()).into_owned();
         if !held.is_empty() {
             let (thread, at) = calls.notices.last_print;
@@ -172,8 +177,21 @@ impl Kernel {
         if context.memory.peek::<f64>(GATHER_END).to_bits() != 0 {
             out.remark(context.now, Message::GatherOverrun { most: MAX_GATHER_DATA });
         }
+        let is_known = level.board().is_default();
+        let beyond = |word: &u32| context.memory.peek::<u32>(GuestAddr::new(USER_DATA_END + 4 * word)) != 0;
+        if let Some(word) = (0..AFTER_USER_DATA).find(beyond).filter(|_| is_known) {
+            out.remark(context.now, Message::UserDataOverrun { index: USER_DATA_ELEMENTS + word });
+        }
+        for (axis, SmallMove { thread, at, function, way }) in calls.motions.small_moves() {
+            let message = Message::TinyMove { function, axis, way };
+            out.remark_of(context.now, Speaker::Thread(thread), at, message);
+        }
         for WrongWait { thread, asked, moving, at } in calls.motions.wrong_waits() {
             let message = Message::WaitsForOther { asked, moving };
+            out.remark_of(context.now, Speaker::Thread(thread), at, message);
+        }
+        for WrongZero { thread, axis, homed, at } in calls.motions.wrong_zeros() {
+            let message = Message::ZeroesOther { axis, homed };
             out.remark_of(context.now, Speaker::Thread(thread), at, message);
         }
         for thread in ThreadId::all().filter(|thread| context.threads.state(*thread).is_active()) {
@@ -183,6 +201,22 @@ impl Kernel {
                     out.remark_of(context.now, Speaker::Thread(thread), None, message);
                 }
             }
+        }
+    }
+
+    /// Reports a call-back of one thread that replaces that of another.
+    fn note_call_back(&mut self, call_back: GuestAddr, now: Cycles) {
+        let owner = |address: GuestAddr| {
+            ThreadId::all().find(|thread| {
+                let start = program_base(*thread).get();
+                (start..start + PROGRAM_SIZE).contains(&address.get())
+            })
+        };
+        let before = std::mem::replace(&mut self.parts.calls.notices.call_back, call_back);
+        if let (Some(thread), Some(by)) = (owner(before), owner(call_back))
+            && thread != by
+        {
+            self.parts.out.remark(now, Message::CallBackReplaced { thread, by });
         }
     }
 
@@ -215,21 +249,28 @@ impl Kernel {
     }
 }
 
-/// A bit is waited for: whether the axis that would close its switch moves the other way.
+/// A bit is waited for: tells if the axes that would close its switches move the other way.
 fn moves_away(machine: &Machine, io: &Io, memory: &GuestMemory, bit: Bit) -> Option<Message> {
-    let (axis, condition, active) = machine.mechanics.contact(bit)?;
-    let condition = condition?;
-    let load = machine.loads[axis].load;
-    let velocity = memory.axis(axis, Chan::LAST_VEL);
-    let is_moving = memory.axis(axis, Chan::ENABLE) != 0 && velocity != 0.0;
-    let goes_away = match condition {
-        Condition::AtMost(place) => load > place && velocity > 0.0,
-        Condition::AtLeast(place) => load < place && velocity < 0.0,
-        Condition::Between(from, to) => load > to && velocity > 0.0 || load < from && velocity < 0.0,
-    };
-    let is_closed = bit_state(io, memory, bit).0 == active;
-    let place = condition.to_string();
-    (is_moving && goes_away && !is_closed).then_some(Message::MovesAway { axis, bit, place, load })
+    let mut away = None;
+    for (axis, condition, active) in machine.mechanics.contacts(bit) {
+        let (condition, load) = (condition?, machine.loads[axis].load);
+        let velocity = memory.axis(axis, Chan::LAST_VEL);
+        if memory.axis(axis, Chan::ENABLE) == 0 || velocity == 0.0 {
+            continue;
+        }
+        let goes_away = match condition {
+            Condition::AtMost(place) => load > place && velocity > 0.0,
+            Condition::AtLeast(place) => load < place && velocity < 0.0,
+            Condition::Between(from, to) => load > to && velocity > 0.0 || load < from && velocity < 0.0,
+        };
+        // A switch at the other end of the travel will do.
+        if !goes_away || bit_state(io, memory, bit).0 == active {
+            return None;
+        }
+        let place = condition.to_string();
+        away.get_or_insert(Message::MovesAway { axis, bit, place, load });
+    }
+    away
 }
 
 /// Sends what waits in the console's queue: as much as the primary thread has time for in its slice, or one string if
@@ -412,7 +453,11 @@ impl Firmware for Kernel {
         }
         let changed = crate::servo::tick(&mut parts.servo_tick(), context.memory, is_touched);
         self.sample(context, 1);
-        let calls_back = !context.memory.get(USER_CALL_BACK).is_null();
+        let call_back = context.memory.get(USER_CALL_BACK);
+        let calls_back = !call_back.is_null();
+        if call_back != self.parts.calls.notices.call_back {
+            self.note_call_back(call_back, context.now);
+        }
         self.parts.servo.cache.settle(!changed && !acted && !calls_back);
     }
 

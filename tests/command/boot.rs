@@ -11,7 +11,7 @@ const HELLO: &str =
     "#include \"KMotionDef.h\"\nmain()\n{\n  persist.UserData[3] = 7;\n  printf(\"hello\\n\");\n}\n";
 
 /// The firmware file, if there is one.
-fn firmware() -> Option<String> {
+pub(crate) fn firmware() -> Option<String> {
     let Some(path) = env::var_os("CC67_FIRMWARE") else {
         println!("not run: CC67_FIRMWARE names no firmware file");
         return None;

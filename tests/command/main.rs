@@ -5,6 +5,7 @@ mod beside;
 mod board_options;
 mod boot;
 mod boot_debug;
+mod boot_mistakes;
 mod console;
 mod controller;
 mod doctor;

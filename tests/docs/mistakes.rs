@@ -17,18 +17,25 @@ No program in `c-programs/` gets any of these messages, and neither do correct p
 const WITHOUT_LINE: &[&str] = &[
     "analog_output_of_an_axis_written",
     "axis_that_runs_away",
+    "call_back_of_another_thread_replaced",
+    "dest_written_instead_of_a_move",
     "file_never_closed",
     "file_written_without_being_open",
     "integrator_that_overshoots",
     "jog_that_nobody_stops",
+    "lines_of_two_threads_mixed",
+    "motor_against_the_end_of_its_travel",
+    "path_smoothed_with_no_time_constant",
     "path_with_a_disabled_axis",
     "position_written_while_enabled",
     "request_of_another_thread_overwritten",
     "running_program_replaced",
     "sign_of_the_output_wrong_without_integrator",
     "speed_that_the_gain_cannot_follow",
+    "stepper_beyond_the_end_of_its_travel",
     "two_files_open_for_writing",
     "two_threads_move_one_axis",
+    "user_data_beyond_its_end_in_a_loop",
 ];
 
 /// A mistake as its file has it.

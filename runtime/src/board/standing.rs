@@ -9,7 +9,7 @@ use kmotiondef::function::Polled;
 use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::{COORD_SYSTEM0, CS0_STOPPING_STATE};
-use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, ThreadId};
+use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId};
 use vm::engine::Engine;
 use vm::thread::{Progress, ThreadState};
 use vm::wake::Wake;
@@ -66,7 +66,27 @@ pub enum Awaited {
     /// The end of a recording.
     Recording,
     /// A lock.
-    Lock,
+    Lock(Option<Owner>),
+}
+
+/// The thread that has a lock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Owner {
+    /// Its number.
+    pub thread: ThreadId,
+    /// The reason for which it does not free the lock.
+    pub state: OwnerState,
+}
+
+/// The state of a thread that has a lock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OwnerState {
+    /// It runs.
+    Active,
+    /// It is paused.
+    Paused,
+    /// Its program has ended.
+    Ended,
 }
 
 /// The origin of a bit's level.
@@ -184,9 +204,21 @@ impl<E: Engine> Board<E> {
             }
             Polled::Path => Some(Awaited::Path),
             Polled::Recording => Some(Awaited::Recording),
-            Polled::Lock => Some(Awaited::Lock),
+            Polled::Lock => Some(Awaited::Lock(self.owner(call.argument))),
             Polled::Time => None,
         }
+    }
+
+    /// The thread that has a lock, as far as the word of the lock says it.
+    fn owner(&self, lock: i32) -> Option<Owner> {
+        let word: i32 = self.memory().peek(GuestAddr::new(lock.cast_unsigned()));
+        let thread = ThreadId::new(word.checked_sub(1)?)?;
+        let state = match *self.thread(thread) {
+            ThreadState::Active(_) => OwnerState::Active,
+            ThreadState::Paused(_) => OwnerState::Paused,
+            ThreadState::Empty | ThreadState::Ready | ThreadState::Faulted(_) => OwnerState::Ended,
+        };
+        Some(Owner { thread, state })
     }
 
     /// Returns the origin of a bit's level.

@@ -3,51 +3,31 @@
 //!
 //! The board accepts all of it silently. Each check is one remark, with the call that made it come to light.
 
+mod enabling;
+
 use kmotiondef::firmware::Function;
-use kmotiondef::modes::{BacklashMode, InputMode, OutputMode};
+use kmotiondef::modes::{BacklashMode, InputMode, LastMotion, OutputMode};
 use kmotiondef::structs::{Chan, Iir};
-use kmotiondef::variables::KSTEP_PRESENT;
+use kmotiondef::variables::COORD_SYSTEM0;
 use kmotiondef::{AxisId, Bit, Field};
 use vm::firmware::Caller;
 use vm::memory::GuestMemory;
 
-use super::calls::{EndedWait, Jogged};
+use enabling::loop_input;
+
+use super::calls::{EndedWait, Jogged, SmallMove};
 use super::parts::Parts;
-use crate::io::kanalog;
-use crate::machine::Channel;
 use crate::machine::description::Condition;
-use crate::machine::wiring::{DACS, PWMS, channel_of};
 use crate::out::{Message, Speaker};
-use crate::servo::independent::has_motion;
+use crate::servo::coordinated::system::is_member;
+use crate::servo::independent::{has_motion, is_exponential};
 use crate::servo::limits::{WatchedLimit, watched_limits};
 use crate::views::{Typed, chan};
 
-/// PWM channels that belong to no option board.
-const WITHOUT_AMPLIFIER: std::ops::Range<usize> = 0..8;
-/// The drive of a load with the model `motor`, if the machine file names no channel.
-const SERVO: &str = "a servo amplifier (model = \"motor\"), which steps do not turn";
-/// Encoder inputs of a board and its SnapAmps.
-const ENCODERS: usize = 16;
-/// Numbers of step generators in `OutputChan0`: the low three bits are the generator, the others the kind of its pins.
-const STEP_CHANNELS: usize = 64;
-/// Step generators of a KStep.
-const ON_KSTEP: std::ops::Range<usize> = 0..4;
-
 /// A program enables an axis at a destination.
 pub(crate) fn enabled(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId, dest: f64) {
-    let memory = &*caller.memory;
-    let messages = [
-        no_such_output(memory, function, axis),
-        no_such_input(memory, function, axis),
-        shared_channel(memory, function, axis),
-        shared_input(memory, function, axis),
-        wrong_input(parts, memory, function, axis),
-        wrong_output(parts, memory, function, axis),
-        no_amplifier(parts, memory, function, axis),
-        leap(memory, function, axis, dest),
-        short_pulses(parts, memory, function, axis),
-    ];
-    for message in messages.into_iter().flatten() {
+    let messages = enabling::messages(parts, caller.memory, function, axis, dest);
+    for message in messages {
         parts.out.diagnose(caller, message);
     }
     parts.calls.motions.enabled(axis, connection(caller.memory, axis));
@@ -65,6 +45,17 @@ fn connection(memory: &GuestMemory, axis: AxisId) -> [i32; CONNECTION.len()] {
     CONNECTION.map(|(_, field)| memory.axis(axis, field))
 }
 
+/// A limit switch that only another axis trips.
+fn limit_of_other(parts: &Parts, memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
+    let mechanics = &parts.machine.mechanics;
+    let is_others = |limit: &WatchedLimit| {
+        mechanics.contact(limit.bit).is_some() && !mechanics.owners(limit.bit).any(|owner| owner == axis)
+    };
+    let WatchedLimit { end, bit, .. } = watched_limits(memory, axis).into_iter().find(is_others)?;
+    let other = mechanics.owners(bit).next()?;
+    Some(Message::LimitOfOther { function, axis, end, bit, other })
+}
+
 /// A limit switch that the machine has at the other end.
 fn limit_at_other_end(
     parts: &Parts,
@@ -72,16 +63,20 @@ fn limit_at_other_end(
     function: Function,
     axis: AxisId,
 ) -> Option<Message> {
-    watched_limits(memory, axis).into_iter().find_map(|WatchedLimit { end, bit, is_upper }| {
-        let (owner, place, _) = parts.machine.mechanics.contact(bit)?;
-        let place = place.filter(|_| owner == axis)?;
-        let is_wrong = match place {
+    let limits = watched_limits(memory, axis);
+    if limits.windows(2).any(|pair| pair[0].bit == pair[1].bit) {
+        return None;
+    }
+    limits.into_iter().find_map(|WatchedLimit { end, bit, is_upper, .. }| {
+        let contacts = parts.machine.mechanics.contacts(bit).filter(|(owner, ..)| *owner == axis);
+        let places: Vec<_> = contacts.filter_map(|(_, place, _)| place).collect();
+        let is_wrong = |place: &Condition| match place {
             Condition::AtMost(_) => is_upper,
             Condition::AtLeast(_) => !is_upper,
             Condition::Between(..) => false,
         };
-        let place = place.to_string();
-        is_wrong.then_some(Message::LimitAtOtherEnd { function, axis, end, bit, place })
+        let place = places.first().filter(|_| places.iter().all(is_wrong))?.to_string();
+        Some(Message::LimitAtOtherEnd { function, axis, end, bit, place })
     })
 }
 
@@ -103,18 +98,39 @@ pub(crate) fn jogs(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, speed: 
     let Some(thread) = caller.thread else { return };
     let dest = caller.memory.axis(axis, Chan::DEST);
     let wait = parts.calls.waits.of(thread);
-    let (looked, last_bit) = (wait.looked, wait.last_bit);
+    let is_at_switch = |bit| parts.machine.mechanics.owners(bit).any(|owner| owner == axis);
+    if speed == 0.0 && wait.last_bit.is_some_and(is_at_switch) {
+        parts.calls.motions.homes(thread, axis);
+    }
+    let wait = parts.calls.waits.of(thread);
+    let (looked, last_bit, has_repeated) = (wait.looked, wait.last_bit, wait.has_repeated);
     let now = (speed != 0.0).then_some(Jogged { thread, dest, speed, looked });
     let before =
         parts.calls.motions.jogs(axis, now).filter(|before| now.is_none() && before.thread == thread);
     let Some(Jogged { speed, .. }) =
-        before.filter(|before| (dest - before.dest).abs() < MOVED && looked > before.looked)
+        before.filter(|before| (dest - before.dest).abs() < MOVED && looked > before.looked && !has_repeated)
     else {
         return;
     };
     let of_axis = |bit: &Bit| parts.machine.mechanics.contact(*bit).is_some_and(|(owner, ..)| owner == axis);
     if let Some(bit) = last_bit.filter(of_axis) {
         parts.out.diagnose(caller, Message::JogEnded { axis, speed, bit });
+    }
+}
+
+/// A thread zeroes an axis: whether it is the one that it has moved to its switch.
+pub(crate) fn zeroes(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId) {
+    const MOVED: f64 = 1.0;
+    let Some(thread) = caller.thread else { return };
+    let is_away = |homed: AxisId| caller.memory.axis(homed, Chan::DEST).abs() > MOVED;
+    parts.calls.motions.zeroes(thread, axis, caller.at, is_away);
+}
+
+/// An approach that takes minutes.
+pub(crate) fn approaches(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId, tau: f64) {
+    const LONG: f64 = 10.0;
+    if tau >= LONG {
+        parts.out.diagnose(caller, Message::LongTau { function, axis, tau });
     }
 }
 
@@ -139,6 +155,9 @@ fn output_wraps(memory: &GuestMemory, function: Function, axis: AxisId) -> Optio
     (is_dac && most > RANGE).then_some(Message::OutputWraps { function, axis, most })
 }
 
+/// Motions to a place whose distance is known.
+const MOVES: &[Function] = &[Function::Move, Function::MoveRel, Function::MoveAtVel, Function::MoveRelAtVel];
+
 /// A program moves an enabled axis.
 pub(crate) fn moved(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId) {
     let memory = &*caller.memory;
@@ -149,9 +168,13 @@ pub(crate) fn moved(parts: &mut Parts, caller: &Caller<'_>, function: Function, 
         changed_connection(parts, memory, function, axis),
         output_wraps(memory, function, axis),
         limit_at_other_end(parts, memory, function, axis),
+        limit_of_other(parts, memory, function, axis),
     ];
     for message in messages.into_iter().flatten() {
         parts.out.diagnose(caller, message);
+    }
+    if !MOVES.contains(&function) {
+        parts.calls.motions.goes_on(axis);
     }
     let Some(thread) = caller.thread else { return };
     let before = parts.calls.motions.moves(thread, axis);
@@ -164,14 +187,50 @@ pub(crate) fn moved(parts: &mut Parts, caller: &Caller<'_>, function: Function, 
 pub(crate) fn goes_on(parts: &mut Parts, caller: &Caller<'_>) {
     let ended = caller.thread.and_then(|thread| parts.calls.motions.take_ended(thread));
     if let Some(EndedWait { thread, axis, at }) = ended {
-        let message = Message::DisabledWhileWaiting { axis };
+        let message =
+            axis.map_or(Message::PathEndedWhileWaiting {}, |axis| Message::DisabledWhileWaiting { axis });
         parts.out.remark_of(caller.now(), Speaker::Thread(thread), at, message);
     }
+}
+
+/// A target beyond a soft limit, which only stops the axis on its way.
+pub(crate) fn target_beyond(
+    parts: &mut Parts,
+    caller: &Caller<'_>,
+    function: Function,
+    axis: AxisId,
+    target: f64,
+) {
+    let get = |field: Field<f32>| caller.memory.axis(axis, field);
+    let (neg, pos) = (get(Chan::SOFT_LIMIT_NEG), get(Chan::SOFT_LIMIT_POS));
+    let dest = caller.memory.axis(axis, Chan::DEST);
+    let (name, limit, is_inside) = if target > f64::from(pos) {
+        ("SoftLimitPos", pos, dest <= f64::from(pos))
+    } else if target < f64::from(neg) {
+        ("SoftLimitNeg", neg, dest >= f64::from(neg))
+    } else {
+        return;
+    };
+    if is_inside && neg <= pos {
+        parts.out.diagnose(caller, Message::TargetBeyond { function, axis, target, name, limit });
+    }
+}
+
+/// A move of a few counts of an axis that counts in them.
+pub(crate) fn goes(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId, way: f64) {
+    const FEW: f64 = 10.0;
+    let is_unit = |field: Field<f32>| f64::from(caller.memory.axis(axis, field)).abs() == 1.0;
+    let is_plain = is_unit(Chan::OUTPUT_GAIN) && is_unit(Chan::INPUT_GAIN0);
+    let is_tiny = is_plain && way < FEW && way != libm::floor(way);
+    let small =
+        caller.thread.filter(|_| is_tiny).map(|thread| SmallMove { thread, at: caller.at, function, way });
+    parts.calls.motions.goes(axis, way, small);
 }
 
 /// A motion that takes minutes, most of them for its acceleration.
 pub(crate) fn planned(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId, way: f64) {
     const LONG: f64 = 60.0;
+    const ENDLESS: f64 = 600.0;
     let get = |field: Field<f32>| f64::from(caller.memory.axis(axis, field));
     let (velocity, accel, jerk) = (get(Chan::VEL), get(Chan::ACCEL), get(Chan::JERK));
     if !(velocity > 0.0 && accel > 0.0 && jerk > 0.0) {
@@ -182,6 +241,10 @@ pub(crate) fn planned(parts: &mut Parts, caller: &Caller<'_>, function: Function
     let by_accel = 2.0 * libm::sqrt(way / accel);
     let by_jerk = libm::cbrt(32.0 * way / jerk);
     let (seconds, field) = if by_accel > by_jerk { (by_accel, "Accel") } else { (by_jerk, "Jerk") };
+    if cruise > ENDLESS {
+        let message = Message::SlowRamp { function, axis, seconds: cruise, field: "Vel", value: velocity };
+        return parts.out.diagnose(caller, message);
+    }
     if seconds > LONG && seconds > 3.0 * cruise {
         let value = if field == "Accel" { accel } else { jerk };
         parts.out.diagnose(caller, Message::SlowRamp { function, axis, seconds, field, value });
@@ -197,78 +260,21 @@ pub(crate) fn ends_motion(parts: &mut Parts, caller: &Caller<'_>, function: Func
     // An approach to a place never ends, but nobody sees its last part.
     const SLOW: f64 = 1.0;
     let speed = f64::from(memory.axis(axis, Chan::LAST_VEL)).abs();
-    if speed > SLOW {
+    if speed > SLOW || !is_exponential(memory, axis) {
         parts.out.diagnose(caller, Message::MotionEnded { function, axis, speed });
     }
 }
 
-/// Every other enabled axis.
-fn others(memory: &GuestMemory, axis: AxisId) -> impl Iterator<Item = AxisId> {
-    AxisId::all().filter(move |other| *other != axis && memory.axis(*other, Chan::ENABLE) != 0)
-}
-
-fn shared_channel(memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
-    let channel = channel_of(memory, axis)?;
-    let other = others(memory, axis).find(|other| channel_of(memory, *other) == Some(channel))?;
-    Some(Message::ChannelShared { function, axis, other, channel: channel.to_string() })
-}
-
-/// The encoder input of an axis whose loop closes over it.
-fn loop_input(memory: &GuestMemory, axis: AxisId) -> Option<i32> {
-    let mode = OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE));
-    let is_loop = mode.is_some_and(|mode| mode != OutputMode::None) && !OutputMode::is_open_loop(mode);
-    let is_encoder = memory.axis(axis, Chan::INPUT_MODE) == InputMode::Encoder.get();
-    (is_loop && is_encoder).then(|| memory.axis(axis, Chan::INPUT_CHAN0))
-}
-
-fn shared_input(memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
-    let input = loop_input(memory, axis)?;
-    let other = others(memory, axis).find(|other| loop_input(memory, *other) == Some(input))?;
-    Some(Message::InputShared { function, axis, other, input })
-}
-
-fn wrong_input(parts: &Parts, memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
-    let wired = parts.machine.wiring.input(axis)?;
-    let input = loop_input(memory, axis)?;
-    (usize::try_from(input) != Ok(wired)).then_some(Message::WrongInput { function, axis, input, wired })
-}
-
-fn wrong_output(parts: &Parts, memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
-    let channel = channel_of(memory, axis)?;
-    let is_stepped = matches!(channel, Channel::Generator(_));
-    let wired = match parts.machine.wiring.drive(axis) {
-        Some(wired) => wired.to_string(),
-        None if is_stepped && parts.machine.loads[axis].has_motor() => SERVO.to_owned(),
-        None => return None,
-    };
-    let channel = channel.to_string();
-    (channel != wired).then_some(Message::WrongOutput { function, axis, channel, wired })
-}
-
-/// A PWM channel on which nothing is: a machine with a Kanalog has amplifiers with analog inputs.
-fn no_amplifier(parts: &Parts, memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
-    let Some(Channel::Pwm(channel)) = channel_of(memory, axis) else { return None };
-    let has_kanalog = kanalog::is_served(&parts.io.fpga, memory);
-    (WITHOUT_AMPLIFIER.contains(&channel) && has_kanalog).then_some(Message::NoAmplifier {
-        function,
-        axis,
-        channel,
-    })
-}
-
-/// An axis in a closed loop that is enabled far from where it is.
-fn leap(memory: &GuestMemory, function: Function, axis: AxisId, dest: f64) -> Option<Message> {
-    const FAR: f64 = 100.0;
-    loop_input(memory, axis)?;
-    let position = memory.axis(axis, Chan::POSITION);
-    ((position - dest).abs() > FAR).then_some(Message::Leap { function, axis, position, dest })
-}
-
-/// The pulses of power-up on a KStep, whose inputs need longer ones of the other polarity.
-fn short_pulses(parts: &Parts, memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
-    let Some(Channel::Generator(generator)) = channel_of(memory, axis) else { return None };
-    let is_kstep = memory.get(KSTEP_PRESENT) != 0 && ON_KSTEP.contains(&generator);
-    (is_kstep && parts.io.stepgens.has_start_pulses()).then_some(Message::KstepPulses { function, axis })
+/// A thread disables an axis of a path that it has started itself: the path ends for all of them.
+pub(crate) fn ends_path(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId) {
+    let memory = &*caller.memory;
+    let is_own = caller.thread.is_some() && parts.calls.motions.mover(axis) == caller.thread;
+    let moves = has_motion(memory, axis)
+        && memory.axis(axis, Chan::LAST_MOTION_TYPE) == LastMotion::Multi.get()
+        || !memory.get(COORD_SYSTEM0).is_null();
+    if is_own && memory.axis(axis, Chan::ENABLE) != 0 && is_member(memory, axis) && moves {
+        parts.out.diagnose(caller, Message::PathEnded { function, axis });
+    }
 }
 
 fn swapped_limits(memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
@@ -338,29 +344,6 @@ fn zero_of_loop(memory: &GuestMemory, axis: AxisId) -> Option<Zero> {
     } else {
         None
     }
-}
-
-/// An output number that no board has.
-fn no_such_output(memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
-    let channel = memory.axis(axis, Chan::OUTPUT_CHAN0);
-    let mode =
-        OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE)).filter(|mode| *mode != OutputMode::None)?;
-    let (kind, count) = if OutputMode::has_generator(Some(mode)) {
-        ("step generators", STEP_CHANNELS)
-    } else if mode == OutputMode::DacServo {
-        ("analog outputs", DACS)
-    } else {
-        ("PWM channels", PWMS)
-    };
-    let is_there = usize::try_from(channel).is_ok_and(|number| number < count);
-    (!is_there).then_some(Message::NoSuchOutput { function, axis, channel, kind, most: count - 1 })
-}
-
-/// An encoder input that no board has.
-fn no_such_input(memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
-    let input = loop_input(memory, axis)?;
-    let is_there = usize::try_from(input).is_ok_and(|number| number < ENCODERS);
-    (!is_there).then_some(Message::NoSuchInput { function, axis, input })
 }
 
 fn no_backlash_rate(memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {

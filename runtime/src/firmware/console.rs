@@ -14,6 +14,7 @@ pub(crate) use super::files::{fclose, feof, fgets, fopen, fprintf, fscanf};
 use super::parts::Parts;
 use super::string::text;
 use crate::firmware::dispatch::Varargs;
+use crate::out::Message;
 use crate::text::{Arguments, Scanned, Sink, format_counted, scan};
 
 /// Longest string a `%s` reads.
@@ -138,8 +139,11 @@ pub(crate) fn cut(text: &[u8]) -> &[u8] {
 
 /// Puts text on the console; the call waits while the queue is full.
 pub(crate) fn put(parts: &mut Parts, caller: &Caller<'_>, text: &[u8], result: i32) -> Outcome<i32> {
+    let begun = parts.calls.notices.prints(caller.thread, caller.at, text);
+    if let Some(other) = begun.filter(|_| caller.thread.is_some()) {
+        parts.out.diagnose(caller, Message::LinesMixed { other });
+    }
     let rest = parts.out.console.put(text).to_vec();
-    parts.calls.notices.last_print = (caller.thread, caller.at);
     if rest.is_empty() {
         return Outcome::Done(result);
     }

@@ -74,8 +74,12 @@ pub(crate) fn define_coord_system8(
 }
 
 /// −1 if an axis of the system is disabled, 0 while a buffer is executed, else 1.
-pub(crate) fn check_done_buf(_: &mut Parts, caller: &mut Caller<'_>) -> i32 {
-    buffer::check_done(caller.memory)
+pub(crate) fn check_done_buf(parts: &mut Parts, caller: &mut Caller<'_>) -> i32 {
+    let done = buffer::check_done(caller.memory);
+    if let Some(thread) = caller.thread {
+        parts.calls.motions.asked_path(thread, done, caller.at);
+    }
+    done
 }
 
 /// Begins a feedhold. The board computes it in slices of the caller: one to begin, one for each axis that moves by
@@ -192,30 +196,45 @@ pub(crate) fn exec_buf(_: &mut Parts, caller: &mut Caller<'_>) {
     buffer::execute(caller.memory);
 }
 
-pub(crate) fn set_fro(_: &mut Parts, caller: &mut Caller<'_>, value: f32) {
+/// An override that looks like a number of percents.
+fn check_override(parts: &mut Parts, caller: &Caller<'_>, function: Function, value: f32) {
+    const MOST: f32 = 10.0;
+    if value >= MOST {
+        let percent = 100.0 * f64::from(value);
+        parts.out.diagnose(caller, Message::OverrideFactor { function, value, percent });
+    }
+}
+
+pub(crate) fn set_fro(parts: &mut Parts, caller: &mut Caller<'_>, value: f32) {
+    check_override(parts, caller, Function::SetFRO, value);
     let time = nominal_change_time(caller.memory);
     rate::set_feed(caller.memory, value, time);
 }
 
-pub(crate) fn set_rapid_fro(_: &mut Parts, caller: &mut Caller<'_>, value: f32) {
+pub(crate) fn set_rapid_fro(parts: &mut Parts, caller: &mut Caller<'_>, value: f32) {
+    check_override(parts, caller, Function::SetRapidFRO, value);
     let time = nominal_change_time(caller.memory);
     rate::set_rapid(caller.memory, value, time);
 }
 
-pub(crate) fn set_fro_temp(_: &mut Parts, caller: &mut Caller<'_>, value: f32) {
+pub(crate) fn set_fro_temp(parts: &mut Parts, caller: &mut Caller<'_>, value: f32) {
+    check_override(parts, caller, Function::SetFROTemp, value);
     let time = nominal_change_time(caller.memory);
     rate::aim(caller.memory, value, time);
 }
 
-pub(crate) fn set_fro_w_rate(_: &mut Parts, caller: &mut Caller<'_>, value: f32, time: f32) {
+pub(crate) fn set_fro_w_rate(parts: &mut Parts, caller: &mut Caller<'_>, value: f32, time: f32) {
+    check_override(parts, caller, Function::SetFROwRate, value);
     rate::set_feed(caller.memory, value, time);
 }
 
-pub(crate) fn set_rapid_fro_w_rate(_: &mut Parts, caller: &mut Caller<'_>, value: f32, time: f32) {
+pub(crate) fn set_rapid_fro_w_rate(parts: &mut Parts, caller: &mut Caller<'_>, value: f32, time: f32) {
+    check_override(parts, caller, Function::SetRapidFROwRate, value);
     rate::set_rapid(caller.memory, value, time);
 }
 
-pub(crate) fn set_fro_w_rate_temp(_: &mut Parts, caller: &mut Caller<'_>, value: f32, time: f32) {
+pub(crate) fn set_fro_w_rate_temp(parts: &mut Parts, caller: &mut Caller<'_>, value: f32, time: f32) {
+    check_override(parts, caller, Function::SetFROwRateTemp, value);
     rate::aim(caller.memory, value, time);
 }
 

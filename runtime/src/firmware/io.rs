@@ -12,13 +12,13 @@ use super::parts::Parts;
 use crate::io::amplifiers::{antiphase, current, recirculate, store_pwm};
 use crate::io::remark_on;
 use crate::io::{bits, kanalog};
-use crate::machine::Channel;
+use crate::machine::{Channel, LateRead};
 use crate::out::Message;
 use crate::servo::wired::driver;
 use crate::views::Typed;
 use crate::world::stimulus::Asker;
 use chips::fpga::kanalog_pin;
-use chips::kanalog::ADC_CHANNELS;
+use chips::kanalog::{ADC_CHANNELS, ZERO};
 
 /// Checks a bit number that a program names.
 fn checked(parts: &mut Parts, caller: &Caller<'_>, function: Function, bit: i32) -> Option<Bit> {
@@ -80,6 +80,12 @@ fn write(parts: &mut Parts, caller: &mut Caller<'_>, function: Function, bit: i3
         check_written(parts, caller, function, bit);
         let now = caller.now();
         parts.lines(now).write(caller.memory, bit, level);
+        if level
+            && let Some(other) = parts.machine.opposite(bit)
+            && bits::bit_state(&parts.io, caller.memory, other).0
+        {
+            parts.out.diagnose(caller, Message::BothDirections { function, bit, other });
+        }
     }
 }
 
@@ -122,6 +128,11 @@ pub(crate) fn read_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) -> 
     if let Some((axis, width, step)) = parts.machine.index_missed(bit, caller.now()) {
         parts.out.diagnose(caller, Message::IndexMissed { bit, axis, width, step });
     }
+    let since = caller.thread.map(|thread| parts.calls.waits.of(thread).since);
+    if let Some(late) = parts.machine.read_late(bit, level, caller.now(), since) {
+        let LateRead { axis, ms, step } = late;
+        parts.out.diagnose(caller, Message::ReadLate { bit, axis, ms, step });
+    }
     if let Some(assist) = &mut parts.world.assist {
         assist.polled(bit, Asker { thread: caller.thread, at: caller.at });
     } else if !parts.io.pins.is_driven(bit) && !parts.io.pins.is_described(bit) {
@@ -130,9 +141,10 @@ pub(crate) fn read_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) -> 
     i32::from(level)
 }
 
-/// The raw conversion of an analog input.
+/// Returns the reading of an analog input, -2048 to 2047, as the macro `ADC` does. The board reads 0 in place of the
+/// conversion of a channel that does not exist.
 pub(crate) fn read_adc(parts: &mut Parts, caller: &mut Caller<'_>, channel: i32) -> i32 {
-    let level = adc_level(parts, caller, channel);
+    let level = adc_level(parts, caller, channel) - ZERO;
     let is_undriven = |index| index < ADC_CHANNELS && !parts.io.kanalog.is_connected(index);
     if usize::try_from(channel).is_ok_and(is_undriven) {
         parts.out.diagnose(caller, Message::UndrivenAdc { channel, level });
@@ -140,7 +152,7 @@ pub(crate) fn read_adc(parts: &mut Parts, caller: &mut Caller<'_>, channel: i32)
     level
 }
 
-/// The same for a command, without a remark about inputs that nothing drives.
+/// Returns the raw conversion of an analog input, without a remark about inputs that nothing drives.
 pub(crate) fn adc_level(parts: &mut Parts, caller: &Caller<'_>, channel: i32) -> i32 {
     let Some(index) = usize::try_from(channel).ok().filter(|&index| index < ADC_CHANNELS) else {
         parts.out.diagnose(caller, Message::NoSuchAdc { channel });

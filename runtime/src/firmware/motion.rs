@@ -117,6 +117,7 @@ pub(crate) fn disable_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32
     let Some(axis) = AxisId::new(axis) else {
         return invalid(parts, caller, Function::DisableAxis, axis, "Disable");
     };
+    axis_check::ends_path(parts, caller, Function::DisableAxis, axis);
     switching::switch_off(&mut parts.servo, &mut parts.machine, caller.memory, axis);
     hold::abort_if_member(caller.memory, axis);
 }
@@ -127,6 +128,7 @@ pub(crate) fn zero(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) {
         return invalid(parts, caller, Function::Zero, axis, Function::Zero.name());
     };
     axis_check::ends_motion(parts, caller, Function::Zero, axis);
+    axis_check::zeroes(parts, caller, axis);
     switching::zero(&mut parts.servo, &mut parts.machine, caller.memory, axis);
     hold::abort_if_member(caller.memory, axis);
 }
@@ -163,6 +165,8 @@ fn may_move(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Func
     {
         if slave != axis && memory.axis(slave, Chan::ENABLE) == 0 {
             parts.out.diagnose(caller, Message::SlaveDisabled { axis: slave, master: axis });
+        } else if slave != axis && memory.axis(slave, Chan::SLAVE_GAIN) == 0.0 {
+            parts.out.diagnose(caller, Message::NoSlaveGain { axis: slave, master: axis });
         }
     }
     may
@@ -218,13 +222,21 @@ fn notice_replaced(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, functio
     }
 }
 
-/// Returns whether a target or speed is finite, as an axis needs it.
-fn is_place(parts: &mut Parts, caller: &Caller<'_>, function: Function, value: f64) -> bool {
+/// Returns whether a target or speed is a number; tells of one that is not finite.
+fn is_number(parts: &mut Parts, caller: &Caller<'_>, function: Function, value: f64) -> bool {
     if !value.is_finite() {
-        parts.out.diagnose(caller, Message::NotAPlace { function, value });
+        let effect = if value.is_nan() {
+            "the board makes Dest a NaN, which no motion leaves (here nothing moves)"
+        } else {
+            "the axis moves on without an end"
+        };
+        parts.out.diagnose(caller, Message::NotAPlace { function, value, effect });
     }
-    value.is_finite()
+    !value.is_nan()
 }
+
+/// A place or speed that no axis reaches, in units or units per second: that of a motion without an end.
+const FARTHEST: f64 = 1e12;
 
 /// One of the moves.
 struct MoveRequest {
@@ -249,6 +261,7 @@ fn request(parts: &mut Parts, caller: &mut Caller<'_>, request: &MoveRequest) ->
         (Some(_), Some(Continuation::Motion(target, progress))) => (target, progress),
         _ => (requested(caller.memory, axis, request), PlanningStage::Called),
     };
+    let target = target.clamp(-FARTHEST, FARTHEST);
     if progress == PlanningStage::Called && !begins(parts, caller, request, axis, target) {
         return Outcome::Done(());
     }
@@ -294,11 +307,14 @@ fn begins(
     }
     notice_replaced(parts, caller, axis, function, target);
     let way = target - caller.memory.axis(axis, Chan::DEST);
-    parts.calls.motions.goes(axis, way.abs());
     axis_check::moved(parts, caller, function, axis);
-    axis_check::planned(parts, caller, function, axis, way.abs());
+    if request.target.is_finite() {
+        axis_check::goes(parts, caller, function, axis, way.abs());
+        axis_check::planned(parts, caller, function, axis, way.abs());
+        axis_check::target_beyond(parts, caller, function, axis, target);
+    }
     // A destination that is not a number makes a relative target another one.
-    if !is_place(parts, caller, function, request.target) || is_beyond(parts, caller, function, axis, way) {
+    if !is_number(parts, caller, function, request.target) || is_beyond(parts, caller, function, axis, way) {
         costs::refused(caller, function);
         return false;
     }
@@ -505,10 +521,11 @@ fn begin_jog(
         caller.memory.set_axis(axis, Chan::LAST_NON_ZERO_DIR, 0);
         caller.memory.set_axis(axis, Chan::DIRECTION_OF_MOTION, 0);
     }
-    if !may_move(parts, caller, axis, Function::Jog) || !is_place(parts, caller, Function::Jog, velocity) {
+    if !may_move(parts, caller, axis, Function::Jog) || !is_number(parts, caller, Function::Jog, velocity) {
         costs::refused(caller, Function::Jog);
         return Outcome::Done(());
     }
+    let velocity = velocity.clamp(-FARTHEST, FARTHEST);
     let progress = match (caller.woken, parts.calls.take(caller)) {
         (Some(_), Some(Continuation::Motion(_, progress))) => progress,
         _ => PlanningStage::Called,
@@ -562,11 +579,13 @@ pub(crate) fn move_exp(
         return move_to(parts, caller, axis, x);
     }
     let Some(axis) = checked(parts, caller, Function::MoveExp, axis) else { return Outcome::Done(()) };
-    if !may_move(parts, caller, axis, Function::MoveExp) || !is_place(parts, caller, Function::MoveExp, x) {
+    if !may_move(parts, caller, axis, Function::MoveExp) || !is_number(parts, caller, Function::MoveExp, x) {
         return Outcome::Done(());
     }
+    let x = x.clamp(-FARTHEST, FARTHEST);
     if caller.woken.is_none() {
         axis_check::moved(parts, caller, Function::MoveExp, axis);
+        axis_check::approaches(parts, caller, Function::MoveExp, axis, tau);
     }
     let progress = if caller.woken.is_some() { PlanningStage::Due } else { PlanningStage::Called };
     let is_direct = parts.servo.planner == Planner::Direct;
@@ -628,12 +647,15 @@ pub(crate) fn check_done(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) 
     done
 }
 
-pub(crate) fn check_done_xyzabc(_: &mut Parts, caller: &mut Caller<'_>) -> i32 {
+pub(crate) fn check_done_xyzabc(parts: &mut Parts, caller: &mut Caller<'_>) -> i32 {
     // Recorded: a feedhold is not done, not even when its axes have stopped or one of them is disabled.
-    if caller.memory.get(CS0_STOPPING_STATE) != 0 {
-        return 0;
+    let is_held = caller.memory.get(CS0_STOPPING_STATE) != 0;
+    let members = system::members(caller.memory).map(|axis| done(caller.memory, axis));
+    let done = if is_held { 0 } else { members.min().unwrap_or(1) };
+    if let Some(thread) = caller.thread {
+        parts.calls.motions.asked_path(thread, done, caller.at);
     }
-    system::members(caller.memory).map(|axis| done(caller.memory, axis)).min().unwrap_or(1)
+    done
 }
 
 pub(crate) fn start_move(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) {

@@ -1,6 +1,7 @@
 //! Time and waiting. Source: threads-and-time.md section 3.
 
 use kmotiondef::Cycles;
+use kmotiondef::firmware::Function;
 use kmotiondef::limits::{CLOCKFREQ, TIMEBASE};
 use kmotiondef::variables::{LAST_TIMER0, SERVO_TICK};
 use vm::firmware::{Caller, Outcome, Wake};
@@ -8,6 +9,7 @@ use vm::memory::GuestMemory;
 
 use super::parts::Parts;
 use crate::io::timer;
+use crate::out::Message;
 use crate::views::Typed;
 
 /// Cycles of one second, as a double.
@@ -15,6 +17,9 @@ const CYCLES_PER_SECOND: f64 = Cycles::PER_SECOND.get() as f64;
 
 /// The cycles that a delay spends while it passes (costs.md section 3).
 const WITHIN: Cycles = Cycles::new(124);
+
+/// Seconds that are probably milliseconds, as for the warning `milliseconds`.
+const LONG: f64 = 100.0;
 
 /// Seconds since power-up, to 20 ns.
 pub(crate) fn time_sec(_: &mut Parts, caller: &mut Caller<'_>) -> f64 {
@@ -30,11 +35,18 @@ pub(crate) fn seconds(memory: &GuestMemory, now: Cycles) -> f64 {
 /// Waits until a time.
 pub(crate) fn wait_until(parts: &mut Parts, caller: &mut Caller<'_>, time: f64) -> Outcome<()> {
     let remaining = time - seconds(caller.memory, caller.now());
-    delay_sec(parts, caller, remaining)
+    delay(parts, caller, remaining)
 }
 
 /// Waits this many seconds. The call-back cannot wait: it spends the time.
 pub(crate) fn delay_sec(parts: &mut Parts, caller: &mut Caller<'_>, seconds: f64) -> Outcome<()> {
+    if seconds >= LONG && seconds.is_finite() && caller.woken.is_none() {
+        parts.out.diagnose(caller, Message::LongDelay { function: Function::Delay_sec, seconds });
+    }
+    delay(parts, caller, seconds)
+}
+
+fn delay(parts: &Parts, caller: &mut Caller<'_>, seconds: f64) -> Outcome<()> {
     if caller.woken.is_some() || seconds.is_nan() || seconds <= 0.0 {
         return Outcome::Done(());
     }

@@ -12,7 +12,7 @@ use super::description::{
     Analog, AnalogSource, Axis, Condition, Handwheel, Probe, Spindle, SpindleDrive, Switch, Travel,
 };
 use super::wiring::dac_value;
-use super::{Loads, Machine};
+use super::{Channel, Loads, Machine};
 use crate::io::Io;
 use crate::io::bits::bit_state;
 use crate::views::Typed;
@@ -27,6 +27,17 @@ struct Contact {
     active: bool,
     /// When a program last read the bit, and where the load was then.
     read: Option<(Cycles, f64)>,
+    /// The level that it read, if it is that of a switch.
+    level: Option<bool>,
+}
+
+/// A switch that has changed long before a program reads it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LateRead {
+    pub(crate) axis: AxisId,
+    /// Time since the read before, and units that the axis has moved since.
+    pub(crate) ms: f64,
+    pub(crate) step: f64,
 }
 
 /// The range in which it is closed.
@@ -114,6 +125,7 @@ impl Mechanics {
             closes: Closes::Where(switch.when),
             active: switch.active,
             read: None,
+            level: None,
         });
         let probes = described.probes.iter().map(|probe| Contact {
             bit: probe.bit,
@@ -121,11 +133,12 @@ impl Mechanics {
             closes: Closes::Where(probe.touches),
             active: true,
             read: None,
+            level: None,
         });
         let indexes = AxisId::all().filter_map(|axis| {
             let index = axes[axis.index()].index?;
             let closes = Closes::Every(index.every, index.width, index.offset);
-            Some(Contact { bit: index.bit, axis, closes, active: true, read: None })
+            Some(Contact { bit: index.bit, axis, closes, active: true, read: None, level: None })
         });
         let contacts: Vec<_> = switches.chain(probes).chain(indexes).collect();
         let (analog, handwheels) = (described.analog.clone(), described.encoders.clone());
@@ -152,12 +165,29 @@ impl Mechanics {
     /// Returns the contact on a bit: its axis, the range in which it is closed (`None` if it closes once in a
     /// distance), and its level there.
     pub(crate) fn contact(&self, bit: Bit) -> Option<(AxisId, Option<Condition>, bool)> {
-        let contact = self.contacts.iter().find(|contact| contact.bit == bit)?;
-        let condition = match contact.closes {
-            Closes::Where(condition) => Some(condition),
-            Closes::Every(..) => None,
-        };
-        Some((contact.axis, condition, contact.active))
+        self.contacts(bit).next()
+    }
+
+    /// Everything that makes a contact on a bit, as [`contact`](Self::contact).
+    pub(crate) fn contacts(&self, bit: Bit) -> impl Iterator<Item = (AxisId, Option<Condition>, bool)> + '_ {
+        self.contacts.iter().filter(move |contact| contact.bit == bit).map(|contact| {
+            let condition = match contact.closes {
+                Closes::Where(condition) => Some(condition),
+                Closes::Every(..) => None,
+            };
+            (contact.axis, condition, contact.active)
+        })
+    }
+
+    /// The axes that make a contact on a bit.
+    pub(crate) fn owners(&self, bit: Bit) -> impl Iterator<Item = AxisId> + '_ {
+        self.contacts(bit).map(|(axis, ..)| axis)
+    }
+
+    /// Reports whether a spindle is connected to an analog output, another one than an axis drives as its spindle.
+    pub(crate) fn has_spindle_on(&self, dac: usize, axis: AxisId) -> bool {
+        let mut spindles = self.spindles.iter().map(|turning| turning.spindle);
+        spindles.any(|spindle| spindle.drive == SpindleDrive::Dac(dac) && spindle.axis != axis)
     }
 
     /// Takes an input from its switch; whether the switch has driven it so far.
@@ -198,6 +228,46 @@ impl Machine {
         let is_in_pulse = |load: f64| load - offset - turn(load) * every < width;
         let passed = turn(load) != turn(before) && !is_in_pulse(load) && !is_in_pulse(before);
         (passed && now - at < MOMENT).then_some((contact.axis, width, (load - before).abs()))
+    }
+
+    /// A program reads the bit of a switch, in a wait that began at `since`: whether it reads so rarely that the axis has
+    /// moved on far since the switch changed.
+    pub(crate) fn read_late(
+        &mut self,
+        bit: Bit,
+        level: bool,
+        now: Cycles,
+        since: Option<Cycles>,
+    ) -> Option<LateRead> {
+        /// Slices of other threads do not come into it.
+        const LONG: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 50);
+        const FAR: f64 = 100.0;
+        let contact = self.mechanics.contacts.iter_mut().find(|contact| contact.bit == bit)?;
+        let Closes::Where(_) = contact.closes else { return None };
+        let (axis, load) = (contact.axis, self.loads[contact.axis].load);
+        let before = contact.level.replace(level);
+        let (at, place) = contact.read.replace((now, load))?;
+        let (step, time) = ((load - place).abs(), now - at);
+        let is_late = since? < at && before? != level && time >= LONG && step >= FAR;
+        let ms = 1e3 * time.get() as f64 / Cycles::PER_SECOND.get() as f64;
+        is_late.then_some(LateRead { axis, ms, step })
+    }
+
+    /// The output that switches the same motor to the other direction.
+    pub(crate) fn opposite(&self, bit: Bit) -> Option<Bit> {
+        let spindles = self.mechanics.spindles.iter().filter_map(|turning| match turning.spindle.drive {
+            SpindleDrive::Bits { cw, ccw } => Some((cw, ccw)),
+            SpindleDrive::Axis(_) | SpindleDrive::Dac(_) => None,
+        });
+        let motors = AxisId::all().filter_map(|axis| match self.wiring.drive(axis) {
+            Some(Channel::Relays(forward, back)) => Some((forward, back)),
+            _ => None,
+        });
+        spindles.chain(motors).find_map(
+            |(one, other)| {
+                if one == bit { Some(other) } else { (other == bit).then_some(one) }
+            },
+        )
     }
 
     /// Returns whether a machine file connects any equipment besides the loads.

@@ -23,7 +23,7 @@ pub use mechanics::Connected;
 
 pub(crate) use description::Channel;
 pub(crate) use lines::Lines;
-pub(crate) use mechanics::Mechanics;
+pub(crate) use mechanics::{LateRead, Mechanics};
 pub(crate) use motor::Applied;
 pub(crate) use plant::{COUNTS_PER_TICK, Drive, Plant};
 

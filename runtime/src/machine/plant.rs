@@ -134,6 +134,8 @@ pub(crate) struct Plant {
     pub(crate) drive: Drive,
     /// The position before and after a program has written it.
     rewritten: Option<(f64, f64)>,
+    /// The hard stop that has held it since the last time.
+    stopped_at: Option<f64>,
     torque: Torque,
 }
 
@@ -181,6 +183,7 @@ impl Plant {
             steps: Steps { origin: start, ..Steps::default() },
             drive: Drive::None,
             rewritten: None,
+            stopped_at: None,
             torque: Torque::default(),
         }
     }
@@ -245,6 +248,12 @@ impl Plant {
     #[inline(always)]
     pub(crate) fn take_rewritten(&mut self) -> Option<(f64, f64)> {
         self.rewritten.take()
+    }
+
+    /// The hard stop that has held the load since the last time.
+    #[inline(always)]
+    pub(crate) fn take_stopped(&mut self) -> Option<f64> {
+        self.stopped_at.take()
     }
 
     /// Another constant load pulls at the motor.
@@ -397,6 +406,7 @@ impl Plant {
         if is_beyond || self.load < self.build.min {
             let held = if is_beyond { self.build.max } else { self.build.min };
             self.load = held;
+            self.stopped_at = Some(held);
             self.velocity = 0.0;
             self.steps.origin = held - self.steps.reached;
         }

@@ -14,6 +14,8 @@ use super::description::{Axis, Channel, Model};
 use crate::views::Typed;
 use chips::stepgen::generator_of;
 
+/// Encoder inputs of a board and its SnapAmps.
+pub(crate) const ENCODERS: usize = 16;
 /// Analog outputs, and PWM channels.
 pub(crate) const DACS: usize = 8;
 pub(crate) const PWMS: usize = 16;
@@ -64,6 +66,10 @@ impl Wiring {
     pub(crate) fn turns(&self, memory: &GuestMemory, axis: AxisId) -> Option<AxisId> {
         let channel = memory.axis(axis, Chan::INPUT_CHAN0);
         let input = usize::try_from(channel).ok();
+        // No board has an input of such a number.
+        if input.is_none_or(|input| input >= ENCODERS) {
+            return None;
+        }
         if let Some(other) = AxisId::all().find(|other| input.is_some() && self.input(*other) == input) {
             return Some(other);
         }

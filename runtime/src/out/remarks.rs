@@ -483,8 +483,74 @@ messages! {
     NoResponse { axis: AxisId, output: f32 } = "no-response", Warning, [per axis],
         "axis {axis} has not moved since it was enabled, although its output is {output:.0}: check that OutputChan0 and InputChan0 name its amplifier and its encoder";
     /// An axis in a closed loop falls behind a destination that moves.
-    Lags { axis: AxisId } = "lags", Warning, [per axis],
-        "axis {axis} falls behind its Dest by more than MaxFollowingError, in the right direction: raise P or FFVel, or lower Vel or Accel";
+    Lags { axis: AxisId, most: f64 } = "lags", Warning, [per axis],
+        "axis {axis} falls behind its Dest by more than MaxFollowingError = {most}, in the right direction: raise P or FFVel, or lower Vel or Accel, or allow more with MaxFollowingError";
+    /// A program changes the destination of an enabled axis at once.
+    DestLeaps { axis: AxisId, from: f64, to: f64 } = "dest-leaps", Warning, [per axis],
+        "Dest of axis {axis} is changed from {from:.0} to {to:.0} at once, which no motor follows: use Move, which accelerates and decelerates";
+    /// All moves of an axis are shorter than a few counts.
+    TinyMove { function: Function, axis: AxisId, way: f64 } = "tiny-move", Hint, [per axis],
+        "{function}: axis {axis} moves by {way} units, and never further: units are counts of an encoder or steps, so multiply a length by the counts of an inch or a millimetre";
+    /// The target of a motion is beyond a soft limit.
+    TargetBeyond { function: Function, axis: AxisId, target: f64, name: &'static str, limit: f32 } = "target-beyond-limit", Warning, [per axis],
+        "{function}: {target:.0} is beyond {name} = {limit} of axis {axis}, so a feedhold stops the axis on its way, and all others of the coordinate system";
+    /// A limit switch is taken for active although nothing presses it.
+    LimitActive { function: Function, axis: AxisId, end: &'static str, bit: Bit, level: u8, polarity: u32 } = "limit-active", Warning, [per axis],
+        "{function}: LimitSwitch{end}Bit of axis {axis} is {bit}, which is {level} and so counts as active, but nothing presses the switch: change bit {polarity} of LimitSwitchOptions";
+    /// The numbers of limit switches are in fields that are not used.
+    LimitFields { function: Function, axis: AxisId, end: &'static str, bit: i32, used: Bit } = "limit-fields", Warning, [per axis],
+        "{function}: axis {axis} watches bit {used}, not LimitSwitch{end}Bit = {bit}, because bit 8 of LimitSwitchOptions is 0: add 0x100";
+    /// An axis follows another one with a gain of zero.
+    NoSlaveGain { axis: AxisId, master: AxisId } = "no-slave-gain", Warning, [per axis],
+        "axis {axis} has MasterAxis = {master} and SlaveGain = 0, so it does not follow: set SlaveGain, mostly to 1";
+    /// A feed rate override is far more than the usual.
+    OverrideFactor { function: Function, value: f32, percent: f64 } = "override-factor", Warning, [once],
+        "{function}({value}): 1 is the programmed speed, so this is {percent:.0} %";
+    /// A switch has changed long before a program reads it.
+    ReadLate { bit: Bit, axis: AxisId, ms: f64, step: f64 } = "read-late", Hint, [per bit],
+        "ReadBit({bit}): axis {axis} has moved {step:.0} units in the {ms:.0} ms since the read before, and its switch has changed in between: read more often, or move more slowly";
+    /// Two outputs that drive a motor in opposite directions are both on.
+    BothDirections { function: Function, bit: Bit, other: Bit } = "both-directions", Warning, [per bit],
+        "{function}({bit}): output {other} is on as well, so the motor is switched to both directions at once: clear one before the other is set";
+    /// An axis drives the analog output that a spindle is connected to.
+    SpindleShared { function: Function, axis: AxisId, dac: usize } = "spindle-shared", Warning, [per axis],
+        "{function}: axis {axis} drives DAC {dac}, which the spindle is connected to: give the axis an OutputChan0 of its own";
+    /// An axis drives a channel of a SnapAmp that the machine does not have.
+    NoSnapAmp { function: Function, axis: AxisId, channel: usize } = "no-snapamp", Warning, [per axis],
+        "{function}: axis {axis} drives PWM channel {channel}, which belongs to a SnapAmp, and the machine has none (`board.snapamp = 1` in the machine file)";
+    /// An axis closes its loop over an analog input that nothing drives.
+    NoFeedback { function: Function, axis: AxisId, channel: usize } = "no-feedback", Warning, [per axis],
+        "{function}: axis {axis} closes its loop over analog input {channel}, which nothing drives: ENCODER_MODE reads the encoder of a motor";
+    /// A limit switch of an axis is tripped by another one.
+    LimitOfOther { function: Function, axis: AxisId, end: &'static str, bit: Bit, other: AxisId } = "limit-of-other", Warning, [per axis],
+        "{function}: LimitSwitch{end}Bit of axis {axis} is {bit}, a switch of axis {other}";
+    /// A thread zeroes another axis than the one that it has moved to its switch.
+    ZeroesOther { axis: AxisId, homed: AxisId } = "zeroes-other", Warning, [per axis],
+        "Zero({axis}): the thread has moved axis {homed} to its switch, but zeroes axis {axis}, which it never moves";
+    /// A load is moved against the end of its travel.
+    HardStop { axis: AxisId, place: f64, effect: &'static str } = "hard-stop", Warning, [per axis],
+        "axis {axis} runs into the end of its travel at {place}: {effect}";
+    /// An approach has a time constant of many seconds.
+    LongTau { function: Function, axis: AxisId, tau: f64 } = "long-tau", Hint, [per axis],
+        "{function}: axis {axis} approaches its target with a time constant of {tau} s, so it takes {tau} s for two thirds of the way: Tau is in seconds";
+    /// Two threads print into the same line.
+    LinesMixed { other: ThreadId } = "lines-mixed", Warning, [once],
+        "prints into the line that thread {other} has begun: print each line with one call";
+    /// The call-back of a thread is replaced by that of another.
+    CallBackReplaced { thread: ThreadId, by: ThreadId } = "call-back-replaced", Warning, [once],
+        "UserCallBack of thread {thread} is replaced by a function of thread {by}: the board has only one call-back, so that of thread {thread} is not called any more";
+    /// A program has stored values after the end of `persist.UserData`.
+    UserDataOverrun { index: u32 } = "user-data-overrun", Warning, [once],
+        "a value is stored in persist.UserData[{index}], but its elements have the numbers 0 to 199: other data of the board are overwritten";
+    /// A path was aborted while a thread waited for its end.
+    PathEndedWhileWaiting { } = "path-ended-while-waiting", Warning, [once],
+        "CheckDoneXYZABC or CheckDoneBuf is -1: an axis was disabled before the path ended, which `while (!CheckDoneXYZABC())` takes for its end";
+    /// A thread disables an axis of the path that it has started.
+    PathEnded { function: Function, axis: AxisId } = "path-ended", Hint, [per axis],
+        "{function}: axis {axis} follows a path, which ends here for all its axes";
+    /// A thread waits for minutes.
+    LongDelay { function: Function, seconds: f64 } = "long-delay", Hint, [once],
+        "{function}({seconds}): the thread waits {seconds} seconds; write {function}(0.001 * ms) for milliseconds";
     /// A motion has ended, but the axis is somewhere else.
     NotThere { axis: AxisId, position: f64, dest: f64 } = "not-there", Warning, [per axis],
         "CheckDone({axis}) is 1, but axis {axis} is at {position:.0} and its Dest is {dest:.0}: CheckDone looks only at Dest, which the motor does not follow (check P, OutputMode and the wiring)";
@@ -546,8 +612,8 @@ messages! {
     Hurried { function: Function, axis: AxisId, ms: f64, calls: u8 } = "hurried", Hint, [always],
         "{function}: axis {axis} gets a new target within {ms} ms, {calls} times in a row. The board takes that long to plan a motion that replaces another, and the axis keeps its speed until then: no target ever takes effect. Call less often, or use MoveExp";
     /// A motion call passes a number that is not finite.
-    NotAPlace { function: Function, value: f64 } = "not-a-place", Warning, [always],
-        "{function}: {value} is not a valid position, so nothing moves";
+    NotAPlace { function: Function, value: f64, effect: &'static str } = "not-a-place", Warning, [always],
+        "{function}: {value} is not a valid position or speed: {effect}";
     /// A motion call names an axis without limits.
     NoLimits { function: Function, axis: AxisId } = "no-limits", Warning, [always],
         "{function}: Vel, Accel and Jerk of axis {axis} are not all positive";

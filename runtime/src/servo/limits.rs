@@ -121,13 +121,17 @@ fn cause(memory: &GuestMemory, axis: AxisId, response: f64) -> Option<Message> {
     // A destination that moves on in the direction of the error leaves the axis behind.
     if f64::from(velocity) * error > 0.0 {
         let is_at_limit = output.abs() >= most;
-        return Some(if is_at_limit { Message::OutputLimit { axis, most } } else { Message::Lags { axis } });
+        return Some(if is_at_limit { Message::OutputLimit { axis, most } } else { lags(memory, axis) });
     }
     let cause = match memory.axis(axis, Chan::I) {
         0.0 => "the loop swings, so lower P or raise D",
         _ => "its integrator collects too much on the way, so lower I or MaxI, or raise D",
     };
     Some(Message::Overshoots { axis, cause })
+}
+
+fn lags(memory: &GuestMemory, axis: AxisId) -> Message {
+    Message::Lags { axis, most: f64::from_bits(memory.axis(axis, Chan::MAX_FOLLOWING_ERROR).to_bits()) }
 }
 
 /// Says that an axis was disabled, unless another message waits for the primary thread.
@@ -170,19 +174,34 @@ pub(crate) struct WatchedLimit {
     /// `Neg` or `Pos`.
     pub(crate) end: &'static str,
     pub(crate) bit: Bit,
+    /// The number in the field of the end, whether it is used or not.
+    pub(crate) field: i32,
+    /// True if that is used.
+    pub(crate) is_extended: bool,
+    /// The level at which it counts as active.
+    pub(crate) active: bool,
+    /// The bit of `LimitSwitchOptions` that says so.
+    pub(crate) polarity: u32,
     /// True at the end where Dest is high.
     pub(crate) is_upper: bool,
 }
 
-/// The limit switches of an axis that are watched, if each end has its own.
+/// The limit switches of an axis that are watched.
 pub(crate) fn watched_limits(memory: &GuestMemory, axis: AxisId) -> Vec<WatchedLimit> {
+    let options = memory.axis(axis, Chan::LIMIT_SWITCH_OPTIONS);
     let limit = |end: &End| {
-        let bit = watched_bit(memory, axis, end)?;
-        Some(WatchedLimit { end: end.name, bit, is_upper: end.direction > 0 })
+        let polarity = end.watch + 2;
+        Some(WatchedLimit {
+            end: end.name,
+            bit: watched_bit(memory, axis, end)?,
+            field: memory.axis(axis, end.bit),
+            is_extended: options & EXTENDED != 0,
+            active: options >> polarity & 1 == 0,
+            polarity,
+            is_upper: end.direction > 0,
+        })
     };
-    let limits: Vec<_> = ENDS.iter().filter_map(limit).collect();
-    let is_shared = limits.windows(2).any(|pair| pair[0].bit == pair[1].bit);
-    if is_shared { Vec::new() } else { limits }
+    ENDS.iter().filter_map(limit).collect()
 }
 
 fn check_switch(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, end: &End) {

@@ -186,13 +186,21 @@ fn advance(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId) -> bool 
     let moved = plant.advance(&chan, plan.reach, || tick.io.stepgens.steps_per_tick(axis));
     let is_enabled = chan.get(Chan::ENABLE) != 0;
     let is_told = is_enabled && !chan.get(Chan::PCOEFF).is_null();
-    let has_run = tick.servo.axes[axis.index()].has_run;
+    let AxisMemory { has_run, dest, knows_dest, .. } = tick.servo.axes[axis.index()];
+    let leap = (knows_dest && is_enabled && chan.get(Chan::DEST) != dest).then_some(dest);
     let rewritten = plant.take_rewritten().filter(|_| is_enabled && has_run);
+    let stopped_at = plant.take_stopped().filter(|_| is_told);
     if plant.has_stepped() {
         step(tick, memory, axis);
     }
+    if let Some(place) = stopped_at {
+        note_stopped(tick, axis, place);
+    }
     if let Some((from, to)) = rewritten {
         note_rewritten(tick, memory, axis, from, to);
+    }
+    if let Some(from) = leap {
+        note_leap(tick, memory, axis, from);
     }
     if !is_told {
         return moved;
@@ -211,6 +219,31 @@ fn note_rewritten(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, from:
     let is_loop = matches!(plan.input, Input::Encoder(_)) && !plan.is_open_loop && plan.mode.is_some();
     if is_loop && plan.mode != Some(OutputMode::None) && (dest - to).abs() > (dest - from).abs() + FAR {
         tick.out.remark(tick.now, Message::PositionWritten { axis, from, to });
+    }
+}
+
+/// The load of an axis in motion has run into a hard stop.
+fn note_stopped(tick: &mut Tick<'_>, axis: AxisId, place: f64) {
+    let effect = if tick.servo.cache.plan(axis).is_open_loop {
+        "a stepper loses its steps there"
+    } else {
+        "its motor pushes against the stop"
+    };
+    tick.out.remark(tick.now, Message::HardStop { axis, place, effect });
+}
+
+/// The destination of an enabled axis was written: whether a motor could follow that.
+fn note_leap(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, from: f64) {
+    const FAR: f64 = 100.0;
+    /// Time for the way at full speed that a motor may need.
+    const SECONDS: f64 = 0.02;
+    let to = memory.axis(axis, Chan::DEST);
+    // A closed loop may be told its step on purpose, to record its response.
+    let plan = tick.servo.cache.plan(axis);
+    let is_stepper = plan.is_open_loop && OutputMode::has_generator(plan.mode);
+    let reach = SECONDS * f64::from(memory.axis(axis, Chan::VEL));
+    if is_stepper && (to - from).abs() > FAR.max(reach) {
+        tick.out.remark(tick.now, Message::DestLeaps { axis, from, to });
     }
 }
 
@@ -243,6 +276,7 @@ fn run_axis(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId) -> bool
         io.encoders.count(channel, count, &mut io.pins, *now);
     }
     if chan.get(Chan::ENABLE) == 0 {
+        own.knows_dest = false;
         machine.loads[axis].release();
         io.stepgens.release(axis, &mut io.pins, *now);
         return false;
@@ -304,6 +338,7 @@ fn direction(own: &mut AxisMemory, chan: &mut AxisView<'_>) -> bool {
     chan.set(Chan::LAST_DEST, last);
     own.last_velocity = own.velocity;
     own.dest = dest;
+    own.knows_dest = true;
     let (mut sign, mut goes_on) = (0, false);
     if dest == last {
         own.velocity = 0.0;

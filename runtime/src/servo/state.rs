@@ -19,6 +19,8 @@ use crate::out::Out;
 pub(crate) struct AxisMemory {
     /// Destination at the end of the last tick.
     pub(crate) dest: f64,
+    /// True if the axis has been enabled since, so that another destination is one that a program has written.
+    pub(super) knows_dest: bool,
     /// Its velocity in the last tick, for the feed forward.
     pub(super) velocity: f32,
     /// Sum of output times motion since the axis was enabled: above 0 if the output moves the position in its own
@@ -39,7 +41,7 @@ pub(crate) struct AxisMemory {
 impl AxisMemory {
     /// Rests at `dest`, so that no velocity is seen.
     pub(crate) fn rest(dest: f64) -> Self {
-        Self { dest, ..Self::default() }
+        Self { dest, knows_dest: true, ..Self::default() }
     }
 }
 

@@ -1,4 +1,5 @@
-//@ says: thread 1 at move_to_no_number.c:13:5 in `main`: Move: inf is not a valid position, so nothing moves
+//@ args: --for 1
+//@ says: thread 1 at move_to_no_number.c:14:5 in `main`: Move: inf is not a valid position or speed: the axis moves on without an end
 #include "KMotionDef.h"
 
 main()

@@ -1,12 +1,5 @@
 //@ args: --for 0.5
-//@ exit: 1
-//@ says: error: `LastCS0_Flushed` is not declared
-//@ says:    ┌─ path_smoothed_with_no_time_constant.c:24:5
-//@ says:    │
-//@ says: 24 │     LastCS0_Flushed = 1;
-//@ says:    │     ^^^^^^^^^^^^^^^
-//@ says:    │
-//@ says:    = help: did you mean `CS0_Flushed`?
+//@ says: a path ended with KLP set and TauKLP 0, so Dest of its axes is now NaN: set TauKLP = -TIMEBASE / log(KLP) before the path starts
 #include "KMotionDef.h"
 
 main()
@@ -21,7 +14,7 @@ main()
     KLP = 0.9;
     CoordSystem0 = NULL;
     ParametricIndex = 0;
-    LastCS0_Flushed = 1;
+    LastCoordSystem0 = s;
     CoordSystem0 = s;
     s->trajectory_mode = TRAJECTORY_LINEAR;
     s->x_axis = 0;

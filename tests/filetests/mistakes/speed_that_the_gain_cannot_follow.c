@@ -1,6 +1,6 @@
 //@ args: --machine parts/ends.toml
 //@ prints: Following Error Disabled Axis:0
-//@ says: axis 0 falls behind its Dest by more than MaxFollowingError, in the right direction: raise P or FFVel, or lower Vel or Accel
+//@ says: axis 0 falls behind its Dest by more than MaxFollowingError = 200, in the right direction: raise P or FFVel, or lower Vel or Accel, or allow more with MaxFollowingError
 #include "KMotionDef.h"
 
 main()

@@ -160,6 +160,12 @@ macro_rules! for_each_lint {
             Degrees = "degrees", On, pass degrees;
             /// A time is given in milliseconds where seconds are needed.
             Milliseconds = "milliseconds", On, pass milliseconds;
+            /// A loop runs until a time since power-up that has passed already.
+            AbsoluteTime = "absolute-time", On, pass absolute_time;
+            /// An analog input, which is read in counts, is compared with a number of volts.
+            AdcCounts = "adc-counts", On, pass adc_counts;
+            /// A recording is read as soon as it has begun.
+            GatherEarly = "gather-early", On, pass gather_early;
             /// A `float` or an `int` holds the time since power-up.
             FloatTime = "float-time", On, pass float_time;
             /// An element of `persist.UserData` is stored as one type and read as another.

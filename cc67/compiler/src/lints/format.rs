@@ -299,6 +299,9 @@ impl Conversion {
             Some(to) if self.printed(types, to).is_ok() => {
                 Some("write `*` before it for the value that it points to".to_owned())
             }
+            None if self.letter == b's' && is_int(ty) => {
+                Some("use `%c` for a character, `%d` for a number".to_owned())
+            }
             _ => print_help(types, ty),
         }
     }

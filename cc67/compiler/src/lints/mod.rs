@@ -10,6 +10,8 @@ mod program;
 mod used_values;
 mod walk;
 
+mod absolute_time;
+mod adc_counts;
 mod array_bounds;
 mod board_format;
 mod call_back_wait;
@@ -21,6 +23,7 @@ mod file_name;
 mod firmware_name;
 mod float_time;
 mod format;
+mod gather_early;
 mod header_mismatch;
 mod idle_loop;
 mod local_lock;

@@ -240,7 +240,8 @@ impl Search<'_> {
             ExprKind::Assign(place, value) => {
                 self.place(*place);
                 self.expr(*value);
-                self.store(*place);
+                // `sum = sum + x` is an update, too.
+                if self.adds_to(*place, *value) { self.update(*place) } else { self.store(*place) }
             }
             ExprKind::Update(update) => {
                 self.read(update.place);
@@ -304,6 +305,22 @@ impl Search<'_> {
         }
         if !self.flow.contains(local) {
             self.doubtful.entry(local).or_insert(span);
+        }
+    }
+
+    /// Reports whether a value is computed from that of the place by sums, differences or products, on every path.
+    fn adds_to(&self, place: PlaceId, value: ExprId) -> bool {
+        match self.function.exprs[value].kind {
+            ExprKind::Load(from) => {
+                let local = |place| match self.function.places[place].kind {
+                    PlaceKind::Local(local, 0) => Some(local),
+                    _ => None,
+                };
+                local(from).is_some() && local(from) == local(place)
+            }
+            ExprKind::Binary(_, a, b) => self.adds_to(place, a) || self.adds_to(place, b),
+            ExprKind::Convert(inner) => self.adds_to(place, inner),
+            _ => false,
         }
     }
 

@@ -1,5 +1,5 @@
-//! An element of `persist.UserData` that holds a floating-point number and is read as an integer, and a `double` in the
-//! elements through which a program and the PC exchange requests.
+//! An element of `persist.UserData` that holds a floating-point number and is read as an integer, one that holds an
+//! integer and is read as a floating-point number, and a `double` in the elements through which a program and the PC exchange requests.
 //!
 //! The types of the PC's elements are those of `gather-persist-console.md` sections 5 and 8.
 
@@ -30,6 +30,10 @@ struct Stores {
     floating: Option<(Span, TypeId)>,
     /// True if other values are stored there as well.
     has_others: bool,
+    /// The first store of a small constant other than 0, whose bits are next to 0 as a floating-point number.
+    small: Option<(Span, i64)>,
+    /// True if anything else is stored there, such as 0 or a value that is computed.
+    has_more: bool,
 }
 
 /// Reports elements of one type that are used as another.
@@ -38,6 +42,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         let walk = Walk { function, extent: Extent::All };
         walk.stmts(&function.body, &mut |expr| {
+            sink.report_if(integer_bits(program, function, expr, &stores));
             for (value, use_of) in uses(program, function, expr) {
                 let Some(element) = integer_load(program, function, value) else { continue };
                 let stored = stores.get(&element).copied().unwrap_or_default();
@@ -65,6 +70,32 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
             }
         });
     }
+}
+
+/// Reports an element that is read as a floating-point number where the program only stores small integers.
+fn integer_bits(
+    program: &AnalysedProgram<'_>,
+    function: &Function,
+    expr: ExprId,
+    stores: &BTreeMap<i32, Stores>,
+) -> Option<Diagnostic> {
+    let ExprKind::Load(place) = function.exprs[expr].kind else { return None };
+    let ty = function.places[place].ty;
+    let element = element(program, function, place).filter(|_| ty.is_floating())?;
+    let stored = stores.get(&element).filter(|stored| !stored.has_more && stored.floating.is_none())?;
+    let (place, value) = stored.small?;
+    // The PC answers in the mailbox, and other functions may have told it to store something else.
+    let is_pcs = MAILBOX.contains(&element) || PC_FLOATS.contains(&element);
+    if is_pcs || !function.exprs.values().any(|expr| expr.span == place) {
+        return None;
+    }
+    let message = format!("`persist.UserData[{element}]` is read as a `{}`", program.spell(ty));
+    Some(
+        Diagnostic::warning(Lint::UserDataType, function.exprs[expr].span, message)
+            .at(format!("the bits of the integer {value}, which are a number next to 0"))
+            .label(place, "an `int` is stored here")
+            .help(format!("write `persist.UserData[{element}]`")),
+    )
 }
 
 /// The use of a value.
@@ -97,9 +128,9 @@ fn stores(program: &AnalysedProgram<'_>, sink: &mut Sink) -> BTreeMap<i32, Store
     let mut stores: BTreeMap<i32, Stores> = BTreeMap::new();
     for function in program.functions() {
         Walk { function, extent: Extent::All }.stmts(&function.body, &mut |expr| {
-            let place = match &function.exprs[expr].kind {
-                ExprKind::Assign(place, _) => *place,
-                ExprKind::Update(update) => update.place,
+            let (place, value) = match &function.exprs[expr].kind {
+                ExprKind::Assign(place, value) => (*place, small(function, *value)),
+                ExprKind::Update(update) => (update.place, None),
                 _ => return,
             };
             let Some(element) = element(program, function, place) else { return };
@@ -110,6 +141,10 @@ fn stores(program: &AnalysedProgram<'_>, sink: &mut Sink) -> BTreeMap<i32, Store
             }
             for index in element..=element + i32::from(is_double) {
                 let entry = stores.entry(index).or_default();
+                match value {
+                    Some(value) => _ = entry.small.get_or_insert((span, value)),
+                    None => entry.has_more = true,
+                }
                 if ty.is_floating() {
                     entry.floating.get_or_insert((span, ty));
                 } else {
@@ -119,6 +154,15 @@ fn stores(program: &AnalysedProgram<'_>, sink: &mut Sink) -> BTreeMap<i32, Store
         });
     }
     stores
+}
+
+/// A positive constant whose bits are next to 0 as a floating-point number.
+fn small(function: &Function, value: ExprId) -> Option<i64> {
+    const LARGE: i64 = 1 << 23;
+    match function.exprs[value].kind {
+        ExprKind::Int(value) if (1..LARGE).contains(&value) => Some(value),
+        _ => None,
+    }
 }
 
 fn mailbox(element: i32, span: Span) -> Diagnostic {

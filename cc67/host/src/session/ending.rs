@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::target::Target;
 use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, ThreadId};
-use runtime::standing::{Awaited, Source, Standing, StandingAxis, StandingThread};
+use runtime::standing::{Awaited, Owner, OwnerState, Source, Standing, StandingAxis, StandingThread};
 
 use super::Session;
 use super::condition::WaitCondition;
@@ -163,6 +163,11 @@ impl<T: Target> Session<T> {
         place.map(SourceCall::from).into_iter().chain(around)
     }
 
+    /// Reports whether a program has configured a spindle.
+    fn measures_spindle(&self, thread: ThreadId) -> bool {
+        self.read(&format!("{thread}:Spindle.Type")).is_ok_and(|kind| kind != 0.0)
+    }
+
     /// The condition of the loop at a place, as far as the sources show one.
     fn condition(&self, thread: ThreadId, call: &SourceCall) -> Option<String> {
         let program = self.programs.iter().find(|program| program.thread == thread)?;
@@ -173,10 +178,19 @@ impl<T: Target> Session<T> {
         let value = value.map_or(String::new(), |value| format!(" (now {})", number(value)));
         let main = source_text(&program.path, &program.name()).unwrap_or_default();
         let is_written = [&text, &main].iter().any(|text| WaitCondition::writes(text, name));
-        let unwritten = if is_written { "" } else { ", which nothing writes," };
+        let unwritten = match () {
+            () if name.starts_with(SPINDLE) && !self.measures_spindle(thread) => {
+                ", which stays so until a program calls ConfigureSpindle,"
+            }
+            () if is_written => "",
+            () => ", which nothing writes,",
+        };
         Some(format!("`{name}`{value}{unwritten} in `{}`", condition.text()))
     }
 }
+
+/// The variable in which the firmware measures a spindle.
+const SPINDLE: &str = "Spindle.";
 
 /// The text of a source file that an image names, which may be relative to the program.
 fn source_text(program: &Path, file: &str) -> Option<String> {
@@ -185,6 +199,15 @@ fn source_text(program: &Path, file: &str) -> Option<String> {
     let same_name = |path: &PathBuf| path.file_name() == Path::new(file).file_name();
     let bytes = candidates.iter().filter(|path| same_name(path)).find_map(|path| fs::read(path).ok())?;
     Some(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+fn lock_words(owner: Option<Owner>) -> String {
+    let Some(Owner { thread, state }) = owner else { return "a lock".to_owned() };
+    match state {
+        OwnerState::Active => format!("a lock that thread {thread} has"),
+        OwnerState::Paused => format!("a lock that thread {thread} has, which is paused"),
+        OwnerState::Ended => format!("a lock that thread {thread} has, which has ended without MutexUnlock"),
+    }
 }
 
 /// Describes the wait of a thread that polls nothing.
@@ -205,7 +228,7 @@ fn awaited_words(awaited: &Awaited) -> String {
         Awaited::Motion(axis, _) => format!("axis {axis}, which has ended its motion"),
         Awaited::Path => "the end of the path".to_owned(),
         Awaited::Recording => "the end of the recording".to_owned(),
-        Awaited::Lock => "a lock".to_owned(),
+        Awaited::Lock(owner) => lock_words(*owner),
     }
 }
 

@@ -210,8 +210,13 @@ pub(crate) struct Screen<W: Write> {
     repeats: Repeats,
     /// Inputs that nothing drives, with their readers: reported together when the run is over.
     undriven: Vec<(String, Bit, u8)>,
+    /// Traps that are shown after the lines that the thread printed before.
+    traps_held: Vec<Event>,
     error: Option<io::Error>,
 }
+
+/// Time in which the board sends what a thread printed before its trap.
+const PRINTED: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 20);
 
 impl<W: Write> Screen<W> {
     /// A screen for a run of these programs, and of those that a stimulus may load.
@@ -235,6 +240,7 @@ impl<W: Write> Screen<W> {
             remarks,
             repeats,
             undriven,
+            traps_held: Vec::new(),
             error,
         }
     }
@@ -252,8 +258,27 @@ impl<W: Write> Screen<W> {
         }
     }
 
-    /// Shows an event.
+    /// Shows an event; a trap after the lines that were printed before it, which the board sends later.
     pub(crate) fn show(&mut self, event: &Event) {
+        if !matches!(event.kind, EventKind::ConsoleLine(_)) {
+            self.show_traps(event.at);
+        }
+        if matches!(event.kind, EventKind::Trap(_)) && !self.style.json && !self.style.is_live {
+            return self.traps_held.push(event.clone());
+        }
+        self.show_traps(event.at - PRINTED);
+        self.show_now(event);
+    }
+
+    /// Shows the traps up to a time that have not been shown.
+    fn show_traps(&mut self, until: Cycles) {
+        let (due, later) = std::mem::take(&mut self.traps_held).into_iter().partition(|trap| trap.at < until);
+        self.traps_held = later;
+        let due: Vec<Event> = due;
+        due.iter().for_each(|trap| self.show_now(trap));
+    }
+
+    fn show_now(&mut self, event: &Event) {
         match &event.kind {
             EventKind::ConsoleLine(line) => {
                 self.console_lines += 1;
@@ -356,6 +381,7 @@ impl<W: Write> Screen<W> {
         ending: &Ending,
         state: &FinalState,
     ) {
+        self.show_traps(Cycles::new(i64::MAX));
         let mut last = self.repeats.summary();
         if !self.undriven.is_empty() {
             last.push(remark::undriven(&self.undriven));

@@ -16,7 +16,7 @@ use super::motion::PlanningStage;
 
 pub(crate) use globals::Globals;
 pub(crate) use heap::Heap;
-pub(crate) use motions::{EndedWait, Jogged, Motions, WrongWait};
+pub(crate) use motions::{EndedWait, Jogged, Motions, SmallMove, WrongWait, WrongZero};
 pub(crate) use notices::{Named, Notices};
 pub(crate) use reading::Reading;
 pub(crate) use serial::SerialService;

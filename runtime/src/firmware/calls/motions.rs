@@ -3,6 +3,7 @@
 //! Two threads that move the same axis at once, a wait for another axis than the one that moves, and an axis that is
 //! disabled while a thread waits for it are mistakes that only several calls together show.
 
+use kmotiondef::firmware::Function;
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::{AxisId, CodeAddr, Cycles, ThreadId};
 
@@ -19,13 +20,25 @@ pub(crate) struct WrongWait {
     pub(crate) at: Option<CodeAddr>,
 }
 
+/// A thread that zeroed an axis that it never moved, and not the one that it had moved to its switch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct WrongZero {
+    pub(crate) thread: ThreadId,
+    /// The axis that it zeroed.
+    pub(crate) axis: AxisId,
+    /// The axis that it had moved.
+    pub(crate) homed: AxisId,
+    /// The call that zeroed it.
+    pub(crate) at: Option<CodeAddr>,
+}
+
 /// A thread that was told that an axis is disabled, while it waited for the end of its motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct EndedWait {
     /// The thread.
     pub(crate) thread: ThreadId,
-    /// The axis.
-    pub(crate) axis: AxisId,
+    /// The axis; `None` for a path.
+    pub(crate) axis: Option<AxisId>,
     /// The code address of the wait.
     pub(crate) at: Option<CodeAddr>,
 }
@@ -42,12 +55,28 @@ pub(crate) struct Jogged {
     pub(crate) looked: Cycles,
 }
 
+/// A move of a few counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SmallMove {
+    pub(crate) thread: ThreadId,
+    pub(crate) at: Option<CodeAddr>,
+    pub(crate) function: Function,
+    /// Its distance.
+    pub(crate) way: f64,
+}
+
 /// The history of one thread.
 #[derive(Clone, Copy, Debug, Default)]
 struct Thread {
     /// Axes that it has moved, and axes that it has found in motion; a bit for each.
     moved: u8,
     in_motion: u8,
+    /// True if it has found a path under way.
+    path_in_motion: bool,
+    /// Axes that it has moved to their switches and not zeroed since; a bit for each.
+    homed: u8,
+    /// A call that zeroed another axis meanwhile.
+    wrong_zero: Option<WrongZero>,
     wrong_wait: Option<WrongWait>,
     /// A wait that ended because the axis was disabled; a thread that looks into that asks again.
     ended_wait: Option<EndedWait>,
@@ -64,6 +93,17 @@ pub(crate) struct Motions {
     /// The jog of each axis, and how far its last move goes.
     jogged: [Option<Jogged>; N_CHANNELS],
     ways: [f64; N_CHANNELS],
+    /// The first move of each axis if that and all others are of a few counts; nothing after any other motion.
+    small: [Small; N_CHANNELS],
+}
+
+/// The common property of the moves of an axis.
+#[derive(Clone, Copy, Debug, Default)]
+enum Small {
+    #[default]
+    Unmoved,
+    All(SmallMove),
+    Not,
 }
 
 const fn bit(axis: AxisId) -> u8 {
@@ -79,9 +119,28 @@ impl Motions {
         }
     }
 
-    /// A move of an axis goes this far.
-    pub(crate) fn goes(&mut self, axis: AxisId, way: f64) {
+    /// A move of an axis goes this far; `small` if that is a few counts.
+    pub(crate) fn goes(&mut self, axis: AxisId, way: f64, small: Option<SmallMove>) {
         self.ways[axis.index()] = way;
+        let all = &mut self.small[axis.index()];
+        *all = match (*all, small) {
+            (Small::Unmoved, Some(first)) => Small::All(first),
+            (Small::All(first), Some(_)) => Small::All(first),
+            (Small::Unmoved | Small::All(_), None) | (Small::Not, _) => Small::Not,
+        };
+    }
+
+    /// An axis does something else than a move.
+    pub(crate) fn goes_on(&mut self, axis: AxisId) {
+        self.small[axis.index()] = Small::Not;
+    }
+
+    /// The first moves of the axes that have never moved by more than a few counts.
+    pub(crate) fn small_moves(&self) -> impl Iterator<Item = (AxisId, SmallMove)> + '_ {
+        AxisId::all().filter_map(|axis| match self.small[axis.index()] {
+            Small::All(first) => Some((axis, first)),
+            Small::Unmoved | Small::Not => None,
+        })
     }
 
     /// Returns the distance of the last move of an axis.
@@ -127,7 +186,7 @@ impl Motions {
         let mover = self.movers[axis.index()];
         let own = &mut self.threads[thread.index()];
         own.wrong_wait.take_if(|wait| wait.moving == axis);
-        own.ended_wait.take_if(|wait| wait.axis == axis);
+        own.ended_wait.take_if(|wait| wait.axis == Some(axis));
         let was_in_motion = own.in_motion & bit(axis) != 0;
         own.in_motion = if done == 0 { own.in_motion | bit(axis) } else { own.in_motion & !bit(axis) };
         let is_others = mover.is_some_and(|mover| mover != thread);
@@ -136,8 +195,47 @@ impl Motions {
             own.wrong_wait = moving.map(|moving| WrongWait { thread, asked: axis, moving, at });
         }
         if was_in_motion && done < 0 {
-            own.ended_wait = Some(EndedWait { thread, axis, at });
+            own.ended_wait = Some(EndedWait { thread, axis: Some(axis), at });
         }
+    }
+
+    /// A thread asks whether the path has ended, and is told `done`.
+    pub(crate) fn asked_path(&mut self, thread: ThreadId, done: i32, at: Option<CodeAddr>) {
+        let own = &mut self.threads[thread.index()];
+        own.ended_wait = (own.path_in_motion && done < 0).then_some(EndedWait { thread, axis: None, at });
+        own.path_in_motion = done == 0;
+    }
+
+    /// A thread has moved an axis to its switch.
+    pub(crate) fn homes(&mut self, thread: ThreadId, axis: AxisId) {
+        self.threads[thread.index()].homed |= bit(axis);
+    }
+
+    /// A thread zeroes an axis; `is_away` says which axes are not at 0.
+    pub(crate) fn zeroes(
+        &mut self,
+        thread: ThreadId,
+        axis: AxisId,
+        at: Option<CodeAddr>,
+        is_away: impl Fn(AxisId) -> bool,
+    ) {
+        let own = &mut self.threads[thread.index()];
+        own.homed &= !bit(axis);
+        own.wrong_zero.take_if(|wrong| wrong.homed == axis);
+        let homed = AxisId::all().find(|homed| own.homed & bit(*homed) != 0 && is_away(*homed));
+        if let Some(homed) = homed.filter(|_| own.moved & bit(axis) == 0) {
+            own.wrong_zero.get_or_insert(WrongZero { thread, axis, homed, at });
+        }
+    }
+
+    /// The calls that zeroed another axis than the one that was moved, which no later call has made good.
+    pub(crate) fn wrong_zeros(&self) -> impl Iterator<Item = WrongZero> + '_ {
+        self.threads.iter().filter_map(|thread| thread.wrong_zero)
+    }
+
+    /// Returns the thread that last moved an axis.
+    pub(crate) fn mover(&self, axis: AxisId) -> Option<ThreadId> {
+        self.movers[axis.index()]
     }
 
     /// The wait of a thread that ended because its axis was disabled, unless it has looked into that.
@@ -189,7 +287,7 @@ mod tests {
         let mut motions = Motions::default();
         let mut ask = |done| {
             motions.asked(thread(1), axis(0), done, None, |_| false);
-            motions.threads[thread(1).index()].ended_wait.map(|wait| wait.axis)
+            motions.threads[thread(1).index()].ended_wait.and_then(|wait| wait.axis)
         };
         assert_eq!([-1, 0, -1].map(&mut ask), [None, None, Some(axis(0))]);
         assert_eq!(ask(-1), None, "a thread that asks again looks into it");

@@ -57,6 +57,10 @@ pub(crate) struct Notices {
     moves: [Option<Called>; N_CHANNELS],
     /// The last call that printed.
     pub(crate) last_print: (Option<ThreadId>, Option<CodeAddr>),
+    /// The thread that has begun a line of text and not ended it.
+    line_of: Option<ThreadId>,
+    /// The call-back in the last tick.
+    pub(crate) call_back: GuestAddr,
     /// The named objects of the programs that are loaded.
     objects: [Arc<[Named]>; ThreadId::MAX as usize],
 }
@@ -68,12 +72,29 @@ impl Default for Notices {
             due: NEVER,
             moves: Default::default(),
             last_print: (None, None),
+            line_of: None,
+            call_back: GuestAddr::NULL,
             objects: std::array::from_fn(|_| Arc::from([])),
         }
     }
 }
 
 impl Notices {
+    /// A thread prints; the other thread whose line that continues.
+    pub(crate) fn prints(
+        &mut self,
+        thread: Option<ThreadId>,
+        at: Option<CodeAddr>,
+        text: &[u8],
+    ) -> Option<ThreadId> {
+        self.last_print = (thread, at);
+        let begun = self.line_of.filter(|begun| Some(*begun) != thread && !text.is_empty());
+        if let Some(last) = text.last() {
+            self.line_of = thread.filter(|_| *last != b'\n');
+        }
+        begun
+    }
+
     /// A level is written to a pin that is an input.
     pub(crate) fn latch(&mut self, caller: &Caller<'_>, function: Function, bit: Bit) {
         if self.latches.len() < MOST && self.latches.iter().all(|latch| latch.bit != bit) {

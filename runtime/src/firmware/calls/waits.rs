@@ -27,6 +27,9 @@ pub(crate) struct Wait {
     pub(crate) since: Cycles,
     /// When it last looked at anything.
     pub(crate) looked: Cycles,
+    /// True if it has read a bit again since it last did anything else; and if it had before that.
+    repeats: bool,
+    pub(crate) has_repeated: bool,
     /// The bit that it has read last.
     pub(crate) last_bit: Option<Bit>,
     /// The calls since its beginning.
@@ -49,6 +52,7 @@ impl Waits {
         let call = Repeated { polls, argument: caller.arguments.get(0), at: caller.at };
         if polls == Polled::Bit {
             wait.last_bit = Bit::new(call.argument);
+            wait.repeats |= wait.calls.contains(&call);
         }
         if wait.calls.len() < MOST && !wait.calls.contains(&call) {
             wait.calls.push(call);
@@ -59,6 +63,7 @@ impl Waits {
     pub(crate) fn act(&mut self, thread: ThreadId, now: Cycles) {
         let wait = &mut self.threads[thread.index()];
         wait.calls.clear();
+        wait.has_repeated = std::mem::take(&mut wait.repeats);
         wait.since = now;
     }
 

@@ -7,7 +7,7 @@ use kmotiondef::structs::Chan;
 use vm::firmware::{Caller, Outcome, Wake};
 
 use super::schedule::{self, PlanningStage, row_cost};
-use super::{is_beyond, is_place, may_move, no_limits};
+use super::{FARTHEST, is_beyond, is_number, may_move, no_limits};
 use crate::firmware::calls::Continuation;
 use crate::firmware::parts::Parts;
 use crate::firmware::{axis_check, costs};
@@ -78,12 +78,14 @@ fn step(
             return None;
         }
         let way = target - caller.memory.axis(axis, Chan::DEST);
-        if !is_place(parts, caller, function, target) || is_beyond(parts, caller, function, axis, way) {
+        if !is_number(parts, caller, function, target) || is_beyond(parts, caller, function, axis, way) {
             costs::spend(caller, costs::REFUSED);
             return None;
         }
         axis_check::moved(parts, caller, function, axis);
+        axis_check::target_beyond(parts, caller, function, axis, target);
     }
+    let target = target.clamp(-FARTHEST, FARTHEST);
     let Some(limits) = limits(caller.memory, axis, None) else {
         no_limits(parts, caller, axis, function);
         return None;
@@ -126,8 +128,10 @@ fn all_at_once(parts: &mut Parts, caller: &mut Caller<'_>, targets: [f64; 6]) ->
     }
     notice_letters(parts, caller, targets);
     for (axis, target) in moves {
-        if may_move(parts, caller, axis, function) && is_place(parts, caller, function, target) {
+        if may_move(parts, caller, axis, function) && is_number(parts, caller, function, target) {
             axis_check::moved(parts, caller, function, axis);
+            axis_check::target_beyond(parts, caller, function, axis, target);
+            let target = target.clamp(-FARTHEST, FARTHEST);
             match limits(caller.memory, axis, None) {
                 Some(limits) => {
                     let planner = parts.servo.planner;

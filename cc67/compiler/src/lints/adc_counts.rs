@@ -1,0 +1,102 @@
+//! `ReadADC(0) > 5.0`: analog inputs are read in counts, not in volts.
+
+use kmotiondef::firmware::Function;
+
+use super::format::called_firmware;
+use super::program::AnalysedProgram;
+use crate::diag::{Diagnostic, Lint, Sink};
+use crate::operators::BinaryOp;
+use crate::typed::{ExprId, ExprKind, Function as TypedFunction, PlaceId, PlaceKind};
+
+/// The function that reads an analog input, in counts from -2048 to 2047.
+const READ: &str = Function::ReadADC.name();
+
+/// The words that the macro `ADC` reads, in the same counts, and what it subtracts.
+const WORDS: &str = "ADC_BufferIn";
+const ZERO: i64 = 2048;
+
+/// The range of an analog input in volts: constants beyond it are counts.
+const VOLTS: f64 = 10.0;
+
+/// Reports comparisons of an analog input with constants that look like volts.
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
+    for function in program.functions() {
+        for expr in function.exprs.values() {
+            let ExprKind::Compare(_, a, b) = expr.kind else { continue };
+            let Some((name, constant)) =
+                compared(program, function, a, b).or_else(|| compared(program, function, b, a))
+            else {
+                continue;
+            };
+            let Some(volts) = volts(function, constant) else { continue };
+            let message = format!("`{name}` is a number of counts, and {volts} counts are almost nothing");
+            let counts = libm::round(volts * 204.8);
+            sink.report(
+                Diagnostic::warning(Lint::AdcCounts, function.exprs[constant].span, message)
+                    .at("this looks like volts")
+                    .note("10 V are 2047 counts on a Kanalog")
+                    .help(format!("write {counts} for {volts} V")),
+            );
+        }
+    }
+}
+
+/// An analog input that is compared with the other side.
+fn compared(
+    program: &AnalysedProgram<'_>,
+    function: &TypedFunction,
+    input: ExprId,
+    other: ExprId,
+) -> Option<(&'static str, ExprId)> {
+    let name = match &function.exprs[unconverted(function, input)].kind {
+        ExprKind::Call(call) if called_firmware(program.unit, call) == Some(READ) => READ,
+        ExprKind::Binary(BinaryOp::Subtract, word, zero) => {
+            let is_zero = matches!(function.exprs[*zero].kind, ExprKind::Int(ZERO));
+            let ExprKind::Load(place) = function.exprs[unconverted(function, *word)].kind else {
+                return None;
+            };
+            (is_zero && symbol(program, function, place) == Some(WORDS)).then_some("ADC")?
+        }
+        _ => return None,
+    };
+    Some((name, other))
+}
+
+/// The array that a place is an element of.
+fn symbol<'p>(program: &AnalysedProgram<'p>, function: &TypedFunction, place: PlaceId) -> Option<&'p str> {
+    match function.places[place].kind {
+        PlaceKind::Symbol(symbol, _) => Some(program.name(symbol)),
+        PlaceKind::Pointer(pointer, _) => match function.exprs[pointer].kind {
+            ExprKind::Binary(_, base, _) => address(program, function, base),
+            _ => address(program, function, pointer),
+        },
+        PlaceKind::Local(..) | PlaceKind::Bits(..) => None,
+    }
+}
+
+fn address<'p>(program: &AnalysedProgram<'p>, function: &TypedFunction, base: ExprId) -> Option<&'p str> {
+    match function.exprs[unconverted(function, base)].kind {
+        ExprKind::Address(place) => match function.places[place].kind {
+            PlaceKind::Symbol(symbol, _) => Some(program.name(symbol)),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+fn unconverted(function: &TypedFunction, expr: ExprId) -> ExprId {
+    match function.exprs[expr].kind {
+        ExprKind::Convert(inner) => unconverted(function, inner),
+        _ => expr,
+    }
+}
+
+/// A constant that can be a voltage.
+fn volts(function: &TypedFunction, constant: ExprId) -> Option<f64> {
+    let value = match function.exprs[unconverted(function, constant)].kind {
+        ExprKind::Int(value) => value as f64,
+        ExprKind::Float(value) => value,
+        _ => return None,
+    };
+    (value != 0.0 && value.abs() <= VOLTS).then_some(value)
+}

@@ -1,0 +1,17 @@
+//@ says: thread 1 at soft_limit_in_millimetres.c:15:5 in `main`: Move: 20000 is beyond SoftLimitPos = 300 of axis 0, so a feedhold stops the axis on its way
+//@ prints: Pos Soft Limit FeedHold Axis:0
+#include "KMotionDef.h"
+
+main()
+{
+    ch0->InputMode = NO_INPUT_MODE;
+    ch0->OutputMode = STEP_DIR_MODE;
+    ch0->Vel = 10000;
+    ch0->Accel = 100000;
+    ch0->Jerk = 1e6;
+    ch0->SoftLimitPos = 300;
+    ch0->SoftLimitNeg = 0;
+    EnableAxisDest(0, 0);
+    Move(0, 20000);
+    while (!CheckDone(0)) WaitNextTimeSlice();
+}

@@ -1,0 +1,7 @@
+#include "KMotionDef.h"
+
+main()
+{
+    SetFRO(0.5);
+    SetRapidFRO(1.5);
+}

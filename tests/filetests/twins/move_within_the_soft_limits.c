@@ -1,0 +1,15 @@
+#include "KMotionDef.h"
+
+main()
+{
+    ch0->InputMode = NO_INPUT_MODE;
+    ch0->OutputMode = STEP_DIR_MODE;
+    ch0->Vel = 10000;
+    ch0->Accel = 100000;
+    ch0->Jerk = 1e6;
+    ch0->SoftLimitPos = 30000;
+    ch0->SoftLimitNeg = 0;
+    EnableAxisDest(0, 0);
+    Move(0, 20000);
+    while (!CheckDone(0)) WaitNextTimeSlice();
+}

@@ -1,0 +1,14 @@
+//@ args: --set axis.0.max=5000
+#include "KMotionDef.h"
+
+main()
+{
+    ch0->InputMode = NO_INPUT_MODE;
+    ch0->OutputMode = STEP_DIR_MODE;
+    ch0->Vel = 10000;
+    ch0->Accel = 100000;
+    ch0->Jerk = 1e6;
+    EnableAxisDest(0, 0);
+    Move(0, 4999);
+    while (!CheckDone(0)) WaitNextTimeSlice();
+}
