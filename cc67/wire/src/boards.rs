@@ -44,17 +44,28 @@ fn serial_boards() -> Vec<FoundBoard> {
 
 /// The vendor's server, if one runs at its usual place.
 fn server() -> Option<FoundBoard> {
-    #[cfg(unix)]
-    {
-        let socket = "/tmp/kmotionsocket";
-        std::os::unix::net::UnixStream::connect(socket).ok()?;
-        Some(FoundBoard {
-            address: "server".into(),
-            name: "board of the server at /tmp/kmotionsocket".into(),
-            serial: None,
-            holder: Some("the server".into()),
-        })
-    }
-    #[cfg(not(unix))]
+    let place = served_at()?;
+    Some(FoundBoard {
+        address: "server".into(),
+        name: format!("board of the server at {place}"),
+        serial: None,
+        holder: Some("the server".into()),
+    })
+}
+
+/// The usual place of the vendor's server, if it listens there.
+#[cfg(unix)]
+fn served_at() -> Option<&'static str> {
+    let socket = "/tmp/kmotionsocket";
+    std::os::unix::net::UnixStream::connect(socket).ok().map(|_| socket)
+}
+
+#[cfg(windows)]
+fn served_at() -> Option<&'static str> {
+    crate::transport::is_served().then_some(r"\\.\pipe\kmotionpipe")
+}
+
+#[cfg(not(any(unix, windows)))]
+fn served_at() -> Option<&'static str> {
     None
 }

@@ -15,13 +15,14 @@
 //! Invariants:
 //!
 //! - **Nothing blocks forever**: each call has a time limit, and received bytes are read while others are sent.
+//! - Unsafe code is in `transport/d2xx.rs` alone, which exists on Windows.
 //! - **Nothing is started by itself**: only [`Client::command`] with `Execute` starts a program.
-//! - **Flash is never written**: [`Client`] sends no command for it by itself.
+//! - **Flash is written by [`Client::save_to_flash`] alone.**
 //! - **A program that was not loaded completely cannot be started** ([`Client::load`]).
 //!
 //! Source of the protocol: host-protocol.md, wire.md.
 
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 mod address;
 mod boards;

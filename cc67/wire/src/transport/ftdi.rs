@@ -12,12 +12,14 @@ pub struct ChipRequest {
     pub value: u16,
 }
 
+/// The time for which packets that are not full wait, in milliseconds.
+pub const LATENCY: u8 = 2;
+
 /// The requests that prepare the chip, in their order.
 pub const PREPARATION: [ChipRequest; 5] = [
     // Reset.
     ChipRequest { request: 0, value: 0 },
-    // Packets that are not full wait for 2 ms.
-    ChipRequest { request: 9, value: 2 },
+    ChipRequest { request: 9, value: LATENCY as u16 },
     // A packet with a line feed goes at once.
     ChipRequest { request: 6, value: 0x010A },
     // Drop what was received, and what is to be sent.

@@ -1,15 +1,27 @@
 //! Links of every kind.
 
+#[cfg(all(feature = "usb", any(windows, test)))]
+mod d2xx;
 pub mod ftdi;
+mod messages;
+mod pipe;
 #[cfg(feature = "serial")]
 mod serial;
 mod server;
 mod tcp;
-#[cfg(feature = "usb")]
+#[cfg(all(feature = "usb", not(windows)))]
 mod usb;
 
+#[cfg(all(feature = "usb", windows))]
+use d2xx as usb;
+#[cfg(windows)]
+pub(crate) use pipe::is_served;
 #[cfg(feature = "usb")]
 pub(crate) use usb::boards as usb_boards;
+
+/// One of these words is in the name of a board at USB.
+#[cfg(feature = "usb")]
+const BOARD_NAMES: [&str; 3] = ["KFLOP", "KMotion", "Dynomotion"];
 
 use crate::address::Address;
 use crate::error::WireError;

@@ -5,12 +5,13 @@
 //! and console lines become bytes again, so that the client above is the same. Files that programs open are served by
 //! the server while it waits for a reply, in its own folder.
 
-use std::io::{self, Read, Write};
+use std::io;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::RecvTimeoutError;
 use std::time::Duration;
 
-use super::tcp;
+use super::messages::{Framed, Messages};
+use super::{pipe, tcp};
 use crate::address::ServerAddress;
 use crate::clock::now;
 use crate::error::WireError;
@@ -30,8 +31,6 @@ const NAME: &[u8] = b"cc67\0";
 /// Results of taking the token.
 const LOCKED: i32 = 0;
 const IN_USE: i32 = 1;
-/// Acknowledges a message that is not a reply.
-const ACKNOWLEDGE: &[u8] = &[0xAA];
 /// Within which time the server answers: it may have to connect to the board, and to read a line.
 const ANSWER_WITHIN: Duration = Duration::from_secs(10);
 /// The time of one wait for a reply, in milliseconds.
@@ -40,58 +39,45 @@ const READ_FOR: i32 = 10;
 const CONSOLE_EACH: Duration = Duration::from_millis(20);
 /// The interval between attempts to take the token.
 const LOCK_EACH: Duration = Duration::from_millis(10);
-/// Longest message.
-const MESSAGE_LIMIT: usize = 4096;
 /// The abort byte, and its answer: the server connects by itself.
 const ABORT: u8 = 0x03;
 const ABORTED: &[u8] = b"\x1bC\r";
 
-/// A stream to a server.
-trait Stream: Read + Write + Send {}
-
-impl<S: Read + Write + Send> Stream for S {}
-
 pub(super) fn open(address: &ServerAddress, place: String) -> Result<BoardLink, WireError> {
     let fail = |error| WireError::Open { place: place.clone(), error };
-    let stream: Box<dyn Stream> = match address {
+    let messages: Box<dyn Messages> = match address {
         ServerAddress::Tcp(host, port) => {
             let stream = tcp::connect(host, *port).map_err(fail)?;
             stream.set_read_timeout(Some(ANSWER_WITHIN)).map_err(fail)?;
-            Box::new(stream)
+            Box::new(Framed(stream))
         }
         ServerAddress::Socket(path) => socket(path, &place)?,
-        ServerAddress::Pipe => {
-            return Err(WireError::NotBuilt {
-                place,
-                reason: "cc67 does not speak through the server's Windows pipe yet; use --on server:HOST:PORT or serial:COM3"
-                    .into(),
-            });
-        }
+        ServerAddress::Pipe => Box::new(pipe::open(&place)?),
     };
     let (link, ends) = BoardLink::with_ends(place, true);
-    let connection = Connection { stream, line: Vec::new(), received: Vec::new(), is_claimed: false };
+    let connection = Connection { messages, line: Vec::new(), received: Vec::new(), is_claimed: false };
     std::thread::spawn(move || connection.serve(&ends));
     Ok(link)
 }
 
 #[cfg(unix)]
-fn socket(path: &str, place: &str) -> Result<Box<dyn Stream>, WireError> {
+fn socket(path: &str, place: &str) -> Result<Box<dyn Messages>, WireError> {
     let fail = |error| WireError::Open { place: place.to_owned(), error };
     let stream = std::os::unix::net::UnixStream::connect(path).map_err(fail)?;
     stream.set_read_timeout(Some(ANSWER_WITHIN)).map_err(fail)?;
     stream.set_write_timeout(Some(ANSWER_WITHIN)).map_err(fail)?;
-    Ok(Box::new(stream))
+    Ok(Box::new(Framed(stream)))
 }
 
 #[cfg(not(unix))]
-fn socket(_: &str, place: &str) -> Result<Box<dyn Stream>, WireError> {
+fn socket(_: &str, place: &str) -> Result<Box<dyn Messages>, WireError> {
     let reason = "this system has no such sockets; server:HOST:PORT works everywhere".into();
     Err(WireError::NotBuilt { place: place.to_owned(), reason })
 }
 
 /// A connection to the server.
 struct Connection {
-    stream: Box<dyn Stream>,
+    messages: Box<dyn Messages>,
     /// The beginning of a line that was not ended yet.
     line: Vec<u8>,
     /// The bytes that the board has sent.
@@ -197,11 +183,9 @@ impl Connection {
     /// Sends a request and returns its reply; console lines that come before it are received.
     fn request(&mut self, code: i32, arguments: &[u8]) -> io::Result<Reply> {
         let body = [&code.to_le_bytes()[..], &BOARD.to_le_bytes(), arguments].concat();
-        let length = u16::try_from(body.len()).ok().filter(|_| body.len() <= MESSAGE_LIMIT);
-        let length = length.ok_or(io::ErrorKind::InvalidInput)?;
-        self.stream.write_all(&[&length.to_le_bytes()[..], &body].concat())?;
+        self.messages.send(&body)?;
         loop {
-            let message = self.message()?;
+            let message = self.messages.receive()?;
             let (kind, rest) = message.split_first().ok_or(io::ErrorKind::InvalidData)?;
             match kind {
                 0 => {
@@ -211,19 +195,11 @@ impl Connection {
                 1 => {
                     let text = rest.split(|byte| *byte == 0).next().unwrap_or_default();
                     self.received.extend([b"\x1b", text].concat());
-                    self.stream.write_all(ACKNOWLEDGE)?;
+                    self.messages.acknowledge()?;
                 }
                 // The text of an error, such as that of a link that was lost.
-                _ => self.stream.write_all(ACKNOWLEDGE)?,
+                _ => self.messages.acknowledge()?,
             }
         }
-    }
-
-    fn message(&mut self) -> io::Result<Vec<u8>> {
-        let mut length = [0; 2];
-        self.stream.read_exact(&mut length)?;
-        let mut message = vec![0; usize::from(u16::from_le_bytes(length))];
-        self.stream.read_exact(&mut message)?;
-        Ok(message)
     }
 }

@@ -15,8 +15,6 @@ use crate::link::BoardLink;
 /// The vendor's identifier at USB, and those of its boards: KFLOP, KMotion.
 const VENDOR: u16 = 0x0403;
 const PRODUCTS: [u16; 2] = [0xF231, 0xF230];
-/// One of these words is in the name of a board.
-const NAMES: [&str; 3] = ["KFLOP", "KMotion", "Dynomotion"];
 /// Endpoints for data.
 const IN: u8 = 0x81;
 const OUT: u8 = 0x02;
@@ -32,14 +30,6 @@ const OPEN_WITHIN: Duration = Duration::from_secs(3);
 const OPEN_EACH: Duration = Duration::from_millis(100);
 
 pub(super) fn open(location: Option<&str>) -> Result<BoardLink, WireError> {
-    if cfg!(windows) {
-        return Err(WireError::NotBuilt {
-            place: "usb".into(),
-            reason: "on Windows the vendor's driver holds the board, and cc67 does not use its library (ftd2xx.dll) yet; \
-                     use --on serial:COM3 (Device Manager: load VCP) or a computer with Linux or macOS"
-                .into(),
-        });
-    }
     let end = now() + OPEN_WITHIN;
     loop {
         match find(location).and_then(|device| claim(&device)) {
@@ -62,7 +52,10 @@ fn devices() -> Result<Vec<DeviceInfo>, WireError> {
 fn is_board(device: &DeviceInfo) -> bool {
     let is_known = device.vendor_id() == VENDOR && PRODUCTS.contains(&device.product_id());
     // Where the system does not tell the name, the identifier decides.
-    is_known && device.product_string().is_none_or(|name| NAMES.iter().any(|word| name.contains(word)))
+    is_known
+        && device
+            .product_string()
+            .is_none_or(|name| super::BOARD_NAMES.iter().any(|word| name.contains(word)))
 }
 
 /// Bus and ports of a device, as Linux writes them.

@@ -1,0 +1,73 @@
+//! Messages to and from the vendor's server. Source: host-protocol.md section 8; wire.md section 7.
+
+use std::io::{self, Read, Write};
+
+/// Acknowledges a message that is not a reply.
+const ACKNOWLEDGE: &[u8] = &[0xAA];
+/// Bytes of the longest message to the server, and of the longest from it.
+const LONGEST_REQUEST: usize = 4096;
+const LONGEST_REPLY: usize = 2561;
+
+/// A connection to the server, message by message.
+pub(super) trait Messages: Send {
+    /// Sends a message.
+    fn send(&mut self, message: &[u8]) -> io::Result<()>;
+    /// Returns the next message.
+    fn receive(&mut self) -> io::Result<Vec<u8>>;
+    /// Acknowledges a message that is not a reply.
+    fn acknowledge(&mut self) -> io::Result<()>;
+}
+
+/// A stream on which the length of each message comes before it.
+#[derive(Debug)]
+pub(super) struct Framed<S>(pub(super) S);
+
+impl<S: Read + Write + Send> Messages for Framed<S> {
+    fn send(&mut self, message: &[u8]) -> io::Result<()> {
+        let length = u16::try_from(limited(message)?.len()).map_err(|_| io::ErrorKind::InvalidInput)?;
+        self.0.write_all(&[&length.to_le_bytes()[..], message].concat())
+    }
+
+    fn receive(&mut self) -> io::Result<Vec<u8>> {
+        let mut length = [0; 2];
+        self.0.read_exact(&mut length)?;
+        let mut message = vec![0; usize::from(u16::from_le_bytes(length))];
+        self.0.read_exact(&mut message)?;
+        Ok(message)
+    }
+
+    fn acknowledge(&mut self) -> io::Result<()> {
+        self.0.write_all(ACKNOWLEDGE)
+    }
+}
+
+/// A pipe of Windows, on which each write is a message: the server sends the next one after an answer alone, so that a
+/// read takes all of one.
+#[derive(Debug)]
+pub(super) struct Unframed<S>(pub(super) S);
+
+impl<S: Read + Write + Send> Messages for Unframed<S> {
+    fn send(&mut self, message: &[u8]) -> io::Result<()> {
+        self.0.write_all(limited(message)?)
+    }
+
+    fn receive(&mut self) -> io::Result<Vec<u8>> {
+        let mut message = vec![0; LONGEST_REPLY];
+        match self.0.read(&mut message)? {
+            0 => Err(io::ErrorKind::UnexpectedEof.into()),
+            count => {
+                message.truncate(count);
+                Ok(message)
+            }
+        }
+    }
+
+    fn acknowledge(&mut self) -> io::Result<()> {
+        self.0.write_all(ACKNOWLEDGE)
+    }
+}
+
+/// A message, if it is not too long for the server.
+fn limited(message: &[u8]) -> io::Result<&[u8]> {
+    if message.len() <= LONGEST_REQUEST { Ok(message) } else { Err(io::ErrorKind::InvalidInput.into()) }
+}
