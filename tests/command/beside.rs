@@ -45,7 +45,9 @@ fn a_run_uses_the_files_next_to_the_program_and_says_so() {
 fn a_debugger_uses_the_files_next_to_the_program_too() {
     let scratch = scratch("beside-debug");
     scratch.write("commands", "continue\n");
-    for (option, stdout) in [(None, "other\n1 7 8\n"), (Some("--no-sidecar"), "0 0 0\n")] {
+    for (option, stdout) in
+        [(None, "Continuing.\nother\n1 7 8\n"), (Some("--no-sidecar"), "Continuing.\n0 0 0\n")]
+    {
         let output = cc67(&scratch, ["debug", "sub/prog.c", "--batch", "commands"].into_iter().chain(option));
         assert_eq!(output.code, 0, "{}", output.stderr);
         assert!(output.stdout.starts_with(stdout), "{}", output.stdout);

@@ -275,7 +275,7 @@ fn a_debugger_shows_and_sets_variables_of_a_running_program_and_controls_its_thr
         assert!(lines.contains(&state), "{output:?}");
     }
     let refusals = "\
-`missing`: `missing` is not declared
+No symbol \"missing\" in current context.
 a connected controller cannot stop at breakpoints
 a connected controller cannot stop at breakpoints
 a connected controller cannot stop where a variable changes

@@ -474,6 +474,12 @@ pub trait Executor: Default {
         false
     }
 
+    /// The slot of the result of the call from which `id` has returned last.
+    fn result(&self, id: ContextId) -> Option<u64> {
+        let _ = id;
+        None
+    }
+
     /// Calls the function at `entry` with the arguments, each as a slot, on the part of the stack that `id` does not
     /// use. The context is then as it was.
     fn call<F: Firmware + ?Sized>(

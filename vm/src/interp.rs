@@ -215,6 +215,10 @@ impl Executor for BytecodeEngine {
         running.is_some_and(|running| running.context.set_in(frame, register, slot))
     }
 
+    fn result(&self, id: ContextId) -> Option<u64> {
+        self.contexts[id.index()].as_ref().map(|running| running.context.calls.result)
+    }
+
     fn call<F: Firmware + ?Sized>(
         &mut self,
         id: ContextId,

@@ -1,10 +1,15 @@
 //! The commands that people know from gdb, as text in and text out.
 
 mod assignment;
+mod breakpoints;
+mod displays;
+mod history;
+mod listing;
+mod memory;
 mod show;
 
 pub(crate) use assignment::Assignment;
-pub(crate) use show::{number_as, seconds, state};
+pub(crate) use show::{format_of_letter, seconds, state};
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
@@ -16,9 +21,12 @@ use kmotiondef::{ThreadId, Ticks};
 use runtime::{Board, Event, EventKind};
 use vm::engine::ContextId;
 
-use crate::debugger::{BreakpointKind, DebugError, Debugger, Reason, Stop, WatchedAccess};
+use crate::debugger::{DebugError, Debugger, Reason, StackFrame, Stop, WatchedAccess};
 use crate::early::EarlyLines;
 use crate::words::{BreakWords, LineReader, is_move, split_if};
+use history::{KeptValue, ShownValues};
+use listing::ListedLines;
+use memory::MemoryForm;
 
 /// The result of a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,9 +42,10 @@ pub enum CommandOutput {
 pub struct Shell<T: Target = Board> {
     debugger: Debugger<T>,
     lines: LineReader,
-    /// The line that `list` continues with.
-    listed: u32,
-    values: u32,
+    listing: ListedLines,
+    history: ShownValues,
+    /// The form in which `x` has shown memory last.
+    memory_form: MemoryForm,
     /// Expressions that are shown at every stop: number, format, expression.
     displays: Vec<(u32, String, String)>,
     last_display: u32,
@@ -58,8 +67,9 @@ impl<T: Target> Shell<T> {
         Self {
             debugger,
             lines: LineReader::default(),
-            listed: 0,
-            values: 0,
+            listing: ListedLines::default(),
+            history: ShownValues::default(),
+            memory_form: MemoryForm::default(),
             displays: Vec::new(),
             last_display: 0,
             commands: BTreeMap::new(),
@@ -195,7 +205,7 @@ impl<T: Target> Shell<T> {
             "dprintf" => self.log_point(rest),
             "catch" => self.catch(rest),
             "condition" | "ignore" | "enable" | "disable" | "delete" => self.change(name, rest),
-            "print" | "call" | "ptype" | "x" | "set" => {
+            "print" | "call" | "output" | "echo" | "ptype" | "whatis" | "x" | "set" => {
                 let text = self.values(name, rest)?;
                 // A function that it has called may have printed.
                 self.show_early(true, output);
@@ -231,38 +241,6 @@ impl<T: Target> Shell<T> {
             _ => self.debugger.pause(thread, name == "pause")?,
         }
         Ok(String::new())
-    }
-
-    fn display(&mut self, name: &str, rest: &str) -> Result<String, DebugError> {
-        if name == "undisplay" {
-            let number: Option<u32> = rest.parse().ok();
-            self.displays.retain(|(one, ..)| !rest.is_empty() && number != Some(*one));
-            return Ok(String::new());
-        }
-        if !rest.is_empty() {
-            let (format, expression) = show::format_of(rest);
-            let number = self.last_display + 1;
-            let shown = self.shown((number, format, expression))?;
-            self.last_display = number;
-            self.displays.push((number, format.to_owned(), expression.to_owned()));
-            return Ok(shown);
-        }
-        Ok(self.shown_all())
-    }
-
-    fn shown(&self, (number, format, expression): (u32, &str, &str)) -> Result<String, DebugError> {
-        let (slash, text) = match format {
-            "" => (String::new(), self.debugger.evaluate(expression)?.text),
-            _ => (format!("/{format} "), number_as(self.debugger.number(expression)?, format)?),
-        };
-        Ok(format!("{number}: {slash}{expression} = {text}\n"))
-    }
-
-    /// The text of the expressions that are shown at every stop, as far as they have values there.
-    fn shown_all(&self) -> String {
-        let rows = self.displays.iter().map(|(number, format, expression)| (*number, format, expression));
-        rows.filter_map(|(number, format, expression)| self.shown((number, format, expression)).ok())
-            .collect()
     }
 
     /// `thread apply all|N… COMMAND`: a command with each of these threads, the highest number first as in gdb.
@@ -301,7 +279,7 @@ impl<T: Target> Shell<T> {
 
     /// Commands that let time pass, or go back in it.
     fn move_on(&mut self, name: &str, rest: &str, output: Output<'_>) -> Result<String, DebugError> {
-        if matches!(name, "until" | "advance" | "goto") && rest.is_empty() {
+        if matches!(name, "advance" | "goto") && rest.is_empty() {
             return Err(format!("{name} needs an argument.").into());
         }
         if name == "goto" {
@@ -310,21 +288,56 @@ impl<T: Target> Shell<T> {
         let (count, place) = match name {
             "until" | "advance" | "run" => (1.0, rest),
             _ if rest.is_empty() => (1.0, rest),
-            _ => (self.debugger.number(rest)?, ""),
+            _ => (self.number_of(rest)?, ""),
         };
         let mut text = String::new();
+        self.announce(name, count, output);
         let times = if name == "continue" || name == "run" { 1 } else { (count as u64).max(1) };
         if name == "continue" && count > 1.0 {
             self.ignore_present(count as u64 - 1, output);
         }
+        let left = self.debugger.frames(self.debugger.context()).get(self.debugger.frame()).cloned();
         for _ in 0..times {
             let stop = self.once(name, place, output)?;
             text = self.stop_text(&stop);
+            if name == "finish" && stop.reason == Reason::Step {
+                text += &self.returned(left.as_ref());
+            }
             if !matches!(stop.reason, Reason::Step | Reason::Time) {
                 break;
             }
         }
         Ok(text)
+    }
+
+    /// Says what is about to happen, as gdb does.
+    fn announce(&self, name: &str, count: f64, output: Output<'_>) {
+        let frame = || show::frame_text(&self.debugger, self.debugger.frame());
+        match name {
+            "continue" if count <= 1.0 => output("Continuing.\n"),
+            _ if name.starts_with("reverse") && !self.debugger.session().can(Capability::Snapshots) => {}
+            "reverse-continue" => output("Continuing.\n"),
+            "finish" | "reverse-finish" if !self.has_caller() => {}
+            "finish" => output(&format!("Run till exit from {}", frame())),
+            "reverse-finish" => output(&format!("Run back to call of {}", frame())),
+            _ => {}
+        }
+    }
+
+    fn has_caller(&self) -> bool {
+        self.debugger.frames(self.debugger.context()).len() > self.debugger.frame() + 1
+    }
+
+    /// The result of the function that has returned, as `finish` shows it.
+    fn returned(&mut self, left: Option<&StackFrame>) -> String {
+        let place = left.and_then(|frame| frame.place.clone()).filter(|place| !place.is_inlined);
+        let context = self.debugger.context();
+        let result = place.and_then(|place| self.debugger.result_of(&place, context));
+        result.map_or_else(String::new, |result| {
+            let value = KeptValue::of(&result);
+            let text = value.text.clone();
+            format!("Value returned is ${} = {text}\n", self.history.keep(value))
+        })
     }
 
     /// Moves once; what programs have printed until then is shown, also what the board has not sent yet.
@@ -439,27 +452,36 @@ impl<T: Target> Shell<T> {
             }
             _ => vec![number.parse().map_err(|_| format!("`{number}` is not the number of a breakpoint"))?],
         };
+        let mut text = String::new();
         for id in ids {
             let missing = || DebugError::from(format!("No breakpoint number {id}."));
             match name {
                 "delete" => self.debugger.delete(id).then_some(()).ok_or_else(missing)?,
                 "condition" => {
-                    self.debugger.set_condition(id, Some(argument.trim()).filter(|text| !text.is_empty()))?;
+                    let condition = Some(argument.trim()).filter(|text| !text.is_empty());
+                    self.debugger.set_condition(id, condition)?;
+                    if condition.is_none() {
+                        text += &format!("Breakpoint {id} now unconditional.\n");
+                    }
                 }
                 "ignore" => {
-                    let count = argument.trim().parse().map_err(|_| "ignore N COUNT")?;
+                    let count: u64 = argument.trim().parse().map_err(|_| "ignore N COUNT")?;
                     self.debugger.breakpoint_mut(id).ok_or_else(missing)?.ignore = count;
+                    text += &match count {
+                        0 => format!("Will stop next time breakpoint {id} is reached.\n"),
+                        1 => format!("Will ignore next crossing of breakpoint {id}.\n"),
+                        _ => format!("Will ignore next {count} crossings of breakpoint {id}.\n"),
+                    };
                 }
                 _ => self.debugger.breakpoint_mut(id).ok_or_else(missing)?.is_enabled = name == "enable",
             }
         }
-        Ok(String::new())
+        Ok(text)
     }
 
     /// Describes the reason and the position of a stop, as gdb does.
     fn stop_text(&mut self, stop: &Stop) -> String {
-        let place = self.debugger.present();
-        self.listed = place.as_ref().map_or(self.listed, |place| place.line.saturating_sub(5));
+        self.list_around_present();
         let silent =
             |id: &u32| self.commands.get(id).is_some_and(|lines| lines.iter().any(|line| line == "silent"));
         if ids_of(&stop.reason).iter().any(silent) {
@@ -491,6 +513,7 @@ fn go<T: Target>(
             }
             debugger.go_on(events)
         }
+        "until" if place.is_empty() => debugger.until_later(events)?,
         "until" | "advance" => debugger.until(place, events)?,
         "step" => debugger.step(events)?,
         "next" => debugger.next(events)?,
@@ -569,35 +592,6 @@ impl<'a, 'b> Teller<'a, 'b> {
             }
         }
     }
-}
-
-/// Lists the breakpoints, a line each.
-fn breakpoints<T: Target>(debugger: &Debugger<T>) -> String {
-    let mut out = String::new();
-    for breakpoint in debugger.breakpoints() {
-        let kind = match &breakpoint.kind {
-            BreakpointKind::Code(place, _) if breakpoint.log.is_some() => format!("dprintf     {place}"),
-            BreakpointKind::Code(place, _) => format!("breakpoint  {place}"),
-            BreakpointKind::Watch(expression) => format!("watchpoint  {expression}"),
-            BreakpointKind::Access(expression, WatchedAccess::Read) => {
-                format!("read watchpoint  {expression}")
-            }
-            BreakpointKind::Access(expression, WatchedAccess::ReadWrite) => {
-                format!("acc watchpoint  {expression}")
-            }
-            BreakpointKind::When(expression) => format!("catchpoint  when {expression}"),
-        };
-        let enabled = if breakpoint.is_enabled { 'y' } else { 'n' };
-        out += &format!("{:<4} {enabled} {kind}\n", breakpoint.id);
-        if let Some(condition) = &breakpoint.condition {
-            out += &format!("\tstop only if {condition}\n");
-        }
-        if breakpoint.hits > 0 {
-            let plural = if breakpoint.hits == 1 { "" } else { "s" };
-            out += &format!("\tbreakpoint already hit {} time{plural}\n", breakpoint.hits);
-        }
-    }
-    if out.is_empty() { "No breakpoints or watchpoints.\n".to_owned() } else { out }
 }
 
 /// The context of a thread.

@@ -149,7 +149,7 @@ fn the_console_has_the_commands_of_the_terminal() {
     );
     assert_eq!((results[1], results[2]), ("11", "11"));
     assert!(results[3].starts_with("Catchpoint 2 (when n > 14)"), "{results:?}");
-    assert!(results[5].starts_with("Breakpoint 1, count"), "{results:?}");
+    assert!(results[5].contains("\nBreakpoint 1, count"), "{results:?}");
     assert!(
         answers[6]["message"].as_str().is_some_and(|text| text.contains("needs an argument")),
         "{:?}",
@@ -229,7 +229,14 @@ fn data_breakpoints_stop_at_reads_as_well() {
         ("readWrite", ["n: 1, accessed by thread 1, count at", "n: 1 → 2, accessed by thread 1, count at"]),
         ("write", ["n: 1 → 2, written by thread 1, count at", "n: 2 → 3, written by thread 1, count at"]),
     ] {
-        let then = [info.clone(), breakpoints(access), clear.clone(), go.clone(), go.clone()];
+        let then = [
+            info.clone(),
+            breakpoints(access),
+            clear.clone(),
+            go.clone(),
+            go.clone(),
+            evaluate("n", "watch"),
+        ];
         let sent = serve("data", &stopped("2", &then));
         let types = &responses(&sent, "dataBreakpointInfo")[0]["body"]["accessTypes"];
         assert_eq!(types, &json!(["read", "write", "readWrite"]));

@@ -58,9 +58,11 @@ fn functions_of_the_program_are_called_and_the_board_stands() {
          print n = 2
          backtrace
          continue",
-        "Breakpoint 1 at main, a.c:19 (thread 1)
+        "Breakpoint 1 at ADDRESS: file a.c, line 19.
+         Continuing.
          4
-         Breakpoint 1, main at a.c:19
+
+         Breakpoint 1, main () at a.c:19
          19	        printf(\"%d\\n\", add(i, row[1]));
          $1 = 30
          $2 = 1
@@ -70,8 +72,9 @@ fn functions_of_the_program_are_called_and_the_board_stands() {
          it is 7
          $6 = 3
          $7 = 10
-         `n`: `n` is not declared
+         No symbol \"n\" in current context.
          #0  main () at a.c:19
+         Continuing.
          5
          6
          [All threads have ended, 1.003500 s]",
@@ -100,8 +103,10 @@ fn a_call_that_does_not_come_back_changes_nothing() {
          print ReadBit(46)
          print Time_sec() > 1
          info threads",
-        "Breakpoint 1 at main, a.c:19 (thread 1)
-         Breakpoint 1, main at a.c:19
+        "Breakpoint 1 at ADDRESS: file a.c, line 19.
+         Continuing.
+
+         Breakpoint 1, main () at a.c:19
          19	        printf(\"%d\\n\", add(i, row[1]));
          `wild()`: wild at a.c:30: read of the unmapped address 0x00000012; nothing has changed
          $1 = 0
@@ -134,8 +139,10 @@ fn a_call_of_a_function_without_code_says_so() {
          print later(4)
          print half(4)
          print unused()",
-        "Breakpoint 1 at main, a.c:19 (thread 1)
-         Breakpoint 1, main at a.c:19
+        "Breakpoint 1 at ADDRESS: file a.c, line 19.
+         Continuing.
+
+         Breakpoint 1, main () at a.c:19
          19	        printf(\"%d\\n\", add(i, row[1]));
          $1 = 10
          $2 = 40
@@ -158,21 +165,31 @@ fn the_past_ends_where_a_function_was_called() {
          print total
          reverse-continue
          print total",
-        "Breakpoint 1 at main, a.c:19 (thread 1)
-         Breakpoint 1, main at a.c:19
+        "Breakpoint 1 at ADDRESS: file a.c, line 19.
+         Continuing.
+
+         Breakpoint 1, main () at a.c:19
          19	        printf(\"%d\\n\", add(i, row[1]));
+         Continuing.
          4
-         Breakpoint 1, main at a.c:19
+
+         Breakpoint 1, main () at a.c:19
          19	        printf(\"%d\\n\", add(i, row[1]));
-         Breakpoint 1, main at a.c:19
+         Continuing.
+
+         Breakpoint 1, main () at a.c:19
          19	        printf(\"%d\\n\", add(i, row[1]));
          A new line of history begins here, at 0.000103 s; what came later is forgotten.
          $1 = 5
+         Continuing.
          4
-         Breakpoint 1, main at a.c:19
+
+         Breakpoint 1, main () at a.c:19
          19	        printf(\"%d\\n\", add(i, row[1]));
          $2 = 5
-         Breakpoint 1, main at a.c:19
+         Continuing.
+
+         Breakpoint 1, main () at a.c:19
          19	        printf(\"%d\\n\", add(i, row[1]));
          $3 = 5",
     );

@@ -42,14 +42,16 @@ fn the_condition_of_a_watchpoint_is_in_the_words_of_where_it_was_set() {
         &["int parts; main() { persist.UserData[10] = (int)&parts; for (;;) WaitNextTimeSlice(); }", WRITER],
         "watch parts if parts < 50
          continue",
-        "Watchpoint 1: parts
-         Watchpoint 1: parts
+        "Hardware watchpoint 1: parts
+         Continuing.
+
+         Hardware watchpoint 1: parts
 
          Old value = 100
          New value = 3
          Written by thread 2, main at b.c:9
-         main at b.c:10
-         10\t}",
+         main () at b.c:10
+         10	}",
     );
 }
 
@@ -64,16 +66,19 @@ fn a_stop_shows_what_was_printed_before_it() {
          next
          reverse-next
          continue",
-        "Breakpoint 1 at main, a.c:15 (thread 1)
+        "Breakpoint 1 at ADDRESS: file a.c, line 15.
+         Continuing.
          part 0
          part 2
          part 4
-         Breakpoint 1, main at a.c:15
+
+         Breakpoint 1, main () at a.c:15
          15	        WaitNextTimeSlice();
-         main at a.c:11
+         main () at a.c:11
          11	    for (i = 0; i < 8; i++)
-         main at a.c:15
+         main () at a.c:15
          15	        WaitNextTimeSlice();
+         Continuing.
          part 6
          part 8
          part 10
@@ -112,12 +117,13 @@ fn what_was_printed_before_a_trap_comes_before_it() {
          print *cursor + 1
          x/2 cursor
          print (char *)cursor",
-        "5: 2
+        "Continuing.
+         5: 2
          4: 2
          3: 3
          2: 5
          Trap: thread 1 stopped at a.c:16:9 in `main`: write of the unmapped address 0x00000012
-         main at a.c:16
+         ADDRESS in main () at a.c:16
          16	        *cursor = i;
          Cannot access memory at address 0x12
          Cannot access memory at address 0x12
@@ -148,8 +154,10 @@ fn values_are_those_of_the_board_and_of_c() {
          print i == 7
          print/x i - 20
          info locals",
-        "Breakpoint 1 at half, a.c:5 (thread 1)
-         Breakpoint 1, half at a.c:5
+        "Breakpoint 1 at ADDRESS: file a.c, line 5.
+         Continuing.
+
+         Breakpoint 1, half (n=5, m=10) at a.c:5
          5	    return m / n;
          $1 = 0
          $2 = 1
@@ -157,10 +165,10 @@ fn values_are_those_of_the_board_and_of_c() {
          $4 = \"x\"
          $5 = 5
          #0  half (n=5, m=10) at a.c:5
-         #1  main () at a.c:14
+         #1  ADDRESS in main () at a.c:14
          n = 5
          m = 10
-         #1  main () at a.c:14
+         #1  ADDRESS in main () at a.c:14
          14	        printf(\"%d: %d\\n\", i, half(i, 10));
          $6 = 14
          $7 = 6
@@ -169,7 +177,7 @@ fn values_are_those_of_the_board_and_of_c() {
          $10 = 1
          $11 = 0xfffffff3
          i = 7
-         text = 0x800501a0 \"text\"",
+         text = ADDRESS \"text\"",
     );
 }
 
@@ -184,36 +192,43 @@ fn hits_are_counted_as_gdb_counts_them() {
          ignore 1 1
          continue
          info breakpoints",
-        "Watchpoint 1: parts
+        "Hardware watchpoint 1: parts
+         Continuing.
          part 0
-         Watchpoint 1: parts
+
+         Hardware watchpoint 1: parts
 
          Old value = 0
          New value = 2
          Written by thread 1, main at a.c:13
-         main at a.c:14
+         main () at a.c:14
          14	        printf(\"part %d\\n\", parts);
          Will ignore next 2 crossings of breakpoint 1.  Continuing.
          part 2
          part 4
          part 6
-         Watchpoint 1: parts
+
+         Hardware watchpoint 1: parts
 
          Old value = 6
          New value = 8
          Written by thread 1, main at a.c:13
-         main at a.c:14
+         main () at a.c:14
          14	        printf(\"part %d\\n\", parts);
+         Will ignore next crossing of breakpoint 1.
+         Continuing.
          part 8
          part 10
-         Watchpoint 1: parts
+
+         Hardware watchpoint 1: parts
 
          Old value = 10
          New value = 12
          Written by thread 1, main at a.c:13
-         main at a.c:14
+         main () at a.c:14
          14	        printf(\"part %d\\n\", parts);
-         1    y watchpoint  parts
+         Num     Type           Disp Enb Address    What
+         1       hw watchpoint  keep y              parts
          breakpoint already hit 6 times",
     );
 }
@@ -233,42 +248,52 @@ fn expressions_are_watched_whatever_they_are_read_from() {
          continue
          continue
          continue",
-        "Watchpoint 1: *p + row[2]
-         Watchpoint 2: bit46 + 10
+        "Hardware watchpoint 1: *p + row[2]
+         Hardware watchpoint 2: bit46 + 10
          Cannot watch constant value `3'.
-         Watchpoint 1: *p + row[2]
+         Continuing.
+
+         Hardware watchpoint 1: *p + row[2]
 
          Old value = 0
          New value = 1
          Written by thread 1, main at a.c:2
-         main at a.c:2
+         ADDRESS in main () at a.c:2
          2	int a, b, *p = &a, row[3]; main() { a = 1; b = 5; p = &b; row[2] = 4; ClearBit(46); WaitNextTimeSlice(); b = 6; }
-         Watchpoint 1: *p + row[2]
+         Continuing.
+
+         Hardware watchpoint 1: *p + row[2]
 
          Old value = 1
          New value = 5
          Written by thread 1, main at a.c:2
-         main at a.c:2
+         ADDRESS in main () at a.c:2
          2	int a, b, *p = &a, row[3]; main() { a = 1; b = 5; p = &b; row[2] = 4; ClearBit(46); WaitNextTimeSlice(); b = 6; }
-         Watchpoint 1: *p + row[2]
+         Continuing.
+
+         Hardware watchpoint 1: *p + row[2]
 
          Old value = 5
          New value = 9
          Written by thread 1, main at a.c:2
-         main at a.c:2
+         ADDRESS in main () at a.c:2
          2	int a, b, *p = &a, row[3]; main() { a = 1; b = 5; p = &b; row[2] = 4; ClearBit(46); WaitNextTimeSlice(); b = 6; }
-         Watchpoint 2: bit46 + 10
+         Continuing.
+
+         Hardware watchpoint 2: bit46 + 10
 
          Old value = 11
          New value = 10
          Written by a program or the board in the last tick
          [0.000180 s]
-         Watchpoint 1: *p + row[2]
+         Continuing.
+
+         Hardware watchpoint 1: *p + row[2]
 
          Old value = 9
          New value = 10
          Written by thread 1, main at a.c:2
-         main at a.c:2
+         ADDRESS in main () at a.c:2
          2	int a, b, *p = &a, row[3]; main() { a = 1; b = 5; p = &b; row[2] = 4; ClearBit(46); WaitNextTimeSlice(); b = 6; }",
     );
 }
@@ -286,7 +311,7 @@ fn an_expression_is_caught_at_the_tick_in_which_it_becomes_true() {
     };
     assert_eq!(answer("catch when \"ch0->Dest > 20\""), "Catchpoint 1 (when ch0->Dest > 20)\n");
     let stop = answer("continue");
-    assert!(stop.starts_with("Catchpoint 1 (when ch0->Dest > 20)\n"), "{stop}");
+    assert!(stop.starts_with("\nCatchpoint 1 (when ch0->Dest > 20)\n"), "{stop}");
     assert!(answer("print ch0->Dest > 20").ends_with("= 1\n"));
     // It becomes true once more only after it was false.
     let caught = first.debugger().session().tick();
@@ -295,7 +320,7 @@ fn an_expression_is_caught_at_the_tick_in_which_it_becomes_true() {
         other => panic!("{line}: {other:?}"),
     };
     assert!(answer("continue").contains("All threads have ended"));
-    assert!(answer("reverse-continue").starts_with("Catchpoint 1"));
+    assert!(answer("reverse-continue").starts_with("\nCatchpoint 1"));
     assert_eq!(first.debugger().session().tick(), caught);
     // The tick before, it is not.
     let folder = Folder::new();
@@ -329,27 +354,33 @@ fn words_of_gdb() {
          jump 5
          delete
          commands",
-        "Breakpoint 1 at twice, a.c:5 (thread 1)
+        "Breakpoint 1 at ADDRESS: file a.c, line 5.
          1: /x parts = 0x0
-         Breakpoint 1, twice at a.c:5
+         Continuing.
+
+         Breakpoint 1, twice (n=0) at a.c:5
          5	    return n * 2;
          1: /x parts = 0x0
          $1 = 100
          2: n = 0
+         Continuing.
          part 0
-         Breakpoint 1, twice at a.c:5
+
+         Breakpoint 1, twice (n=1) at a.c:5
          5	    return n * 2;
          1: /x parts = 0x0
          2: n = 1
          $2 = 101
-         main at a.c:13
+         Run till exit from #0  twice (n=1) at a.c:5
+         ADDRESS in main () at a.c:13
          13	        parts = twice(i);
+         Value returned is $3 = 2
 
          Thread 2:
-         #0  main () at b.c:7
+         #0  ADDRESS in main () at b.c:7
 
          Thread 1:
-         #0  main () at a.c:13
+         #0  ADDRESS in main () at a.c:13
          Id   State       Frame
          * 1    running     main () at a.c:13
          2    waiting     main () at b.c:7, waits for 0.010 s
@@ -369,13 +400,17 @@ fn a_breakpoint_may_be_at_the_calls_of_a_function_of_the_firmware() {
          continue
          backtrace
          break EnableAxis",
-        "Breakpoint 1 at off, a.c:2 (thread 1); before each call of DisableAxis
-         Breakpoint 1, main at a.c:2
+        "Breakpoint 1 at ADDRESS: DisableAxis. (2 locations)  Before each call of DisableAxis.
+         Continuing.
+
+         Breakpoint 1, ADDRESS in main () at a.c:2
          2	void off(void) { DisableAxis(1); } main() { DisableAxis(0); off(); }
-         Breakpoint 1, off at a.c:2
+         Continuing.
+
+         Breakpoint 1, ADDRESS in off () at a.c:2
          2	void off(void) { DisableAxis(1); } main() { DisableAxis(0); off(); }
-         #0  off () at a.c:2
-         #1  main () at a.c:2
+         #0  ADDRESS in off () at a.c:2
+         #1  ADDRESS in main () at a.c:2
          No program calls EnableAxis, which is the firmware's.",
     );
 }
@@ -389,8 +424,10 @@ fn a_breakpoint_on_a_line_with_an_inlined_call_stops_before_the_call() {
          continue
          print i
          print parts",
-        "Breakpoint 1 at main, a.c:13 (thread 1)
-         Breakpoint 1, main at a.c:13
+        "Breakpoint 1 at ADDRESS: file a.c, line 13.
+         Continuing.
+
+         Breakpoint 1, main () at a.c:13
          13	        parts = twice(i);
          $1 = 0
          $2 = 0",

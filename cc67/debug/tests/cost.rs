@@ -89,15 +89,21 @@ fn on_processor() -> Duration {
     Duration::from_nanos(nanoseconds.expect("a number"))
 }
 
-/// Returns the ratio of run times with and without a debugger that has no breakpoint: the shortest of some runs each,
-/// as other load only ever makes a run longer.
-fn ratio(pairs: usize, seconds: f64) -> f64 {
+/// Never true, and looked at after every tick.
+const ERROR: &str = "fabs(ch0->Dest - ch0->Position) > 1e9";
+
+/// Returns the ratio of run times with and without a debugger that has no breakpoint, or catches an expression: the
+/// shortest of some runs each, as other load only ever makes a run longer.
+fn ratio(pairs: usize, seconds: f64, caught: Option<&str>) -> f64 {
     let end = tick(seconds);
     let (mut plain, mut debugged) = (Duration::MAX, Duration::MAX);
     for _ in 0..pairs {
         let mut session = self::session();
         plain = plain.min(time(|| session.advance(end, &mut |_| ())));
         let mut debugger = Debugger::new(self::session(), end);
+        if let Some(expression) = caught {
+            debugger.catch_when(expression).expect("it is right");
+        }
         debugged = debugged.min(time(|| _ = debugger.go_on(&mut |_| ())));
     }
     debugged.as_secs_f64() / plain.as_secs_f64()
@@ -125,10 +131,12 @@ fn hours_of_history_take_little_memory_and_time() {
     assert!(all < 500_000_000, "{all} bytes");
     drop(debugger);
 
-    let ratio = ratio(pairs, seconds);
-    println!(
-        "a run in a debugger takes {ratio:.3} times a plain one, the shortest of {pairs} runs of {seconds} s each"
-    );
-    assert!(ratio < most, "{ratio}");
+    for (caught, name) in [(None, "a run in a debugger"), (Some(ERROR), "a run that catches an expression")] {
+        let ratio = ratio(pairs, seconds, caught);
+        println!(
+            "{name} takes {ratio:.3} times a plain one, the shortest of {pairs} runs of {seconds} s each"
+        );
+        assert!(ratio < most, "{ratio}");
+    }
     std::fs::remove_dir_all(folder()).expect("the folder is ours");
 }

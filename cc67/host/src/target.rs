@@ -383,6 +383,12 @@ pub trait Target {
         false
     }
 
+    /// The slot of the result of the call from which a context has returned last; `None` where that is unknown.
+    fn result(&self, context: ContextId) -> Option<u64> {
+        let _ = context;
+        None
+    }
+
     /// Calls a function of a program or of the firmware in a context, with the arguments each as a slot; the board stands
     /// meanwhile ([`Capability::Calls`]).
     fn call_function(&mut self, context: ContextId, function: GuestAddr, arguments: &[u64]) -> CallEnd {

@@ -18,7 +18,7 @@ use crate::names::Names;
 use crate::pp::Disk;
 use crate::sema::constants::{self, Constant};
 use crate::source::SourceMap;
-use crate::ty::{QualifiedType, Type, TypeId, Types};
+use crate::ty::{Type, TypeId, Types};
 use crate::typed::{ExprId, ExprKind, LocalId, PlaceKind, StmtKind, Unit};
 use crate::watch::{self, AllowedCalls, CallRequest, Expression};
 
@@ -47,6 +47,12 @@ pub trait DebugReader {
 
     /// The location of a local; `None` if it is optimised out.
     fn local(&self, local: &LocalModel) -> Option<LocalPlace>;
+
+    /// The name of what is at an address, with the distance from its beginning.
+    fn symbol(&self, address: GuestAddr) -> Option<String> {
+        let _ = address;
+        None
+    }
 }
 
 /// A line of a function, for the names that mean something there.
@@ -189,8 +195,7 @@ impl Model {
         let types = &self.unit.types;
         let declaration = |function: &super::FunctionModel| {
             let symbol = self.unit.symbols.values().find(|symbol| symbol.name == function.name)?;
-            let ty = QualifiedType::plain(symbol.ty);
-            Some(types.declare(&self.names, ty, function.name.clone()) + "; ")
+            Some(types.spell_declaration(&self.names, symbol.ty, &function.name) + "; ")
         };
         called.filter_map(declaration).collect()
     }
@@ -241,8 +246,10 @@ impl Model {
             value = inner;
         }
         let locals = locals_of(locals, function, &sources, start);
-        let symbols = self.addresses(EntryKind::Object);
-        let code = (probe_names.calls == AllowedCalls::Executed).then(|| self.addresses(EntryKind::Function));
+        let functions = self.addresses(EntryKind::Function);
+        let mut symbols = self.addresses(EntryKind::Object);
+        symbols.extend(functions.clone());
+        let code = (probe_names.calls == AllowedCalls::Executed).then_some(functions);
         let named = watch::meanings(&unit, index, value, &symbols, code.as_ref(), &self.options, items)
             .map_err(ProbeError::Unreadable)?;
         let function = &unit.functions[index];
@@ -274,6 +281,23 @@ impl Model {
         let place = reader.local(local)?;
         let shown = Displayed { types: &self.unit.types, names: &self.names, reader };
         Some((DebugValue::of(local.type_id, place), shown))
+    }
+
+    /// The result of a function, as the slot of a register; `None` for `void` and what no register holds.
+    #[must_use]
+    pub fn result<'a>(
+        &'a self,
+        function: &str,
+        slot: u64,
+        reader: &'a dyn DebugReader,
+    ) -> Option<(DebugValue, Displayed<'a>)> {
+        let symbol = self.unit.symbols.values().find(|symbol| symbol.name == function)?;
+        let Type::Function(function) = self.unit.types.get(symbol.ty) else { return None };
+        if matches!(self.unit.types.get(function.result), Type::Void | Type::Record(_)) {
+            return None;
+        }
+        let shown = Displayed { types: &self.unit.types, names: &self.names, reader };
+        Some((DebugValue { ty: function.result, data: Data::Slot(slot) }, shown))
     }
 
     /// The value of a variable outside of functions.
@@ -430,6 +454,17 @@ impl Probe {
         }
     }
 
+    /// The type of the expression, without its value.
+    #[must_use]
+    pub fn type_only(&self) -> DebugValue {
+        let ty = self.expression.function().exprs[self.value].ty;
+        let ty = match self.unit.types.get(ty) {
+            Type::Pointer(to) if self.is_address => to.ty,
+            _ => ty,
+        };
+        DebugValue { ty, data: Data::Constant(Constant::Int(0)) }
+    }
+
     /// Reports whether the expression names locals of its call.
     #[must_use]
     pub const fn has_locals(&self) -> bool {
@@ -476,7 +511,7 @@ impl Probe {
             _ => None,
         });
         unknown.map_or_else(
-            || "it has no value: it divides by 0".to_owned(),
+            || "Division by zero".to_owned(),
             |name| format!("where the local `{name}` is in this code is not noted; variables outside of functions have values"),
         )
     }

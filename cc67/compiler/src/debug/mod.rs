@@ -7,9 +7,11 @@
 
 mod eval;
 mod scope;
+mod text;
 mod value;
 
 pub use eval::{CallResults, CodeScope, DebugReader, LocalPlace, Probe};
+pub use text::NumberFormat;
 pub use value::{Child, DebugValue, Displayed};
 
 use std::fmt::Write as _;
@@ -371,6 +373,33 @@ impl Model {
     #[must_use]
     pub fn function_at(&self, address: u32) -> Option<&FunctionModel> {
         self.functions.iter().find(|function| function.addresses.contains(&address))
+    }
+
+    /// The name of the function or variable at an address, with the distance from its beginning: `table+8`.
+    #[must_use]
+    pub fn symbol_at(&self, address: u32) -> Option<String> {
+        let is_named = |entry: &Entry| matches!(entry.kind, EntryKind::Function | EntryKind::Object);
+        // A string constant has no name in the source.
+        let named = |entry: &&Entry| is_named(entry) && !entry.name.contains('.');
+        let is_there = |entry: &&Entry| {
+            let size = entry.size.unwrap_or(0).max(1);
+            (entry.address..entry.address.saturating_add(size)).contains(&address)
+        };
+        let found = self.image.symbols.iter().filter(named).find(is_there);
+        let (name, start) = match found {
+            Some(entry) => (entry.name.as_str(), entry.address),
+            None => self.function_at(address).map(|known| (known.name.as_str(), known.addresses.start))?,
+        };
+        let distance = address - start;
+        Some(if distance == 0 { name.to_owned() } else { format!("{name}+{distance}") })
+    }
+
+    /// The line on which the body of a function begins.
+    #[must_use]
+    pub fn body_line(&self, function: &FunctionModel) -> u32 {
+        let head = scope::begin_of_line(&self.text, function.lines.start);
+        scope::begin_of_body(&self.text, head)
+            .map_or(function.lines.start, |body| scope::line_of(&self.text, body.saturating_sub(1)))
     }
 
     /// The function of a name.

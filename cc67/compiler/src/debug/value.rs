@@ -1,4 +1,4 @@
-//! Values with their types: their text and their parts.
+//! Values with their types, and their parts.
 
 use kmotiondef::GuestAddr;
 
@@ -7,13 +7,6 @@ use crate::names::Names;
 use crate::sema::constants::Constant;
 use crate::ty::{BitRange, QualifiedType, Type, TypeId, Types};
 use crate::watch;
-
-/// Most elements and members of a value that are shown in one line, and most characters of a string.
-const ELEMENTS: u32 = 32;
-const CHARACTERS: u32 = 200;
-
-/// The depth to which nested structures are shown in one line.
-const DEPTH: u32 = 3;
 
 /// A value of the program.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +62,7 @@ pub struct Child {
 }
 
 /// The text for what cannot be read.
-fn unreadable(address: GuestAddr) -> String {
+pub(super) fn unreadable(address: GuestAddr) -> String {
     format!("<error: Cannot access memory at address {:#x}>", address.get())
 }
 
@@ -82,10 +75,16 @@ pub struct Displayed<'a> {
 }
 
 impl Displayed<'_> {
-    /// The type as C spells it.
+    /// The type as C spells it, with a blank before the size of an array as in gdb.
     #[must_use]
     pub fn type_of(&self, value: &DebugValue) -> String {
-        self.types.spell(self.names, value.ty)
+        let spelled = self.types.spell(self.names, value.ty);
+        match spelled.find('[') {
+            Some(at) if spelled[..at].ends_with(|letter: char| letter.is_ascii_alphanumeric()) => {
+                format!("{} {}", &spelled[..at], &spelled[at..])
+            }
+            _ => spelled,
+        }
     }
 
     /// Bytes of the value.
@@ -101,12 +100,6 @@ impl Displayed<'_> {
             Constant::Int(value) => Some(value as f64),
             Constant::Float(value) => Some(value),
         }
-    }
-
-    /// The value in one line.
-    #[must_use]
-    pub fn text(&self, value: &DebugValue) -> String {
-        self.text_at(value, 0)
     }
 
     /// Number of parts of the value.
@@ -155,7 +148,12 @@ impl Displayed<'_> {
         }
     }
 
-    fn element(&self, value: &DebugValue, element: QualifiedType, index: u32) -> Option<DebugValue> {
+    pub(super) fn element(
+        &self,
+        value: &DebugValue,
+        element: QualifiedType,
+        index: u32,
+    ) -> Option<DebugValue> {
         let size = self.types.size_of(element.ty)?;
         let address = value.address()?.offset(index.wrapping_mul(size));
         Some(DebugValue { ty: element.ty, data: Data::Memory(address) })
@@ -177,95 +175,5 @@ impl Displayed<'_> {
             }
             Data::Constant(constant) => constant,
         })
-    }
-
-    fn text_at(&self, value: &DebugValue, depth: u32) -> String {
-        if let Some(address) = value.address().filter(|address| !self.reader.is_mapped(*address)) {
-            return unreadable(address);
-        }
-        match self.types.get(value.ty) {
-            Type::Void => "void".to_owned(),
-            Type::Function(_) => "a function".to_owned(),
-            Type::Array(element, length) => self.array(value, *element, length.unwrap_or(0), depth),
-            Type::Record(_) => {
-                if depth == DEPTH {
-                    return "{...}".to_owned();
-                }
-                let children = self.children(value, "", 0, ELEMENTS);
-                let mut parts: Vec<_> = (children.iter())
-                    .map(|child| format!("{} = {}", child.name, self.text_at(&child.value, depth + 1)))
-                    .collect();
-                if self.count(value) > ELEMENTS {
-                    parts.push("...".to_owned());
-                }
-                format!("{{{}}}", parts.join(", "))
-            }
-            Type::Pointer(to) => self.pointer(value, to.ty),
-            ty => self.scalar(ty, value),
-        }
-    }
-
-    fn array(&self, value: &DebugValue, element: QualifiedType, length: u32, depth: u32) -> String {
-        if matches!(self.types.get(element.ty), Type::Char)
-            && let Some(address) = value.address()
-        {
-            return self.string(address, length);
-        }
-        if depth == DEPTH {
-            return "{...}".to_owned();
-        }
-        let parts = (0..length.min(ELEMENTS)).filter_map(|index| self.element(value, element, index));
-        let mut parts: Vec<_> = parts.map(|element| self.text_at(&element, depth + 1)).collect();
-        if length > ELEMENTS {
-            parts.push("...".to_owned());
-        }
-        format!("{{{}}}", parts.join(", "))
-    }
-
-    fn pointer(&self, value: &DebugValue, to: TypeId) -> String {
-        let Some(Constant::Int(address)) = self.constant(value) else { return "?".to_owned() };
-        let address = address as u32;
-        let text = format!("{address:#x}");
-        match self.types.get(to) {
-            Type::Char if address != 0 => {
-                let address = GuestAddr::new(address);
-                let is_mapped = self.reader.is_mapped(address);
-                let string = if is_mapped { self.string(address, CHARACTERS) } else { unreadable(address) };
-                format!("{text} {string}")
-            }
-            _ => text,
-        }
-    }
-
-    fn string(&self, address: GuestAddr, most: u32) -> String {
-        let mut text = String::from("\"");
-        for offset in 0..most.min(CHARACTERS) {
-            match self.reader.bytes(address.offset(offset))[0] {
-                0 => break,
-                byte @ (b'"' | b'\\') => text.extend(['\\', char::from(byte)]),
-                b'\n' => text.push_str("\\n"),
-                b'\r' => text.push_str("\\r"),
-                b'\t' => text.push_str("\\t"),
-                byte @ b' '..=b'~' => text.push(char::from(byte)),
-                byte => text.push_str(&format!("\\x{byte:02x}")),
-            }
-        }
-        text + "\""
-    }
-
-    fn scalar(&self, ty: &Type, value: &DebugValue) -> String {
-        match (self.constant(value), ty) {
-            (Some(Constant::Int(value)), Type::Char | Type::SignedChar | Type::UnsignedChar) => {
-                match u8::try_from(value) {
-                    Ok(byte @ b' '..=b'~') => format!("{value} '{}'", char::from(byte)),
-                    _ => value.to_string(),
-                }
-            }
-            (Some(Constant::Int(value)), Type::UnsignedLongLong) => value.cast_unsigned().to_string(),
-            (Some(Constant::Int(value)), _) => value.to_string(),
-            (Some(Constant::Float(value)), Type::Float) => (value as f32).to_string(),
-            (Some(Constant::Float(value)), _) => value.to_string(),
-            (None, _) => "?".to_owned(),
-        }
     }
 }

@@ -18,7 +18,7 @@ impl Types {
     }
 
     /// Wraps the type around `inner`, from the name outwards.
-    pub(crate) fn declare(&self, names: &Names, ty: QualifiedType, inner: String) -> String {
+    fn declare(&self, names: &Names, ty: QualifiedType, inner: String) -> String {
         match self.get(ty.ty) {
             Type::Pointer(to) => {
                 let words = qualifiers(ty);

@@ -9,7 +9,7 @@ use vm::engine::ContextId;
 
 use super::{CALLBACK, Reply, Server, number_of, wire};
 use crate::debugger::{DebugError, Debugger, Reason, ShownVariable};
-use crate::shell::{Assignment, number_as, state};
+use crate::shell::{Assignment, format_of_letter, state};
 
 /// Frames of one thread; the number of a frame says which thread it is of.
 const FRAMES: i64 = 100_000;
@@ -46,6 +46,9 @@ impl Handle {
     }
 }
 
+/// Most letters of a value in the list of an editor, which opens it to show all.
+const MOST_LETTERS: usize = 300;
+
 /// Reports whether a request is for numbers in hexadecimal.
 fn wants_hex(arguments: &Value) -> bool {
     arguments["format"]["hex"] == true
@@ -57,7 +60,10 @@ fn text_of(variable: &ShownVariable, is_hex: bool) -> String {
     match digits.parse::<i64>() {
         Ok(number) if is_hex && (number >= 0 || number < i64::from(i32::MIN)) => format!("{number:#x}"),
         Ok(number) if is_hex => format!("{:#x}", number as i32),
-        _ => variable.text.clone(),
+        _ => match variable.text.char_indices().nth(MOST_LETTERS) {
+            Some((end, _)) => format!("{}...", &variable.text[..end]),
+            None => variable.text.clone(),
+        },
     }
 }
 
@@ -223,18 +229,13 @@ impl<W: Write, T: Target> Server<'_, W, T> {
             _ => (text, if wants_hex(arguments) { "x" } else { "" }),
         };
         let assignment = (arguments["context"] == "repl").then(|| Assignment::of(&text)).flatten();
-        let mut variable = match assignment {
+        let letter = format_of_letter(if format == "x" { "" } else { format })?;
+        let variable = match assignment {
             Some(Assignment { place, value, .. }) => self.debugger()?.set(&place, &value)?,
             // Only what a person types calls functions; what the editor looks at by itself reads.
-            None if arguments["context"] == "repl" => self.debugger()?.evaluate_with_calls(&text)?,
-            None => self.debugger()?.evaluate(&text)?,
+            None if arguments["context"] == "repl" => self.debugger()?.evaluate_with_calls(&text, letter)?,
+            None => self.debugger()?.look_at(&text, letter)?,
         };
-        if !format.is_empty() && format != "x" {
-            // A call is not made again.
-            let known = variable.text.split(' ').next().and_then(|word| word.parse().ok());
-            let number = known.map_or_else(|| self.debugger()?.number(&text), Ok)?;
-            variable.text = number_as(number, format)?;
-        }
         let number = frame.unwrap_or_else(|| {
             self.shell.as_ref().map_or(0, |shell| number_of(shell.debugger().context()) * FRAMES)
         });

@@ -177,10 +177,33 @@ impl<T: Target> Debugger<T> {
         if let Some(added) = self.breakpoints.last_mut() {
             added.line = line;
         }
-        let mut threads: Vec<_> = found.iter().map(|one| one.thread.to_string()).collect();
-        threads.dedup();
-        let text = format!("Breakpoint {id} at {where_} (thread {}){note}", threads.join(", "));
+        let at = match found.as_slice() {
+            [one] if one.line > 0 => {
+                let file = self.place(one.address).map_or_else(String::new, |place| place.file);
+                format!("{:#x}: file {}, line {}.", one.address, file_name(&file), one.line)
+            }
+            [one] => format!("{:#x}", one.address),
+            _ => format!("{:#x}: {place}. ({} locations)", found[0].address, found.len()),
+        };
+        let others = self.others_at(id, found[0].address);
+        let text = format!("{others}Breakpoint {id} at {at}{note}");
         Ok((id, text))
+    }
+
+    /// The note that other breakpoints are at an address, too.
+    fn others_at(&self, id: u32, address: u32) -> String {
+        let is_there = |one: &&Breakpoint| {
+            one.id != id
+                && matches!(&one.kind, BreakpointKind::Code(_, addresses) if addresses.contains(&address))
+        };
+        let others: Vec<_> = self.breakpoints.iter().filter(is_there).map(|one| one.id.to_string()).collect();
+        match others.as_slice() {
+            [] => String::new(),
+            [one] => format!("Note: breakpoint {one} also set at pc {address:#x}.\n"),
+            [first @ .., last] => {
+                format!("Note: breakpoints {} and {last} also set at pc {address:#x}.\n", first.join(", "))
+            }
+        }
     }
 
     /// Stops when the value of an expression changes; its number, and what there is to say.
@@ -196,7 +219,7 @@ impl<T: Target> Debugger<T> {
         if let Some(added) = self.breakpoints.last_mut() {
             added.subject = Subject::Change(watched);
         }
-        Ok((id, format!("Watchpoint {id}: {expression}")))
+        Ok((id, format!("Hardware watchpoint {id}: {expression}")))
     }
 
     /// Stops after an instruction of a program accesses the memory of an expression; its number, and what there is to say.
@@ -348,16 +371,20 @@ impl<T: Target> Debugger<T> {
             let (found, taken) = self.programs.at_line(file, line, thread);
             if found.is_empty() {
                 let why = self.programs.unknown().next();
+                let place = match (file, own.is_some()) {
+                    (Some(file), false) => format!("file \"{file}\""),
+                    _ => "the current file".to_owned(),
+                };
                 let text = format!(
-                    "No code at line {line} or below{}",
-                    why.map_or_else(String::new, |why| format!("; {why}"))
+                    "No line {line} in {place}.{}",
+                    why.map_or_else(String::new, |why| format!("  {why}"))
                 );
                 return Err(text.into());
             }
             let note = if taken == line {
                 String::new()
             } else {
-                format!("; line {line} has no code, {taken} is the next with some")
+                format!("  Line {line} has no code, {taken} is the next with some.")
             };
             return Ok((found, note));
         }
@@ -365,7 +392,7 @@ impl<T: Target> Debugger<T> {
         if found.is_empty() && file.is_none() {
             found = self.calls_of(rest, thread);
             if !found.is_empty() {
-                return Ok((found, format!("; before each call of {rest}")));
+                return Ok((found, format!("  Before each call of {rest}.")));
             }
             if self.session.options().firmware.find(rest).is_some() {
                 return Err(format!("No program calls {rest}, which is the firmware's.").into());

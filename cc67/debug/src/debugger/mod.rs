@@ -1,12 +1,15 @@
 //! The debugger: a session, its programs, breakpoints, and where it is.
 
 mod breakpoints;
+mod calls;
 mod hits;
+mod judge;
 mod run;
 mod travel;
 mod values;
 
 pub use breakpoints::{Breakpoint, BreakpointKind, WatchedAccess};
+pub(crate) use calls::TypeDetail;
 pub use hits::HitCondition;
 pub(crate) use run::{Goal, StepKind};
 pub(crate) use travel::ONLY_FORWARD;
@@ -162,6 +165,8 @@ pub struct Stop {
     pub context: Option<ContextId>,
     /// Board time.
     pub at: Cycles,
+    /// The breakpoint at which the board stands was a temporary one, and is deleted.
+    pub is_temporary: bool,
 }
 
 /// An instant between two instructions, which no other has in common.
@@ -225,7 +230,7 @@ impl<T: Target> Debugger<T> {
         programs.update(&session);
         let first = session.programs().iter().find(|program| program.starts).map(|program| program.thread);
         let thread = first.or_else(|| ThreadId::all().next()).expect("there are threads");
-        let stop = Stop { reason: Reason::Begin, context: None, at: session.now() };
+        let stop = Stop { reason: Reason::Begin, context: None, at: session.now(), is_temporary: false };
         Self {
             session,
             timeline,
@@ -480,8 +485,12 @@ impl<T: Target> Debugger<T> {
             self.thread = thread;
         }
         self.frame = 0;
-        self.stop = Stop { reason, context, at: self.now() };
+        let met = if let Reason::Breakpoint(ids) = &reason { ids.clone() } else { Vec::new() };
+        let is_met = |breakpoint: &Breakpoint| breakpoint.is_temporary && met.contains(&breakpoint.id);
+        let is_temporary = self.breakpoints.iter().any(is_met);
+        self.stop = Stop { reason, context, at: self.now(), is_temporary };
         self.frame = self.frame_of_breakpoint();
+        self.breakpoints.retain(|breakpoint| !is_met(breakpoint));
         self.stop.clone()
     }
 

@@ -5,17 +5,9 @@ use std::sync::atomic::Ordering;
 use cc67_host::{Capability, Target};
 use kmotiondef::{Bit, CodeAddr, GuestAddr, ThreadId, Ticks};
 use runtime::{Event, EventKind};
-use vm::engine::{AccessRange, ContextId, Hold, HoldReason};
+use vm::engine::{AccessRange, ContextId};
 
-use super::breakpoints::WatchedExpression;
-use super::{
-    Breakpoint, BreakpointKind, DebugError, Debugger, Events, Reason, Stop, WatchedAccess, file_name,
-};
-
-/// The writer of a value that is looked at only after every tick.
-const IN_TICK: &str = "a program or the board in the last tick";
-/// The writer of a value that no program writes.
-const BY_SERVO: &str = "the servo or the firmware";
+use super::{Breakpoint, BreakpointKind, DebugError, Debugger, Events, Reason, Stop, WatchedAccess};
 
 /// The goal at which a run ends, besides breakpoints.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,6 +22,8 @@ pub(crate) enum Goal {
     Above { context: ContextId, depth: usize, at: Vec<u32> },
     /// One of these addresses.
     Address(Vec<u32>),
+    /// One of these addresses, or the return to the caller.
+    Until { at: Vec<u32>, caller: Option<Box<Goal>> },
     /// One instruction.
     Instruction(ContextId),
     /// The end of a tick.
@@ -145,9 +139,29 @@ impl<T: Target> Debugger<T> {
         self.must_hold()?;
         let (found, note) = self.resolve(place, None)?;
         if !note.is_empty() {
-            self.messages.push_back(note.trim_start_matches("; ").to_owned());
+            self.messages.push_back(note.trim_start().to_owned());
         }
-        Ok(self.run(&Goal::Address(found.iter().map(|one| one.address).collect()), events))
+        let at = found.iter().map(|one| one.address).collect();
+        let caller = self.outer_goal().ok().map(Box::new);
+        Ok(self.run(&Goal::Until { at, caller }, events))
+    }
+
+    /// Goes on to a later line of the function that is looked at, or to its caller.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn until_later(&mut self, events: Events<'_>) -> Result<Stop, DebugError> {
+        let context = self.context();
+        let from = self.frames(context).first().map(|frame| (frame.address, self.depth(context)));
+        loop {
+            let stop = self.next(events)?;
+            let now = self.frames(context).first().map(|frame| (frame.address, self.depth(context)));
+            let is_back =
+                from.zip(now).is_some_and(|((start, depth), (at, now))| now == depth && at <= start);
+            if stop.reason != Reason::Step || !is_back {
+                return Ok(stop);
+            }
+        }
     }
 
     /// Goes on to the end of a tick.
@@ -208,10 +222,15 @@ impl<T: Target> Debugger<T> {
                 addresses.extend(self.statements());
             }
         }
-        match goal {
+        let caller = if let Goal::Until { caller, .. } = goal { caller.as_deref() } else { None };
+        match caller.unwrap_or(goal) {
             Goal::Line { .. } | Goal::Leave { .. } => addresses.extend(self.statements()),
-            Goal::Above { at, .. } | Goal::Address(at) => addresses.extend(at),
+            Goal::Above { at, .. } => addresses.extend(at),
+            Goal::Address(_) | Goal::Until { .. } => {}
             Goal::None | Goal::Instruction(_) | Goal::Tick(_) => {}
+        }
+        if let Goal::Address(at) | Goal::Until { at, .. } = goal {
+            addresses.extend(at);
         }
         self.session.set_breakpoints(addresses.into_iter().filter_map(CodeAddr::new));
         self.session.set_watched(&ranges);
@@ -352,7 +371,7 @@ impl<T: Target> Debugger<T> {
             | Goal::Leave { context, .. }
             | Goal::Above { context, .. }
             | Goal::Instruction(context) => context.thread(),
-            Goal::None | Goal::Address(_) | Goal::Tick(_) => None,
+            Goal::None | Goal::Address(_) | Goal::Until { .. } | Goal::Tick(_) => None,
         };
         let is_meant = |thread: &ThreadId| self.catches.ends || stepped == Some(*thread);
         if let Some(thread) = changed(before, now).find(is_meant) {
@@ -368,187 +387,7 @@ impl<T: Target> Debugger<T> {
         Some(Reason::Bit(format!("bit {} is {level}", self.catches.bits[changed])))
     }
 
-    /// Returns whether breakpoints stop at the end of a tick: what they watch has changed in it, or has become true.
-    pub(super) fn judge_tick(&mut self, counts: bool) -> Option<Reason> {
-        if let Some(index) = self.session.take_change()
-            && let Some(reason) = self.judge_change(index, BY_SERVO.to_owned(), counts)
-        {
-            return Some(reason);
-        }
-        (0..self.breakpoints.len()).find_map(|index| {
-            if !self.breakpoints[index].is_polled() {
-                return None;
-            }
-            let id = self.breakpoints[index].id;
-            if self.breakpoints[index].subject.watched().is_some() {
-                return self.judge_watch(id, IN_TICK.to_owned(), counts);
-            }
-            let is_so = self.is_so(&self.breakpoints[index]);
-            let was_so = self.breakpoints[index].subject.was_true_mut()?;
-            let is_new = is_so && !std::mem::replace(was_so, is_so);
-            if !is_new || !self.is_to_stop(index, self.context(), counts) {
-                return None;
-            }
-            let BreakpointKind::When(expression) = self.breakpoints[index].kind.clone() else { return None };
-            Some(Reason::When { id, expression })
-        })
-    }
-
-    /// Returns the reason for which a held context has to stop, if it has to; `counts` for a run that is not a search
-    /// of the past.
-    pub(super) fn judge(&mut self, hold: Hold, goal: &Goal, counts: bool) -> Option<Reason> {
-        match hold.reason {
-            HoldReason::Step => (*goal == Goal::Instruction(hold.context)).then_some(Reason::Step),
-            HoldReason::Changed { index, by } => {
-                let by = by.map_or_else(|| BY_SERVO.to_owned(), |at| self.writer(hold.context, at));
-                self.judge_change(index, by, counts)
-            }
-            HoldReason::Accessed { index, by, .. } => {
-                let by = self.writer(hold.context, by);
-                self.judge_access(index, by, counts)
-            }
-            HoldReason::Breakpoint => {
-                let at = self.session.frames(hold.context).first()?.at.get();
-                self.judge_registers(hold.context, counts)
-                    .or_else(|| self.judge_breakpoints(hold.context, at, counts))
-                    .or_else(|| self.is_reached(goal, hold.context, at).then_some(Reason::Step))
-            }
-        }
-    }
-
-    fn writer(&self, context: ContextId, at: CodeAddr) -> String {
-        let who =
-            context.thread().map_or_else(|| "the call-back".to_owned(), |thread| format!("thread {thread}"));
-        match self.place(at.get()) {
-            Some(place) => format!("{who}, {} at {}:{}", place.function, file_name(&place.file), place.line),
-            None => format!("{who} at {at}"),
-        }
-    }
-
-    /// A watched range has changed.
-    fn judge_change(&mut self, range: usize, by: String, counts: bool) -> Option<Reason> {
-        let mut ranges = 0;
-        let found =
-            self.breakpoints.iter().filter(|breakpoint| breakpoint.is_enabled).position(|breakpoint| {
-                ranges += breakpoint.subject.watched().map_or(0, |watched| watched.ranges.len());
-                range < ranges
-            })?;
-        let id = self.breakpoints.iter().filter(|breakpoint| breakpoint.is_enabled).nth(found)?.id;
-        self.judge_watch(id, by, counts)
-    }
-
-    fn judge_registers(&mut self, context: ContextId, counts: bool) -> Option<Reason> {
-        let watching = |watched: &WatchedExpression| {
-            watched.has_registers && watched.prepared.frame.is_some_and(|(of, _)| of == context)
-        };
-        let ids: Vec<_> = (self.breakpoints.iter())
-            .filter(|breakpoint| breakpoint.is_enabled && breakpoint.subject.watched().is_some_and(watching))
-            .map(|breakpoint| breakpoint.id)
-            .collect();
-        let by =
-            context.thread().map_or_else(|| "the call-back".to_owned(), |thread| format!("thread {thread}"));
-        ids.into_iter().find_map(|id| self.judge_watch(id, by.clone(), counts))
-    }
-
-    fn judge_watch(&mut self, id: u32, by: String, counts: bool) -> Option<Reason> {
-        let index = self.breakpoints.iter().position(|breakpoint| breakpoint.id == id)?;
-        let watched = self.breakpoints[index].subject.watched()?;
-        let new = self.watched_text(watched)?;
-        if new == watched.last {
-            return None;
-        }
-        let BreakpointKind::Watch(expression) = self.breakpoints[index].kind.clone() else { return None };
-        let old = self.breakpoints[index]
-            .subject
-            .watched_mut()
-            .map(|watched| std::mem::replace(&mut watched.last, new.clone()))?;
-        let context = self.session.held().map_or_else(|| self.context(), |(context, _)| context);
-        if !self.is_to_stop(index, context, counts) {
-            return None;
-        }
-        Some(Reason::Changed { id, expression, old, new, by })
-    }
-
-    /// The memory of an expression was accessed.
-    fn judge_access(&mut self, range: usize, by: String, counts: bool) -> Option<Reason> {
-        let is_meant = |index: &usize| {
-            let breakpoint = &self.breakpoints[*index];
-            breakpoint.is_enabled
-                && breakpoint.subject.accessed().is_some_and(|watched| watched.own.is_some())
-        };
-        let index = (0..self.breakpoints.len()).filter(is_meant).nth(range)?;
-        let value = self.watched_text(self.breakpoints[index].subject.accessed()?)?;
-        let watched = self.breakpoints[index].subject.expression_mut()?;
-        let old = std::mem::replace(&mut watched.last, value.clone());
-        let context = self.session.held().map_or_else(|| self.context(), |(context, _)| context);
-        if !self.is_to_stop(index, context, counts) {
-            return None;
-        }
-        let Breakpoint { id, kind: BreakpointKind::Access(expression, access), .. } =
-            &self.breakpoints[index]
-        else {
-            return None;
-        };
-        let (expression, access) = (expression.clone(), *access);
-        let old = Some(old).filter(|old| *old != value && access == WatchedAccess::ReadWrite);
-        Some(Reason::Accessed { id: *id, expression, access, old, value, by })
-    }
-
-    pub(super) fn judge_breakpoints(&mut self, context: ContextId, at: u32, counts: bool) -> Option<Reason> {
-        let is_here = |kind: &BreakpointKind| matches!(kind, BreakpointKind::Code(_, addresses) if addresses.contains(&at));
-        let here: Vec<_> = (0..self.breakpoints.len())
-            .filter(|index| self.breakpoints[*index].is_enabled && is_here(&self.breakpoints[*index].kind))
-            .collect();
-        let mut ids = Vec::new();
-        for index in here {
-            if self.is_to_stop(index, context, counts) {
-                ids.push(self.breakpoints[index].id);
-            }
-        }
-        if counts {
-            self.breakpoints.retain(|breakpoint| !(breakpoint.is_temporary && ids.contains(&breakpoint.id)));
-        }
-        (!ids.is_empty()).then_some(Reason::Breakpoint(ids))
-    }
-
-    /// Returns whether a breakpoint that is met stops: its condition holds, it was passed as often as needed, it is not
-    /// a log point.
-    fn is_to_stop(&mut self, index: usize, context: ContextId, counts: bool) -> bool {
-        if self.breakpoints[index].condition.is_some() {
-            match self.holds(context, &self.breakpoints[index].conditions) {
-                Ok(true) => {}
-                Ok(false) => return false,
-                Err(error) => {
-                    let id = self.breakpoints[index].id;
-                    self.messages.push_back(format!("condition of breakpoint {id}: {error}"));
-                }
-            }
-        }
-        if let Some(log) = self.breakpoints[index].log.clone() {
-            if counts {
-                self.breakpoints[index].hits += 1;
-                let (thread, frame, stop) = (self.thread, self.frame, self.stop.clone());
-                (self.thread, self.frame) = (context.thread().unwrap_or(thread), 0);
-                self.stop.context = Some(context);
-                let text = self.filled(&log);
-                self.messages.push_back(text);
-                (self.thread, self.frame, self.stop) = (thread, frame, stop);
-            }
-            return false;
-        }
-        if !counts {
-            return true;
-        }
-        let breakpoint = &mut self.breakpoints[index];
-        breakpoint.hits += 1;
-        if breakpoint.ignore > 0 {
-            breakpoint.ignore -= 1;
-            return false;
-        }
-        breakpoint.stops_at.is_none_or(|condition| condition.stops(breakpoint.hits))
-    }
-
-    fn is_reached(&self, goal: &Goal, context: ContextId, at: u32) -> bool {
+    pub(super) fn is_reached(&self, goal: &Goal, context: ContextId, at: u32) -> bool {
         match goal {
             Goal::Line { context: of, line, depth: from, into } => {
                 let Some(place) = self.place(at).filter(|_| *of == context) else { return false };
@@ -560,6 +399,10 @@ impl<T: Target> Debugger<T> {
                 *of == context && addresses.contains(&at) && self.session.frames(context).len() <= *wanted
             }
             Goal::Address(addresses) => addresses.contains(&at),
+            Goal::Until { at: addresses, caller } => {
+                let has_left = caller.as_ref().is_some_and(|goal| self.is_reached(goal, context, at));
+                addresses.contains(&at) || has_left
+            }
             Goal::None | Goal::Instruction(_) | Goal::Tick(_) => false,
         }
     }

@@ -315,7 +315,8 @@ impl<T: Target> Debugger<T> {
         Some((place.line, self.depth(context)))
     }
 
-    fn is_statement(&self, address: u32) -> bool {
+    /// Returns whether a statement begins at an address.
+    pub(crate) fn is_statement(&self, address: u32) -> bool {
         self.programs.at(address).is_some_and(|(_, _, function)| {
             function.statements.iter().any(|(statement, _)| *statement == address)
         })

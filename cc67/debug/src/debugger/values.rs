@@ -3,12 +3,12 @@
 use std::cell::{Cell, RefCell};
 
 use compiler::debug::{
-    AllowedCalls, CallRequest, CallResults, Child, DebugReader, DebugValue, Displayed, LocalModel,
-    LocalPlace, Location, Probe,
+    AllowedCalls, Child, DebugReader, DebugValue, Displayed, LocalModel, LocalPlace, Location, NumberFormat,
+    Probe,
 };
 use kmotiondef::GuestAddr;
 use runtime::trace::Item;
-use vm::engine::{CallEnd, ContextId, FrameView};
+use vm::engine::{ContextId, FrameView};
 
 use super::breakpoints::{Subject, WatchedExpression};
 use super::{DebugError, Debugger, StackFrame};
@@ -31,11 +31,16 @@ pub struct ShownVariable {
     pub parts: u32,
     /// Its address in memory.
     pub address: Option<u32>,
+    /// The words before a pointer that is shown by itself, such as `(int *) `.
+    pub cast: String,
+    /// The C expression of the value as it is now, if there is one.
+    pub literal: Option<String>,
 }
 
 /// A board and a call, as expressions read them.
 pub(crate) struct At<'a, T> {
     session: &'a Session<T>,
+    programs: &'a Programs,
     view: Option<&'a FrameView>,
     items: &'a [Item],
     /// The addresses that were read so far, if they are of interest.
@@ -47,13 +52,17 @@ pub(crate) struct At<'a, T> {
 }
 
 impl<'a, T> At<'a, T> {
-    fn new(session: &'a Session<T>, view: Option<&'a FrameView>, items: &'a [Item]) -> Self {
+    pub(super) fn new(debugger: &'a Debugger<T>, view: Option<&'a FrameView>, items: &'a [Item]) -> Self
+    where
+        T: Target,
+    {
+        let Debugger { session, programs, .. } = debugger;
         let (has_registers, failed) = (Cell::new(false), RefCell::new(None));
-        Self { session, view, items, reads: None, has_registers, failed }
+        Self { session, programs, view, items, reads: None, has_registers, failed }
     }
 
     /// Returns a value that was read, unless the target did not answer.
-    fn checked<R>(&self, value: R) -> Result<R, DebugError> {
+    pub(super) fn checked<R>(&self, value: R) -> Result<R, DebugError> {
         self.failed.borrow_mut().take().map_or(Ok(value), Err)
     }
 }
@@ -85,6 +94,10 @@ impl<T: Target> DebugReader for At<'_, T> {
 
     fn is_mapped(&self, address: GuestAddr) -> bool {
         self.session.target().is_mapped(address)
+    }
+
+    fn symbol(&self, address: GuestAddr) -> Option<String> {
+        self.programs.all().find_map(|(_, model)| model.symbol_at(address.get()))
     }
 
     fn local(&self, local: &LocalModel) -> Option<LocalPlace> {
@@ -139,13 +152,32 @@ fn compile(
         Err(error) => {
             let names = items_in(&expression);
             if names.is_empty() {
-                return Err(format!("`{expression}`: {error}").into());
+                return Err(in_words_of_gdb(&expression, &error).into());
             }
             let probe = model
                 .probe(place, &expression, &names, calls)
-                .map_err(|error| format!("`{expression}`: {error}"))?;
+                .map_err(|error| in_words_of_gdb(&expression, &error))?;
             Ok((probe, names.into_iter().filter_map(|name| Item::new(name).ok()).collect()))
         }
+    }
+}
+
+/// The message on an expression that does not compile, where gdb has one of its own.
+fn in_words_of_gdb(expression: &str, error: &str) -> String {
+    let between = |text: &str, before: &str| {
+        text.split_once(before).and_then(|(_, rest)| rest.split_once('`')).map(|(name, _)| name.to_owned())
+    };
+    let hint = between(error, "did you mean `").map(|name| format!("  Did you mean `{name}`?"));
+    let hint = hint.unwrap_or_default();
+    if error.starts_with('`')
+        && let Some(name) =
+            between(error, "`").filter(|name| error.starts_with(&format!("`{name}` is not declared")))
+    {
+        return format!("No symbol \"{name}\" in current context.{hint}");
+    }
+    match between(error, "has no member `") {
+        Some(name) => format!("There is no member named {name}.{hint}"),
+        None => format!("`{expression}`: {error}"),
     }
 }
 
@@ -155,11 +187,15 @@ impl<T: Target> Debugger<T> {
         self.frames(self.context()).into_iter().nth(self.frame)
     }
 
-    fn view(&self) -> Option<FrameView> {
+    pub(super) fn view(&self) -> Option<FrameView> {
         self.call().map(|frame| frame.view)
     }
 
-    fn probe(&self, expression: &str, calls: AllowedCalls) -> Result<(Probe, Vec<Item>), DebugError> {
+    pub(super) fn probe(
+        &self,
+        expression: &str,
+        calls: AllowedCalls,
+    ) -> Result<(Probe, Vec<Item>), DebugError> {
         let at = self.call().map(|frame| (frame.address.get(), frame.level));
         compile(&self.programs, self.thread, at, expression, calls)
     }
@@ -190,7 +226,7 @@ impl<T: Target> Debugger<T> {
 
     /// Returns whether an expression is not 0 in a call.
     fn is_true(&self, prepared: &Prepared, view: Option<&FrameView>) -> Result<bool, DebugError> {
-        let at = At::new(&self.session, view, &prepared.items);
+        let at = At::new(self, view, &prepared.items);
         let value = prepared.probe.value(&at)?;
         Ok(prepared.probe.shown(&at).number(&value).is_some_and(|number| number != 0.0))
     }
@@ -208,68 +244,10 @@ impl<T: Target> Debugger<T> {
     ) -> Result<R, DebugError> {
         let (probe, items) = self.probe(expression, AllowedCalls::Computed)?;
         let view = self.view();
-        let at = At::new(&self.session, view.as_ref(), &items);
+        let at = At::new(self, view.as_ref(), &items);
         let value = probe.value(&at)?;
         let worked = work(&probe, &value, &probe.shown(&at));
         at.checked(worked)
-    }
-
-    /// Does the same with an expression that may call functions of the program and of the firmware, which the board
-    /// executes while its time stands.
-    fn with_called_value<R>(
-        &mut self,
-        expression: &str,
-        work: impl FnOnce(&DebugValue, &Displayed<'_>) -> R,
-    ) -> Result<R, DebugError> {
-        let (probe, items) = self.probe(expression, AllowedCalls::Executed)?;
-        let (mut results, mut has_called) = (CallResults::default(), false);
-        let shown = loop {
-            let view = self.view();
-            let at = At::new(&self.session, view.as_ref(), &items);
-            let value = probe.value_with(&at, &results);
-            let Some(call) = results.take_next() else {
-                let value = value?;
-                let worked = work(&value, &probe.shown(&at));
-                break at.checked(worked);
-            };
-            let slot = self.call_function(expression, &call)?;
-            results.note(&call, slot);
-            has_called = true;
-        };
-        if has_called {
-            self.changed_beyond_journal();
-        }
-        shown
-    }
-
-    /// The slot of the result of a function of the program or of the firmware.
-    fn call_function(&mut self, expression: &str, call: &CallRequest) -> Result<u64, DebugError> {
-        let why = match self.session.call_function(self.context(), call.function, &call.arguments)? {
-            CallEnd::Returned(slot) => return Ok(slot),
-            CallEnd::Waits(at) => {
-                let place = self.place(at.get());
-                let place = place.map_or_else(String::new, |place| {
-                    format!(" at {}:{}", super::file_name(&place.file), place.line)
-                });
-                format!("the function waits{place}, and the board stands meanwhile")
-            }
-            CallEnd::EndsThread => "the function ends its thread".to_owned(),
-            CallEnd::Endless(limit) => {
-                let seconds = limit.get() as f64 / kmotiondef::Cycles::PER_SECOND.get() as f64;
-                format!("the function has not returned after {seconds} s of the processor")
-            }
-            CallEnd::Trapped(trap) => {
-                let place = self.place(trap.at.get());
-                let place = place.map_or_else(
-                    || trap.at.to_string(),
-                    |place| format!("{} at {}:{}", place.function, super::file_name(&place.file), place.line),
-                );
-                format!("{place}: {}", trap.kind)
-            }
-            CallEnd::NoFunction => "there is no such function in the program".to_owned(),
-            CallEnd::Unsupported => "functions in code for the processor are not called".to_owned(),
-        };
-        Err(format!("`{expression}`: {why}; nothing has changed").into())
     }
 
     /// The value of an expression where the call that is looked at stands.
@@ -277,10 +255,25 @@ impl<T: Target> Debugger<T> {
     /// # Errors
     /// The expression is wrong, or a local is optimised out.
     pub fn evaluate(&self, expression: &str) -> Result<ShownVariable, DebugError> {
+        self.look_at(expression, None)
+    }
+
+    /// The value of an expression, its numbers in a format.
+    ///
+    /// # Errors
+    /// As [`evaluate`](Self::evaluate).
+    pub fn look_at(
+        &self,
+        expression: &str,
+        format: Option<NumberFormat>,
+    ) -> Result<ShownVariable, DebugError> {
         if let Some(literal) = string_literal(expression) {
             return Ok(literal);
         }
-        self.with_value(expression, |_, value, shown| variable(expression, expression, value, shown))
+        self.with_value(expression, |_, value, shown| ShownVariable {
+            text: shown.text_in(value, format),
+            ..variable(expression, expression, value, shown)
+        })
     }
 
     /// The number that an expression is.
@@ -289,26 +282,6 @@ impl<T: Target> Debugger<T> {
     /// What is wrong with it, or that it is no number.
     pub fn number(&self, expression: &str) -> Result<f64, DebugError> {
         let number = self.with_value(expression, |_, value, shown| shown.number(value))?;
-        number.ok_or_else(|| format!("`{expression}` is not a number").into())
-    }
-
-    /// The value of an expression that may call functions.
-    ///
-    /// # Errors
-    /// As [`evaluate`](Self::evaluate), or a function does not return.
-    pub fn evaluate_with_calls(&mut self, expression: &str) -> Result<ShownVariable, DebugError> {
-        if let Some(literal) = string_literal(expression) {
-            return Ok(literal);
-        }
-        self.with_called_value(expression, |value, shown| variable(expression, expression, value, shown))
-    }
-
-    /// The number that an expression is, which may call functions.
-    ///
-    /// # Errors
-    /// As [`number`](Self::number), or a function does not return.
-    pub fn number_with_calls(&mut self, expression: &str) -> Result<f64, DebugError> {
-        let number = self.with_called_value(expression, |value, shown| shown.number(value))?;
         number.ok_or_else(|| format!("`{expression}` is not a number").into())
     }
 
@@ -332,7 +305,7 @@ impl<T: Target> Debugger<T> {
         let Some(call) = self.call() else { return Vec::new() };
         let activations = self.programs.activations(call.address.get());
         let Some(Activation { model, scope, .. }) = activations.get(call.level) else { return Vec::new() };
-        let at = At::new(&self.session, Some(&call.view), &[]);
+        let at = At::new(self, Some(&call.view), &[]);
         let visible = |local: &&LocalModel| local.lines.contains(&scope.line);
         let mut shown: Vec<ShownVariable> = Vec::new();
         for local in scope.locals.iter().filter(visible) {
@@ -343,13 +316,32 @@ impl<T: Target> Debugger<T> {
                 None => ShownVariable {
                     name: local.name.clone(),
                     ty: local.ty.clone(),
-                    text: "<optimised out>".to_owned(),
+                    text: "<optimized out>".to_owned(),
                     expression: local.name.clone(),
                     parts: 0,
                     address: None,
+                    cast: String::new(),
+                    literal: None,
                 },
             });
         }
+        shown
+    }
+
+    /// Those of them that are not arguments, those of inner blocks first.
+    pub(crate) fn own_locals(&self) -> Vec<ShownVariable> {
+        let mut shown = self.locals();
+        let call = self.call();
+        let activations = call.as_ref().map(|call| self.programs.activations(call.address.get()));
+        let found = activations.as_ref().zip(call.as_ref()).and_then(|(all, call)| all.get(call.level));
+        let Some(Activation { model, scope, .. }) = found else { return shown };
+        let arguments = scope.locals.get(..model.parameters(scope.function)).unwrap_or_default();
+        shown.retain(|one| !arguments.iter().any(|argument| argument.name == one.name));
+        // The block of the last declaration of a name that is visible ends where the name does.
+        shown.sort_by_key(|one| {
+            let declared = scope.locals.iter().rev().filter(|local| local.name == one.name);
+            declared.filter(|local| local.lines.contains(&scope.line)).map(|local| local.lines.end).next()
+        });
         shown
     }
 
@@ -358,10 +350,10 @@ impl<T: Target> Debugger<T> {
     pub fn arguments(&self, call: &StackFrame) -> Vec<String> {
         let activations = self.programs.activations(call.address.get());
         let Some(Activation { model, scope, .. }) = activations.get(call.level) else { return Vec::new() };
-        let at = At::new(&self.session, Some(&call.view), &[]);
+        let at = At::new(self, Some(&call.view), &[]);
         let text = |local: &LocalModel| {
             let value = model.local(local, &at).map(|(value, types)| types.text(&value));
-            format!("{}={}", local.name, value.as_deref().unwrap_or("<optimised out>"))
+            format!("{}={}", local.name, value.as_deref().unwrap_or("<optimized out>"))
         };
         scope.locals.iter().take(model.parameters(scope.function)).map(text).collect()
     }
@@ -370,7 +362,7 @@ impl<T: Target> Debugger<T> {
     #[must_use]
     pub fn globals(&self) -> Vec<ShownVariable> {
         let Ok(model) = self.programs.of(self.thread) else { return Vec::new() };
-        let at = At::new(&self.session, None, &[]);
+        let at = At::new(self, None, &[]);
         let all = model.globals();
         let shown = all.iter().filter_map(|(name, _, address)| {
             let (value, types) = model.global(name, *address, &at)?;
@@ -388,7 +380,7 @@ impl<T: Target> Debugger<T> {
         let (probe, items) = self.probe(expression, AllowedCalls::Computed)?;
         let view = self.view();
         let (bytes, address, register) = {
-            let at = At::new(&self.session, view.as_ref(), &items);
+            let at = At::new(self, view.as_ref(), &items);
             let place = probe.value(&at)?;
             let bytes = probe.bytes_of(&place, number, &at);
             let bytes = bytes.ok_or_else(|| format!("`{expression}` takes no number"))?;
@@ -479,7 +471,7 @@ impl<T: Target> Debugger<T> {
     pub(super) fn watched(&self, expression: &str) -> Result<WatchedExpression, DebugError> {
         let prepared = self.prepare(expression)?;
         let view = self.view();
-        let mut at = At::new(&self.session, view.as_ref(), &prepared.items);
+        let mut at = At::new(self, view.as_ref(), &prepared.items);
         at.reads = Some(RefCell::default());
         let value = prepared.probe.value(&at)?;
         let shown = prepared.probe.shown(&at);
@@ -497,7 +489,7 @@ impl<T: Target> Debugger<T> {
     pub(super) fn watched_text(&self, watched: &WatchedExpression) -> Option<String> {
         let WatchedExpression { prepared, .. } = watched;
         let view = self.view_of(prepared);
-        let at = At::new(&self.session, view.as_ref(), &prepared.items);
+        let at = At::new(self, view.as_ref(), &prepared.items);
         let value = prepared.probe.value(&at).ok()?;
         Some(prepared.probe.shown(&at).text(&value))
     }
@@ -538,7 +530,7 @@ fn ranges(own: Option<(GuestAddr, u32)>, mut reads: Vec<GuestAddr>) -> Vec<(Gues
 }
 
 /// A string literal as a value.
-fn string_literal(expression: &str) -> Option<ShownVariable> {
+pub(super) fn string_literal(expression: &str) -> Option<ShownVariable> {
     let text = expression.trim();
     let inside = text.strip_prefix('"')?.strip_suffix('"')?;
     let mut is_escaped = false;
@@ -554,11 +546,18 @@ fn string_literal(expression: &str) -> Option<ShownVariable> {
         expression: text.to_owned(),
         parts: 0,
         address: None,
+        cast: String::new(),
+        literal: Some(text.to_owned()),
     };
     (is_whole && !is_escaped).then(|| shown("char []".to_owned()))
 }
 
-fn variable(name: &str, expression: &str, value: &DebugValue, shown: &Displayed<'_>) -> ShownVariable {
+pub(super) fn variable(
+    name: &str,
+    expression: &str,
+    value: &DebugValue,
+    shown: &Displayed<'_>,
+) -> ShownVariable {
     ShownVariable {
         name: name.to_owned(),
         ty: shown.type_of(value),
@@ -566,5 +565,7 @@ fn variable(name: &str, expression: &str, value: &DebugValue, shown: &Displayed<
         expression: expression.to_owned(),
         parts: shown.count(value),
         address: value.address().map(GuestAddr::get),
+        cast: shown.cast(value),
+        literal: shown.literal(value),
     }
 }

@@ -3,17 +3,19 @@
 use std::fmt::Write as _;
 
 use cc67_host::{Capability, Target};
+use compiler::debug::NumberFormat;
 use kmotiondef::limits::TIMEBASE;
-use kmotiondef::{Cycles, GuestAddr, ThreadId};
+use kmotiondef::{Cycles, ThreadId};
 use vm::engine::ContextId;
 use vm::thread::{Progress, ThreadState};
 
-use super::{Assignment, Shell, breakpoints, context};
-use crate::debugger::{CodePlace, DebugError, Debugger, Reason, StackFrame, Stop, file_name};
+use super::history::{KeptValue, extension};
+use super::{Assignment, Shell, context};
+use crate::debugger::{
+    CodePlace, DebugError, Debugger, Reason, ShownVariable, StackFrame, Stop, TypeDetail, file_name,
+};
 use crate::words::LineReader;
 
-/// Lines that `list` shows.
-const LINES: u32 = 10;
 /// Most registers in a line.
 const COLUMNS: usize = 8;
 /// The message that there are none.
@@ -25,137 +27,107 @@ impl<T: Target> Shell<T> {
         let (format, rest) = format_of(rest);
         match name {
             "print" => self.print(format, rest),
+            "output" => {
+                let letter = format_of_letter(format)?;
+                Ok(self.value_of(rest, letter)?.text)
+            }
             "call" => {
                 let text = self.print(format, rest)?;
                 if !text.ends_with(" = void\n") {
                     return Ok(text);
                 }
-                self.values -= 1;
+                self.history.drop_last();
                 Ok(String::new())
             }
-            "ptype" => Ok(format!("type = {}\n", self.debugger.evaluate(rest)?.ty)),
+            "echo" => Ok(rest.replace("\\n", "\n").replace("\\t", "\t").replace("\\\"", "\"")),
+            "ptype" | "whatis" => {
+                let detail = if name == "ptype" { TypeDetail::Members } else { TypeDetail::Name };
+                let replaced = self.replaced(rest)?;
+                Ok(format!("type = {}\n", self.debugger.type_of(&replaced, detail)?))
+            }
             "x" => self.memory(format, rest),
             _ => self.set(rest),
         }
     }
 
+    /// An expression with values for `$1` and the like, and with `PLACE@COUNT` as C writes it.
+    pub(super) fn replaced(&mut self, expression: &str) -> Result<String, DebugError> {
+        let frames = self.debugger.frames(self.debugger.context());
+        let pc = frames.get(self.debugger.frame()).map(|frame| frame.address.get());
+        let replaced = self.history.replaced(expression, pc)?;
+        // The type of a character constant is `int` in C, and `char` in gdb.
+        let is_character = replaced.len() > 2
+            && replaced.starts_with('\'')
+            && replaced[1..].find('\'') == Some(replaced.len() - 2);
+        if is_character {
+            return Ok(format!("((char){replaced})"));
+        }
+        let Some((place, count)) = extension(&replaced) else { return Ok(replaced) };
+        let count = self.debugger.number_with_calls(count)?;
+        self.debugger.extended(place, count)
+    }
+
+    /// The number that an expression is.
+    pub(super) fn number_of(&mut self, expression: &str) -> Result<f64, DebugError> {
+        let replaced = self.replaced(expression)?;
+        self.debugger.number(&replaced)
+    }
+
+    /// The value of an expression, of `$1` and the like, or of an assignment, which is made.
+    fn value_of(&mut self, expression: &str, format: Option<NumberFormat>) -> Result<KeptValue, DebugError> {
+        if let Some(Assignment { place, value, is_postfix }) = Assignment::of(expression) {
+            let old = self.value_of(&place, format);
+            self.assign(&place, &value)?;
+            return if is_postfix { old } else { self.value_of(&place, format) };
+        }
+        if format.is_none()
+            && let Some(kept) = self.history.alone(expression)?
+        {
+            return Ok(kept);
+        }
+        let replaced = self.replaced(expression)?;
+        let shown = self.debugger.evaluate_with_calls(&replaced, format)?;
+        let cast = if format.is_none() { shown.cast } else { String::new() };
+        Ok(KeptValue::of(&ShownVariable { cast, ..shown }))
+    }
+
     fn print(&mut self, format: &str, expression: &str) -> Result<String, DebugError> {
-        let assignment = Assignment::of(expression);
-        let shown = assignment.as_ref().map_or(expression, |assignment| assignment.place.as_str());
-        let text_of = |debugger: &mut Debugger<T>| match format {
-            "" => Ok(debugger.evaluate_with_calls(shown)?.text),
-            _ => number_as(debugger.number_with_calls(shown)?, format),
-        };
-        let text = match &assignment {
-            Some(Assignment { place, value, is_postfix }) => {
-                let old = text_of(&mut self.debugger);
-                self.debugger.set(place, value)?;
-                if *is_postfix { old? } else { text_of(&mut self.debugger)? }
-            }
-            None => text_of(&mut self.debugger)?,
-        };
-        self.values += 1;
-        Ok(format!("${} = {text}\n", self.values))
+        let letter = format_of_letter(format)?;
+        let expression = if expression.is_empty() { "$" } else { expression };
+        let value = self.value_of(expression, letter)?;
+        let text = value.text.clone();
+        Ok(format!("${} = {text}\n", self.history.keep(value)))
+    }
+
+    /// Gives a place of the program or a variable of the debugger a value.
+    fn assign(&mut self, place: &str, value: &str) -> Result<(), DebugError> {
+        if let Some(name) = place.strip_prefix('$') {
+            let value = self.value_of(value, None)?;
+            self.history.set(name, value);
+            return Ok(());
+        }
+        let (place, value) = (self.replaced(place)?, self.replaced(value)?);
+        self.debugger.set(&place, &value).map(|_| ())
     }
 
     fn set(&mut self, rest: &str) -> Result<String, DebugError> {
         let rest = rest.strip_prefix("variable ").or_else(|| rest.strip_prefix("var ")).unwrap_or(rest);
         let Assignment { place, value, .. } = Assignment::of(rest).ok_or("set var NAME = EXPRESSION")?;
-        self.debugger.set(&place, &value)?;
+        self.assign(&place, &value)?;
         Ok(String::new())
-    }
-
-    fn memory(&self, format: &str, expression: &str) -> Result<String, DebugError> {
-        let digits: String = format.chars().take_while(char::is_ascii_digit).collect();
-        let count: u32 = digits.parse().unwrap_or(1).min(4096);
-        let letters = format.get(digits.len()..).unwrap_or("");
-        let kind = letters.chars().find(|c| "xduofsci".contains(*c)).unwrap_or('x');
-        let size: u32 = match letters.chars().find(|c| "bhwg".contains(*c)) {
-            Some('b') => 1,
-            Some('h') => 2,
-            Some('g') => 8,
-            _ if kind == 'c' => 1,
-            _ => 4,
-        };
-        let value = self.debugger.evaluate(expression)?;
-        let address = match value.address.filter(|_| value.ty.ends_with(']')) {
-            Some(address) => address,
-            None => self.debugger.number(expression)? as i64 as u32,
-        };
-        if kind == 'i' {
-            return Ok(self.instructions(address, count, u32::MAX));
-        }
-        let mut out = String::new();
-        if kind == 's' {
-            self.must_be_mapped(address)?;
-            let bytes = self.debugger.bytes(address, 256);
-            let text: Vec<u8> = bytes.into_iter().take_while(|byte| *byte != 0).collect();
-            return Ok(format!("{address:#010x}: {:?}\n", String::from_utf8_lossy(&text)));
-        }
-        let row = 16 / size.max(4);
-        for index in 0..count {
-            let at = address.wrapping_add(index * size);
-            if index % row == 0 {
-                let _ = write!(out, "{}{at:#010x}:", if index == 0 { "" } else { "\n" });
-            }
-            self.must_be_mapped(at)?;
-            let mut bytes = [0; 8];
-            bytes[..size as usize].copy_from_slice(&self.debugger.bytes(at, size));
-            let whole = u64::from_le_bytes(bytes);
-            let signed = (whole as i64) << (64 - 8 * size) >> (64 - 8 * size);
-            let _ = match (kind, size) {
-                ('d', _) => write!(out, "\t{signed}"),
-                ('u', _) => write!(out, "\t{whole}"),
-                ('c', _) => write!(out, "\t{signed} {:?}", char::from(whole as u8)),
-                ('f', 8) => write!(out, "\t{}", f64::from_bits(whole)),
-                ('f', _) => write!(out, "\t{}", f32::from_bits(whole as u32)),
-                _ => write!(out, "\t{whole:#0width$x}", width = 2 + 2 * size as usize),
-            };
-        }
-        Ok(out + "\n")
-    }
-
-    fn must_be_mapped(&self, address: u32) -> Result<(), DebugError> {
-        let is_mapped = self.debugger.session().target().is_mapped(GuestAddr::new(address));
-        if is_mapped { Ok(()) } else { Err(format!("Cannot access memory at address {address:#x}").into()) }
-    }
-
-    fn instructions(&self, address: u32, count: u32, end: u32) -> String {
-        let mut out = String::new();
-        let here = self
-            .debugger
-            .frames(self.debugger.context())
-            .get(self.debugger.frame())
-            .map(|frame| frame.address.get());
-        for line in disassembly(&self.debugger, address, end).take(count as usize) {
-            let mark = if here == Some(line.0) { "=>" } else { "  " };
-            let _ = writeln!(out, "{mark} {:#010x}: {}", line.0, line.1);
-        }
-        out
     }
 
     pub(super) fn look(&mut self, name: &str, rest: &str) -> Result<String, DebugError> {
         match name {
             "info" => self.info(rest),
-            "backtrace" => Ok(backtrace(&self.debugger)),
-            "frame" | "up" | "down" => {
-                let frame = self.debugger.frame();
-                let wanted = match name {
-                    "up" => frame + 1,
-                    "down" => {
-                        frame.checked_sub(1).ok_or("Bottom (innermost) frame selected; you can't go down.")?
-                    }
-                    _ if rest.is_empty() => frame,
-                    _ => rest.parse().map_err(|_| format!("`{rest}` is not the number of a frame"))?,
-                };
-                self.debugger.select(self.debugger.thread(), wanted)?;
-                Ok(frame_line(&self.debugger, wanted))
-            }
+            "backtrace" => self.backtrace(rest),
+            "frame" | "up" | "down" => self.select_frame(name, rest),
             "thread" => {
                 if !rest.is_empty() {
                     let thread = rest.parse().ok().and_then(ThreadId::new);
                     let thread = thread.ok_or_else(|| format!("Invalid thread ID: {rest}"))?;
                     self.debugger.select(thread, 0)?;
+                    self.list_around_present();
                 }
                 let text = frame_line(&self.debugger, 0);
                 Ok(format!("[Current thread is {}]\n{text}", self.debugger.thread()))
@@ -173,15 +145,60 @@ impl<T: Target> Shell<T> {
         }
     }
 
-    fn info(&self, what: &str) -> Result<String, DebugError> {
+    /// `backtrace [COUNT]`: all calls, the innermost COUNT, or the outermost with a negative number.
+    fn backtrace(&mut self, rest: &str) -> Result<String, DebugError> {
+        let count = self.debugger.frames(self.debugger.context()).len();
+        if count == 0 {
+            return Ok("No stack.\n".to_owned());
+        }
+        let wanted = if rest.is_empty() { count as i64 } else { self.number_of(rest)? as i64 };
+        let chosen = usize::try_from(wanted.unsigned_abs()).unwrap_or(count).min(count);
+        let range = if wanted < 0 { count - chosen..count } else { 0..chosen };
+        let is_cut = range.end < count;
+        let mut text: String = range.map(|index| frame_text(&self.debugger, index)).collect();
+        if is_cut {
+            text += "(More stack frames follow...)\n";
+        }
+        Ok(text)
+    }
+
+    /// `frame [N]`, `up [N]`, `down [N]`.
+    fn select_frame(&mut self, name: &str, rest: &str) -> Result<String, DebugError> {
+        let (frame, count) = (self.debugger.frame(), self.debugger.frames(self.debugger.context()).len());
+        if count == 0 {
+            return Err("No stack.".into());
+        }
+        let number = if rest.is_empty() { None } else { Some(self.number_of(rest)? as usize) };
+        let wanted = match name {
+            "up" if frame + 1 == count => return Err("Initial frame selected; you cannot go up.".into()),
+            "up" => (frame + number.unwrap_or(1)).min(count - 1),
+            "down" if frame == 0 => {
+                return Err("Bottom (innermost) frame selected; you cannot go down.".into());
+            }
+            "down" => frame.saturating_sub(number.unwrap_or(1)),
+            _ => number.unwrap_or(frame),
+        };
+        if wanted >= count {
+            return Err(format!("No frame at level {rest}.").into());
+        }
+        self.debugger.select(self.debugger.thread(), wanted)?;
+        self.list_around_present();
+        Ok(frame_line(&self.debugger, wanted))
+    }
+
+    fn info(&mut self, what: &str) -> Result<String, DebugError> {
         let variables = |all: Vec<crate::debugger::ShownVariable>, none: &str| {
             let text: String = all.iter().map(|one| format!("{} = {}\n", one.name, one.text)).collect();
             if text.is_empty() { format!("{none}\n") } else { text }
         };
+        if let Some(place) = what.strip_prefix("line") {
+            return self.line_information(place.trim());
+        }
         let is = |name: &str| !what.is_empty() && name.starts_with(what);
         Ok(match what {
             _ if is("threads") => threads(&self.debugger),
-            _ if is("breakpoints") || is("watchpoints") => breakpoints(&self.debugger),
+            _ if is("breakpoints") => self.table(false),
+            _ if is("watchpoints") => self.table(true),
             _ if is("args") => {
                 let debugger = &self.debugger;
                 let frame = debugger.frames(debugger.context()).into_iter().nth(debugger.frame());
@@ -189,19 +206,15 @@ impl<T: Target> Shell<T> {
                 let text: String = all.iter().map(|one| one.replacen('=', " = ", 1) + "\n").collect();
                 if text.is_empty() { "No arguments.\n".to_owned() } else { text }
             }
-            _ if is("display") => self.shown_all(),
+            _ if is("display") => self.displayed(),
             _ if is("locals") => {
                 let is_real = self.debugger.session().can(Capability::ProcessorCode);
                 let none = if is_real { NO_LOCALS } else { "No locals." };
-                variables(self.debugger.locals(), none)
+                variables(self.debugger.own_locals(), none)
             }
             _ if is("registers") => registers(&self.debugger)?,
             _ if is("variables") => variables(self.debugger.globals(), "No variables."),
             _ if is("frame") => frame_line(&self.debugger, self.debugger.frame()),
-            _ if is("line") => match self.debugger.present() {
-                Some(place) => format!("Line {} of \"{}\"\n", place.line, file_name(&place.file)),
-                None => "No line number information.\n".to_owned(),
-            },
             _ if is("history") => {
                 let (bytes, snapshots) = self.debugger.history();
                 let seconds = seconds(self.debugger.now());
@@ -210,23 +223,8 @@ impl<T: Target> Shell<T> {
                     bytes / 1024
                 )
             }
-            _ => return Err("info threads|breakpoints|locals|variables|registers|line|frame|history".into()),
+            _ => return Err(format!("Undefined info command: \"{what}\".  Try \"help info\".").into()),
         })
-    }
-
-    fn list(&mut self, rest: &str) -> Result<String, DebugError> {
-        let thread = self.debugger.thread();
-        if !rest.is_empty() {
-            let (found, _) = self.debugger.resolve(rest, Some(thread))?;
-            self.listed = found.first().map_or(1, |one| one.line).saturating_sub(LINES / 2);
-        }
-        let model = self.debugger.programs().of(thread)?;
-        let text = String::from_utf8_lossy(model.text()).into_owned();
-        let first = self.listed.max(1);
-        let lines = text.lines().enumerate().skip(first as usize - 1).take(LINES as usize);
-        let out: String = lines.map(|(index, line)| format!("{}\t{}\n", index + 1, line)).collect();
-        self.listed = first + LINES;
-        if out.is_empty() { Err("Line number out of range.".into()) } else { Ok(out) }
     }
 }
 
@@ -244,35 +242,15 @@ pub(super) fn format_of(rest: &str) -> (&str, &str) {
     (format, rest.trim())
 }
 
-/// A number in another base.
-pub(crate) fn number_as(number: f64, format: &str) -> Result<String, DebugError> {
-    let whole = number as i64;
-    Ok(match format {
-        "x" if whole < 0 => format!("{:#x}", whole as i32),
-        "x" => format!("{whole:#x}"),
-        "t" => format!("{:b}", whole as i32),
-        "o" => format!("{whole:#o}"),
-        "d" => whole.to_string(),
-        "u" => (whole as u32).to_string(),
-        "c" => format!("{whole} {:?}", char::from(whole as u8)),
-        "f" => number.to_string(),
-        _ => return Err(format!("Undefined output format \"{format}\".").into()),
-    })
-}
-
-/// The instructions from an address on to another, each with its address.
-fn disassembly<T: Target>(
-    debugger: &Debugger<T>,
-    address: u32,
-    end: u32,
-) -> impl Iterator<Item = (u32, String)> {
-    let mut at = address & !3;
-    std::iter::from_fn(move || {
-        let (text, size) = debugger.session().target().disassemble(at).filter(|_| at < end)?;
-        let line = (at, text);
-        at = at.checked_add(size)?;
-        Some(line)
-    })
+/// The form of numbers that the letters after a slash mean; none without a letter.
+///
+/// # Errors
+/// There is no such form.
+pub(crate) fn format_of_letter(letters: &str) -> Result<Option<NumberFormat>, DebugError> {
+    let mut meant = letters.chars().filter(|letter| !letter.is_ascii_digit() && !"bhwg".contains(*letter));
+    let Some(letter) = meant.next() else { return Ok(None) };
+    let format = NumberFormat::of(letter);
+    format.map(Some).ok_or_else(|| format!("Undefined output format \"{letter}\".").into())
 }
 
 /// Describes the reason and the position of a stop.
@@ -287,11 +265,12 @@ pub(super) fn stop<T: Target>(debugger: &Debugger<T>, stop: &Stop) -> String {
     let head = match &stop.reason {
         Reason::Breakpoint(ids) => {
             let ids = ids.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-            format!("Breakpoint {ids}, ")
+            let kind = if stop.is_temporary { "Temporary breakpoint" } else { "Breakpoint" };
+            format!("\n{kind} {ids}, ")
         }
         Reason::Changed { id, expression, old, new, by } => {
             format!(
-                "Watchpoint {id}: {expression}\n\nOld value = {old}\nNew value = {new}\nWritten by {by}\n"
+                "\nHardware watchpoint {id}: {expression}\n\nOld value = {old}\nNew value = {new}\nWritten by {by}\n"
             )
         }
         Reason::Accessed { id, expression, access, old, value, by } => {
@@ -299,7 +278,7 @@ pub(super) fn stop<T: Target>(debugger: &Debugger<T>, stop: &Stop) -> String {
                 Some(old) => format!("Old value = {old}\nNew value = {value}"),
                 None => format!("Value = {value}"),
             };
-            format!("{} {id}: {expression}\n\n{values}\nAccessed by {by}\n", access.title())
+            format!("\n{} {id}: {expression}\n\n{values}\nAccessed by {by}\n", access.title())
         }
         Reason::Trap(text) => format!("Trap: {text}\n"),
         Reason::Remark(text) => format!("Remark: {text}\n"),
@@ -307,7 +286,7 @@ pub(super) fn stop<T: Target>(debugger: &Debugger<T>, stop: &Stop) -> String {
         Reason::Ended(thread) => format!("Thread {thread} has ended.\n"),
         Reason::Console(text) => format!("Console: {text}\n"),
         Reason::Bit(text) => format!("Catchpoint: {text}\n"),
-        Reason::When { id, expression } => format!("Catchpoint {id} (when {expression})\n"),
+        Reason::When { id, expression } => format!("\nCatchpoint {id} (when {expression})\n"),
         Reason::AllEnded => {
             return format!("[All threads have ended, {at}]\n", at = who.rsplit(", ").next().unwrap_or(""));
         }
@@ -317,13 +296,10 @@ pub(super) fn stop<T: Target>(debugger: &Debugger<T>, stop: &Stop) -> String {
         Reason::Begin | Reason::Step | Reason::Time => String::new(),
     };
     let Some(place) = place.filter(|_| stop.context.is_some()) else { return format!("{head}[{who}]\n") };
-    format!(
-        "{head}{} at {}:{} [{who}]\n{}",
-        place.function,
-        file_name(&place.file),
-        place.line,
-        source_line(debugger, &place)
-    )
+    let frames = debugger.frames(debugger.context());
+    let where_ =
+        frames.get(debugger.frame()).map_or_else(String::new, |frame| located(debugger, frame, &place));
+    format!("{head}{where_} [{who}]\n{}", source_line(debugger, &place))
 }
 
 fn source_line<T: Target>(debugger: &Debugger<T>, place: &CodePlace) -> String {
@@ -335,29 +311,23 @@ fn source_line<T: Target>(debugger: &Debugger<T>, place: &CodePlace) -> String {
     line.map_or_else(String::new, |line| format!("{}\t{line}\n", place.line))
 }
 
-fn backtrace<T: Target>(debugger: &Debugger<T>) -> String {
-    let frames = debugger.frames(debugger.context());
-    if frames.is_empty() {
-        return "No stack.\n".to_owned();
-    }
-    (0..frames.len()).map(|index| frame_text(debugger, index)).collect()
-}
-
-fn frame_text<T: Target>(debugger: &Debugger<T>, index: usize) -> String {
+pub(super) fn frame_text<T: Target>(debugger: &Debugger<T>, index: usize) -> String {
     let frames = debugger.frames(debugger.context());
     let Some(frame) = frames.get(index) else { return "No stack.\n".to_owned() };
     match &frame.place {
-        Some(place) => {
-            let arguments = debugger.arguments(frame).join(", ");
-            format!(
-                "#{index}  {} ({arguments}) at {}:{}\n",
-                place.function,
-                file_name(&place.file),
-                place.line
-            )
-        }
+        Some(place) => format!("#{index:<2} {}\n", located(debugger, frame, place)),
         None => format!("#{index}  {}\n", name_of(debugger, frame)),
     }
+}
+
+/// A call as gdb writes it: `square (n=3) at a.c:5`; with its address where that is in the middle of a line.
+fn located<T: Target>(debugger: &Debugger<T>, frame: &StackFrame, place: &CodePlace) -> String {
+    let address = if frame.real == 0 { frame.address } else { frame.view.continues_at };
+    let is_at_line =
+        frame.real == 0 && debugger.is_statement(address.get()) || place.is_inlined || frame.level > 0;
+    let before = if is_at_line { String::new() } else { format!("{:#010x} in ", address.get()) };
+    let arguments = debugger.arguments(frame).join(", ");
+    format!("{before}{} ({arguments}) at {}:{}", place.function, file_name(&place.file), place.line)
 }
 
 fn frame_line<T: Target>(debugger: &Debugger<T>, index: usize) -> String {

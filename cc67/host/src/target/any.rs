@@ -114,6 +114,7 @@ impl Target for AnyTarget {
         fn work(&self) -> u64;
         fn held(&self) -> Option<(ContextId, Cycles)>;
         fn frames(&self, context: ContextId) -> Vec<FrameView>;
+        fn result(&self, context: ContextId) -> Option<u64>;
         fn disassemble(&self, address: u32) -> Option<(String, u32)>;
         fn registers(&self) -> Vec<(String, u32)>;
     }

@@ -289,6 +289,10 @@ impl<E: Engine> Target for Board<E> {
         self.engine_mut().set_register(context, frame, register, slot)
     }
 
+    fn result(&self, context: ContextId) -> Option<u64> {
+        self.machine().engine().result(context)
+    }
+
     fn call_function(&mut self, context: ContextId, function: GuestAddr, arguments: &[u64]) -> CallEnd {
         self.call_function(context, function, arguments)
     }
