@@ -6,6 +6,7 @@ mod browser;
 mod connected;
 mod files;
 mod firefox;
+mod frames;
 mod hostile;
 #[cfg(target_os = "linux")]
 mod lasting;
