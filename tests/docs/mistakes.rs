@@ -21,6 +21,7 @@ const WITHOUT_LINE: &[&str] = &[
     "dest_written_instead_of_a_move",
     "file_never_closed",
     "file_written_without_being_open",
+    "gantry_moved_on_one_side",
     "integrator_that_overshoots",
     "jog_that_nobody_stops",
     "lines_of_two_threads_mixed",

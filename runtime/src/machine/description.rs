@@ -152,12 +152,32 @@ pub struct Travel {
     pub start: f64,
     /// Backlash between the load and the table that trips switches and probes, units.
     pub backlash: f64,
+    /// The spring between the load and that table.
+    pub spring: Option<Spring>,
 }
 
 impl Default for Travel {
     fn default() -> Self {
-        Self { min: -1e9, max: 1e9, start: 0.0, backlash: 0.0 }
+        Self { min: -1e9, max: 1e9, start: 0.0, backlash: 0.0, spring: None }
     }
+}
+
+/// A spring between the load of a motor and the table: a belt, a long screw, a column that bends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spring {
+    /// Frequency in Hz at which the table swings, from above 0 to 500.
+    pub hz: f64,
+    /// Damping ratio: the table swings without end at 0, and not at all from 1 on.
+    pub damping: f64,
+}
+
+/// Two motors that move one beam.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gantry {
+    /// Their axes.
+    pub axes: [AxisId; 2],
+    /// Difference in units that the beam bears.
+    pub most: f64,
 }
 
 /// A motor with its load.
@@ -327,6 +347,10 @@ pub struct Spindle {
     pub full_scale_rps: f64,
     /// Time constant of its speed.
     pub tau_s: f64,
+    /// Revolutions per second that it loses under full load.
+    pub droop_rps: f64,
+    /// Its load, from 0 to 1.
+    pub load: f64,
 }
 
 /// The output that drives a spindle.

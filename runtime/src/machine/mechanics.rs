@@ -9,8 +9,9 @@ use kmotiondef::{AxisId, Bit, Cycles};
 use vm::memory::GuestMemory;
 
 use super::description::{
-    Analog, AnalogSource, Axis, Condition, Handwheel, Probe, Spindle, SpindleDrive, Switch, Travel,
+    Analog, AnalogSource, Axis, Condition, Gantry, Handwheel, Probe, Spindle, SpindleDrive, Switch,
 };
+use super::table::Table;
 use super::wiring::dac_value;
 use super::{Channel, Loads, Machine};
 use crate::io::Io;
@@ -49,10 +50,10 @@ enum Closes {
 }
 
 impl Contact {
-    fn is_closed(&self, loads: &Loads, plays: &[Play]) -> bool {
+    fn is_closed(&self, loads: &Loads, tables: &[Table]) -> bool {
         let load = loads[self.axis].load;
         match self.closes {
-            Closes::Where(condition) => condition.holds(table(plays, self.axis).unwrap_or(load)),
+            Closes::Where(condition) => condition.holds(table(tables, self.axis).unwrap_or(load)),
             Closes::Every(every, width, offset) => {
                 let turns = (load - offset) / every;
                 (turns - libm::floor(turns)) * every < width
@@ -69,21 +70,12 @@ struct TurningSpindle {
     speed: f64,
 }
 
-/// The table that a load moves through a screw with backlash.
-#[derive(Clone, Copy, Debug)]
-struct Play {
-    axis: AxisId,
-    /// Backlash in units of the axis.
-    width: f64,
-    /// Machine coordinate of the table.
-    table: f64,
-}
-
-impl Play {
-    /// The load pushes the table where the play ends.
-    fn follow(&mut self, load: f64) {
-        self.table = self.table.clamp(load - self.width / 2.0, load + self.width / 2.0);
-    }
+/// Two sides of a gantry that are further apart than it bears.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Racked {
+    pub(crate) gantry: Gantry,
+    /// Their difference in units.
+    pub(crate) apart: f64,
 }
 
 /// The equipment that a machine file connects to the board, without the loads, as the file describes it.
@@ -99,6 +91,8 @@ pub struct Connected {
     pub analog: Vec<Analog>,
     /// The spindles.
     pub spindles: Vec<Spindle>,
+    /// Pairs of motors that move one beam.
+    pub gantries: Vec<Gantry>,
 }
 
 /// The same as the simulation moves it.
@@ -108,8 +102,11 @@ pub(crate) struct Mechanics {
     analog: Vec<Analog>,
     handwheels: Vec<Handwheel>,
     spindles: Vec<TurningSpindle>,
-    /// Tables that screws or gears with backlash move.
-    plays: Vec<Play>,
+    /// Tables that couplings with backlash or a spring move.
+    tables: Vec<Table>,
+    gantries: Vec<Gantry>,
+    /// A gantry whose sides are too far apart.
+    racked: Option<Racked>,
     /// Inputs that a stimulus has taken from their switches.
     held: Vec<Bit>,
     /// True if there is any such equipment.
@@ -144,17 +141,26 @@ impl Mechanics {
         let (analog, handwheels) = (described.analog.clone(), described.encoders.clone());
         let spindles: Vec<_> =
             described.spindles.iter().map(|&spindle| TurningSpindle { spindle, speed: 0.0 }).collect();
-        let plays = AxisId::all().filter_map(|axis| {
-            let Travel { backlash, start, .. } = axes[axis.index()].travel;
-            (backlash > 0.0).then_some(Play { axis, width: backlash, table: start })
-        });
-        let plays: Vec<_> = plays.collect();
+        let tables = AxisId::all().filter_map(|axis| Table::new(axis, &axes[axis.index()].travel));
+        let tables: Vec<_> = tables.collect();
+        let gantries = described.gantries.clone();
         let is_any = !(contacts.is_empty()
             && analog.is_empty()
             && handwheels.is_empty()
             && spindles.is_empty()
-            && plays.is_empty());
-        Self { contacts, analog, handwheels, spindles, plays, held: Vec::new(), is_any }
+            && tables.is_empty()
+            && gantries.is_empty());
+        Self {
+            contacts,
+            analog,
+            handwheels,
+            spindles,
+            tables,
+            gantries,
+            racked: None,
+            held: Vec::new(),
+            is_any,
+        }
     }
 
     /// Returns whether an axis trips a switch or carries a probe.
@@ -190,6 +196,18 @@ impl Mechanics {
         spindles.any(|spindle| spindle.drive == SpindleDrive::Dac(dac) && spindle.axis != axis)
     }
 
+    /// A gantry whose sides have been too far apart since the last time.
+    #[inline]
+    pub(crate) fn take_racked(&mut self) -> Option<Racked> {
+        self.racked.take()
+    }
+
+    /// Changes the load of the spindles that turn the encoder of an axis, from 0 to 1.
+    pub(crate) fn load_spindle(&mut self, axis: AxisId, load: f64) {
+        let turning = self.spindles.iter_mut().filter(|turning| turning.spindle.axis == axis);
+        turning.for_each(|turning| turning.spindle.load = load);
+    }
+
     /// Takes an input from its switch; whether the switch has driven it so far.
     pub(crate) fn hold(&mut self, bit: Bit) -> bool {
         let is_new = !self.held.contains(&bit);
@@ -210,6 +228,7 @@ impl Mechanics {
             |wheel: &Handwheel| wheel.moves.iter().any(|[start, _, duration]| time <= start + duration);
         self.spindles.iter().any(|spindle| spindle.speed != 0.0)
             || self.handwheels.iter().any(turns)
+            || self.tables.iter().any(Table::is_moving)
             || self.analog.iter().any(|analog| matches!(analog.source, AnalogSource::Sine { .. }))
     }
 }
@@ -304,7 +323,9 @@ impl Machine {
 
     fn turn_spindles(&mut self, io: &Io, memory: &GuestMemory) {
         for TurningSpindle { spindle, speed } in &mut self.mechanics.spindles {
-            let target = spindle.full_scale_rps * fraction(io, memory, spindle);
+            let free = spindle.full_scale_rps * fraction(io, memory, spindle);
+            let lost = (spindle.droop_rps * spindle.load).min(free.abs());
+            let target = free - libm::copysign(lost, free);
             *speed = target + (*speed - target) * libm::exp(-TIMEBASE / spindle.tau_s);
             if target == 0.0 && speed.abs() < 1e-6 {
                 *speed = 0.0;
@@ -318,17 +339,29 @@ impl Machine {
 
     /// Machine coordinate of what the load of an axis moves through a screw, which may have backlash.
     pub(crate) fn table(&self, axis: AxisId) -> f64 {
-        table(&self.mechanics.plays, axis).unwrap_or(self.loads[axis].load)
+        table(&self.mechanics.tables, axis).unwrap_or(self.loads[axis].load)
     }
 
     /// Shows the board what switches, probes and sources say where the loads are now.
     #[inline]
     pub(crate) fn signal(&mut self, io: &mut Io, now: Cycles) {
         if self.mechanics.is_any {
-            for play in &mut self.mechanics.plays {
-                play.follow(self.loads[play.axis].load);
+            for table in &mut self.mechanics.tables {
+                table.follow(self.loads[table.axis].load);
             }
+            self.rack();
             self.show(io, now);
+        }
+    }
+
+    /// Notes a gantry whose sides are too far apart.
+    fn rack(&mut self) {
+        for gantry in &self.mechanics.gantries {
+            let [a, b] = gantry.axes.map(|axis| self.loads[axis].load);
+            let apart = (a - b).abs();
+            if apart > gantry.most {
+                self.mechanics.racked = Some(Racked { gantry: *gantry, apart });
+            }
         }
     }
 
@@ -342,7 +375,7 @@ impl Machine {
             {
                 continue;
             }
-            let closed = others.find(|other| other.is_closed(&self.loads, &mechanics.plays));
+            let closed = others.find(|other| other.is_closed(&self.loads, &mechanics.tables));
             let level = closed.map_or(!contact.active, |contact| contact.active);
             set(io, contact.bit, level, now);
         }
@@ -361,8 +394,8 @@ impl Machine {
 }
 
 /// The coordinate of the table of an axis with play.
-fn table(plays: &[Play], axis: AxisId) -> Option<f64> {
-    plays.iter().find(|play| play.axis == axis).map(|play| play.table)
+fn table(tables: &[Table], axis: AxisId) -> Option<f64> {
+    tables.iter().find(|table| table.axis == axis).map(|table| table.place)
 }
 
 /// The counts of a move that are done at a time.

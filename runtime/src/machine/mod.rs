@@ -9,6 +9,7 @@ mod lines;
 mod mechanics;
 mod motor;
 pub(crate) mod plant;
+mod table;
 #[cfg(test)]
 mod tests;
 pub(crate) mod wiring;
@@ -23,7 +24,7 @@ pub use mechanics::Connected;
 
 pub(crate) use description::Channel;
 pub(crate) use lines::Lines;
-pub(crate) use mechanics::{LateRead, Mechanics};
+pub(crate) use mechanics::{LateRead, Mechanics, Racked};
 pub(crate) use motor::Applied;
 pub(crate) use plant::{COUNTS_PER_TICK, Drive, Plant};
 

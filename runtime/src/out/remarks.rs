@@ -527,6 +527,9 @@ messages! {
     /// A thread zeroes another axis than the one that it has moved to its switch.
     ZeroesOther { axis: AxisId, homed: AxisId } = "zeroes-other", Warning, [per axis],
         "Zero({axis}): the thread has moved axis {homed} to its switch, but zeroes axis {axis}, which it never moves";
+    /// The two sides of a gantry are too far apart.
+    GantryRacks { axis: AxisId, other: AxisId, apart: f64, most: f64 } = "gantry-racks", Warning, [per axis],
+        "the sides of a gantry, axes {axis} and {other}, are {apart:.1} units apart, and it bears {most}: move both together (MasterAxis of axis {other} = {axis}, SlaveGain = 1)";
     /// A load is moved against the end of its travel.
     HardStop { axis: AxisId, place: f64, effect: &'static str } = "hard-stop", Warning, [per axis],
         "axis {axis} runs into the end of its travel at {place}: {effect}";
@@ -770,29 +773,4 @@ messages! {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::collections::BTreeSet;
-
-    use super::*;
-
-    #[test]
-    fn codes_are_lower_case_words_and_unique() {
-        let codes: BTreeSet<_> = REMARKS.iter().map(|row| row.code).collect();
-        assert_eq!(codes.len(), REMARKS.len());
-        for code in codes {
-            assert!(
-                code.bytes().all(|byte| byte.is_ascii_lowercase() || b"-0123456789".contains(&byte)),
-                "{code}"
-            );
-        }
-    }
-
-    #[test]
-    fn a_remark_says_who_and_what() {
-        let message = Message::NoSuchBit { function: Function::SetBit, bit: 3000 };
-        assert_eq!(message.arguments(), [("function", "SetBit".to_owned()), ("bit", "3000".to_owned())]);
-        let speaker = Speaker::Thread(ThreadId::new(1).expect("1 is a thread"));
-        let remark = Remark { message, speaker, place: None };
-        assert_eq!(remark.to_string(), "thread 1: SetBit(3000): no such bit (0-2047)");
-    }
-}
+mod tests;

@@ -51,11 +51,22 @@ fn without_hints(mut texts: Vec<String>) -> Vec<String> {
 }
 
 #[test]
+fn a_move_to_infinity_goes_on_and_is_reported() {
+    let mut bench = bench();
+    bench.call_in_slices("MoveRel", &[0, f64::INFINITY.to_bits()]);
+    let told = without_hints(bench.diagnostics());
+    assert!(matches!(&told[..], [text] if text.contains("the axis moves on without an end")), "{told:?}");
+    bench.run(5000);
+    assert!(bench.memory.axis(axis(), Chan::DEST) > 0.0);
+    assert_eq!(bench.call_i32("CheckDone", &[0]), 0);
+}
+
+#[test]
 fn invalid_targets_and_limits_move_nothing_and_are_reported() {
     let nan = f64::NAN.to_bits();
     let calls: [(&str, Vec<u64>); 5] = [
         ("Move", vec![0, nan]),
-        ("MoveRel", vec![0, f64::INFINITY.to_bits()]),
+        ("MoveRel", vec![0, nan]),
         ("Jog", vec![0, nan]),
         ("MoveExp", vec![0, nan, 0.1_f64.to_bits()]),
         ("MoveXYZABC", vec![nan, 0, 0, 0, 0, 0]),
@@ -67,10 +78,7 @@ fn invalid_targets_and_limits_move_nothing_and_are_reported() {
         bench.memory.set(kmotiondef::variables::CS0_AXIS_A, -1);
         bench.call_in_slices(name, &arguments);
         let told = without_hints(bench.diagnostics());
-        assert!(
-            matches!(&told[..], [text] if text.contains("is not a valid position, so nothing moves")),
-            "{told:?}"
-        );
+        assert!(matches!(&told[..], [text] if text.contains("is not a valid position or speed")), "{told:?}");
         bench.run(10);
         assert_eq!(bench.memory.axis(axis(), Chan::DEST), 0.0, "{name}");
     }

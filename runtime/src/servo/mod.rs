@@ -48,6 +48,8 @@ use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, Bit};
 use vm::memory::GuestMemory;
 
+use crate::machine::Racked;
+use crate::machine::description::Gantry;
 use crate::out::Message;
 use crate::servo::cache::Change;
 use crate::servo::plan::Input;
@@ -78,6 +80,11 @@ pub(crate) fn tick(tick: &mut Tick<'_>, memory: &mut GuestMemory, is_touched: bo
         tick.machine.signal(tick.io, tick.now);
         false
     };
+    if let Some(Racked { gantry: Gantry { axes: [axis, other], most }, apart }) =
+        tick.machine.mechanics.take_racked()
+    {
+        tick.out.remark(tick.now, Message::GantryRacks { axis, other, apart, most });
+    }
     // What was written so far is the servo's own. A recording may write anywhere.
     memory.take_touched();
     let recorded = recorder::sample(memory);

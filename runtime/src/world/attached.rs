@@ -39,6 +39,8 @@ const DEVICES: &[Row] = &[
     Row { name: "resolver", build: |settings| boxed(outside::resolver::Resolver::new(settings)) },
     // What the UART sends comes back.
     Row { name: "echo", build: |settings| boxed(outside::echo::Echo::new(settings)) },
+    // A slave with registers on the UART.
+    Row { name: "modbus", build: |settings| boxed(outside::modbus::Modbus::new(settings)) },
 ];
 
 fn boxed<T: Attached + 'static>(device: Result<T, String>) -> Result<Box<dyn Attached>, String> {
@@ -163,7 +165,7 @@ mod tests {
         for (text, expect) in [
             (
                 "wier from=1 to=2",
-                "there is no device `wier`; known: wire, spi, rc, quadrature, kstep_analog, resolver, echo",
+                "there is no device `wier`; known: wire, spi, rc, quadrature, kstep_analog, resolver, echo, modbus",
             ),
             ("wire from=1", "device `wire` needs `to=…`"),
             ("wire from=1 to=2048", "`to=2048` of device `wire` is not a bit from 0 to 2047"),

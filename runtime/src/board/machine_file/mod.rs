@@ -17,8 +17,8 @@ use kmotiondef::limits::N_CHANNELS;
 
 pub use crate::machine::Connected;
 pub use crate::machine::description::{
-    Analog, AnalogSource, Axis, Channel, Condition, Connection, Encoder, Handwheel, Index, Model, Motor,
-    Probe, Spindle, SpindleDrive, Switch, Travel, Wire,
+    Analog, AnalogSource, Axis, Channel, Condition, Connection, Encoder, Gantry, Handwheel, Index, Model,
+    Motor, Probe, Spindle, SpindleDrive, Spring, Switch, Travel, Wire,
 };
 use crate::out::{REMARKS, RemarkRow};
 use crate::pc::Answers;

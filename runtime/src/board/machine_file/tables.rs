@@ -5,8 +5,8 @@ use toml::de::DeTable;
 
 use super::read::{Read, Table, Value, Wrong, keys};
 use super::{
-    Analog, AnalogSource, Axis, Channel, Condition, Encoder, Handwheel, Index, MachineFile, MachineFileError,
-    Model, Probe, Spindle, SpindleDrive, Switch, Travel, Wire,
+    Analog, AnalogSource, Axis, Channel, Condition, Encoder, Gantry, Handwheel, Index, MachineFile,
+    MachineFileError, Model, Probe, Spindle, SpindleDrive, Spring, Switch, Travel, Wire,
 };
 use super::{boards, events, pc};
 use crate::out::REMARKS;
@@ -34,6 +34,7 @@ fn root(machine: &mut MachineFile, statements: &mut Vec<(usize, String)>, table:
         "wire" => machine.wires.extend(each(&value, wire)?);
         "event" => statements.extend(events::events(&value)?);
         "device" => statements.extend(events::devices(&value)?);
+        "gantry" => machine.connected.gantries.extend(each(&value, gantry)?);
         "spindle" => spindles(&mut machine.connected.spindles, &value)?;
         "inputs" => inputs(machine, &value.table()?)?;
         "remarks" => remarks(machine, &value.table()?)?;
@@ -88,6 +89,7 @@ fn axis(axis: &mut Axis, table: &Table<'_>) -> Read<()> {
         "max" => axis.travel.max = value.number()?;
         "start" => axis.travel.start = value.number()?;
         "backlash" => axis.travel.backlash = value.not_negative()?;
+        "spring" => axis.travel.spring = Some(spring(&value.table()?)?);
         "ku" => axis.motor.ku = Some(value.number()?);
         "tau_s" => axis.motor.tau_s = value.positive()?;
         "friction" => axis.motor.friction = value.not_negative()?;
@@ -105,6 +107,34 @@ fn axis(axis: &mut Axis, table: &Table<'_>) -> Read<()> {
         return Err(Wrong::new(table.offset, text));
     }
     Ok(())
+}
+
+/// `{ hz = 20, damping = 0.05 }`
+fn spring(table: &Table<'_>) -> Read<Spring> {
+    const FASTEST: f64 = 500.0;
+    let (mut hz, mut damping) = (None, 0.05);
+    keys!(table, |key, value| {
+        "hz" => hz = Some(value.positive()?.min(FASTEST));
+        "damping" => damping = value.not_negative()?;
+    });
+    Ok(Spring { hz: hz.ok_or_else(|| table.is_missing("hz"))?, damping })
+}
+
+/// `axes = [0, 1]` and `most`.
+fn gantry(table: &Table<'_>) -> Read<Gantry> {
+    let (mut axes, mut most) = (Vec::new(), 100.0);
+    keys!(table, |key, value| {
+        "axes" => {
+            for item in value.array()? {
+                axes.push(item.axis()?);
+            }
+        };
+        "most" => most = value.positive()?;
+    });
+    match axes[..] {
+        [a, b] if a != b => Ok(Gantry { axes: [a, b], most }),
+        _ => Err(Wrong::new(table.offset, format!("`{}`: `axes` must name two axes", table.name))),
+    }
 }
 
 /// `{ input = 0 }`
@@ -295,6 +325,7 @@ fn spindle(before: Option<Spindle>, table: &Table<'_>) -> Read<Spindle> {
     let [mut counts, mut full, mut tau] = before.map_or([4096.0, 50.0, 0.5], |spindle| {
         [spindle.counts_per_rev, spindle.full_scale_rps, spindle.tau_s]
     });
+    let [mut droop, mut load] = before.map_or([0.0, 0.0], |spindle| [spindle.droop_rps, spindle.load]);
     keys!(table, |key, value| {
         "axis" => axis = Some(value.axis()?);
         "counts_per_rev" => counts = not_zero(&value)?;
@@ -303,6 +334,8 @@ fn spindle(before: Option<Spindle>, table: &Table<'_>) -> Read<Spindle> {
         "bits" => drive = Some(directions(&value.table()?)?);
         "full_scale_rps" => full = value.positive()?;
         "tau_s" => tau = value.positive()?;
+        "droop_rps" => droop = value.not_negative()?;
+        "load" => load = value.not_negative()?.min(1.0);
     });
     Ok(Spindle {
         axis: axis.ok_or_else(|| table.is_missing("axis"))?,
@@ -310,6 +343,8 @@ fn spindle(before: Option<Spindle>, table: &Table<'_>) -> Read<Spindle> {
         drive: drive.ok_or_else(|| table.is_missing("driven_by"))?,
         full_scale_rps: full,
         tau_s: tau,
+        droop_rps: droop,
+        load,
     })
 }
 

@@ -196,7 +196,7 @@ fn mistakes_are_named_with_their_place() {
         ("[axis.0\nname = 5", "1:8: unclosed table, expected `]`"),
         (
             "colour = 5",
-            "1:1: unknown key `colour`; known: axis, switch, probe, encoder, adc, wire, event, device, spindle, inputs, remarks, cpu, host, board, uart",
+            "1:1: unknown key `colour`; known: axis, switch, probe, encoder, adc, wire, event, device, gantry, spindle, inputs, remarks, cpu, host, board, uart",
         ),
     ] {
         assert_eq!(message(text), expect, "{text}");

@@ -2,6 +2,7 @@
 
 pub(crate) mod echo;
 pub(crate) mod kstep_analog;
+pub(crate) mod modbus;
 pub(crate) mod quadrature;
 pub(crate) mod rc;
 pub(crate) mod resolver;

@@ -177,6 +177,11 @@ actions! {
         does mechanics::pull;
         written { "axis N pull = SPEED" => mechanics::read_pull }
     }
+    /// Loads the spindle on the encoder of an axis, from 0 to 1.
+    LoadSpindle(axis: AxisId, load: f64) {
+        does mechanics::load_spindle;
+        written { "spindle N load = PART" => mechanics::read_load_spindle }
+    }
     /// Turns the encoder of an axis by counts, over a time.
     Turn(axis: AxisId, counts: f64, over: Cycles) {
         does mechanics::turn;

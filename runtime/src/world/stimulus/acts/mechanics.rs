@@ -39,6 +39,24 @@ pub(crate) fn pull(scene: &mut Scene<'_, '_, '_>, axis: AxisId, speed: f64) {
     scene.access.machine.loads.pull(axis, speed);
 }
 
+pub(crate) fn read_load_spindle(reader: &mut StatementReader<'_>) -> Result<(AxisId, f64), Mistake> {
+    let axis = reader.axis()?;
+    reader.expect("load")?;
+    reader.equals()?;
+    let column = reader.column();
+    let load = reader.number("a part of full load from 0 to 1")?;
+    if (0.0..=1.0).contains(&load) {
+        Ok((axis, load))
+    } else {
+        Err((column, "a load is from 0 to 1".to_owned()))
+    }
+}
+
+/// Changes the load of a spindle, which its droop makes slower.
+pub(crate) fn load_spindle(scene: &mut Scene<'_, '_, '_>, axis: AxisId, load: f64) {
+    scene.access.machine.mechanics.load_spindle(axis, load);
+}
+
 pub(crate) fn read_turn(reader: &mut StatementReader<'_>) -> Result<(AxisId, f64, Cycles), Mistake> {
     let column = reader.column();
     let channel = encoder(reader)?;
