@@ -11,6 +11,7 @@ mod fidelity;
 mod firmware_5;
 mod host;
 mod injection;
+mod mathematics;
 mod measured;
 mod polling;
 mod released;

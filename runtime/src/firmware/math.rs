@@ -1,6 +1,7 @@
 //! Mathematics, from `libm` so that every host computes the same; where the firmware's own results are known, those.
 
 mod elementary;
+mod singles;
 
 use kmotiondef::GuestAddr;
 use vm::arith::{self, WordDivision, canonical_f32, canonical_f64};
@@ -8,6 +9,7 @@ use vm::firmware::{Caller, PureFunction};
 use vm::trap::TrapKind;
 
 use super::parts::Parts;
+use crate::servo::dsp::{divide, divide_singles};
 use crate::servo::sine::two_phases;
 
 /// A floating number, so that every NaN can be made that of all arithmetic: what `libm` makes differs between hosts.
@@ -38,7 +40,6 @@ macro_rules! functions {
         pub(crate) fn pure(name: &str) -> Option<PureFunction> {
             Some(match name {
                 "sqrt" => PureFunction::SqrtF64,
-                "sqrtf" => PureFunction::SqrtF32,
                 $(stringify!($name) => {
                     extern "C" fn compute($($x: $ty),+) -> $ty {
                         Number::canonical($value)
@@ -55,7 +56,7 @@ functions! {
     /// Square root.
     sqrt(x) -> f64 = libm::sqrt(x);
     /// Square root.
-    sqrtf(x) -> f32 = libm::sqrtf(x);
+    sqrtf(x) -> f32 = singles::sqrt(x);
     /// e to the power x.
     exp(x) -> f64 = elementary::exp(x);
     /// e to the power x.
@@ -75,17 +76,17 @@ functions! {
     /// Sine.
     sin(x) -> f64 = elementary::sin(x);
     /// Sine.
-    sinf(x) -> f32 = libm::sinf(x);
+    sinf(x) -> f32 = singles::sin(x);
     /// Cosine.
     cos(x) -> f64 = elementary::cos(x);
     /// Cosine.
-    cosf(x) -> f32 = libm::cosf(x);
+    cosf(x) -> f32 = singles::cos(x);
     /// Cube root.
     cube_root(x) -> f64 = libm::cbrt(x);
     /// Tangent.
-    tan(x) -> f64 = libm::tan(x);
+    tan(x) -> f64 = elementary::tan(x);
     /// Tangent.
-    tanf(x) -> f32 = libm::tanf(x);
+    tanf(x) -> f32 = singles::tan(x);
     /// Arc sine.
     asin(x) -> f64 = elementary::asin(x);
     /// Arc sine.
@@ -97,11 +98,11 @@ functions! {
     /// Arc tangent.
     atan(x) -> f64 = elementary::atan(x);
     /// Arc tangent.
-    atanf(x) -> f32 = libm::atanf(x);
+    atanf(x) -> f32 = singles::atan(x);
     /// Arc tangent of y/x in all four quadrants.
-    atan2(y, x) -> f64 = libm::atan2(y, x);
+    atan2(y, x) -> f64 = elementary::atan2(y, x);
     /// Arc tangent of y/x in all four quadrants.
-    atan2f(y, x) -> f32 = libm::atan2f(y, x);
+    atan2f(y, x) -> f32 = singles::atan2(y, x);
     /// Absolute value.
     fast_fabs(x) -> f64 = x.abs();
     /// Absolute value.
@@ -268,12 +269,16 @@ fn or_by_zero(caller: &Caller<'_>, result: Option<i32>, op: WordDivision, a: i32
 
 /// Quotient of two floats; by zero the not-a-number with the sign of the dividend, as on the board.
 pub(crate) fn divf(_: &mut Parts, _: &mut Caller<'_>, a: f32, b: f32) -> f32 {
-    if b == 0.0 { f32::from_bits(if a < 0.0 { 0xFFFF_FFFF } else { 0x7FFF_FFFF }) } else { a / b }
+    if b == 0.0 {
+        f32::from_bits(if a < 0.0 { 0xFFFF_FFFF } else { 0x7FFF_FFFF })
+    } else {
+        divide_singles(a, b)
+    }
 }
 
 /// Quotient of two doubles; by zero the not-a-number with the sign of the dividend, as on the board.
 pub(crate) fn divd(_: &mut Parts, _: &mut Caller<'_>, a: f64, b: f64) -> f64 {
-    if b == 0.0 { f64::from_bits(if a < 0.0 { u64::MAX } else { u64::MAX >> 1 }) } else { a / b }
+    if b == 0.0 { f64::from_bits(if a < 0.0 { u64::MAX } else { u64::MAX >> 1 }) } else { divide(a, b) }
 }
 
 #[cfg(test)]

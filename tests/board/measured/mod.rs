@@ -51,7 +51,6 @@ const NOT_YET: &[Exception] = &[
     rows_of("the firmware does here what the model does", &[20, 29]),
     rows_of("a motion towards its target against its motion", &[23, 57]),
     rows_of("moves at random", &[61]),
-    rows_of("the time of a feedhold in singles", &[120, 122]),
     rows_of("the end of a smoothed path in singles", &[123]),
 ];
 

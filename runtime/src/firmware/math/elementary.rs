@@ -2,11 +2,12 @@
 //!
 //! They are those of Cody and Waite (Software Manual for the Elementary Functions), with the firmware's divisions; its
 //! arc sine is a plain polynomial, whose coefficients are measured: they are those that the released firmware has in its
-//! memory. The order in which sums are formed was found by comparison with it: of 350 arguments of each function all
-//! results are the same to the last bit, except for two arc tangents and a tenth of the arc sines and cosines beyond one
-//! half, which depend on its square root.
+//! memory. The order in which sums are formed was found by comparison with it; the board's tests have the share of equal
+//! results. Arc sines and cosines beyond one half depend on its square root, which is not known.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, FRAC_PI_6, LN_2, LN_10, LOG2_E, LOG10_E, SQRT_2};
+use std::f64::consts::{
+    FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, FRAC_PI_6, LN_2, LN_10, LOG2_E, LOG10_E, PI, SQRT_2,
+};
 
 use crate::servo::dsp::divide;
 
@@ -180,7 +181,8 @@ pub(super) fn acos(x: f64) -> f64 {
     }
 }
 
-pub(super) fn atan(x: f64) -> f64 {
+/// The arc tangent of a quotient that is not negative, whose angle is counted from `angle` on.
+fn arc_tangent(mut rest: f64, mut angle: usize) -> f64 {
     const P: [f64; 4] =
         [-13.688_768_894_191_927, -20.505_855_195_861_652, -8.494_624_035_132_068, -0.837_582_993_681_500_6];
     const Q: [f64; 5] =
@@ -190,18 +192,60 @@ pub(super) fn atan(x: f64) -> f64 {
     const ROOT_3: f64 = 1.732_050_807_568_877_2;
     /// The angles of the intervals: 0°, 30°, 90°, 60°.
     const ANGLES: [f64; 4] = [0.0, FRAC_PI_6, FRAC_PI_2, FRAC_PI_3];
-    if x.abs() < f64::MIN_POSITIVE {
-        return 0.0;
-    }
-    let (mut rest, mut angle) = if x.abs() > 1.0 { (divide(1.0, x.abs()), 2) } else { (x.abs(), 0) };
     if rest > LIMIT {
         rest = divide((((ROOT_3 - 1.0) * rest - 0.5) - 0.5) + rest, ROOT_3 + rest);
         angle += 1;
     }
     let square = rest * rest;
     let arc = rest + rest * divide(polynomial(&P, square) * square, polynomial(&Q, square));
-    let result = ANGLES[angle] + if angle > 1 { -arc } else { arc };
+    ANGLES[angle] + if angle > 1 { -arc } else { arc }
+}
+
+pub(super) fn atan(x: f64) -> f64 {
+    let magnitude = x.abs();
+    if magnitude < f64::MIN_POSITIVE {
+        return 0.0;
+    }
+    let result =
+        if magnitude > 1.0 { arc_tangent(divide(1.0, magnitude), 2) } else { arc_tangent(magnitude, 0) };
     if x < 0.0 { -result } else { result }
+}
+
+/// The angle of a point in all four quadrants.
+pub(super) fn atan2(y: f64, x: f64) -> f64 {
+    let (up, along) = (y.abs(), x.abs());
+    let angle = if up > along {
+        arc_tangent(divide(along, up), 2)
+    } else if along > 0.0 {
+        arc_tangent(divide(up, along), 0)
+    } else {
+        return 0.0;
+    };
+    let angle = if x < 0.0 { PI - angle } else { angle };
+    if y < 0.0 { -angle } else { angle }
+}
+
+/// The tangent.
+pub(super) fn tan(x: f64) -> f64 {
+    const P: [f64; 4] =
+        [1.0, -0.133_383_500_064_219_6, 0.342_488_782_358_905_9e-2, -0.178_617_073_422_544_27e-4];
+    const Q: [f64; 5] = [
+        1.0,
+        -0.466_716_833_397_552_94,
+        0.256_638_322_894_401_13e-1,
+        -0.311_815_319_070_100_27e-3,
+        0.498_194_339_937_865_1e-6,
+    ];
+    let quarters = libm::round(x * std::f64::consts::FRAC_2_PI);
+    let rest = (x - quarters * (PI_HIGH / 2.0)) - quarters * (PI_LOW / 2.0);
+    let square = rest * rest;
+    let numerator = rest * polynomial(&P, square);
+    let denominator = polynomial(&Q, square);
+    if libm::fmod(quarters, 2.0) == 0.0 {
+        divide(numerator, denominator)
+    } else {
+        divide(-denominator, numerator)
+    }
 }
 
 #[cfg(test)]

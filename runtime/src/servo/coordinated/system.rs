@@ -59,12 +59,15 @@ pub(crate) fn nominal_change_time(memory: &GuestMemory) -> f32 {
 /// Seconds in which every axis of the system can stop from its present speed; 0 at rest.
 pub(crate) fn stopping_time(memory: &GuestMemory) -> f32 {
     let velocity = |axis| {
-        // The board does not use `last_vel` here: it makes a single of the way before it divides.
+        // The board does not use `last_vel` here: it multiplies singles.
         let way = (memory.axis(axis, Chan::DEST) - memory.axis(axis, Chan::LAST_DEST)) as f32;
-        (f64::from(way) / TIMEBASE) as f32
+        way * TICKS_PER_SECOND
     };
     longest(members(memory).map(|axis| change_time(memory, axis, velocity(axis)))).unwrap_or(0.0)
 }
+
+/// Ticks in a second, as a single.
+const TICKS_PER_SECOND: f32 = (1.0 / TIMEBASE) as f32;
 
 /// Seconds an axis needs between rest and a velocity; the board's formula counts the jerk phases twice.
 fn change_time(memory: &GuestMemory, axis: AxisId, velocity: f32) -> f32 {
