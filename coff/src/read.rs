@@ -103,7 +103,7 @@ impl Reader {
     }
 }
 
-/// Takes `amount` of what is left, or says that `part` overlaps with what was taken before.
+/// Takes `amount` of what is left, or reports that `part` overlaps with what was taken before.
 fn spend(left: &mut u64, amount: u64, at: u64, part: Part) -> Result<(), Error> {
     *left = left.checked_sub(amount).ok_or(Error { at, kind: ErrorKind::Overlap(part) })?;
     Ok(())

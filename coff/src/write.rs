@@ -184,7 +184,7 @@ impl Strings {
         Ok(strings)
     }
 
-    /// Bytes of the table as the length word says it: by TI's convention it counts itself.
+    /// Bytes of the table as in the length word: by TI's convention it counts itself.
     fn size(&self) -> Result<u32, Error> {
         offset(Self::LENGTH_WORD + self.bytes.len(), Part::Strings)
     }

@@ -171,7 +171,7 @@ pub enum Role {
     Within(i32),
 }
 
-/// A Rust type that stands for a C type of the interface.
+/// A Rust type that represents a C type of the interface.
 pub trait GuestType {
     /// The C type.
     const C_TYPE: CType;

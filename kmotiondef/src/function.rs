@@ -1,4 +1,4 @@
-//! The words in which a row of the table of firmware functions says more than its signature and its cost.
+//! The words with which a row of the table of firmware functions states more than its signature and its cost.
 //!
 //! A parameter's type names the role of the argument: `AxisNumber` is an `int` in C, and the number of an axis. The
 //! attributes after the origin of a row are the methods of [`Attributes`] below, so that a word the table does not

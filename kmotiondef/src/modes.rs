@@ -17,7 +17,7 @@ macro_rules! modes {
             }
 
             impl $mode {
-                /// The mode a number stands for.
+                /// The mode with a number.
                 #[must_use]
                 pub const fn new(number: i32) -> Option<Self> {
                     match number {
@@ -151,13 +151,13 @@ pub enum AtRest {
 /// The properties of an output mode for the servo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutputTraits {
-    /// True if nothing is compensated: the output goes where it is told.
+    /// True if nothing is compensated: the output follows the command.
     pub is_open_loop: bool,
     /// True if it drives a step generator, which other axes may name too.
     pub has_generator: bool,
     /// True if it corrects the commanded position by its output, and slaves follow both.
     pub corrects_command: bool,
-    /// Enabling keeps the destination, as the position says nothing of the motor.
+    /// Enabling keeps the destination, as the position is not that of the motor.
     pub keeps_dest: bool,
     /// The outputs that go to zero when the axis is switched off.
     pub at_rest: AtRest,

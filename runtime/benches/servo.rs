@@ -88,7 +88,7 @@ fn board(axes: u64) -> Board {
 /// The time that this process has had a processor.
 struct CpuTime;
 
-/// It so far, where the system tells it.
+/// The processor time so far, where the system reports it.
 fn on_cpu() -> Option<Duration> {
     #[cfg(unix)]
     {

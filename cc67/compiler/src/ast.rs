@@ -101,7 +101,7 @@ pub struct Specifiers {
     pub alignments: Vec<Alignment>,
     /// The type; `None` if no word names one (implicit `int`).
     pub ty: Option<TypeSpecifier>,
-    /// All words; for an empty list, the place where they would stand.
+    /// All words; for an empty list, the place where they would be.
     pub span: Span,
 }
 
@@ -133,7 +133,7 @@ pub enum TypeSpecifier {
     TypeofType(Box<TypeName>),
 }
 
-/// The arithmetic types by their written words; `long` is told from `int` only here.
+/// The arithmetic types by their written words; `long` is distinguished from `int` only here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BasicType {
     /// `void`

@@ -142,7 +142,7 @@ impl Names {
         &self.text[start..self.ends[index]]
     }
 
-    /// Remembers that a macro with parameters has this name: it stands for something before `(` only.
+    /// Remembers that a macro with parameters has this name: it is expanded before `(` only.
     pub fn mark_function_macro(&mut self, name: Name) {
         self.function_macros.insert(name);
     }

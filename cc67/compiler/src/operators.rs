@@ -164,8 +164,8 @@ macro_rules! define_binary_ops {
                 }
             }
 
-            /// Computes the operator on integers without overflow; `None` for operators that checks of indexes do not
-            /// follow, and beyond 64 bits.
+            /// Computes the operator on integers without overflow; `None` for operators that index checks do not
+            /// support, and beyond 64 bits.
             #[must_use]
             pub(crate) fn exactly(self, a: i64, b: i64) -> Option<i64> {
                 let exact: Option<Integers> = match self {

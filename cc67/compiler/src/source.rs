@@ -33,7 +33,7 @@ pub struct Span {
     pub lo: u32,
     /// Position after the last byte.
     pub hi: u32,
-    /// The innermost macro expansion the text came through; its call site says where to look.
+    /// The innermost macro expansion the text came through; its call site is the place to look at.
     pub expansion: ExpansionId,
 }
 

@@ -245,7 +245,7 @@ pub enum StmtKind {
         condition: Option<ExprId>,
         /// The time of the test.
         test: LoopTest,
-        /// The body; `continue` goes past it.
+        /// The body; `continue` skips the rest of it.
         body: Vec<Stmt>,
         /// Evaluated after the body.
         step: Option<ExprId>,
@@ -261,22 +261,22 @@ pub enum StmtKind {
         /// The body.
         body: Vec<Stmt>,
     },
-    /// The place that case number `n` of the innermost switch goes to.
+    /// The place of case number `n` of the innermost switch.
     Case(u32),
-    /// The place that no case goes to.
+    /// The place for values without a case.
     DefaultCase,
     /// Leaves the innermost loop or switch.
     Break,
-    /// Goes to the end of the innermost loop's body.
+    /// Jumps to the end of the innermost loop's body.
     Continue,
     /// Returns. The value has the type of the function's result; a structure has been copied to the
     /// result pointer by a statement before.
     Return(Option<ExprId>),
-    /// The place a `goto` goes to.
+    /// The place of a label.
     Label(LabelId),
-    /// Goes to a label.
+    /// Jumps to a label.
     Goto(LabelId),
-    /// Goes to the label with this [`Label::address`].
+    /// Jumps to the label with this [`Label::address`].
     GotoAddress(ExprId),
 }
 

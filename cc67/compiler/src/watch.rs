@@ -361,7 +361,7 @@ impl ItemReader for NoMemory {
 }
 
 impl Expression {
-    /// The value of a function's expression; its names stand for these.
+    /// The value of a function's expression; its names refer to these.
     pub(crate) const fn new(
         function: Function,
         value: ExprId,
@@ -423,7 +423,7 @@ impl Expression {
         (!memory.was_read.get()).then_some((address, kind))
     }
 
-    /// Reports whether a value can be stored in it, as far as its form says.
+    /// Reports whether a value can be stored in it, by its form.
     #[must_use]
     pub fn is_place(&self) -> bool {
         match self.stored_place().map(|place| &self.function.places[place].kind) {
@@ -556,7 +556,7 @@ pub(crate) fn read(ty: TypeId, bytes: [u8; 8]) -> Constant {
     }
 }
 
-/// A value as memory holds it; what is not a number goes there as 0.
+/// A value as memory holds it; a value that is not a number is stored as 0.
 fn bytes_of(value: f64, ty: TypeId) -> Vec<u8> {
     match ty {
         Types::DOUBLE => value.to_le_bytes().into(),

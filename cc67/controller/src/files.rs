@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use cc67_wire::{DiskAnswer, PcFiles};
 use runtime::{FileAnswer, FileServer, HostFiles};
 
-/// Remarks about requests for files, on their way to whoever reads the events.
+/// Remarks about requests for files, not yet delivered as events.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FileRemarks(Arc<Mutex<Vec<String>>>);
 

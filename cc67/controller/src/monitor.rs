@@ -89,7 +89,7 @@ pub(crate) struct Monitor {
 }
 
 impl Monitor {
-    /// A monitor that is not allowed yet, compiled as `options` say.
+    /// A monitor that is not allowed yet, compiled with `options`.
     pub(crate) fn new(options: Options, linked_for: String) -> Self {
         let (resident, announced) = (None, None);
         Self { options, linked_for, is_allowed: false, resident, announced, recent: BTreeMap::new() }

@@ -15,7 +15,7 @@ use kmotiondef::variables::{
 use kmotiondef::{AxisId, GuestAddr};
 use vm::memory::places::Places;
 
-/// Elements of `persist.UserData` that are read with each status record while somebody looks: all within a second.
+/// Elements of `persist.UserData` that are read with each status record while a view needs them: all within a second.
 const ELEMENTS_AT_ONCE: usize = 10;
 /// The converters' words at 0 V.
 const ZERO: i32 = 2048;
@@ -24,9 +24,9 @@ const ZERO: i32 = 2048;
 #[derive(Debug)]
 pub(crate) struct SeenMemory {
     bytes: BTreeMap<u32, u8>,
-    /// True if somebody has looked since the last [call](Self::take_look).
+    /// True if memory was read since the last [call](Self::take_look).
     is_looked_at: Cell<bool>,
-    /// The element of `persist.UserData` that is read next for whoever looks.
+    /// The element of `persist.UserData` that is read next for views.
     next_element: usize,
     /// The places of the board's firmware for the variables of the tables.
     places: Places,
@@ -69,13 +69,13 @@ impl SeenMemory {
         Some(())
     }
 
-    /// Reads bytes as [`read`](Self::read) does, for somebody who will look again.
+    /// Reads bytes as [`read`](Self::read) does, for a view that will read again.
     pub(crate) fn look(&self, address: GuestAddr, bytes: &mut [u8]) -> Option<()> {
         self.is_looked_at.set(true);
         self.read(address, bytes)
     }
 
-    /// Returns whether somebody has looked since the last call.
+    /// Returns whether memory was read since the last call.
     pub(crate) fn take_look(&self) -> bool {
         self.is_looked_at.take()
     }

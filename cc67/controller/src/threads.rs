@@ -66,7 +66,7 @@ impl BoardThreads {
         ThreadId::all().filter(is_free).collect()
     }
 
-    /// Notes that the threads which are active now were started by somebody else.
+    /// Notes that the threads which are active now were not started by this session.
     pub(crate) fn note_foreign(&mut self) {
         for thread in &mut self.all {
             thread.is_foreign = thread.state.is_active();

@@ -115,7 +115,7 @@ impl<T: Target> Shell<T> {
         names
     }
 
-    /// Does what a line says; an empty one repeats the last.
+    /// Executes a line; an empty one repeats the last.
     ///
     /// # Errors
     /// What is wrong with it.
@@ -363,7 +363,7 @@ impl<T: Target> Shell<T> {
         }
     }
 
-    /// `continue COUNT` passes the breakpoint where one stands COUNT - 1 times.
+    /// `continue COUNT` passes the present breakpoint COUNT - 1 times.
     fn ignore_present(&mut self, times: u64, output: Output<'_>) {
         for id in ids_of(&self.debugger.stop().reason) {
             if let Some(breakpoint) = self.debugger.breakpoint_mut(id) {

@@ -32,7 +32,7 @@ main()
 }
 ";
 
-/// The messages of the adapter; the editor goes when the last of its requests is answered.
+/// The messages of the adapter; the editor disconnects when the last of its requests is answered.
 struct Sent {
     bytes: Vec<u8>,
     /// The editor's end, and the number of its last request.

@@ -1,4 +1,4 @@
-//! The sessions of the book's chapter on debugging are what it says they are.
+//! The sessions of the book's chapter on debugging have the output that it shows.
 //!
 //! `CC67_WRITE_BOOK=1` writes what the commands answer into the chapter.
 

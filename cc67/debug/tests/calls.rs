@@ -1,4 +1,4 @@
-//! Calls of functions from expressions: the board executes them while its time stands.
+//! Calls of functions from expressions: the board executes them while its time is stopped.
 
 mod terminal;
 

@@ -514,7 +514,8 @@ impl Board {
         self.state().advance(ticks(seconds), &mut |_| false);
     }
 
-    /// Lets board time pass until `is_over` says so after a tick, at most this many seconds; whether it said so.
+    /// Lets board time pass until `is_over` returns true after a tick, at most this many seconds; returns whether it
+    /// did.
     ///
     /// ```
     /// let mut board = cc67_host::Board::new();

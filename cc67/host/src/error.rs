@@ -34,7 +34,7 @@ pub enum HostError {
         /// The error of the system.
         error: std::io::Error,
     },
-    /// The source has errors; the text is what the compiler says.
+    /// The source has errors; the text has the compiler's messages.
     #[error("{0}")]
     Compile(CompileError),
     /// The image is refused.
@@ -65,7 +65,7 @@ pub enum HostError {
     /// A firmware file does not start, or does not take what it is given.
     #[error("{0}")]
     Firmware(String),
-    /// A connected controller does not do what it is told, or is not connected any more.
+    /// A connected controller does not execute a command, or is not connected any more.
     #[error("{0}")]
     Link(String),
     /// A firmware file does not start from what a flash holds.

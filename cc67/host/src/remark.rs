@@ -12,9 +12,9 @@ use vm::trap::{Scene, Trap, TrapKind};
 pub struct SourceCall {
     /// The file.
     pub file: String,
-    /// The line, from 1, if the image says so.
+    /// The line, from 1, if the image has it.
     pub line: Option<u32>,
-    /// The column, from 1, if the compiler has said so.
+    /// The column, from 1, if the compiler knows it.
     pub column: Option<u32>,
     /// The function around it.
     pub function: String,

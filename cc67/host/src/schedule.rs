@@ -36,7 +36,7 @@ const MAX_INPUT: u64 = 20;
 const MAX_EXPONENT: u64 = 14;
 
 impl Schedule {
-    /// The schedule that a seed stands for; seed 0 is the plain run.
+    /// The schedule of a seed; seed 0 is the plain run.
     #[must_use]
     pub fn from_seed(seed: u64) -> Self {
         let mut schedule = Self::default();

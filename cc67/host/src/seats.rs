@@ -12,7 +12,7 @@ use std::time::Duration;
 /// The time that a server gives a client for its first words.
 pub const FIRST_WORDS: Duration = Duration::from_secs(10);
 
-/// Closes a connection, so that whoever reads from it reads its end.
+/// Closes a connection, so that its reader reaches the end.
 pub type Closer = Box<dyn FnOnce() + Send>;
 
 /// The connections of a server.
@@ -94,7 +94,7 @@ impl Seats {
 }
 
 impl Seat {
-    /// The client has said something.
+    /// Notes that the client has sent something.
     pub fn hear(&self) {
         let mut taken = self.seats.taken();
         taken.events += 1;

@@ -170,7 +170,7 @@ impl State {
         !self.console.is_empty()
     }
 
-    /// Runs for some ticks, or until `is_over` says so after one of them; whether it said so.
+    /// Runs for some ticks, or until `is_over` returns true after one of them; returns whether it did.
     pub(super) fn advance(&mut self, count: u64, is_over: &mut dyn FnMut(&mut Self) -> bool) -> bool {
         if is_over(self) {
             return true;

@@ -91,8 +91,8 @@ pub trait Target {
     fn now(&self) -> Cycles;
 
     /// Lets time pass to the end of the next tick in which something can happen, or of tick `limit`, whichever comes
-    /// first; or to where a program is [held](Self::held). A target whose processor has stopped for good has told so
-    /// with an event, and lets the time pass in which nothing happens any more.
+    /// first; or to where a program is [held](Self::held). A target whose processor has stopped for good has reported
+    /// that with an event, and lets the time pass in which nothing happens any more.
     fn step(&mut self, limit: Ticks, events: EventSink<'_>);
 
     /// The run is over: sends what is still waiting, and checks what the stimulus expects at the end.
@@ -272,7 +272,7 @@ pub trait Target {
         None
     }
 
-    /// Lets the world around the board act as a stimulus says ([`Capability::Surroundings`]).
+    /// Lets the world around the board act by a stimulus ([`Capability::Surroundings`]).
     fn play(&mut self, stimulus: Stimulus) {
         let _ = stimulus;
     }

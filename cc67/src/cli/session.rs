@@ -1,5 +1,5 @@
-//! From arguments to a board under control: what the options say becomes a configuration, files become programs, and
-//! both become a [session](cc67_host::Session) on the engine that is requested.
+//! From arguments to a board under control: options become a configuration, files become programs, and both become a
+//! [session](cc67_host::Session) on the engine that is requested.
 //!
 //! Every command that has a board takes this way, so an option of a board reaches all of them.
 
@@ -471,7 +471,7 @@ impl<T: Target> Rig<T> {
         self.advance_attended(limit, sink, &mut |_| ControlFlow::Continue(()));
     }
 
-    /// The same with somebody who may stop the board; `idle` is what is done meanwhile.
+    /// Advances the board with an attendant that may stop it; `idle` is called meanwhile.
     pub(crate) fn advance_attended(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event), idle: Idle<'_, T>) {
         let attendant = &mut self.attendant;
         let mut held = self.flash.held();
@@ -488,7 +488,7 @@ impl<T: Target> Rig<T> {
         self.flash.acknowledge(held, || self.session.target().flash().unwrap_or_default(), sink);
     }
 
-    /// Keeps the flash for whoever runs the session itself.
+    /// Returns a keeper of the flash for a session that is run elsewhere.
     #[cfg(feature = "live")]
     pub(crate) fn flash_keeper(&self) -> Flash {
         self.flash.clone()

@@ -24,7 +24,7 @@ fn has_usb() -> bool {
     !cfg!(target_os = "linux") || std::path::Path::new("/sys/bus/usb/devices").exists()
 }
 
-/// Serial ports that say that they are a board.
+/// Serial ports that identify themselves as a board.
 #[cfg(feature = "serial")]
 fn serial_boards() -> Vec<FoundBoard> {
     use serialport::SerialPortType;

@@ -5,7 +5,7 @@ const BYTES_PER_LINE: usize = 80;
 
 /// Serves the files of programs on the board.
 pub trait PcFiles: Send {
-    /// Does what a request with this code says; its answer, if the request has one.
+    /// Executes a request with this code; returns its answer, if it has one.
     fn request(&mut self, code: u8, text: &[u8]) -> Option<DiskAnswer>;
 }
 

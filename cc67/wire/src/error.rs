@@ -74,7 +74,7 @@ pub enum WireError {
     Disconnected {
         /// The board.
         place: String,
-        /// A phrase that says during what; may be empty.
+        /// A phrase that names the operation; may be empty.
         during: String,
     },
     /// The board does not answer the abort byte.

@@ -46,7 +46,7 @@ const NO_ECHO: u8 = 1;
 pub struct ProcessorState {
     /// The address of the next packet.
     pub pc: u32,
-    /// The thread that has the processor, 0 for the firmware's own; `None` if the firmware does not say.
+    /// The thread that has the processor, 0 for the firmware's own; `None` if the firmware does not show it.
     pub thread: Option<u32>,
     /// Interrupts are switched off, as they are in an interrupt.
     pub is_masked: bool,
@@ -332,7 +332,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
         self.sent.take(self.hardware.window.link.take_sent())
     }
 
-    /// Puts the sections of a linked program into memory, as a download does, and tells the firmware its start address.
+    /// Puts the sections of a linked program into memory, as a download does, and sends the firmware its start address.
     ///
     /// # Errors
     /// The bytes are not an image of this processor.
@@ -482,7 +482,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
         BootedSnapshot { board, memory }
     }
 
-    /// Goes back to a snapshot, and on from there as then.
+    /// Returns to a snapshot, and continues from there as before.
     pub fn restore(&mut self, snapshot: &BootedSnapshot<A>) {
         let mut memory = std::mem::take(&mut self.hardware.memory);
         memory.restore(&snapshot.memory);

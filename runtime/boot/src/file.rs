@@ -16,7 +16,7 @@ const LEFT_OUT: u32 = 0x12;
 const LOADED: u32 = 0xE0;
 /// The symbols that every firmware of this board has.
 const REQUIRED: [&str; 4] = ["c_int00", "main", "persist", "chan"];
-/// The text that says which version it is.
+/// The symbol of the version text.
 const VERSION: &str = "VersionAndBuildTime";
 /// Longest such text.
 const VERSION_LENGTH: usize = 80;
@@ -117,7 +117,7 @@ impl FirmwareFile {
         self.symbols.get(name).copied().map(GuestAddr::new)
     }
 
-    /// The version as the firmware itself tells it; empty if it does not.
+    /// The version in the firmware's own words; empty if it has none.
     #[must_use]
     pub fn version(&self) -> String {
         version_text(&self.symbols, &self.sections)
@@ -197,7 +197,7 @@ fn symbols(image: &Image) -> BTreeMap<String, u32> {
     symbols
 }
 
-/// The version as a firmware itself tells it; empty if it does not.
+/// The version in a firmware's own words; empty if it has none.
 fn version_text(symbols: &BTreeMap<String, u32>, sections: &[Loaded]) -> String {
     let Some(at) = symbols.get(VERSION) else { return String::new() };
     let holder = sections.iter().find_map(|one| {

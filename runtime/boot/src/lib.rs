@@ -3,7 +3,7 @@
 //! Nothing here imitates the firmware. The file is loaded as by the board's loader ([`file`]), the processor starts
 //! at its entry point, and everything that it accesses outside its two RAMs is a device: the timer that
 //! interrupts it ([`timer`]), the byte link to the PC ([`link`]), the window on the registers and [`chips`] of the FPGA
-//! ([`window`]), the flash chip ([`flash`]). Other connected devices answer through [`Around`]. Functions in the
+//! ([`window`]), the flash chip ([`flash`]). Other connected devices answer through [`ExternalHardware`]. Functions in the
 //! processor's ROM, whose code is in no file, are computed ([`rom`]). The loads of the axes ([`loads`]) are updated at
 //! each match of the timer. [`bus`] maps addresses to devices. [`BootedBoard`] runs them all in one time base: cycles
 //! of 5 ns.

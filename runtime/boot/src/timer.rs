@@ -65,7 +65,7 @@ pub(super) struct Timer {
     flag: bool,
     /// The values of registers that only store.
     stored: [u32; SIZE / 4],
-    /// The cycle of the next match; never, while the counter stands.
+    /// The cycle of the next match; never, while the counter is stopped.
     next: u64,
 }
 

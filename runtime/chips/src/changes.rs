@@ -27,12 +27,12 @@ pub struct Changes {
     list: Vec<BitChange>,
     /// The number of changes that the devices have seen.
     seen: usize,
-    /// The virtual bits as they were last told, the extended ones after.
+    /// The virtual bits as they were last reported, the extended ones after.
     words: Vec<u32>,
 }
 
 impl Changes {
-    /// Returns whether somebody reads them.
+    /// Returns whether they are read.
     #[inline]
     #[must_use]
     pub fn is_on(&self) -> bool {

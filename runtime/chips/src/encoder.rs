@@ -33,7 +33,7 @@ pub struct Encoders {
     /// Channels that an axis reads, channel 0 lowest.
     used: u16,
     errors: u16,
-    /// The register that filters them and says which pins they are on.
+    /// The register that filters them and selects their pins.
     filter: u16,
 }
 

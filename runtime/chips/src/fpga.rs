@@ -161,7 +161,7 @@ pub enum Notice {
 #[derive(Clone, Debug)]
 pub struct Fpga {
     bytes: Box<[u8]>,
-    /// Until when the edges of watched PWM pins are told.
+    /// The time until which the edges of watched PWM pins are reported.
     told: Cycles,
     kstep: AnalogOutput,
 }

@@ -51,7 +51,7 @@ pub struct Pins {
     idle: BitSet,
     /// Inputs that carry the phases of an encoder.
     phases: u64,
-    /// Pins whose fast signals are told edge by edge, and the levels last reported of them.
+    /// Pins whose fast signals are reported edge by edge, and the levels last reported of them.
     watched: u64,
     shown: u64,
     /// The changes of levels, recorded on request.
@@ -123,7 +123,7 @@ impl Pins {
         }
     }
 
-    /// From now on the fast signals of a pin are told edge by edge.
+    /// Reports the fast signals of a pin edge by edge from now on.
     pub fn watch(&mut self, bit: Bit) {
         if bit.get() < PINS {
             let mask = 1 << bit.get();
@@ -132,7 +132,7 @@ impl Pins {
         }
     }
 
-    /// Returns whether the fast signals of any pin are told.
+    /// Returns whether the fast signals of any pin are reported.
     pub fn watches_any(&self) -> bool {
         self.watched != 0
     }

@@ -81,7 +81,7 @@ pub struct StepGenerators {
 /// The way in which the steps of a rate are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Counting {
-    /// Once a tick, by whoever runs the board.
+    /// Once a tick, by the owner of the board.
     ByTick,
     /// To the cycle of each access.
     Exact,

@@ -30,7 +30,7 @@ pub struct Uart {
     sent: Cycles,
     /// The character that waits after it.
     waiting: Option<u8>,
-    /// Set while somebody listens, and the characters sent since the last time.
+    /// Set while there is a listener, and the characters sent since the last time.
     is_heard: bool,
     out: VecDeque<(Cycles, u8)>,
     /// Characters on the line, the first one complete at `arrival`.
@@ -125,7 +125,7 @@ impl Uart {
         }
     }
 
-    /// Keeps a character whose last bit goes out at `sent`.
+    /// Keeps a character whose last bit is sent at `sent`.
     fn note_sent(&mut self, byte: u8) {
         if self.is_heard {
             self.out.push_back((self.sent, byte));
@@ -145,7 +145,7 @@ impl Uart {
         self.out.pop_front_if(|(at, _)| *at <= now)
     }
 
-    /// Returns whether characters are still on their way to somebody who listens.
+    /// Returns whether characters are still on their way to a listener.
     pub fn is_sending(&self) -> bool {
         !self.out.is_empty() || self.is_heard && self.waiting.is_some()
     }

@@ -38,9 +38,9 @@ pub struct SourcePlace<'a> {
     pub function: &'a str,
     /// Its file.
     pub file: &'a str,
-    /// The line, if the image says so.
+    /// The line, if the image has it.
     pub line: Option<u32>,
-    /// The column, counted from 1, if the compiler has said so.
+    /// The column, counted from 1, if the compiler knows it.
     pub column: Option<u32>,
     /// The function that contains it, if that is another one, which has it in place of a call.
     pub around: Option<&'a str>,
@@ -63,7 +63,7 @@ pub struct DebugInfo {
     functions: Vec<FunctionInfo>,
     lines: Vec<(u32, u32)>,
     objects: Vec<ObjectInfo>,
-    /// By address; empty where the compiler has not said more than the image.
+    /// By address; empty where the compiler knows no more than the image.
     details: Arc<[CodeDetail]>,
 }
 

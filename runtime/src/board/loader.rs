@@ -135,7 +135,7 @@ pub enum LoadError {
     Entry(GuestAddr),
 }
 
-/// The board that an image is linked for, as its version stamp says; the default board of one that says nothing.
+/// The board that an image is linked for, by its version stamp; the default board if it has none.
 #[must_use]
 pub fn board_of(image: &[u8]) -> ModelledBoard {
     let image = Image::read(image).ok();
@@ -144,8 +144,8 @@ pub fn board_of(image: &[u8]) -> ModelledBoard {
     boards.find_map(ModelledBoard::of).unwrap_or_default()
 }
 
-/// Checks an image for `thread` of a board; `holds` says in which threads' spaces a program lies, apart from
-/// the one that the image replaces.
+/// Checks an image for `thread` of a board; `holds` names the threads whose spaces have a program, apart from the one
+/// that the image replaces.
 ///
 /// # Errors
 /// The first reason found to refuse it.

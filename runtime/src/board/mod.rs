@@ -184,7 +184,7 @@ impl<E: Engine> Board<E> {
         end
     }
 
-    /// Like [`run`](Self::run), for a run that goes on afterwards or is [finished](Self::finish).
+    /// Like [`run`](Self::run), for a run that continues afterwards or is [finished](Self::finish).
     pub fn run_part(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) -> RunEnd {
         loop {
             if self.has_ended() {
@@ -240,7 +240,7 @@ impl<E: Engine> Board<E> {
         self.deliver(sink);
     }
 
-    /// Runs until `is_over` says so of the events of a tick, or to the end of tick `limit`; whether it said so.
+    /// Runs until `is_over` returns true for an event of a tick, or to the end of tick `limit`; returns whether it did.
     ///
     /// Unlike [`run`](Self::run) it continues when all threads have ended, and leaves unfinished console lines alone.
     pub fn run_until(&mut self, limit: Ticks, is_over: &mut dyn FnMut(Event) -> bool) -> bool {

@@ -61,7 +61,7 @@ impl<E: Engine> Board<E> {
         self.machine.firmware().parts.pc.host.open_box(self.machine.memory())
     }
 
-    /// Lets the world around the board act as a stimulus says, from now on.
+    /// Lets the world around the board act by a stimulus from now on.
     pub fn play(&mut self, stimulus: Stimulus) {
         let (kernel, context) = self.machine.firmware_mut();
         let (world, mut access) = kernel.parts.access(context.now);

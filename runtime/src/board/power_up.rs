@@ -47,7 +47,7 @@ fn start_variable(memory: &mut GuestMemory, variable: &FirmwareVariable, before:
     }
 }
 
-/// Makes room for a value: what was flashed there goes.
+/// Clears the space of a value, flashed contents included.
 fn clear(memory: &mut GuestMemory, address: GuestAddr, size: u32, before: Before) {
     if before == Before::Flashed {
         let cleared = memory.poke_bytes(memory.place_of(address), &vec![0; size as usize]);

@@ -145,7 +145,7 @@ impl<E: Engine> Board<E> {
         self.hand_over(thread, code, entry);
     }
 
-    /// Gives the machine code; that of bytecode costs what the machine file says, that of the processor its cycles.
+    /// Gives the machine code; bytecode has the costs of the machine file, code of the processor its cycles.
     pub(super) fn hand_over(&mut self, thread: ThreadId, code: Code, entry: GuestAddr) {
         let code = match code {
             Code::Program(program) if self.cost != 1.0 => {

@@ -156,7 +156,7 @@ impl Surroundings {
         });
     }
 
-    /// Acts as a stimulus says from now on, beside what it does already.
+    /// Acts by a further stimulus from now on.
     pub fn play(&mut self, stimulus: Stimulus, memory: &mut GuestMemory, now: Cycles) {
         let (world, mut access) = self.parts.access(now);
         world.play(stimulus, &mut access, memory);
@@ -366,7 +366,7 @@ impl Surroundings {
         self.steps = instant.steps;
     }
 
-    /// Shows the firmware what encoders count and switches say.
+    /// Shows the firmware the counts of encoders and the levels of switches.
     fn show(&mut self, instant: &mut Instant<'_>) {
         for axis in AxisId::all() {
             let chan = AxisView::of(instant.memory, axis);

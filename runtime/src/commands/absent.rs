@@ -60,7 +60,7 @@ const WORDS: &[(&str, Why)] = &[
     ("SPISETMODE", OtherBoard),
 ];
 
-/// Letters that a block of G code begins with, and after which a number stands.
+/// Letters that a block of G code begins with, and that a number follows.
 const G_CODE: &[u8] = b"GMTSFN";
 
 /// Returns the message about a part, in upper case, that begins with no command of a board.

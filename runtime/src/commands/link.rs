@@ -241,7 +241,7 @@ impl Turn<'_, '_> {
         }
     }
 
-    /// The released firmware hangs here; so does the link, and the user is told.
+    /// The released firmware hangs here; so does the link, and the user gets a remark.
     fn stop(&mut self, command: &Command) {
         self.link.parts.clear();
         (self.side)(&mut self.parts.pc).die();

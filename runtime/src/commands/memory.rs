@@ -17,7 +17,7 @@ pub(crate) struct Experiment {
     pub(super) axis: AxisId,
     pub(super) amount: f64,
     pub(super) jumps: bool,
-    /// Ticks at which the axis goes away and comes back.
+    /// Ticks at which the axis leaves and returns.
     pub(super) legs: [u64; 2],
     pub(super) done: usize,
 }

@@ -50,7 +50,7 @@ pub(super) fn plain(value: f64) -> String {
     formatted(if value.abs() > 1e8 { "%g" } else { "%f" }, value)
 }
 
-/// `%.13g`, for positions and what goes with them.
+/// `%.13g`, for positions and related values.
 pub(super) fn precise(dialect: Dialect, value: f64) -> String {
     formatted_in(dialect, "%.13g", value)
 }

@@ -25,7 +25,7 @@ pub(super) enum Answer {
     LineAndConsole(&'static str, &'static str),
     /// The command continues with data lines.
     Data(Data),
-    /// A console line that says why nothing is done.
+    /// A console line with the reason for which nothing is done.
     Refused(&'static str),
     /// The released firmware stops here, with a last answer.
     Stopped(Box<Answer>),

@@ -150,7 +150,7 @@ fn active(context: &TickContext<'_>) -> i32 {
     active.fold(1, |bits, thread| bits | 1 << thread.get())
 }
 
-/// Takes what the PC says of itself, and sends the record.
+/// Takes the PC's own status, and sends the record.
 pub(super) fn get(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     for (index, place) in [HOST_STATUS, EDIT_CHANGE_COUNT].into_iter().enumerate() {
         if let Some(word) = values.optional_word(index) {

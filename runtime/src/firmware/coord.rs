@@ -238,7 +238,7 @@ pub(crate) fn set_fro_w_rate_temp(parts: &mut Parts, caller: &mut Caller<'_>, va
     rate::aim(caller.memory, value, time);
 }
 
-/// Counts the entry just filled and goes to the next, which ends the buffer.
+/// Counts the entry just filled and advances to the next, which ends the buffer.
 pub(crate) fn inc_parametric_index(parts: &mut Parts, caller: &mut Caller<'_>) {
     if let Err(text) = buffer::advance(caller.memory) {
         parts.out.diagnose(caller, text);

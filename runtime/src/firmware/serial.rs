@@ -120,7 +120,7 @@ pub(crate) fn rs232_put_char(
     Ok(Outcome::Done(()))
 }
 
-/// The place after one of a ring; a pointer that a program has led astray goes to the ring's beginning.
+/// The place after one of a ring; a wild pointer continues at the ring's beginning.
 fn next(place: GuestAddr, ring: GuestAddr) -> GuestAddr {
     let index = place.get().wrapping_sub(ring.get()).wrapping_add(1);
     if (index as usize) < RS232BUFSZ { ring.offset(index) } else { ring }

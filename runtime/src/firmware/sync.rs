@@ -62,7 +62,7 @@ fn counted(word: i32, own: i32, caller: &Caller<'_>) -> Option<i32> {
     (!is_active).then_some(((own + 1) << COUNT_BITS) + 1)
 }
 
-/// Frees a lock: whoever owns it, or one of the owner's locks.
+/// Frees a lock: that of any owner, or one of the owner's locks.
 pub(crate) fn mutex_unlock(
     parts: &mut Parts,
     caller: &mut Caller<'_>,

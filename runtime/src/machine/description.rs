@@ -28,7 +28,7 @@ macro_rules! models {
 }
 
 models! {
-    /// Goes where the axis commands, whatever its gains.
+    /// Follows the axis' command with any gains.
     Follow = "follow",
     /// Is driven by what the board really outputs.
     Motor = "motor",
@@ -52,9 +52,9 @@ pub enum Encoder {
 pub struct Connection {
     /// The encoder.
     pub encoder: Encoder,
-    /// The input that the encoder is connected to, if the machine file says it.
+    /// The input that the encoder is connected to, if the machine file names it.
     pub input: Option<usize>,
-    /// The output that drives the motor, if the machine file says it.
+    /// The output that drives the motor, if the machine file names it.
     pub drive: Option<Channel>,
 }
 
@@ -208,7 +208,7 @@ impl Default for Motor {
 /// The connection of a brushless motor's rotor to its load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotor {
-    /// Electrical cycles of a unit; what the axis says if absent.
+    /// Electrical cycles of a unit; the axis' own value if absent.
     pub cycles_per_unit: Option<f64>,
     /// Electrical angle at machine coordinate 0, cycles.
     pub phase: f64,

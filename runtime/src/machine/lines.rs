@@ -1,4 +1,4 @@
-//! The board's lines as whoever drives them sees them: devices that listen answer at once.
+//! The board's lines for their drivers: devices that listen respond at once.
 
 use kmotiondef::{Bit, Cycles};
 use vm::memory::GuestMemory;

@@ -342,7 +342,7 @@ impl Machine {
         table(&self.mechanics.tables, axis).unwrap_or(self.loads[axis].load)
     }
 
-    /// Shows the board what switches, probes and sources say where the loads are now.
+    /// Shows the board the levels of switches, probes and sources at the present positions of the loads.
     #[inline]
     pub(crate) fn signal(&mut self, io: &mut Io, now: Cycles) {
         if self.mechanics.is_any {

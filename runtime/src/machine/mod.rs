@@ -162,7 +162,7 @@ impl Machine {
         out.remark(now, Message::DevicesEndless {});
     }
 
-    /// Runs the devices at the beginning of a tick; `hears_uart` says whether what the UART sends is told. Returns what
+    /// Runs the devices at the beginning of a tick; `hears_uart` if characters of the UART are reported. Returns what
     /// it has sent since the last tick.
     pub(crate) fn run_devices(
         &mut self,

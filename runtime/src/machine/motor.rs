@@ -76,7 +76,7 @@ impl Motor {
         load * cycles + self.rotor_phase
     }
 
-    /// The velocity a tick later; `own_cycles` is what the axis says of its cycles.
+    /// The velocity a tick later; `own_cycles` is the axis' own value of its cycles.
     pub(crate) fn advance(&self, velocity: f64, applied: Applied, load: f64, own_cycles: f64) -> f64 {
         match applied {
             Applied::Pwm(counts) => self.approach(velocity, self.ku.unwrap_or(PWM_KU) * counts),

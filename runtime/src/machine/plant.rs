@@ -17,7 +17,7 @@ use crate::views::AxisView;
 pub(crate) const COUNTS_PER_TICK: f64 = 120.0;
 /// A remaining distance that counts as none.
 const NEGLIGIBLE: f64 = 1e-9;
-/// Time constant with which a rotor turns into a vector that stands, seconds.
+/// Time constant with which a rotor turns into a constant vector, in seconds.
 const DRAG_S: f64 = 0.01;
 
 /// The drive of the load in the next tick.
@@ -26,7 +26,7 @@ pub(crate) enum Drive {
     /// Nothing.
     #[default]
     None,
-    /// A step generator or microstepping: the command it goes to, in position units.
+    /// A step generator or microstepping: the command that it follows, in position units.
     Steps(f64),
     /// A closed loop with this command, and what it outputs.
     Loop(f64, Applied),

@@ -25,7 +25,7 @@ pub(crate) const PWMS: usize = 16;
 pub(crate) struct Wiring {
     /// The input of each axis' encoder, if it is known.
     inputs: [Option<usize>; N_CHANNELS],
-    /// The output that drives each motor, if the machine file says it.
+    /// The output that drives each motor, if the machine file names it.
     drives: [Option<Channel>; N_CHANNELS],
 }
 
@@ -46,7 +46,7 @@ impl Wiring {
         self.inputs[axis.index()]
     }
 
-    /// The output that drives the motor of an axis, if the machine file says it.
+    /// The output that drives the motor of an axis, if the machine file names it.
     #[inline(always)]
     pub(crate) fn drive(&self, axis: AxisId) -> Option<Channel> {
         self.drives[axis.index()]

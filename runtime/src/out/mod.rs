@@ -38,7 +38,7 @@ pub(crate) struct Out {
     pub(crate) is_commanding: bool,
     /// Codes of remarks that nobody wants.
     unwanted: BTreeSet<&'static str>,
-    /// Remarks that are made once and were made: code and what tells them apart.
+    /// Remarks that are made once and were made: code and distinguishing key.
     made: BTreeSet<(&'static str, u64)>,
 }
 
@@ -90,7 +90,7 @@ impl Out {
         self.remark_of(caller.now(), speaker, caller.at, message);
     }
 
-    /// A remark about somebody, unless it was made before or nobody wants it.
+    /// Makes a remark about a subject, unless it was made before or is switched off.
     pub(crate) fn remark_of(
         &mut self,
         at: Cycles,
@@ -193,7 +193,7 @@ pub enum EventKind {
     Trap(Trap),
     /// Something that was asked to be recorded.
     Trace(Record),
-    /// The UART has sent a character; told to who requested it.
+    /// The UART has sent a character; reported on request.
     UartSent(u8),
     /// An expectation of the stimulus is not met.
     Unmet(String),

@@ -2,7 +2,7 @@
 
 use kmotiondef::{Bit, CodeAddr, Cycles, ThreadId};
 
-/// One thing that was recorded; the event around it says when.
+/// A recorded change; the event around it has the time.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Record {
     /// A bit has changed.

@@ -88,7 +88,7 @@ impl fmt::Display for Remark {
     }
 }
 
-/// An argument that tells remarks of one kind apart.
+/// An argument that distinguishes remarks of one kind.
 trait Key {
     /// As a number.
     fn key(&self) -> u64;

@@ -135,7 +135,7 @@ impl Default for Answers {
 }
 
 impl Answers {
-    /// Reads a line of settings, as a file has them: `#` begins a comment, an empty line says nothing.
+    /// Reads a line of settings, as a file has them: `#` begins a comment, an empty line is ignored.
     ///
     /// # Errors
     /// What is wrong with the line.

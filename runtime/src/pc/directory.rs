@@ -58,7 +58,7 @@ impl Directory {
         Self { root: root.into(), names: Vec::new() }
     }
 
-    /// Returns it with other names for some files: what programs say, and what is meant below the root.
+    /// Returns it with other names for some files: the name in programs, and the path below the root.
     #[must_use]
     pub fn with_names(self, names: Vec<(String, String)>) -> Self {
         Self { names, ..self }

@@ -15,7 +15,7 @@ use crate::out::{Message, Out};
 use crate::pc::files::{FileError, HostFiles};
 use crate::views::Typed;
 
-/// From a request to its answer: 20 ms, unless a machine file says otherwise.
+/// From a request to its answer: 20 ms, unless a machine file sets another.
 const LATENCY: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 50);
 /// Longest line the PC delivers.
 const LINE_LIMIT: usize = 1024;
@@ -106,7 +106,7 @@ impl FileServer {
         Self(Disk::new(files))
     }
 
-    /// Does what a request with a code from 1 to 7 says.
+    /// Executes a request with a code from 1 to 7.
     pub fn serve(&mut self, code: u8, text: &[u8]) -> ServedFile {
         let Some(request) = DiskRequest::of_code(code) else {
             return ServedFile { answer: None, remark: Some(format!("unknown request {code} for a file")) };
@@ -149,7 +149,7 @@ impl Disk {
         })
     }
 
-    /// Does what a request says; a remark if it cannot.
+    /// Executes a request; makes a remark if it cannot.
     fn serve(&mut self, request: DiskRequest, text: &str, now: Cycles) -> Option<Message> {
         match request {
             DiskRequest::Create | DiskRequest::Append => {
@@ -205,7 +205,7 @@ impl Disk {
         written.err().map(|error| Message::FileNotWritten { name: name.clone(), error: error.to_string() })
     }
 
-    /// Sends the next line, or says that there is none.
+    /// Sends the next line, or reports that there is none.
     fn answer(&mut self, now: Cycles) {
         let answer = match &mut self.reading {
             None => FileAnswer::Failure,

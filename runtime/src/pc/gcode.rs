@@ -67,7 +67,7 @@ fn number_of(value: f64) -> Result<i32, Unknown> {
 const OPERATORS: &[&[&str]] =
     &[&["and", "xor", "or"], &["eq", "ne", "ge", "gt", "le", "lt"], &["+", "-"], &["*", "/", "mod"], &["**"]];
 
-/// Goes through a line without spaces, in small letters.
+/// Reads a line without spaces, in lower case.
 struct GcodeReader<'a> {
     rest: &'a str,
     variables: &'a BTreeMap<i32, f64>,

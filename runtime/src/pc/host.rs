@@ -131,7 +131,7 @@ impl Host {
         *waits && is_open && !self.answers.results.contains_key(&code)
     }
 
-    /// Shows the box of a request that waits for a person; returns what it says the first time.
+    /// Shows the box of a request that waits for a person; returns its text the first time.
     pub(super) fn show_box(&mut self, memory: &GuestMemory, code: i32) -> Option<String> {
         let is_new = std::mem::replace(&mut self.unanswered, code) != code;
         is_new.then(|| opened(memory, code).shown())
@@ -369,7 +369,7 @@ fn input_box(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, offs
     context.memory.set(data(3), i32::from(typed.is_none()));
 }
 
-/// Shows a line of G code. Of what it says only assignments to #variables are done, all of them or none.
+/// Shows a line of G code. Only assignments to #variables are done, all of them or none.
 fn mdi(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, offset: i32) {
     let line = string(context.memory, offset);
     let found = gcode::assignments(&line, &host.answers.variables);

@@ -19,7 +19,7 @@ use crate::machine::wiring::Wiring;
 /// The kind of change that invalidates derived values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Change {
-    /// Anything may have: somebody outside of the tick has had the board.
+    /// Anything may have: code outside of the tick has had the board.
     Anything,
     /// Memory may have been written, by programs or by what goes in at the beginning of a tick.
     Memory,
@@ -149,7 +149,7 @@ impl Cache {
         self.still.watch();
     }
 
-    /// The tick of the axes is over; whether it has changed anything, and `moved` says that it has.
+    /// Ends the tick of the axes; returns whether it has changed anything, which `moved` implies.
     pub(super) fn end(&mut self, memory: &GuestMemory, moved: bool) -> bool {
         if moved {
             self.invalidate(Change::Motion);

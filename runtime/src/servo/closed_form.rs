@@ -65,8 +65,8 @@ fn check_point(point: Point, fastest: f64, limits: &Limits) -> Result<(), TestCa
     Ok(())
 }
 
-/// Checks every state at its ends and between, and every tick of a short motion: limits, and no jump of place or
-/// speed. The result is where the last tick stands.
+/// Checks every state at its ends and between, and every tick of a short motion: limits, and no jump of place or speed.
+/// The result is the position of the last tick.
 fn check(start: Point, states: &[MotionState], limits: &Limits, scale: f64) -> Result<f64, TestCaseError> {
     const SAMPLES: usize = 40;
     let fastest = limits.v.max(start.v.abs());

@@ -1,4 +1,4 @@
-//! Profiles of firmware 5: a move goes straight to its target from whatever the axis does, and has its own acceleration
+//! Profiles of firmware 5: a move goes straight to its target from any motion of the axis, and has its own acceleration
 //! and deceleration.
 //!
 //! Source: measurements of the released firmware 5.3.2, `fw5.jsonl`. Which speed a move reaches that has no room for its limit is searched

@@ -23,8 +23,8 @@ pub(crate) fn measure(input: Input, loads: &mut Loads, memory: &mut GuestMemory,
     }
 }
 
-/// Adds what the encoder's register has counted since the last tick. One that has counted is told: its channel and
-/// register.
+/// Adds what the encoder's register has counted since the last tick. Reports the channel and register of one that has
+/// counted.
 #[inline(always)]
 pub(crate) fn count(
     input: &Input,

@@ -78,7 +78,7 @@ pub(super) struct Interrupt {
 }
 
 impl Interrupt {
-    /// By what memory says now.
+    /// The duration by the present settings.
     pub(super) fn of(memory: &GuestMemory) -> Self {
         let mut interrupt = Self { cycles: IDLE, accesses: IDLE_ACCESSES, ..Self::default() };
         for axis in AxisId::all().filter(|axis| memory.axis(*axis, Chan::ENABLE) != 0) {

@@ -171,7 +171,7 @@ fn run_together(tick: &mut Tick<'_>, memory: &mut GuestMemory) -> bool {
     changed
 }
 
-/// Switches the amplifiers of a KStep as their enable signal says, and off where the steps move another load.
+/// Switches the amplifiers of a KStep by their enable signal, and off where the steps move another load.
 fn switch_amplifiers(tick: &mut Tick<'_>, memory: &mut GuestMemory) {
     let is_off = amplifiers_are_off(tick);
     for axis in AxisId::all() {
@@ -181,7 +181,7 @@ fn switch_amplifiers(tick: &mut Tick<'_>, memory: &mut GuestMemory) {
     }
 }
 
-/// Moves the load of an axis by what the last tick has output, and its destination by what it is told; whether that
+/// Moves the load of an axis by what the last tick has output, and its destination by its command; returns whether that
 /// changed anything.
 #[inline(always)]
 fn advance(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId) -> bool {
@@ -269,7 +269,7 @@ fn step(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId) {
     }
 }
 
-/// Position, protection, compensation and output of one axis; whether it moves or is told something.
+/// Position, protection, compensation and output of one axis; returns whether it moves or has a command.
 #[inline(always)]
 fn run_axis(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId) -> bool {
     let Tick { servo, machine, io, now, .. } = tick;

@@ -385,7 +385,7 @@ fn check_enable(row: &Json) {
     }
 }
 
-/// Rows whose name says that they are limit switches of one axis alone.
+/// Rows whose name begins as those of limit switches of one axis alone.
 fn is_limit_switch(row: &Json) -> bool {
     row["name"].as_str().is_some_and(|name| name.starts_with("limit ") && name.contains("option 0x1"))
 }

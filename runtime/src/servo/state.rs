@@ -58,7 +58,7 @@ pub(crate) struct Servo {
 }
 
 impl Servo {
-    /// An axis is where it was told to be at once: no velocity is seen.
+    /// Moves an axis to its destination at once: no velocity is seen.
     pub(crate) fn jump(&mut self, axis: AxisId, dest: f64) {
         self.axes[axis.index()] = AxisMemory::rest(dest);
     }

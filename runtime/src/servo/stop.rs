@@ -5,14 +5,14 @@
 
 use kmotiondef::AxisId;
 
-/// When the stop is told.
+/// The time at which a stop is reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Tells {
     /// If something was stopped.
     Stop,
     /// Whenever it was tried: again and again of an axis outside the coordinate system, which nothing stops.
     Always,
-    /// Never: somebody has requested it.
+    /// Never: it was requested.
     Never,
 }
 

@@ -1,4 +1,4 @@
-//! Motors that the machine file wires to an output: they are driven by what the output carries, whoever writes it.
+//! Motors that the machine file wires to an output: they are driven by the output's value, which anything may write.
 //!
 //! The analog outputs and the words of the PWM channels are in guest memory, where the servo and programs write them. A
 //! load with a motor whose axis drives an analog output is driven by that in the same way.

@@ -93,7 +93,7 @@ pub(super) struct Packet {
     pub(super) end: u32,
 }
 
-/// A packet, and what the one before it has to know.
+/// A decoded packet, with the properties that the packet before it needs.
 pub(super) struct Decoded {
     pub(super) packet: Packet,
     /// The registers that it writes in E1, as bits.

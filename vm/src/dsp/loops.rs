@@ -76,7 +76,7 @@ impl Default for Loops {
     }
 }
 
-/// A copy knows nothing yet, like the decoded packets of a copy.
+/// A copy is empty: the loops are found again, as packets are decoded again.
 impl Clone for Loops {
     fn clone(&self) -> Self {
         Self { is_off: self.is_off, ..Self::default() }
@@ -237,7 +237,7 @@ impl RenamedLoop {
 }
 
 impl Arrival {
-    /// The packet that it leads to; further cycles pass where it is not taken.
+    /// The packet that it leads to; further cycles pass if it is not taken.
     #[inline(always)]
     fn target(self, state: &mut State) -> Option<u32> {
         if let Some(decider) = self.decider

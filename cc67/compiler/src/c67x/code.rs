@@ -233,11 +233,11 @@ pub(super) struct Call {
 /// The terminator of a block.
 #[derive(Clone, Debug)]
 pub(super) enum End {
-    /// Goes on at a block.
+    /// Continues at a block.
     Jump(u32),
-    /// Goes to `then` if the register is not 0 (`negated`: if it is 0), else to `otherwise`.
+    /// Continues at `then` if the register is not 0 (`negated`: if it is 0), else to `otherwise`.
     Branch { condition: VReg, negated: bool, then: u32, otherwise: u32 },
-    /// Goes to the address in a register, one of `targets`.
+    /// Continues at the address in a register, one of `targets`.
     Table { address: VReg, targets: Vec<u32> },
     /// Leaves the function with the result in its register.
     Return(Option<VReg>),
@@ -313,7 +313,7 @@ pub(super) struct Code {
 }
 
 impl Code {
-    /// A new register like `info` says.
+    /// Creates a register with the properties `info`.
     pub(super) fn reg(&mut self, info: Info) -> VReg {
         self.regs.push(info)
     }

@@ -121,7 +121,7 @@ impl Generator {
     }
 }
 
-/// Checks the schedule with the rules that the processor's own crate has, which knows nothing of this one.
+/// Checks the schedule against the rules of the processor's own crate, which is independent of this one.
 #[cfg(debug_assertions)]
 fn verify(laid: &layout::Laid, name: &str) {
     let code = &laid.words[..laid.code as usize];

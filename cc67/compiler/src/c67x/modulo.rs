@@ -283,7 +283,7 @@ impl Finder<'_> {
         is_before
     }
 
-    /// The first cycle of a step, if what it waits for counts as `cycles` says.
+    /// Returns the first cycle of a step; `cycles` gives the length of each dependence.
     fn earliest(&self, step: usize, placed: &Slots, cycles: impl Fn(&Wait) -> i64) -> u32 {
         let first = if self.is_certain[step] { self.commit * self.period } else { 0 };
         let after = self.waits.before[step].iter().filter_map(|wait| {

@@ -1,4 +1,4 @@
-//! Expressions where a program stands: C, with the locals of the function around.
+//! Expressions at the position of a program: C, with the locals of the function.
 //!
 //! An expression is compiled as a statement at the end of the innermost block around a line, so that every name in it
 //! means what it means there. It is computed from the board's memory and the registers of a call; it only reads.
@@ -133,7 +133,7 @@ const BEHIND: &str = "\n; }\n";
 
 impl Model {
     /// Compiles an expression at a line of a function; without one, outside of all functions. `items` are further names
-    /// in it, of type `double`; `calls` says which functions it may call.
+    /// in it, of type `double`; `calls` lists the functions that it may call.
     ///
     /// # Errors
     /// What is wrong with it, in one line.

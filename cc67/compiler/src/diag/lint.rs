@@ -60,7 +60,7 @@ macro_rules! for_each_lint {
             UnusedValue = "unused-value", On, pass unused_value;
             /// An `if` or a loop ends in a `;` that is probably not meant.
             EmptyBody = "empty-body", On;
-            /// An `else` belongs to another `if` than its indentation says.
+            /// An `else` belongs to another `if` than its indentation suggests.
             DanglingElse = "dangling-else", On;
             /// A condition repeats an earlier one of the same `else if` chain.
             DuplicatedCondition = "duplicated-condition", On;

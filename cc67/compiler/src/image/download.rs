@@ -17,7 +17,7 @@ const PIECE: usize = 0x4000;
 /// A program as it is sent.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Download {
-    /// The thread that it goes into.
+    /// The thread that it is loaded into.
     pub thread: ThreadId,
     /// The address at which a thread begins to execute it.
     pub entry: GuestAddr,

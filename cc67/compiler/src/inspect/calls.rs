@@ -17,7 +17,7 @@ pub(super) struct Node {
     pub(super) name: String,
     /// Its address.
     pub(super) address: u32,
-    /// Bytes of its frame in guest memory; `None` if its code does not say.
+    /// Bytes of its frame in guest memory; `None` if its code does not show it.
     pub(super) frame: Option<u32>,
     /// The functions of the program that it calls, by number.
     pub(super) calls: BTreeSet<usize>,

@@ -7,7 +7,7 @@ use c67x::{Inst, Mem, Mnemonic, Offset, Operand, Pred, Update};
 use super::machine::{Block, Routine};
 
 /// The most bytes below the stack pointer of the caller that a function takes for itself; `None` where it moves the
-/// pointer by an amount that the code does not say.
+/// pointer by an amount that the code does not show.
 pub(super) fn deepest(code: &Routine) -> Option<u32> {
     let mut entered: Vec<Option<i64>> = vec![None; code.blocks.len()];
     let mut open = vec![(0, 0)];

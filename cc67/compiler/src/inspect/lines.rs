@@ -14,7 +14,7 @@ pub struct SourceLine {
     pub address: u32,
     /// The line.
     pub line: u32,
-    /// The file; `None` if the image does not say.
+    /// The file; `None` if the image does not have it.
     pub file: Option<String>,
     /// The function.
     pub function: Option<String>,

@@ -43,7 +43,7 @@ pub struct Entry {
     pub name: String,
     /// Its address.
     pub address: u32,
-    /// Its size in bytes, if the image says so.
+    /// Its size in bytes, if the image has it.
     pub size: Option<u32>,
     /// Its section, or where else it is.
     pub section: String,

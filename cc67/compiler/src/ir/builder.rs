@@ -119,12 +119,12 @@ impl Builder {
         }
     }
 
-    /// Goes on at `to`.
+    /// Ends the block with a jump to `to`.
     pub fn jump(&mut self, to: BlockId) {
         self.terminate(Terminator::Jump(to));
     }
 
-    /// Goes to `then` if `condition` is not 0.
+    /// Ends the block with a branch to `then` if `condition` is not 0.
     pub fn branch(&mut self, condition: Operand, then: BlockId, otherwise: BlockId) {
         self.terminate(Terminator::Branch { condition, then, otherwise });
     }

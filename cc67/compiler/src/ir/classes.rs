@@ -7,7 +7,7 @@
 use super::inst::{Class, ValueId};
 use cranelift_entity::SecondaryMap;
 
-/// Collects what a text says.
+/// Collects the classes that a text states.
 #[derive(Debug, Default)]
 pub(super) struct Classes {
     known: SecondaryMap<ValueId, Option<Class>>,
@@ -47,7 +47,7 @@ impl Classes {
         }
     }
 
-    /// The class of a value, if the text says it.
+    /// The class of a value, if the text states it.
     pub(super) fn get(&self, value: ValueId) -> Option<Class> {
         self.known[value]
     }

@@ -465,9 +465,9 @@ fn is_nonzero(operand: Operand) -> bool {
 /// The terminator of a block.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Terminator {
-    /// Goes on at a block.
+    /// Continues at a block.
     Jump(BlockId),
-    /// Goes to `then` if `condition`, of class `I32`, is not 0.
+    /// Continues at `then` if `condition`, of class `I32`, is not 0.
     Branch {
         /// The tested value.
         condition: Operand,
@@ -476,7 +476,7 @@ pub enum Terminator {
         /// Taken for 0.
         otherwise: BlockId,
     },
-    /// Goes to `targets[index]`, or to `default` if there are fewer; `index` counts as unsigned.
+    /// Continues at `targets[index]`, or to `default` if there are fewer; `index` counts as unsigned.
     Table {
         /// The index, `I32`.
         index: Operand,

@@ -257,7 +257,7 @@ impl FunctionPrinter<'_> {
     }
 }
 
-/// The values that are read and whose class no instruction says, in the order of their numbers.
+/// The values that are read and whose class no instruction states, in the order of their numbers.
 fn undeclared(function: &Function) -> Vec<ValueId> {
     let mut classes = Classes::default();
     let mut read = Vec::new();

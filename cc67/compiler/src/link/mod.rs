@@ -156,7 +156,7 @@ pub struct LinkedLine {
     pub address: GuestAddr,
     /// The line; the file is an index into [`Linked::files`].
     pub place: SourceLine,
-    /// The column, counted from 1; 0 if the object does not say.
+    /// The column, counted from 1; 0 if the object does not have it.
     pub column: u32,
     /// The function whose source this is, if another function contains it in place of a call.
     pub inlined: Option<Arc<str>>,

@@ -73,7 +73,7 @@ fn only_variable(function: &Function, condition: ExprId) -> Option<SymbolId> {
     }
 }
 
-/// The variables that a statement changes, or whose address goes anywhere.
+/// The variables that a statement changes, or whose address it passes on.
 fn changed(program: &AnalysedProgram<'_>) -> BTreeSet<SymbolId> {
     let mut changed = BTreeSet::new();
     for symbol in program.unit.symbols.values() {

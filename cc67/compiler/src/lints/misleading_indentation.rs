@@ -1,4 +1,4 @@
-//! Indentation that says something else than the grammar.
+//! Indentation that contradicts the grammar.
 
 use crate::ast::{Statement, StatementKind};
 use crate::diag::{Diagnostic, Lint};

@@ -25,7 +25,7 @@ impl<'a> AnalysedProgram<'a> {
         self.unit.functions.iter()
     }
 
-    /// The functions that say all that was written: for lints that report what is not there.
+    /// The functions without errors: for lints that report missing code.
     pub(super) fn whole_functions(&self) -> impl Iterator<Item = &'a Function> + use<'a> {
         self.functions().filter(|function| !function.has_errors)
     }

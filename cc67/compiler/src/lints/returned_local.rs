@@ -54,7 +54,7 @@ fn kept(function: &Function, expr: ExprId) -> Option<LocalId> {
     }
 }
 
-/// The local to which a pointer points in the whole function, if every assignment says the same.
+/// The local to which a pointer points in the whole function, if every assignment agrees.
 fn only_value(function: &Function, pointer: LocalId) -> Option<LocalId> {
     let mut found = None;
     let mut is_same = !function.parameters.contains(&pointer);

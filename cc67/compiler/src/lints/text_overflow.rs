@@ -36,7 +36,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// Functions that store as many bytes as one of their arguments says, counted from 0.
+/// Functions that store a number of bytes that is one of their arguments, counted from 0.
 const BLOCKS: [(&str, usize); 4] = [
     (Function::memset.name(), 2),
     (Function::memcpy.name(), 2),
@@ -44,7 +44,7 @@ const BLOCKS: [(&str, usize); 4] = [
     (Function::fgets.name(), 1),
 ];
 
-/// The message for a call that is told to store more bytes than an array has.
+/// The message for a call that should store more bytes than an array has.
 fn block(
     program: &AnalysedProgram<'_>,
     function: &typed::Function,

@@ -66,7 +66,7 @@ fn search(function: &Function, sink: &mut Sink) {
 
 struct Search<'a> {
     function: &'a Function,
-    /// Locals that a store stands for in the text so far.
+    /// Locals whose store was met in the text so far.
     stored: BTreeSet<LocalId>,
     /// Locals that were read first, and where.
     suspects: BTreeMap<LocalId, Span>,

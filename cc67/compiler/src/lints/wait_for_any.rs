@@ -7,7 +7,7 @@ use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::CompareOp;
 use crate::typed::{self, Callee, ExprId, ExprKind, StmtKind, UnaryOp};
 
-/// The function that says whether the motion of an axis has ended.
+/// The function that returns whether the motion of an axis has ended.
 const CHECK_DONE: &str = Function::CheckDone.name();
 
 /// Reports loops that wait while no axis has arrived.

@@ -11,7 +11,7 @@ pub(super) enum Extent {
     Always,
 }
 
-/// Goes through expressions, outer ones first; into no statement expression.
+/// Visits expressions, outer ones first; into no statement expression.
 #[derive(Clone, Copy)]
 pub(super) struct Walk<'a> {
     pub(super) function: &'a Function,

@@ -24,8 +24,8 @@ impl Sense {
 }
 
 impl Lowering<'_> {
-    /// Goes to `then` if the expression is not zero, else to `otherwise`; `sense` is what the vendor's code does and
-    /// decides what the ways cost.
+    /// Branches to `then` if the expression is not zero, else to `otherwise`; `sense` is what the vendor's code does
+    /// and determines the costs of the paths.
     pub(super) fn branch(&mut self, condition: ExprId, sense: Sense, then: BlockId, otherwise: BlockId) {
         let expr = &self.function.exprs[condition];
         match expr.kind {
@@ -103,8 +103,8 @@ impl Lowering<'_> {
         }
     }
 
-    /// Tests the terms of a chain of one operator, `a && b && c …`: each but the last goes on at the next by
-    /// way of `test`. Such chains lean to the left; they are walked, not recursed into.
+    /// Tests the terms of a chain of one operator, `a && b && c …`: each but the last continues at the next through
+    /// `test`. Such chains lean to the left; they are walked, not recursed into.
     fn chain(
         &mut self,
         id: ExprId,

@@ -10,7 +10,7 @@ const MAX_TABLE: i128 = 4096;
 /// So few cases are compared one by one.
 const FEW: usize = 3;
 
-/// One range of values and where it goes.
+/// A range of values and its target.
 #[derive(Clone, Copy, Debug)]
 struct CaseEntry {
     first: i128,

@@ -37,7 +37,7 @@ pub(crate) const fn base_type(kind: SymbolKind) -> SymbolType {
     })
 }
 
-/// The kind of symbol that a type stands for: the reverse, as far as the format tells.
+/// The kind of symbol of a type: the reverse, as far as the format distinguishes them.
 #[must_use]
 pub fn kind_of(ty: SymbolType) -> SymbolKind {
     match ty.base() {

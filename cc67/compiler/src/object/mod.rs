@@ -119,7 +119,7 @@ pub enum Definition {
     Tentative,
 }
 
-/// The kinds of type that the image's symbol table tells apart.
+/// The kinds of type that the image's symbol table distinguishes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SymbolKind {
     /// A function.

@@ -231,7 +231,7 @@ impl Parser<'_> {
         true
     }
 
-    /// Goes over the decimals of a number that was written with a comma, as in `double x = 2,54;`.
+    /// Skips the decimals of a number that was written with a comma, as in `double x = 2,54;`.
     fn skip_decimals(&mut self) {
         let whole = self.at.checked_sub(2).and_then(|at| self.tokens.get(at)).copied();
         let token = self.peek();

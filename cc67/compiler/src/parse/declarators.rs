@@ -210,7 +210,7 @@ impl Parser<'_> {
         Ok(Parameter { specifiers, declarator, span: self.since(start.span) })
     }
 
-    /// Goes over the `&` of a C++ reference; what it declares has a type that was reported.
+    /// Skips the `&` of a C++ reference; what it declares has a type that was reported.
     fn reference(&mut self, specifiers: &mut Specifiers) {
         if self.kind() != TokenKind::And || !self.is_identifier_at(1) {
             return;

@@ -71,7 +71,7 @@ impl Parser<'_> {
         true
     }
 
-    /// Goes over the `then` after a condition.
+    /// Skips the `then` after a condition.
     pub(super) fn skip_then(&mut self) {
         if self.unknown_word().is_some_and(|word| word.eq_ignore_ascii_case("then")) {
             let span = self.next().span;
@@ -117,7 +117,7 @@ impl Parser<'_> {
         })
     }
 
-    /// Goes over a declaration of C++; `false` if the next one is none.
+    /// Skips a declaration of C++; `false` if the next one is not.
     pub(super) fn skip_foreign_declaration(&mut self) -> bool {
         let Some(written) = self.unknown_word() else { return false };
         let help = match written {

@@ -58,7 +58,7 @@ pub const CHAIN: usize = 30_000;
 /// Binary operators that wait for their right operand; up to ten for each parenthesis.
 const OPERATORS: usize = 3 * NESTING;
 
-/// Parses preprocessed tokens; what is wrong goes to `sink`, and is left out of the tree.
+/// Parses preprocessed tokens; errors are reported to `sink`, and their code is left out of the tree.
 #[must_use]
 pub fn parse(tokens: &[Token], sources: &SourceMap, names: &Names, sink: &mut Sink) -> TranslationUnit {
     let end = match tokens.last() {

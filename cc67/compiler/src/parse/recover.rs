@@ -83,7 +83,7 @@ impl Parser<'_> {
         Some(format!("remove the `{text}` from `#define {}`", self.sources.macro_name(expansion)))
     }
 
-    /// Reads a token of this kind; `what` says where it is expected.
+    /// Reads a token of this kind; `what` names the place where it is expected.
     pub(super) fn expect(&mut self, kind: TokenKind, what: &str) -> Parsed<Token> {
         match self.take(kind) {
             Some(token) => Ok(token),
@@ -136,7 +136,7 @@ impl Parser<'_> {
         before.is_some_and(|word| matches!(word.name, word::IF | word::WHILE | word::SWITCH))
     }
 
-    /// A bracket whose partner was expected where `found` stands.
+    /// A bracket whose partner was expected at `found`.
     fn unclosed_bracket(&self, opener: Token, found: Token, text: &str) -> Diagnostic {
         let is_forgotten = found.flags.has(Flags::LINE_START) || found.kind == TokenKind::Semicolon;
         let mut diagnostic = if is_forgotten {
@@ -156,7 +156,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A macro between whose parentheses one has no partner: its name, and where that stands.
+    /// A macro between whose parentheses one has no partner: its name, and its place.
     fn open_macro(&self) -> Option<(String, Span)> {
         let tokens = self.tokens.get(..self.at)?.iter().rev();
         let statement = tokens.take_while(|token| {
@@ -264,8 +264,8 @@ impl Parser<'_> {
         self.stop()
     }
 
-    /// Goes to the end of a statement or declaration that could not be parsed. Brackets opened since there
-    /// were `open` of them are taken to be those of the failed construct.
+    /// Skips to the end of a statement or declaration that could not be parsed. Brackets opened since there were `open`
+    /// of them are taken to be those of the failed construct.
     pub(super) fn skip_statement(&mut self, open: usize) {
         if self.recovery.is_stopped || self.recovery.is_unwinding {
             self.recovery.open.truncate(open);
@@ -301,7 +301,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Goes past the `)` of a condition that could not be parsed.
+    /// Skips past the `)` of a condition that could not be parsed.
     pub(super) fn skip_to_close(&mut self, open: usize) {
         let mut pending = self.recovery.open.len().saturating_sub(open);
         self.recovery.open.truncate(open);
@@ -317,7 +317,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Goes past the brace that closes the next one.
+    /// Skips past the brace that closes the next one to be opened.
     pub(super) fn skip_braces(&mut self) {
         let mut depth = 0_usize;
         loop {

@@ -103,7 +103,7 @@ impl Folder {
         if is_current { fact.known } else { Known::Nothing }
     }
 
-    /// Records what an instruction says about the value it writes.
+    /// Records the facts about the value that an instruction writes.
     fn learn(&mut self, dst: ValueId, kind: &InstKind) {
         let known = match *kind {
             InstKind::Copy { src, .. } => Known::Operand(src),
@@ -224,7 +224,7 @@ impl Folder {
         strength::compare(op, a, b)
     }
 
-    /// Resolves the operand of a terminator; returns whether that decided where it goes.
+    /// Resolves the operand of a terminator; returns whether that decided its target.
     fn terminator(&self, terminator: &mut Terminator) -> bool {
         if let Some(operand) = terminator.operand_mut() {
             *operand = self.resolve(*operand);

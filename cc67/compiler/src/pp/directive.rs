@@ -18,7 +18,7 @@ const DIRECTIVES: &[&str] = &[
 const KNOWN_PRAGMAS: &[&str] = &["TI_COMPILER", "once", "push_macro", "pop_macro"];
 
 impl Preprocessor<'_> {
-    /// Obeys the directive after `hash`, and goes to the end of its line.
+    /// Executes the directive after `hash`, and skips to the end of its line.
     pub(super) fn directive(&mut self, hash: Token) {
         let depth = self.open.len();
         let Some((lexer, mut cx)) = self.lexer() else { return };

@@ -274,8 +274,8 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// Reports a call without `)`. What was read is read again as if there were no macro, so that the parser
-    /// can say where the parenthesis is missing.
+    /// Reports a call without `)`. What was read is read again as if there were no macro, so that the parser can report
+    /// where the parenthesis is missing.
     fn unclosed_call(&mut self, name: Token, open: Token, tokens: Vec<Token>) {
         if self.work.is_stopped {
             return;

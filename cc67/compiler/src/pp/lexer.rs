@@ -220,7 +220,7 @@ impl Lexer {
         }
     }
 
-    /// Goes on over splices and the bytes that `belongs` accepts.
+    /// Skips splices and the bytes that `belongs` accepts.
     fn skip_spliced(&mut self, belongs: fn(u8) -> bool, cx: &mut LexerContext<'_>) {
         while belongs(self.byte(self.at)) || self.splice(cx) {
             if belongs(self.byte(self.at)) {

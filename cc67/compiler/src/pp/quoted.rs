@@ -100,7 +100,7 @@ fn decode(text: &[u8], encoding: Encoding, problems: &mut Vec<Problem>) -> Vec<i
     elements
 }
 
-/// Takes one character as it is; returns its length. Bytes that are not UTF-8 stand for themselves, as in latin-1.
+/// Reads one character unchanged; returns its length. Bytes that are not UTF-8 stand for themselves, as in latin-1.
 fn plain(text: &[u8], encoding: Encoding, elements: &mut Vec<i32>) -> usize {
     let byte = text.first().copied().unwrap_or(0);
     let length = match byte {

@@ -51,7 +51,7 @@ impl Preprocessor<'_> {
         output
     }
 
-    /// Appends what a part of the body stands for; `variadic` is the parameter for the rest of the arguments.
+    /// Appends the expansion of a part of the body; `variadic` is the parameter for the rest of the arguments.
     fn replace(
         &mut self,
         output: &mut Vec<Token>,
@@ -130,7 +130,7 @@ impl Preprocessor<'_> {
         !tokens.is_empty()
     }
 
-    /// Appends what a token of the body stands for.
+    /// Appends the expansion of a token of the body.
     fn append(
         &mut self,
         output: &mut Vec<Token>,

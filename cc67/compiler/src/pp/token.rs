@@ -35,7 +35,7 @@ impl Token {
         Self { kind, flags, name: Name::reserved_value(), span }
     }
 
-    /// The parameter that an operand in a macro body stands for.
+    /// The parameter that an operand in a macro body names.
     #[must_use]
     pub(super) fn parameter(&self) -> usize {
         self.name.index()
@@ -67,7 +67,7 @@ impl Flags {
     /// It was diagnosed already; its value is meaningless.
     pub const BROKEN: Self = Self(1 << 4);
 
-    /// The facts of both.
+    /// The union of both sets of facts.
     #[must_use]
     pub const fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)

@@ -301,7 +301,7 @@ impl Sema<'_> {
         Some(Operand::Value(self.body.expr(ExprKind::Call(call), result, span)))
     }
 
-    /// A call with a structure result: a temporary receives it, its address goes first.
+    /// A call with a structure result: a temporary receives it, its address is the first argument.
     fn call_for_record(
         &mut self,
         callee: Callee,

@@ -26,7 +26,7 @@ pub(super) struct DeclaredParameter {
 }
 
 impl Sema<'_> {
-    /// Derives a type; `derived` goes from the name outwards, so the last one is applied first.
+    /// Derives a type; `derived` is ordered from the name outwards, so the last one is applied first.
     pub(super) fn derived_type(
         &mut self,
         base: QualifiedType,

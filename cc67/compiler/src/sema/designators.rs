@@ -1,4 +1,4 @@
-//! Designators: `.member` and `[index]` in initialisers say which part comes next.
+//! Designators: `.member` and `[index]` in initialisers select the next part.
 
 use super::Sema;
 use super::initializers::{Level, Shape};
@@ -8,7 +8,7 @@ use crate::names::Name;
 use crate::source::Span;
 
 impl Sema<'_> {
-    /// Follows designators from the outermost level; says how many elements a range has.
+    /// Follows designators from the outermost level; returns the number of elements of a range.
     pub(super) fn designate(&mut self, stack: &mut Vec<Level>, designators: &[Designator]) -> Option<u32> {
         let mut times = 1;
         for (index, designator) in designators.iter().enumerate() {

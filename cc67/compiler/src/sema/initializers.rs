@@ -1,4 +1,4 @@
-//! Initialisers: which value goes to which part of an object.
+//! Initialisers: assigns each value to a part of an object.
 //!
 //! A list, nested or not, designated or not, is flattened into [`Leaf`]s: offset, type,
 //! value. A stack of levels says where the next value goes; braces start a stack of their
@@ -22,7 +22,7 @@ use crate::typed::{ExprId, ExprKind, LocalId, PlaceId, PlaceKind, StaticData};
 /// More values than one object can take: the board has no room for them.
 pub const MAX_VALUES: usize = 1 << 20;
 
-/// A value and the part of the object it goes to.
+/// A value and the part of the object that it initialises.
 #[derive(Debug)]
 pub(super) struct Leaf {
     /// Byte offset in the object.
@@ -582,7 +582,7 @@ impl Sema<'_> {
         Some(Level { slot, shape, next: 0 })
     }
 
-    /// The part that a level's number stands for.
+    /// The part at a level's number.
     fn slot(&self, level: &Level) -> Option<Slot> {
         match level.shape {
             Shape::Array { element, length, size } => {
@@ -597,7 +597,7 @@ impl Sema<'_> {
         }
     }
 
-    /// The part that the next value goes to; full levels are closed.
+    /// The part that the next value initialises; full levels are closed.
     pub(super) fn next_slot(&mut self, stack: &mut Vec<Level>, span: Span) -> Option<Slot> {
         loop {
             let level = stack.last()?;

@@ -83,7 +83,7 @@ impl Sema<'_> {
         self.body.locals.push(Local { name, ty: ty.ty, align: 1, in_memory, by_pointer: false, span })
     }
 
-    /// A local whose array length its initialiser has told.
+    /// Completes a local whose initialiser determines its array length.
     pub(super) fn complete_local(&mut self, local: LocalId, ty: TypeId) {
         self.body.locals[local].ty = ty;
     }

@@ -140,7 +140,7 @@ impl Sema<'_> {
         }
     }
 
-    /// A place `offset` bytes further on, if that can be said without arithmetic.
+    /// A place `offset` bytes further on, if that needs no arithmetic.
     fn moved(&self, kind: PlaceKind, offset: i32) -> Option<PlaceKind> {
         Some(match kind {
             PlaceKind::Local(local, own) => {

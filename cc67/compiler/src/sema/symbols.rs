@@ -35,7 +35,7 @@ pub(super) struct Facts {
 pub(super) struct Symbols {
     table: PrimaryMap<SymbolId, Symbol>,
     facts: SecondaryMap<SymbolId, Facts>,
-    /// The symbol that a name with linkage stands for.
+    /// The symbol of a name with linkage.
     linked: SecondaryMap<Name, PackedOption<SymbolId>>,
     /// Number of the next symbol that no program can name.
     next: u32,

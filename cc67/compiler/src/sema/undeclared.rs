@@ -195,7 +195,7 @@ impl Sema<'_> {
         self.report(advice(diagnostic));
     }
 
-    /// A variable without declaration; said once in a function.
+    /// A variable without declaration; reported once in a function.
     pub(super) fn undeclared(&mut self, name: Name, span: Span) {
         if !self.body.undeclared.insert(name) {
             return;

@@ -1,4 +1,4 @@
-//! Pairs of accesses that can go wrong, as far as the texts of the programs say.
+//! Pairs of accesses that can go wrong, as far as the source shows.
 
 use std::collections::BTreeSet;
 
@@ -152,7 +152,7 @@ fn not_volatile<'a>(
     })
 }
 
-/// Returns whether the declaration of a variable says `volatile`.
+/// Returns whether the declaration of a variable has `volatile`.
 fn is_declared_volatile(program: &ThreadProgram<'_>, symbol: SymbolId) -> bool {
     let span = program.unit.symbols[symbol].span;
     let Some(file) = program.sources.file_at(span.lo) else { return true };

@@ -143,7 +143,7 @@ impl LayoutBuilder {
         Layout { members: self.members, size, align: self.align }
     }
 
-    /// Makes room and says where it starts.
+    /// Allocates space and returns its offset.
     fn reserve(&mut self, size: u32, align: u32) -> Option<u32> {
         self.align = self.align.max(align);
         if self.kind == RecordKind::Union {

@@ -29,7 +29,7 @@ pub struct Word {
     pub spelling: &'static str,
     /// Its origin.
     pub origin: Origin,
-    /// It accompanies other words of its origin, so that after one of them nothing more need be said.
+    /// It accompanies other words of its origin, so that it is not reported after one of them.
     pub is_companion: bool,
     /// The replacement.
     pub advice: &'static str,

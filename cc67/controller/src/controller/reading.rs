@@ -63,7 +63,7 @@ impl Controller {
         }
     }
 
-    /// Reads the next elements of `persist.UserData`, for whoever looks at known memory.
+    /// Reads the next elements of `persist.UserData`, for readers of known memory.
     pub(super) fn read_elements(&mut self) {
         let elements = self.seen.next_elements();
         if elements.start == 0 {

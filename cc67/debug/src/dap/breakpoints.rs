@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::{Reply, Server};
 use crate::debugger::{DebugError, Debugger, HitCondition, WatchedAccess};
 
-/// Makes the breakpoint that the editor wants: its number, and what to say of it.
+/// Creates the breakpoint that the editor requests; returns its number and a message.
 type Maker<'a, T> = dyn FnMut(&mut Debugger<T>, &Value) -> Result<(u32, String), DebugError> + 'a;
 
 impl<W: Write, T: Target> Server<'_, W, T> {

@@ -1,4 +1,4 @@
-//! Threads, calls, variables, memory: what a client looks at while the board stands.
+//! Threads, calls, variables, memory: the state that a client reads while the board is stopped.
 
 use std::io::Write;
 
@@ -11,7 +11,7 @@ use super::{CALLBACK, Reply, Server, number_of, wire};
 use crate::debugger::{DebugError, Debugger, Reason, ShownVariable};
 use crate::shell::{Assignment, format_of_letter, state};
 
-/// Frames of one thread; the number of a frame says which thread it is of.
+/// Frames of one thread; the number of a frame contains its thread.
 const FRAMES: i64 = 100_000;
 
 /// Bytes of an instruction where no code is.
@@ -30,7 +30,7 @@ pub(super) enum Handle {
     Board(i64),
     /// `persist.UserData`, each element in its readings.
     Persist(i64),
-    /// The parts of an expression where a call stands.
+    /// The parts of an expression in the context of a call.
     Parts(i64, String),
 }
 

@@ -247,7 +247,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         Ok(shell.debugger_mut())
     }
 
-    /// The client has said all: the board runs, or is at its beginning.
+    /// The client's configuration is complete: the board runs, or is at its beginning.
     fn begin(&mut self) -> io::Result<()> {
         if self.asked.0["stopOnEntry"] == true {
             let stop = self.shell.as_ref().map(|shell| shell.debugger().stop().clone());
@@ -263,7 +263,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         self.tell_result(result)
     }
 
-    /// Stops the board of somebody else where it is.
+    /// Stops an existing board where it is.
     fn halt(&mut self, reason: Reason) -> io::Result<()> {
         if self.goal.take().is_none() {
             return Ok(());
@@ -272,7 +272,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         stop.map_or(Ok(()), |stop| self.tell_stop(&stop))
     }
 
-    /// Lets the board of somebody else go a way, as its owner lets time pass.
+    /// Lets an existing board make a movement while its owner lets time pass.
     fn let_go(&mut self, kind: Move) -> io::Result<()> {
         self.handles.clear();
         let goal = match kind {
@@ -482,7 +482,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
     }
 }
 
-/// Tells a client what the board says while it runs.
+/// Reports the board's output to a client while it runs.
 struct Herald<'a, W> {
     wire: &'a mut ClientWire<W>,
     /// Lines that were reported already.

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::debugger::DebugError;
 
-/// Most bytes of a message; a client that says it sends more is none.
+/// Most bytes of a message; a client that announces more is refused.
 const MOST: usize = 64 << 20;
 
 /// The next message; `None` at the end, and after what is not a message.

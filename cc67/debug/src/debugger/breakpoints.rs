@@ -144,8 +144,8 @@ pub(super) struct WatchedExpression {
 
 /// Setting and finding them.
 impl<T: Target> Debugger<T> {
-    /// Sets a breakpoint at `FILE:LINE`, `LINE`, `FUNCTION` or `*ADDRESS`, of the program in one thread or of all that have it;
-    /// its number, and what there is to say.
+    /// Sets a breakpoint at `FILE:LINE`, `LINE`, `FUNCTION` or `*ADDRESS`, of the program in one thread or of all that
+    /// have it; returns its number and a message.
     ///
     /// # Errors
     /// There is no code, or the condition does not compile.
@@ -222,7 +222,7 @@ impl<T: Target> Debugger<T> {
         Ok((id, format!("Hardware watchpoint {id}: {expression}")))
     }
 
-    /// Stops after an instruction of a program accesses the memory of an expression; its number, and what there is to say.
+    /// Stops after an instruction of a program accesses the memory of an expression; returns its number and a message.
     ///
     /// # Errors
     /// The expression is wrong, or it is not a place in memory.
@@ -246,8 +246,8 @@ impl<T: Target> Debugger<T> {
         Ok((id, format!("{} {id}: {expression}", access.title())))
     }
 
-    /// Stops at the end of the tick in which an expression becomes true, that is, is not 0; its number, and what there is
-    /// to say.
+    /// Stops at the end of the tick in which an expression becomes true, that is, is not 0; returns its number and a
+    /// message.
     ///
     /// # Errors
     /// The expression is wrong.

@@ -179,7 +179,7 @@ pub(crate) struct Position {
 /// The events that stop the board.
 #[derive(Clone, Debug, Default)]
 pub struct Catches {
-    /// Traps; they stop unless this says otherwise.
+    /// Traps; they stop unless this is set.
     pub no_traps: bool,
     /// Remarks.
     pub remarks: bool,
@@ -197,7 +197,7 @@ pub struct Catches {
 #[derive(Debug)]
 pub struct Debugger<T: Target = Board> {
     session: Session<T>,
-    /// The past; none of a board that somebody else runs.
+    /// The past; `None` for a board that is run elsewhere.
     timeline: Option<Timeline<T>>,
     programs: Programs,
     breakpoints: Vec<Breakpoint>,
@@ -247,7 +247,7 @@ impl<T: Target> Debugger<T> {
         }
     }
 
-    /// Returns whether somebody else runs the board and keeps its past.
+    /// Returns whether the board is run elsewhere, which keeps its past.
     pub(crate) fn is_lent(&self) -> bool {
         self.timeline.is_none() && self.session.can(Capability::Snapshots)
     }
@@ -314,7 +314,7 @@ impl<T: Target> Debugger<T> {
         std::mem::swap(&mut self.session, session);
     }
 
-    /// The board under control, for whoever has lent it.
+    /// The board under control, for its owner.
     pub(crate) const fn session_mut(&mut self) -> &mut Session<T> {
         &mut self.session
     }
@@ -505,7 +505,7 @@ impl<T: Target> Debugger<T> {
         self.frames(self.context()).iter().position(has_line).unwrap_or(0)
     }
 
-    /// Tells the timeline that a person has changed something; says so if that makes another history.
+    /// Tells the timeline about a change by hand; reports if that makes another history.
     pub(crate) fn changed(&mut self) {
         if self.session.held().is_some() {
             return self.changed_beyond_journal();
@@ -532,7 +532,7 @@ impl<T: Target> Debugger<T> {
 }
 
 impl Debugger<AnyTarget> {
-    /// A debugger of a board that somebody else runs and [lends](Self::swap) it; such a board does not go back.
+    /// A debugger of a board that is run elsewhere and [lent](Self::swap) to it; such a board does not go back.
     ///
     /// # Errors
     /// There is no board to keep the place of the other one.

@@ -46,7 +46,7 @@ pub(crate) enum StepKind {
 }
 
 impl<T: Target> Debugger<T> {
-    /// Goes on to the next stop.
+    /// Continues to the next stop.
     pub fn go_on(&mut self, events: Events<'_>) -> Stop {
         self.run(&Goal::None, events)
     }
@@ -69,8 +69,8 @@ impl<T: Target> Debugger<T> {
         }
     }
 
-    /// Goes on to the goal, but no further than to the end of a tick: [`Reason::Time`] there. For a board that somebody
-    /// else runs, and continues later.
+    /// Continues to the goal, but no further than to the end of a tick: [`Reason::Time`] there. For a board that is run
+    /// elsewhere, and continues later.
     pub(crate) fn proceed(&mut self, goal: &Goal, limit: Ticks, events: Events<'_>) -> Stop {
         self.limit = limit;
         self.run(goal, events)
@@ -81,7 +81,7 @@ impl<T: Target> Debugger<T> {
         self.stopped(reason, None)
     }
 
-    /// Goes on to the next line of the thread that is looked at, into the functions that it calls.
+    /// Continues to the next line of the selected thread, into the functions that it calls.
     ///
     /// # Errors
     /// The thread runs nothing, or nothing is known about its program.
@@ -90,7 +90,7 @@ impl<T: Target> Debugger<T> {
         Ok(self.run(&goal, events))
     }
 
-    /// Goes on to the next line of the function, or of its caller.
+    /// Continues to the next line of the function, or of its caller.
     ///
     /// # Errors
     /// As [`step`](Self::step).
@@ -131,7 +131,7 @@ impl<T: Target> Debugger<T> {
         Ok(self.run(&goal, events))
     }
 
-    /// Goes on to a place: `FILE:LINE`, `LINE`, `FUNCTION` or `*ADDRESS`.
+    /// Continues to a place: `FILE:LINE`, `LINE`, `FUNCTION` or `*ADDRESS`.
     ///
     /// # Errors
     /// There is no code.
@@ -164,19 +164,19 @@ impl<T: Target> Debugger<T> {
         }
     }
 
-    /// Goes on to the end of a tick.
+    /// Continues to the end of a tick.
     pub fn run_to(&mut self, tick: Ticks, events: Events<'_>) -> Stop {
         self.run(&Goal::Tick(tick), events)
     }
 
-    /// Goes on to the end of the tick in progress, or of the next one.
+    /// Continues to the end of the tick in progress, or of the next one.
     pub fn step_tick(&mut self, events: Events<'_>) -> Stop {
         let tick = self.session.tick();
         let tick = if self.session.held().is_some() { tick } else { tick.next() };
         self.run(&Goal::Tick(tick), events)
     }
 
-    /// Goes on to the end of the next tick in which the thread that is looked at has the processor.
+    /// Continues to the end of the next tick in which the selected thread has the processor.
     ///
     /// # Errors
     /// The time of the target passes by itself.
@@ -339,7 +339,8 @@ impl<T: Target> Debugger<T> {
         self.interrupt.load(Ordering::Relaxed) && self.interrupt.swap(false, Ordering::Relaxed)
     }
 
-    /// Does what was done at this instant before, and says how far the board runs until there is more of it.
+    /// Repeats the inputs that were made at this instant before, and returns the tick up to which the board may run
+    /// until the next ones.
     pub(super) fn next_tick(&mut self, limit: Ticks) -> Ticks {
         let Some(timeline) = &mut self.timeline else { return limit };
         timeline.redo(&mut self.session);

@@ -64,7 +64,7 @@ impl<T: Target> Debugger<T> {
         self.back(&Wanted::Stop)
     }
 
-    /// Goes back to the beginning of the last line of the thread that is looked at, into functions that it called.
+    /// Goes back to the beginning of the last line of the selected thread, into functions that it called.
     ///
     /// # Errors
     /// Nothing is known about the thread's program.
@@ -179,8 +179,8 @@ impl<T: Target> Debugger<T> {
         self.stopped(Reason::BeginOfHistory, None)
     }
 
-    /// The reason to stop where a snapshot was taken in the middle of a tick: somebody has changed something there, so
-    /// what is before leads to the same place in another state.
+    /// The reason to stop where a snapshot was taken in the middle of a tick: something was changed there by hand, so
+    /// the earlier history leads to the same place in another state.
     fn stop_at(&mut self, place: u64, wanted: &Wanted) -> Option<Reason> {
         self.disarm();
         if !self.restore(place) {

@@ -1,4 +1,4 @@
-//! Values: expressions where a call stands, locals, and other values for them.
+//! Values: expressions in the context of a call, locals, and assignments to them.
 
 use std::cell::{Cell, RefCell};
 
@@ -299,7 +299,7 @@ impl<T: Target> Debugger<T> {
         })
     }
 
-    /// The locals that are visible where the call that is looked at stands.
+    /// The locals that are visible in the selected call.
     #[must_use]
     pub fn locals(&self) -> Vec<ShownVariable> {
         let Some(call) = self.call() else { return Vec::new() };

@@ -33,7 +33,7 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// All of it as a stimulus, a statement a line; what no statement says is a comment.
+    /// All of it as a stimulus, a statement a line; actions without a statement are comments.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text
@@ -75,7 +75,7 @@ impl Recording {
         self.add(tick, &format!("persist {index} = {value}"));
     }
 
-    /// Adds what no statement says.
+    /// Adds an action that has no statement.
     pub(super) fn cannot(&mut self, tick: Ticks, what: &str) {
         self.is_incomplete = true;
         if !self.is_off {
@@ -133,13 +133,13 @@ impl<T: Target> Session<T> {
         self.recording.is_off = true;
     }
 
-    /// Ends the account of what is done by hand when its text has `bytes` bytes; the text then says so.
+    /// Ends the account of what is done by hand when its text has `bytes` bytes; a comment then says so.
     pub const fn limit_recording(&mut self, bytes: usize) {
         self.recording.limit = Some(bytes);
     }
 
-    /// Does what a statement of a stimulus says, such as `bit 136 = 1`, `adc 3 = 1500`, `pulse bit 137 for 50ms` or
-    /// `encoder 0 moves 400 in 1s`, at the beginning of the next tick. The statement has no moment of its own.
+    /// Executes a statement of a stimulus, such as `bit 136 = 1`, `adc 3 = 1500`, `pulse bit 137 for 50ms` or `encoder
+    /// 0 moves 400 in 1s`, at the beginning of the next tick. The statement has no moment of its own.
     ///
     /// # Errors
     /// What is wrong with it, and at which character; nothing happens then.

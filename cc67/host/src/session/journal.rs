@@ -65,7 +65,7 @@ impl<T: Target> Session<T> {
         self.journal.entries()
     }
 
-    /// Does what the journal of a session says, now.
+    /// Repeats an input of a journal now.
     ///
     /// # Errors
     /// Why it cannot be done here: a bit that is not an input, a thread without a program, a program that is refused.

@@ -48,7 +48,7 @@ impl Signals {
         next.map_or(limit, |next| Ticks::new(next).min(limit))
     }
 
-    /// The board went to another tick without having run: what is due then is sampled when it runs on.
+    /// Notes that the board is at another tick without having run: samples due there are taken when it continues.
     pub(super) const fn went_to(&mut self, tick: Ticks) {
         self.last = tick;
     }

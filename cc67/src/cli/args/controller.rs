@@ -21,10 +21,10 @@ pub(crate) struct ControllerArguments {
     /// then jump anywhere
     #[arg(long, requires = "on")]
     pub(crate) force: bool,
-    /// With --on, compare the controller's memory with each program after its load; a small program in a free thread adds it up
+    /// With --on, compare the controller's memory with each program after its load; a small program in a free thread computes its checksum
     #[arg(long, requires = "on")]
     pub(crate) verify: bool,
-    /// With --on, connect without the question of the first time; for scripts
+    /// With --on, connect without asking for confirmation the first time; for scripts
     #[arg(long, requires = "on")]
     pub(crate) yes: bool,
 }

@@ -59,7 +59,7 @@ pub(super) fn examples(arguments: &ExamplesArguments) -> Result<Exit> {
     Ok(Exit::Success)
 }
 
-/// All examples with what the first line of their comment says.
+/// All examples with the first lines of their comments.
 fn list() -> String {
     let mut text = "Copy one of these programs into the folder: cc67 examples NAME\n".to_owned();
     let mut folder = "";

@@ -1,4 +1,4 @@
-//! `cc67 explain NAME`, and `--explain NAME`: what the tables say of a name, and the pages on subjects.
+//! `cc67 explain NAME`, and `--explain NAME`: the entries of the tables for a name, and the pages on subjects.
 //!
 //! A name may be a firmware function, a variable, a field, a constant, a bit, a script command, a warning, a remark, a
 //! limit or a topic; an answer has every one of these that it is. Nothing is listed here: each room turns the rows of a
@@ -41,7 +41,7 @@ pub(super) struct ExplainArguments {
     pub(super) name: String,
 }
 
-/// Prints what there is to say of a name that a message, a switch or the user's memory has.
+/// Explains a name from a message, a switch or the user's memory.
 pub(super) fn explain(name: &str) -> Result<Exit> {
     let name = name.trim();
     let text = match answer(name) {

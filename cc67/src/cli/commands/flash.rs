@@ -112,7 +112,7 @@ fn require_rest(connection: &mut ControllerLink, address: &Address) -> Result<()
 }
 
 impl FlashArguments {
-    /// The text that says what will be written.
+    /// Describes the data that will be written.
     fn plan(&self, connection: &ControllerLink, programs: &[UserProgram]) -> String {
         let mut text = format!(
             "\nThis writes the flash of {}. From its next power-up on the controller has\n\n",

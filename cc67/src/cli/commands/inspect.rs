@@ -144,7 +144,7 @@ fn debug(arguments: &InspectArguments) -> Result<Exit> {
     Ok(Exit::Success)
 }
 
-/// Reads an image; of another file the message says what it is.
+/// Reads an image; for another file the message names its kind.
 pub(super) fn read_image(path: &Path) -> Result<Image> {
     let bytes = read(path)?;
     Image::read(&bytes).map_err(|error| match files::describe(&bytes) {

@@ -205,7 +205,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 
 /// Carries out the command.
 fn command(arguments: Vec<OsString>) -> ExitCode {
-    if drop_in::is_meant(&arguments) {
+    if drop_in::is_invoked(&arguments) {
         return drop_in::main(&arguments);
     }
     let arguments = serve::home::called_as_server(&arguments).unwrap_or(arguments);

@@ -1,4 +1,4 @@
-//! From files to programs: sources compiled, objects read, programs linked, with what the compiler says of them.
+//! From files to programs: sources compiled, objects read, programs linked, with the compiler's messages.
 
 pub(crate) mod images;
 pub(crate) mod units;

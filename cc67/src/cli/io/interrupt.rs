@@ -10,7 +10,7 @@ use cc67_host::Interrupter;
 
 use super::exit::Exit;
 
-/// Lets Ctrl-C set a flag, which whoever runs takes; again before it is taken, it ends the process.
+/// Lets Ctrl-C set a flag, which the running command takes; again before it is taken, it ends the process.
 pub(crate) fn sets(flag: &Arc<AtomicBool>) -> Result<()> {
     let flag = Arc::clone(flag);
     set_handler(move || {

@@ -7,8 +7,8 @@ use std::thread;
 /// Bytes of stack that the command may need.
 pub(in crate::cli) const NEEDED: usize = 8 << 20;
 
-/// Reports whether the stack of the process is limited to less than the command needs; systems that do not say are
-/// taken to give enough.
+/// Reports whether the stack of the process is limited to less than the command needs; systems without this information
+/// are assumed to give enough.
 pub(in crate::cli) fn is_small() -> bool {
     let limits = std::fs::read_to_string("/proc/self/limits").unwrap_or_default();
     limits_stack(&limits).is_some_and(|bytes| bytes < NEEDED)

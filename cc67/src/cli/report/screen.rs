@@ -50,7 +50,7 @@ enum JsonLine<'a> {
     Pc { seconds: f64, text: &'a str },
     /// An expectation of the stimulus was not met.
     Unmet { seconds: f64, text: &'a str },
-    /// The simulation has something to say; a row of the table of remarks has a code.
+    /// A remark of the simulation; a row of the table of remarks has a code.
     Remark {
         seconds: f64,
         #[serde(skip_serializing_if = "Option::is_none")]

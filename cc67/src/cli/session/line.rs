@@ -22,7 +22,7 @@ use crate::cli::io::pace::Pace;
 use crate::cli::io::pty::Terminal;
 use crate::cli::io::terminal;
 
-/// Ticks that a run with a peer goes on before it looks for what has come: 9.99 ms.
+/// Ticks that a run with a peer continues before it polls the peer: 9.99 ms.
 const PART: u64 = 111;
 /// Pieces that a peer may be ahead with, and characters that wait on the line, before it has to wait.
 const AHEAD: usize = 16;
@@ -34,7 +34,7 @@ const PART_TIME: Duration = Duration::from_millis(10);
 #[derive(Debug)]
 struct Peer {
     name: String,
-    /// The bytes that it has sent; ends when it goes away.
+    /// The bytes that it has sent; ends when it disconnects.
     incoming: Receiver<Vec<u8>>,
     outgoing: Outgoing,
     /// A program is waited for when the run is over.
@@ -85,7 +85,7 @@ fn program(command: &str) -> Result<Peer> {
     Ok(Peer::new(format!("program `{name}`"), incoming, Box::new(outgoing), Some(child)))
 }
 
-/// Opens a pseudo-terminal and says its name.
+/// Opens a pseudo-terminal and prints its name.
 fn pty() -> Result<Peer> {
     let line = Terminal::open().context("`--uart pty`")?;
     terminal::note(&format!("serial port: terminal {}", line.name()));

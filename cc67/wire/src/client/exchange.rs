@@ -8,7 +8,7 @@ use crate::clock::now;
 use crate::error::WireError;
 use crate::lines::Incoming;
 
-/// Ends each command line: its reply says that all before it was executed.
+/// Ends each command line: its reply shows that everything before it was executed.
 const FENCE: &str = "Version";
 /// Words of the gather buffer in a line.
 const WORDS_PER_LINE: u32 = 8;

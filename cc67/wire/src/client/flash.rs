@@ -13,7 +13,7 @@ const SAVE: &str = "Flash";
 /// The reply when it is done, and the console line when the board has compared flash with memory.
 const SAVED: &str = "Program Flash Image Complete";
 const VERIFIED: &[u8] = b"Verify Complete";
-/// The board takes about 7 s; only its servo goes on meanwhile.
+/// The board takes about 7 s; only its servo continues meanwhile.
 const SAVED_WITHIN: Duration = Duration::from_secs(60);
 const VERIFIED_WITHIN: Duration = Duration::from_secs(20);
 /// Pause between two looks at the console.

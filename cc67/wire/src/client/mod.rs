@@ -47,7 +47,7 @@ pub struct Client {
     version: String,
     console: VecDeque<Vec<u8>>,
     lost_console_lines: u64,
-    /// Lines of replies to commands of somebody else.
+    /// Lines of replies to commands of other clients.
     foreign_lines: u64,
     files: Box<dyn PcFiles>,
     errors: Errors,
@@ -136,7 +136,7 @@ impl Client {
         self.console.drain(..).collect()
     }
 
-    /// Puts a line back that is for somebody else, after those that have come.
+    /// Puts a line back that is for another client, after those that have arrived.
     pub fn return_console(&mut self, line: Vec<u8>) {
         self.keep(line);
     }
@@ -147,7 +147,7 @@ impl Client {
         self.lost_console_lines
     }
 
-    /// Lines of replies to commands of somebody else.
+    /// Lines of replies to commands of other clients.
     #[must_use]
     pub const fn foreign_lines(&self) -> u64 {
         self.foreign_lines

@@ -25,7 +25,7 @@ const STEP: Duration = Duration::from_millis(50);
 /// Bytes of a transfer, and transfers under way.
 const TRANSFER: usize = 4096;
 const TRANSFERS: usize = 4;
-/// The time that a board needs to start, in which it comes and goes.
+/// The time that a board needs to start, in which it connects and disconnects.
 const OPEN_WITHIN: Duration = Duration::from_secs(3);
 const OPEN_EACH: Duration = Duration::from_millis(100);
 
@@ -117,7 +117,7 @@ fn prepare(interface: &Interface) -> Result<(), TransferError> {
     Ok(())
 }
 
-/// The program that holds a device, as far as Linux tells: the driver of its interface.
+/// The program that holds a device, as far as Linux reports it: the driver of its interface.
 fn holder(location: &str) -> String {
     let driver = std::fs::read_link(format!("/sys/bus/usb/devices/{location}:1.0/driver"));
     let driver = driver.ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));

@@ -32,9 +32,9 @@ pub(crate) enum Fault {
     Unplug(usize),
     /// After some data lines the board restarts.
     Reset(usize),
-    /// After some data lines a command of somebody else comes.
+    /// After some data lines a command of another client arrives.
     Foreign(usize),
-    /// Lines of replies to somebody else come before each of ours.
+    /// Lines of replies to another client come before each of ours.
     Replies,
     /// A command is not answered once, as if its line was lost.
     LosesLine,

@@ -38,7 +38,7 @@ fn text(json: &Value) -> &str {
     json.as_str().expect("a string")
 }
 
-/// Sends bytes, and what comes back. A firmware that a command has stopped says nothing more: the recorded one was silent
+/// Sends bytes and returns the answer. A firmware that a command has stopped is silent: the recorded one was silent
 /// from `ENABLED0=` and `GETVIRTUALBITS31 31` on.
 fn ask(board: &mut BootedBoard, bytes: &[u8]) -> String {
     board.send(bytes);

@@ -10,7 +10,7 @@ use super::{Fpga, PORT_BYTE, PRESCALE, PWM, PWM_MOVED, PWMS};
 use crate::kstep::AnalogOutput;
 use crate::pins::Pins;
 
-/// The pin of generator 0, and where its output goes for KStep.
+/// The pin of generator 0, and its output for KStep.
 const PWM_PIN: i32 = 26;
 const PWM_MOVED_PIN: i32 = 44;
 /// Clocks of a PWM period, processor cycles of one, and clocks of a second.
@@ -39,7 +39,7 @@ impl Fpga {
         &self.kstep
     }
 
-    /// Returns whether there are edges of watched pins to tell in every tick.
+    /// Returns whether there are edges of watched pins to report in every tick.
     pub fn is_telling(&self, pins: &Pins) -> bool {
         let is_watched = |generator: u32| {
             let pin = Bit::new(PWM_PIN + generator as i32);

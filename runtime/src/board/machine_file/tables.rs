@@ -11,7 +11,7 @@ use super::{
 use super::{boards, events, pc};
 use crate::out::REMARKS;
 
-/// Changes a machine by what a text says.
+/// Applies the settings of a text to a machine.
 pub(super) fn apply(machine: &mut MachineFile, text: &str) -> Result<(), MachineFileError> {
     let table = DeTable::parse(text).map_err(|error| {
         let offset = error.span().map_or(0, |span| span.start);

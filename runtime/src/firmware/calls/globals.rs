@@ -19,7 +19,7 @@ impl Globals {
         self.is_kept = true;
     }
 
-    /// The program of a thread goes.
+    /// Removes the program of a thread.
     pub(crate) fn forget(&mut self, thread: ThreadId) {
         self.sections[thread.index()].clear();
     }

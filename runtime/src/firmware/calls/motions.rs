@@ -32,7 +32,7 @@ pub(crate) struct WrongZero {
     pub(crate) at: Option<CodeAddr>,
 }
 
-/// A thread that was told that an axis is disabled, while it waited for the end of its motion.
+/// A thread that found an axis disabled while it waited for the end of its motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct EndedWait {
     /// The thread.
@@ -90,7 +90,7 @@ pub(crate) struct Motions {
     /// Mode and channels of each axis when a program enabled it.
     connections: [Option<[i32; 4]>; N_CHANNELS],
     threads: [Thread; ThreadId::MAX as usize],
-    /// The jog of each axis, and how far its last move goes.
+    /// The jog of each axis, and the length of its last move.
     jogged: [Option<Jogged>; N_CHANNELS],
     ways: [f64; N_CHANNELS],
     /// The first move of each axis if that and all others are of a few counts; nothing after any other motion.
@@ -119,7 +119,7 @@ impl Motions {
         }
     }
 
-    /// A move of an axis goes this far; `small` if that is a few counts.
+    /// Notes the length of a move of an axis; `small` if that is a few counts.
     pub(crate) fn goes(&mut self, axis: AxisId, way: f64, small: Option<SmallMove>) {
         self.ways[axis.index()] = way;
         let all = &mut self.small[axis.index()];
@@ -174,7 +174,7 @@ impl Motions {
         self.movers[axis.index()].replace(thread).filter(|before| *before != thread)
     }
 
-    /// A thread asks whether the motion of an axis has ended, and is told `done`. `is_moving` says which axes move.
+    /// Notes that a thread has polled the motion of an axis, with the answer `done`. `is_moving` has the moving axes.
     pub(crate) fn asked(
         &mut self,
         thread: ThreadId,

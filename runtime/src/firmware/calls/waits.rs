@@ -36,7 +36,7 @@ pub(crate) struct Wait {
     pub(crate) calls: Vec<Repeated>,
 }
 
-/// The waits of all threads, and the axes that programs have told to do something.
+/// The waits of all threads, and the axes that programs have commanded.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Waits {
     threads: [Wait; ThreadId::MAX as usize],
@@ -67,7 +67,7 @@ impl Waits {
         wait.since = now;
     }
 
-    /// A program tells an axis to do something.
+    /// Notes that a program has commanded an axis.
     pub(crate) fn touch(&mut self, axis: AxisId) {
         self.axes |= 1 << axis.index();
     }

@@ -55,7 +55,7 @@ impl Races {
         self.tracks[own].held.push((lock, actor.at));
     }
 
-    /// A context frees a lock, whoever holds it.
+    /// Notes that a context frees a lock, which any context may hold.
     pub(crate) fn unlocks(&mut self, actor: Actor, lock: GuestAddr) {
         self.freed(actor, lock.get());
     }

@@ -89,7 +89,7 @@ struct Track {
     resumed: Option<Resumed>,
 }
 
-/// Something that the board has once, and whoever uses it second takes it from the first.
+/// A resource that the board has once; its second user takes it from the first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum SharedThing {
     /// The part of the board that executes paths.

@@ -160,8 +160,8 @@ impl Races {
         }
     }
 
-    /// A context has changed a cell: whoever has read it has an old value now, unless the reader has stored something
-    /// since that let the context change it.
+    /// A context has changed a cell: contexts that have read it have an old value now, unless the reader has stored
+    /// something since that let the context change it.
     pub(super) fn note_change(&mut self, own: usize, address: u32) {
         self.changes += 1;
         let known = self.tracks[own].clock;

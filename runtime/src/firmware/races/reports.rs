@@ -37,7 +37,7 @@ fn places(one: CodeAddr, other: CodeAddr) -> PlacePair {
 }
 
 impl Reports {
-    /// Returns whether there is nothing more to say about two places.
+    /// Returns whether two places were reported already.
     pub(super) fn knows(&self, one: CodeAddr, other: CodeAddr) -> bool {
         self.made.contains(&places(one, other))
     }
@@ -57,7 +57,7 @@ impl Reports {
         }
     }
 
-    /// Makes a report later, unless one with more to say comes first.
+    /// Delays a report, so that one with more details may come first.
     fn wait(&mut self, actor: Actor, other: CodeAddr, message: Message) {
         let places = places(actor.at, other);
         if !self.suspects(actor.at, other) {

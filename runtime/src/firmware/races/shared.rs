@@ -7,7 +7,7 @@ use vm::firmware::{Caller, Outcome, Value};
 use super::{Actor, SharedThing};
 use crate::firmware::parts::Parts;
 
-/// A call that says something about the order of accesses, before it is made.
+/// A call that orders accesses, before it is made.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum SharedCall {
     Lock(GuestAddr),

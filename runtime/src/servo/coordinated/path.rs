@@ -60,7 +60,7 @@ impl Coordinated {
         }
     }
 
-    /// Advances the path time and goes where it is then.
+    /// Advances the path time and moves the axes to it.
     fn advance(&mut self, memory: &mut GuestMemory, bits: &mut impl Bits, entry: Entry) {
         let time_base = memory.get(CS0_TIME_BASE);
         memory.set(CS0_T, memory.get(CS0_T) + time_base);
@@ -76,7 +76,7 @@ impl Coordinated {
         }
     }
 
-    /// Ends the path at the entry that says so, unless it is held open. The axes stay where the last tick has left them.
+    /// Ends the path at its end entry, unless it is held open. The axes stay where the last tick has left them.
     fn end(&mut self, memory: &mut GuestMemory, entry: Entry) {
         memory.set(COORD_SYSTEM0, entry.address());
         if !is_held_open(memory) {

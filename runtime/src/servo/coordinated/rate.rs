@@ -18,7 +18,7 @@ const TIMEBASE_SQUARED: f64 = 8.1e-9;
 /// Seconds of path that are left untouched when data runs out.
 const RESERVE: f64 = 0.001;
 
-/// The override that applies where the path stands.
+/// The override that applies at the present position of the path.
 pub(crate) fn current_override(memory: &GuestMemory) -> f32 {
     if memory.get(CS0_DOING_RAPID) != 0 { memory.get(CS0_LAST_RAPID_FRO) } else { memory.get(CS0_LAST_FRO) }
 }
@@ -63,7 +63,7 @@ pub(crate) fn start(memory: &mut GuestMemory, change_time: f32) {
     jump(memory, f64::from(current_override(memory)) * TIMEBASE);
 }
 
-/// Goes to a time base at once.
+/// Sets a time base at once.
 fn jump(memory: &mut GuestMemory, time_base: f64) {
     memory.set(CS0_TIME_BASE, time_base);
     memory.set(CS0_TIME_BASE_DESIRED, time_base);

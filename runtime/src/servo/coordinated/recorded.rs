@@ -102,7 +102,7 @@ impl RecordedBoard {
         Self { bench, waiting: None, precision: 1e-9, done: VecDeque::new() }
     }
 
-    /// Notes what a thread that asks now would be told.
+    /// Notes the answer to a thread that asks now.
     fn ask(&mut self) {
         self.done.push_front(self.bench.call_i32("CheckDoneBuf", &[]));
         self.done.truncate(3);

@@ -18,7 +18,7 @@ use crate::source::Span;
 /// A result, or the error in the line.
 pub(super) type Read<T> = Result<T, String>;
 
-/// No place in a source: the text of a function does not say its places.
+/// No place in a source: the text of a function has no positions.
 const NOWHERE: Span = Span::new(0, 0);
 
 /// A block, with the numbers of its lines.

@@ -254,7 +254,7 @@ fn width(name: &str) -> Read<Width> {
     Width::from_name(name).ok_or_else(|| format!("a width is expected after the `.`, not `{name}`"))
 }
 
-/// A number; how it is written says its class.
+/// Reads a number; its spelling determines its class.
 fn constant(word: &str) -> Option<Constant> {
     if !word.starts_with(|c: char| c.is_ascii_digit() || c == '-') {
         return None;

@@ -9,7 +9,7 @@ use super::super::token::Flags;
 use super::{Lexer, LexerContext, is_blank};
 
 impl Lexer {
-    /// Goes to the next token; in a directive no further than the end of the line.
+    /// Skips to the next token; in a directive at most to the end of the line.
     pub(super) fn skip_space(&mut self, cx: &mut LexerContext<'_>) -> Flags {
         let mut flags = if self.is_line_start { Flags::LINE_START } else { Flags::NONE };
         loop {

@@ -1,4 +1,4 @@
-//! Declarations: what may be said twice, and what it means.
+//! Declarations: which may be repeated, and their meaning.
 
 use super::{accept, check, said};
 

@@ -65,7 +65,7 @@ struct Before {
     pins: Vec<Pin>,
 }
 
-/// A difference: what, on the model, on the firmware, and the page that says how it is meant.
+/// A difference: what, on the model, on the firmware, and the page with the specification.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Difference {
     pub(super) what: String,

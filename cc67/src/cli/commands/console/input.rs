@@ -55,7 +55,7 @@ impl Lines {
     }
 }
 
-/// Lines of a person, edited in a thread of its own so that the board goes on meanwhile.
+/// Lines of a person, edited in a thread of its own so that the board continues meanwhile.
 pub(super) fn keyboard() -> Result<(Lines, Printer)> {
     let mut editor: Editor<Guide, DefaultHistory> = Editor::new().context("no terminal to edit lines on")?;
     editor.set_helper(Some(Guide));

@@ -298,7 +298,7 @@ impl<'a, T: Target> Console<'a, T> {
         Flow::Continue
     }
 
-    /// Does what one of the console's own words says.
+    /// Executes one of the console's own commands.
     fn obey(&mut self, word: &Word) -> Result<()> {
         match word {
             Word::Help(name) => self.shown.screen.text(&words::help(name.as_deref())),
@@ -337,8 +337,8 @@ impl<'a, T: Target> Console<'a, T> {
     }
 
     /// Stops threads where they are.
-    fn stop(&mut self, is_meant: impl Fn(ThreadId) -> bool) {
-        ThreadId::all().filter(|thread| is_meant(*thread)).for_each(|thread| self.rig.session.stop(thread));
+    fn stop(&mut self, is_invoked: impl Fn(ThreadId) -> bool) {
+        ThreadId::all().filter(|thread| is_invoked(*thread)).for_each(|thread| self.rig.session.stop(thread));
     }
 
     /// Sends a line to the board, and lets pass the time it takes.
@@ -378,7 +378,7 @@ impl Shown<'_> {
         self.screen.show(event);
     }
 
-    /// Says what is left to say, and completes the files.
+    /// Prints the remaining lines, and completes the files.
     fn finish(&mut self, end: Ticks) -> Result<()> {
         self.screen.finish().context("cannot write to standard output")?;
         let Some(trace) = self.trace.take() else { return Ok(()) };

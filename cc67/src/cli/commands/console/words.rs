@@ -25,7 +25,7 @@ pub(super) enum Word {
     Press(Bit),
     /// Give an input back the level it had.
     Release(Bit),
-    /// Do what a statement of a stimulus says.
+    /// Execute a statement of a stimulus.
     Act(String),
     /// Tell the board time.
     Time,

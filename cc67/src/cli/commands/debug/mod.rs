@@ -181,7 +181,7 @@ fn batch<T: Target>(shell: &mut Shell<T>, path: &std::path::Path) -> Result<Exit
     Ok(Exit::Success)
 }
 
-/// Shows what the board says while it runs; a reader that is gone misses it.
+/// Shows the board's output while it runs; a reader that is gone misses it.
 fn show(text: &str) {
     match text.strip_prefix("cc67: ") {
         Some(remark) => screen::note(remark.trim_end()),

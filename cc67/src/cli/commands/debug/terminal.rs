@@ -54,7 +54,7 @@ pub(super) fn talk<T: Target + 'static>(shell: &Rc<RefCell<Shell<T>>>) -> Result
     }
 }
 
-/// Does what a line says; whether there may be another one.
+/// Executes a line; returns whether there may be another one.
 fn obey<T: Target>(shell: &mut Shell<T>, line: &str) -> Result<bool> {
     match shell.command(line, &mut |text| show(text)) {
         Ok(CommandOutput::Text(text)) => output::print(&text)?,

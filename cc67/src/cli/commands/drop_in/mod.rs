@@ -37,7 +37,7 @@ use compiler::{Compilation, Options, files, image};
 const NAME: &str = "tcc67";
 
 /// Returns whether the arguments of a process, the program's name first, are meant for the vendor's compiler.
-pub(super) fn is_meant(arguments: &[OsString]) -> bool {
+pub(super) fn is_invoked(arguments: &[OsString]) -> bool {
     let Some((program, rest)) = arguments.split_first() else { return false };
     let stem = Path::new(program).file_stem().unwrap_or_default();
     // `cc67` itself begins with a subcommand and has no option of these names.
@@ -82,7 +82,7 @@ fn print(text: &str) {
     let _ = io::stdout().write_all(text.as_bytes());
 }
 
-/// Compiles, links and writes; the error is all that the compiler says.
+/// Compiles, links and writes; the error has all messages of the compiler.
 fn compile(request: &CompileRequest) -> Result<(), String> {
     let text = files::read(&request.source)
         .map_err(|_| format!("tcc: file '{}' not found\n", request.source.display()))?;
@@ -200,7 +200,7 @@ mod tests {
             ("cc67", false),
         ] {
             let arguments: Vec<_> = line.split(' ').map(OsString::from).collect();
-            assert_eq!(is_meant(&arguments), expect, "{line}");
+            assert_eq!(is_invoked(&arguments), expect, "{line}");
         }
     }
 }

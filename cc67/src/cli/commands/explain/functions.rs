@@ -81,7 +81,7 @@ pub(super) fn answer(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
     Some(text)
 }
 
-/// The arguments that are more than their C type says, as a line of a list.
+/// The arguments with a meaning beyond their C type, as a line of a list.
 fn arguments(function: &FirmwareFunction) -> String {
     let meanings = function.params.iter().filter_map(|param| {
         let meaning = match param.role {

@@ -75,7 +75,7 @@ fn fields(structure: &Structure) -> String {
     text
 }
 
-/// The value at power-up, where a number says it.
+/// The value at power-up, if it is a number.
 fn start(start: Start, stored: Stored) -> String {
     let value = match start {
         Start::Zero => "0".to_owned(),

@@ -13,7 +13,7 @@ const FILES: [(&str, &str); 4] = [
     ("mill.toml", include_str!("demo/mill.toml")),
 ];
 
-/// Writes the files into a new folder, and says where it is.
+/// Writes the files into a new folder, and prints its path.
 pub(super) fn write() -> Result<PathBuf> {
     let folder = env::temp_dir().join(format!("cc67-demo-{}", process::id()));
     fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;

@@ -44,7 +44,7 @@ pub(super) struct ServedBoard<'a, T: Target> {
 }
 
 impl<'a, T: Target> ServedBoard<'a, T> {
-    /// A board, recorded as the terms say.
+    /// A board, recorded by the terms.
     pub(super) fn new(mut board: Served<T>, trace: Option<Trace>, terms: &'a Terms<'a>) -> Result<Self> {
         let log = terms.log.map(ExchangeLog::new).transpose()?;
         let wire = terms.is_on_wire().then(WireEnd::default);
@@ -84,7 +84,7 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         self.take(events);
     }
 
-    /// Runs until `is_over` says so after a tick, at most a number of ticks; whether it said so.
+    /// Runs until `is_over` returns true after a tick, at most a number of ticks; returns whether it did.
     pub(super) fn until(&mut self, ticks: u64, is_over: impl Fn(&Self) -> bool) -> bool {
         let end = self.tick().get().saturating_add(ticks);
         while !is_over(self) {
@@ -251,7 +251,7 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         }
     }
 
-    /// The board is served no more: files are written, and the exit code says how its programs fared.
+    /// The board is served no more: files are written, and the exit code is that of its programs.
     pub(super) fn finish(mut self) -> Result<Exit> {
         let mut events = Vec::new();
         let finished = self.board.finish(&mut |event| events.push(event));

@@ -15,7 +15,7 @@ const UNTAKEN: usize = 4096;
 /// The pause after which a client that is ahead of the board looks whether the board has taken something.
 const PAUSE: Duration = Duration::from_millis(1);
 
-/// Carries bytes between a client and the desk until the client goes.
+/// Carries bytes between a client and the desk until the client disconnects.
 pub(super) fn carry(
     number: u64,
     desk: &Sender<Note>,

@@ -26,7 +26,7 @@ const TEXT_LIMIT: u64 = 1 << 16;
 pub(super) enum Received {
     /// A message.
     Message(Vec<u8>),
-    /// The beginning of a text, from somebody who expects to talk to a person or to a web server.
+    /// The beginning of a text, from a client that expects to talk to a person or to a web server.
     Text,
     /// A message of the library of version 4.32.
     OldLibrary,
@@ -48,7 +48,7 @@ pub(super) trait ClientConnection: Send + 'static {
     fn send(&mut self, message: &[u8]) -> Option<()>;
     /// Receives the byte by which the client acknowledges a message; `None` if it is gone.
     fn receive_byte(&mut self) -> Option<u8>;
-    /// Answers somebody who sends text with a text, and reads on a little, so that it is not lost with the connection.
+    /// Answers a client that sends text with a text, and reads on a little, so that it is not lost with the connection.
     fn refuse(&mut self, text: &[u8]);
 }
 

@@ -200,7 +200,7 @@ impl<'a, T: Target> Desk<'a, T> {
         }
     }
 
-    /// Serves until somebody ends it, the board time is up, or the last client is gone and should be the last.
+    /// Serves until it is ended, the board time is up, or the last client is gone and should be the last.
     pub(super) fn run(mut self) -> Result<Exit> {
         let limit = self.terms.limit.map_or(u64::MAX, |seconds| (seconds / TIMEBASE).round() as u64);
         self.look_at_page();

@@ -84,7 +84,7 @@ pub(super) fn lines(folder: &Path) -> String {
     format!("export KMOTIONX_HOME='{folder}'\nexport LD_LIBRARY_PATH=FOLDER_OF_THE_LIBRARY\n./YOUR_PROGRAM\n")
 }
 
-/// Describes the folder for whoever finds it later.
+/// Describes the folder for people who find it later.
 fn explanation() -> String {
     let (library, place) = if cfg!(windows) {
         ("KMotion library", "Put your application and the DLLs of the library beside them.")

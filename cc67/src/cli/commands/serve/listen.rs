@@ -227,7 +227,7 @@ impl Door {
     }
 }
 
-/// Answers requests until the client goes, or asks for what does not exist.
+/// Answers requests until the client disconnects, or asks for what does not exist.
 fn serve(number: u64, mut connection: impl ClientConnection, seat: &Seat, door: &Door) {
     connection.limit_wait(Some(FIRST_WORDS));
     let mut received = connection.receive_first();

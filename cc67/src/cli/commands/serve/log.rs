@@ -22,7 +22,7 @@ pub(super) struct ExchangeLog {
     path: PathBuf,
     /// Nothing once it could not be written.
     file: Option<File>,
-    /// The tick that the script has come to, as far as it says.
+    /// The tick that the script has reached, as far as it is known.
     reached: u64,
 }
 

@@ -57,7 +57,7 @@ mod windows {
 
     /// Bytes of the buffers of a pipe.
     const BUFFER: u32 = 4096;
-    /// The time that a client waits for a free instance unless it says otherwise, in milliseconds.
+    /// The time that a client waits for a free instance unless it asks for another, in milliseconds.
     const WAIT: NonZeroU32 = NonZeroU32::new(10_000).expect("it is not 0");
     /// The system's number for a pipe all instances of which have a client.
     const BUSY: i32 = 231;

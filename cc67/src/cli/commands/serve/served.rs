@@ -40,7 +40,7 @@ pub(super) struct Served<T: Target> {
 }
 
 impl<T: Target> Served<T> {
-    /// The board of a rig, on a page if the terms say so; and the trace of it.
+    /// The board of a session, on a page if the terms have one; and its trace.
     pub(super) fn new(
         mut rig: Rig<T>,
         terms: &Terms<'_>,

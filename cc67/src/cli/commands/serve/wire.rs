@@ -10,9 +10,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
-/// Bytes on their way to the client, before programs that print wait.
+/// The number of unread bytes from which programs that print must wait.
 pub(in crate::cli::commands) const UNREAD_BYTES: usize = 1 << 16;
-/// Bytes on their way to the client, before further ones are lost: a firmware file answers whoever reads nothing.
+/// The number of unread bytes from which further ones are lost: a firmware file also answers a client that reads
+/// nothing.
 pub(in crate::cli::commands) const LOST_BYTES: usize = 1 << 20;
 /// The time after the last byte in which a client is served without delay.
 const LIVELY: Duration = Duration::from_secs(2);
@@ -110,7 +111,7 @@ impl WireEnd {
     }
 }
 
-/// The console lines among the bytes of the board: the rest answers somebody else than the client.
+/// The console lines among the bytes of the board: the rest are answers to others.
 pub(super) fn console_lines(bytes: &[u8]) -> Vec<u8> {
     bytes
         .split_inclusive(|byte| *byte == b'\n')

@@ -66,7 +66,7 @@ pub(super) struct TestArguments {
     /// Run on a connected controller, one test at a time; skip tests that need a simulated board
     #[arg(long, value_name = "BOARD", conflicts_with_all = ["engine", "bless", "form", "boot", "schedules"])]
     on: Option<Address>,
-    /// With --on, connect without the question of the first time; for scripts
+    /// With --on, connect without asking for confirmation the first time; for scripts
     #[arg(long, requires = "on")]
     yes: bool,
     #[command(flatten)]

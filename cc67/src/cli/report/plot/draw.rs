@@ -186,7 +186,7 @@ fn steps((low, high): (f64, f64), count: u32) -> Vec<f64> {
     (first..=last).map(|index| index as f64 * step).collect()
 }
 
-/// A number without digits that say nothing.
+/// Formats a number without insignificant digits.
 pub(super) fn number(value: f64) -> String {
     // What is left of a step that should be 0.
     let value = if value.abs() < 1e-12 { 0.0 } else { value };

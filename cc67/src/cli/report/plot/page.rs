@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::chart::{Chart, Line};
 use super::draw::COLORS;
 
-/// The page, with a mark where the data goes.
+/// The page, with a mark in place of the data.
 const PAGE: &str = include_str!("page.html");
 const MARK: &str = "@DATA@";
 
@@ -115,7 +115,7 @@ fn joined(spans: &[(f64, f64)]) -> Vec<(f64, f64)> {
     joined
 }
 
-/// The spans, about `most` of them at most: those with less between them than can be told apart become one.
+/// The spans, about `most` of them at most: those too close to be distinguished become one.
 fn bounded(spans: Vec<(f64, f64)>, range: (f64, f64), most: usize) -> Vec<(f64, f64)> {
     if spans.len() <= most {
         return spans;

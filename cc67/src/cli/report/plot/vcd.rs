@@ -99,7 +99,7 @@ struct Variable {
 /// A dump as far as it is read.
 #[derive(Debug)]
 struct Dump {
-    /// By the short names that stand for them.
+    /// The variables by their short names.
     variables: BTreeMap<String, Variable>,
     /// Seconds of a unit of time.
     unit: f64,

@@ -1,4 +1,5 @@
-//! The profile of a run on the user's own firmware file: looks at the processor, each of which stands for some cycles.
+//! The profile of a run on the user's own firmware file: samples of the processor, each of which represents some
+//! cycles.
 //!
 //! Code of a program has its lines; code of the firmware has the names of the file. A firmware function that waits looks
 //! again and again whether it may continue, so that its time is computing.

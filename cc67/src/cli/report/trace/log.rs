@@ -21,7 +21,7 @@ const SPANS: usize = 500_000;
 pub(super) struct Log {
     columns: Columns,
     pub(super) samples: Vec<(Cycles, Vec<f64>)>,
-    /// The time for which a sample stands.
+    /// The time that a sample represents.
     pub(super) step: Cycles,
     /// When bits were high.
     bits: Spans<Bit>,
@@ -75,7 +75,7 @@ impl Log {
         }
     }
 
-    /// Makes samples stand for twice the time, until a quarter of them is gone.
+    /// Makes samples represent twice the time, until a quarter of them is gone.
     fn thin(&mut self) {
         while self.samples.len() > SAMPLES / 4 * 3 {
             self.step = self.step + self.step;

@@ -200,7 +200,7 @@ fn refused(error: WatchError) -> anyhow::Error {
 }
 
 impl Trace {
-    /// Begins all files; `is_late` says that samples come at the end, when all else has come.
+    /// Begins all files; `is_late` if samples come at the end, after everything else.
     pub(crate) fn begin(arguments: &TraceArguments, request: &TraceRequest, is_late: bool) -> Result<Self> {
         let mut sinks: Vec<Box<dyn Sink>> = Vec::new();
         for path in &arguments.trace {

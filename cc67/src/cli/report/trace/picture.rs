@@ -15,7 +15,7 @@ use crate::cli::report::plot::samples::{Column, PlottedAxis, Samples};
 /// Strips in a picture; a program that moves more bits than that is looked at with `--trace`.
 const STRIPS: usize = 16;
 
-/// The chart of a run up to a tick; `axes` says how each is named and measured.
+/// The chart of a run up to a tick; `axes` has the names and units of each.
 pub(super) fn chart(log: &Log, title: String, end: Ticks, axes: &BTreeMap<usize, PlottedAxis>) -> Chart {
     let end = Cycles::new((end.get() as i64).saturating_mul(Cycles::PER_TICK.get()));
     let columns = log.columns(|axis| axes.get(&axis).is_none_or(|known| known.is_measured));

@@ -26,7 +26,7 @@ enum Signal {
     Console,
 }
 
-/// A variable: what stands for it, and its value at the beginning.
+/// A variable: its identifier, and its initial value.
 #[derive(Debug)]
 struct Variable {
     id: String,
