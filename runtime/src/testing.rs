@@ -189,7 +189,7 @@ impl TestBench {
         String::from_utf8(text).expect("text")
     }
 
-    /// The remarks of the simulation since the last time anything was requested.
+    /// The remarks of the simulation since the last call anything was requested.
     pub(crate) fn diagnostics(&mut self) -> Vec<String> {
         let texts = self.kernel.parts.out.take_events().into_iter().filter_map(|event| match event.kind {
             EventKind::Remark(remark) if remark.message.severity() > Severity::Detail => {

@@ -93,7 +93,7 @@ fn our_reader(bytes: &[u8]) -> Vec<String> {
     rows
 }
 
-/// The rows of the other reader in that form.
+/// The rows of the other reader in our form.
 fn rows(text: &str) -> Vec<String> {
     let mut rows = Vec::new();
     let mut part = "";

@@ -150,7 +150,7 @@ fn a_firmware_in_c_echoes_while_it_is_interrupted() {
     assert_eq!(one.to_owned() + rest, String::from_utf8_lossy(&text));
 }
 
-/// Everything that can be seen of a board, and what it has sent since the last time.
+/// Everything that can be seen of a board, and what it has sent since the last call.
 fn seen(board: &mut BootedBoard) -> impl PartialEq + std::fmt::Debug + use<> {
     let bytes = board.take_bytes();
     let place = (board.cycle(), board.packets(), board.registers(), board.steps(2));

@@ -17,7 +17,7 @@ thread_local! {
 pub(crate) struct BoardNumber(u64);
 
 impl BoardNumber {
-    /// That of a new board.
+    /// Creates the client of a new board.
     pub(crate) fn new() -> Self {
         static LAST: AtomicU64 = AtomicU64::new(0);
         Self(LAST.fetch_add(1, Ordering::Relaxed))

@@ -12,7 +12,7 @@ struct BoardThread {
     state: ThreadState,
     /// Names and lines of the program that was loaded here.
     program: Option<Arc<DebugInfo>>,
-    /// It was active before the connection, and has not ended since.
+    /// The thread was active before the connection, and has not ended since.
     is_foreign: bool,
     /// It was paused here.
     is_paused: bool,

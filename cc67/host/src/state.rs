@@ -104,7 +104,7 @@ impl State {
         self.callback.take_if(|(owner, _)| *owner == client);
     }
 
-    /// Remarks of the simulation since the last time.
+    /// Takes the remarks of the simulation since the last call.
     pub(super) fn take_remarks(&mut self) -> Vec<Event> {
         mem::take(&mut self.remarks).into()
     }

@@ -95,13 +95,13 @@ pub trait Target {
     /// that with an event, and lets the time pass in which nothing happens any more.
     fn step(&mut self, limit: Ticks, events: EventSink<'_>);
 
-    /// The run is over: sends what is still waiting, and checks what the stimulus expects at the end.
+    /// Ends the run: sends what is still waiting, and checks what the stimulus expects at the end.
     fn finish(&mut self, events: EventSink<'_>);
 
     /// Returns whether no thread is active and nothing is in progress that a program has begun.
     fn has_ended(&self) -> bool;
 
-    /// The thread that has had the processor in the last tick.
+    /// The owner of the processor in the last tick.
     fn turn(&self) -> Turn;
 
     /// Loads a program into its thread, which is stopped first.
@@ -264,7 +264,7 @@ pub trait Target {
     /// Keeps from now on the bytes that the board sends over its link, for a PC that is elsewhere.
     fn tap_wire(&mut self);
 
-    /// Those bytes since the last time.
+    /// Takes the bytes of the link since the last call.
     fn take_wire(&mut self) -> Vec<u8>;
 
     /// Returns the contents of flash memory, if they can be read.
@@ -331,7 +331,7 @@ pub trait Target {
         self.tick().get()
     }
 
-    /// A debugger is about to use it ([`Capability::Breakpoints`]): calls in progress are followed from now on.
+    /// Prepares it for a debugger ([`Capability::Breakpoints`]): follows calls in progress from now on.
     fn prepare_to_hold(&mut self) {}
 
     /// Whose program holds the tick in progress, and the instant; `None` between two ticks.

@@ -416,7 +416,7 @@ fn compile(
     Ok(Some((programs, offered)))
 }
 
-/// A session as the arguments want it, with what they connect to its board: the serial port, the file of the flash.
+/// A session that the arguments describe, with the serial port and the file of the flash of its board.
 #[derive(Debug)]
 pub(crate) struct Rig<T: Target> {
     /// The board under control.

@@ -322,12 +322,12 @@ impl<A: ExternalHardware> BootedBoard<A> {
         self.sent.tap();
     }
 
-    /// Those bytes since the last time.
+    /// Takes the bytes of the link since the last call.
     pub fn take_wire(&mut self) -> Vec<u8> {
         self.sent.take_wire()
     }
 
-    /// The lines that the firmware has completed since the last time.
+    /// The lines that the firmware has completed since the last call.
     pub fn take_lines(&mut self) -> Vec<SentLine> {
         self.sent.take(self.hardware.window.link.take_sent())
     }
@@ -437,7 +437,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
         self.hardware.window.chips.pins.changes.switch_on(Vec::new());
     }
 
-    /// The changes of pins since the last time, if they are kept; their instants are cycles since power-up.
+    /// The changes of pins since the last call, if they are kept; their instants are cycles since power-up.
     pub fn take_pin_changes(&mut self) -> Vec<BitChange> {
         self.hardware.window.chips.pins.changes.take()
     }

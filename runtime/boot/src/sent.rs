@@ -47,7 +47,7 @@ impl SentLines {
         self.wire.get_or_insert_default();
     }
 
-    /// The bytes since the last time.
+    /// The bytes since the last call.
     pub(crate) fn take_wire(&mut self) -> Vec<u8> {
         self.wire.as_mut().map(std::mem::take).unwrap_or_default()
     }

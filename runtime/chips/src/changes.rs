@@ -92,7 +92,7 @@ impl Changes {
         change
     }
 
-    /// All changes since the last time.
+    /// All changes since the last call.
     pub fn take(&mut self) -> Vec<BitChange> {
         self.seen = 0;
         std::mem::take(&mut self.list)

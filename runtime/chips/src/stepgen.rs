@@ -405,7 +405,7 @@ mod tests {
         (generators, pins)
     }
 
-    /// Changes since the last time: pin, level, nanoseconds since an instant.
+    /// Changes since the last call: pin, level, nanoseconds since an instant.
     fn told(pins: &mut Pins, since: Cycles) -> Vec<(u16, u8, i64)> {
         let changes = pins.changes.take();
         changes

@@ -30,7 +30,7 @@ pub struct Uart {
     sent: Cycles,
     /// The character that waits after it.
     waiting: Option<u8>,
-    /// Set while there is a listener, and the characters sent since the last time.
+    /// Set while there is a listener, and the characters sent since the last call.
     is_heard: bool,
     out: VecDeque<(Cycles, u8)>,
     /// Characters on the line, the first one complete at `arrival`.

@@ -262,7 +262,7 @@ impl<E: Engine> Board<E> {
         !is_active && !self.machine.firmware().is_busy(self.machine.memory())
     }
 
-    /// Hands over the events since the last time, with the program's place where that is known.
+    /// Hands over the events since the last call, with the program's place where that is known.
     fn deliver(&mut self, sink: &mut dyn FnMut(Event)) {
         for mut event in self.machine.firmware_mut().0.parts.out.take_events() {
             if let EventKind::Remark(Remark { speaker: Speaker::Thread(thread), place, .. }) = &mut event.kind

@@ -43,7 +43,7 @@ impl<E: Engine> Board<E> {
         self.machine.firmware_mut().0.parts.out.tap_wire();
     }
 
-    /// The bytes that the board has sent to the PC since the last time, as they are on the wire.
+    /// The bytes that the board has sent to the PC since the last call, as they are on the wire.
     #[must_use]
     pub fn take_wire(&mut self) -> Vec<u8> {
         self.machine.firmware_mut().0.parts.out.take_wire()

@@ -29,7 +29,7 @@ use crate::world::{World, WorldAccess};
 pub(crate) struct Clock {
     /// When the present tick began.
     pub(crate) tick_start: Cycles,
-    /// When the present slice began, and whose it is.
+    /// The beginning of the present slice.
     pub(crate) slice_start: Cycles,
     pub(crate) turn: Turn,
     /// The time that the primary thread still needs for a string that it has begun to send.

@@ -244,7 +244,7 @@ impl Plant {
         self.steps.origin += units;
     }
 
-    /// The position before and after a program has written it since the last time.
+    /// The position before and after a program has written it since the last call.
     #[inline(always)]
     pub(crate) fn take_rewritten(&mut self) -> Option<(f64, f64)> {
         self.rewritten.take()
@@ -348,7 +348,7 @@ impl Plant {
         self.steps.has_stepped
     }
 
-    /// Position units that the step generator has output since the last time.
+    /// Position units that the step generator has output since the last call.
     pub(crate) fn take_stepped(&mut self) -> f64 {
         self.steps.has_stepped = false;
         std::mem::take(&mut self.steps.stepped)

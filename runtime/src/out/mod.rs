@@ -111,7 +111,7 @@ impl Out {
         self.made.retain(|(code, _)| !codes.contains(code));
     }
 
-    /// The events since the last time.
+    /// The events since the last call.
     pub(crate) fn take_events(&mut self) -> Vec<Event> {
         std::mem::take(&mut self.events)
     }
@@ -131,7 +131,7 @@ impl Out {
         self.wire.get_or_insert_default();
     }
 
-    /// The bytes on the wire since the last time.
+    /// The bytes on the wire since the last call.
     pub(crate) fn take_wire(&mut self) -> Vec<u8> {
         self.wire.as_mut().map(std::mem::take).unwrap_or_default()
     }

@@ -120,7 +120,7 @@ impl Browser {
         result["result"]["value"].clone()
     }
 
-    /// Waits until an expression is true, and says what was the case if it does not come true in two minutes.
+    /// Waits until an expression is true, and fails with the state of the page if it does not in two minutes.
     pub(super) fn until(&mut self, condition: &str) {
         let loaded = "document.readyState === 'complete'";
         let script = format!(

@@ -180,8 +180,8 @@ pub(super) struct Context {
 /// A context as it was at an instant.
 #[derive(Debug)]
 pub(super) struct Saved {
-    /// The registers of the calls in progress, and the arguments after them; whatever comes then is written before it
-    /// is read.
+    /// The registers of the calls in progress, and the arguments after them; the words after them are written before
+    /// they are read.
     registers: Vec<u64>,
     calls: Calls,
     pending: Option<FuncRef>,

@@ -1,6 +1,6 @@
 //! Calls of functions that no program makes: a debugger evaluates an expression.
 //!
-//! The function runs beside the context that is looked at, below its calls on its stack, and the board stands meanwhile:
+//! The function runs beside the selected context, below its calls on its stack, and the board stands meanwhile:
 //! no tick passes, and no other thread runs. What the function stores and asks of the firmware takes effect.
 
 use kmotiondef::{Cycles, GuestAddr};

@@ -118,7 +118,7 @@ impl Copies {
         }
     }
 
-    /// A register changes: a word of it, or all.
+    /// Forgets the copies of a register that changes: of a word of it, or of all.
     fn forget(&mut self, changed: Arg) {
         let touches = |arg: Arg| {
             let is_other_half =

@@ -149,7 +149,7 @@ impl Mover<'_> {
         self.code.regs[self.reg].is_pair
     }
 
-    /// A parameter is stored at once: the stores at the beginning of the function.
+    /// Returns the stores of parameters at the beginning of the function.
     fn params(&mut self) -> Vec<Inst> {
         let mut stores = Vec::new();
         let Some(index) = self.code.params.iter().position(|(reg, _)| *reg == self.reg) else {

@@ -86,7 +86,7 @@ pub struct InlinedModel {
 }
 
 impl FunctionModel {
-    /// The inlined calls that an instruction is of, the innermost first.
+    /// The inlined calls that contain an instruction, the innermost first.
     pub fn calls_at(&self, address: u32) -> impl Iterator<Item = &InlinedModel> {
         let innermost = self.call_at(address).and_then(|index| self.inlined.get(index));
         std::iter::successors(innermost, |call| self.inlined.get(call.inside?))

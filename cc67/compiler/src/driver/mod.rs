@@ -101,7 +101,7 @@ pub struct Compilation {
 }
 
 impl Compilation {
-    /// A compilation that ends before the text is looked at.
+    /// A compilation that ends before the text is read.
     fn refused(path: &Path, error: Diagnostic) -> Self {
         let mut sink = Sink::new();
         sink.report(error);

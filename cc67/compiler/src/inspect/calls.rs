@@ -129,7 +129,7 @@ fn numbered(program: &Program, address: u32) -> Option<usize> {
         .position(|function| program.address_of(function.at.0 as usize).get() == address)
 }
 
-/// Those of them that a call through a pointer with signature `sig` can mean.
+/// The functions that a call through a pointer with signature `sig` can mean.
 fn candidates<'a>(
     program: &'a Program,
     sig: SigRef,

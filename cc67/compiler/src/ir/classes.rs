@@ -16,7 +16,7 @@ pub(super) struct Classes {
 }
 
 impl Classes {
-    /// A value has a class; its earlier class, if that differs.
+    /// Records the class of a value; returns its earlier class, if that differs.
     pub(super) fn say(&mut self, value: ValueId, class: Class) -> Result<(), Class> {
         match self.known[value].replace(class) {
             Some(before) if before != class => Err(before),
@@ -24,7 +24,7 @@ impl Classes {
         }
     }
 
-    /// A value has the class of another.
+    /// Records that two values have the same class.
     pub(super) fn copy(&mut self, dst: ValueId, src: ValueId) {
         self.copies.push((dst, src));
     }

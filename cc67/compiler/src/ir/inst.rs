@@ -530,7 +530,7 @@ impl Terminator {
         }
     }
 
-    /// The operand it reads, to change it.
+    /// The operand it reads, for a change.
     #[must_use]
     pub const fn operand_mut(&mut self) -> Option<&mut Operand> {
         match self {

@@ -7,7 +7,7 @@ use crate::typed::{Callee, ExprId, ExprKind, Function, PlaceId, PlaceKind, Stmt,
 pub(super) enum Extent {
     /// Every one.
     All,
-    /// Those that are always evaluated exactly once, in a piece that is not left early.
+    /// Expressions that are always evaluated exactly once, in a piece that is not left early.
     Always,
 }
 

@@ -37,7 +37,7 @@ pub enum ReadError {
     /// A section is missing.
     #[error("the object has no section {0}")]
     Missing(&'static str),
-    /// It is made by another version of cc67, or damaged.
+    /// It was made by another version of cc67, or is damaged.
     #[error("the object was compiled by another version of cc67; compile it again")]
     Code,
     /// A symbol does not fit the sections.

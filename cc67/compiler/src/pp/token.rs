@@ -29,7 +29,7 @@ pub struct Token {
 }
 
 impl Token {
-    /// A token that is not an identifier.
+    /// Creates a token that is not an identifier.
     #[must_use]
     pub fn new(kind: TokenKind, flags: Flags, span: Span) -> Self {
         Self { kind, flags, name: Name::reserved_value(), span }

@@ -12,7 +12,7 @@ pub(super) const HEADER_HELP: &str = "is `KMotionDef.h` included?";
 
 /// The advice about an undeclared name.
 pub(super) enum Advice {
-    /// It follows from another error, and needs no words.
+    /// It follows from another error, and is not reported.
     Silence,
     /// Something to add to the error.
     Say(Box<dyn FnOnce(Diagnostic) -> Diagnostic>),

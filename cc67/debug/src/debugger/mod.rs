@@ -349,7 +349,7 @@ impl<T: Target> Debugger<T> {
         &self.stop
     }
 
-    /// The thread that is looked at.
+    /// The selected thread.
     #[must_use]
     pub const fn thread(&self) -> ThreadId {
         self.thread
@@ -455,7 +455,7 @@ impl<T: Target> Debugger<T> {
         self.frames(self.context()).into_iter().nth(self.frame)?.place
     }
 
-    /// The context that is looked at: the thread's, or the call-back's if the board is there.
+    /// The selected context: the thread's, or the call-back's if the board is there.
     #[must_use]
     pub fn context(&self) -> ContextId {
         match self.stop.context {

@@ -122,7 +122,7 @@ impl<T: Target> Debugger<T> {
         Ok(Goal::Above { context, depth, at: vec![caller.view.continues_at.get()] })
     }
 
-    /// Executes one instruction of the thread that is looked at.
+    /// Executes one instruction of the selected thread.
     ///
     /// # Errors
     /// The thread is not active.

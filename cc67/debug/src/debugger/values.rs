@@ -182,7 +182,7 @@ fn in_words_of_gdb(expression: &str, error: &str) -> String {
 }
 
 impl<T: Target> Debugger<T> {
-    /// The call that is looked at.
+    /// The selected call.
     fn call(&self) -> Option<StackFrame> {
         self.frames(self.context()).into_iter().nth(self.frame)
     }
@@ -200,7 +200,7 @@ impl<T: Target> Debugger<T> {
         compile(&self.programs, self.thread, at, expression, calls)
     }
 
-    /// An expression, compiled for the call that is looked at.
+    /// An expression, compiled for the selected call.
     pub(super) fn prepare(&self, expression: &str) -> Result<Prepared, DebugError> {
         let (probe, items) = self.probe(expression, AllowedCalls::Computed)?;
         let depth = |call: StackFrame| self.session.frames(self.context()).len() - call.real;

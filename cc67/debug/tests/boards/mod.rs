@@ -7,7 +7,7 @@ use kmotiondef::limits::TIMEBASE;
 use kmotiondef::{ThreadId, Ticks};
 use runtime::MachineFile;
 
-/// The tick that is over after some seconds of board time.
+/// The tick that ends after some seconds of board time.
 pub(crate) fn tick(seconds: f64) -> Ticks {
     Ticks::new((seconds / TIMEBASE).round() as u64)
 }

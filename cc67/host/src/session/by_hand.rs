@@ -269,7 +269,7 @@ impl<T: Target> Session<T> {
         self.target.tap_wire();
     }
 
-    /// Those bytes since the last time.
+    /// Takes the bytes of the link since the last call.
     pub fn take_wire(&mut self) -> Vec<u8> {
         self.target.take_wire()
     }

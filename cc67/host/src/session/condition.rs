@@ -15,7 +15,7 @@ const LONGEST: usize = 60;
 pub(super) struct WaitCondition(String);
 
 impl WaitCondition {
-    /// That of the innermost `while` that begins at a line, counted from 1, or shortly before it.
+    /// The condition of the innermost `while` that begins at a line, counted from 1, or shortly before it.
     pub(super) fn around(text: &str, line: u32) -> Option<Self> {
         let lines: Vec<&str> = text.lines().collect();
         let last = usize::try_from(line).ok()?.checked_sub(1)?;

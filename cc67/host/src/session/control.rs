@@ -142,7 +142,7 @@ impl<T: Target> Session<T> {
         self.sample();
     }
 
-    /// The run is over: sends the console lines still waiting, and checks what the stimulus expects at the end.
+    /// Ends the run: sends the console lines still waiting, and checks what the stimulus expects at the end.
     pub fn finish(&mut self, events: EventSink<'_>) {
         self.target.finish(events);
     }

@@ -26,7 +26,7 @@ impl<T: Target> Session<T> {
         self.target.work()
     }
 
-    /// A debugger is about to use the board: the calls in progress are followed from now on.
+    /// Prepares the board for a debugger: follows the calls in progress from now on.
     pub fn prepare_to_hold(&mut self) {
         self.target.prepare_to_hold();
     }

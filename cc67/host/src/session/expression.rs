@@ -337,7 +337,7 @@ struct Vocabulary<'a> {
 }
 
 impl<'a> Vocabulary<'a> {
-    /// Those of a program: its source, and where its image has the variables.
+    /// The declarations of a program: its source, and where its image has the variables.
     fn of_program(program: &'a UserProgram) -> Result<Self, String> {
         let inspection = Inspection::read(&program.image).map_err(|error| error.to_string())?;
         let objects = inspection.symbols.iter().filter(|entry| entry.kind == EntryKind::Object);
@@ -351,7 +351,7 @@ impl<'a> Vocabulary<'a> {
         Ok(Self { path, text, symbols })
     }
 
-    /// Those of the board, for want of a program.
+    /// The declarations of the board, where there is no program.
     fn of_board() -> Self {
         let text = b"#include \"KMotionDef.h\"\n".to_vec();
         Self { path: Path::new("board"), text, symbols: BTreeMap::new() }

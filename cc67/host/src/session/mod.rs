@@ -123,7 +123,7 @@ pub struct Session<T = Board> {
     options: Options,
     /// The programs in the threads: expressions are in their words.
     programs: Arc<Vec<UserProgram>>,
-    /// Those that a stimulus may load, with what is known about each.
+    /// The programs that a stimulus may load, with their debug information.
     offered: Vec<(UserProgram, DebugInfo)>,
     signals: Signals,
     recording: Recording,
@@ -315,7 +315,7 @@ impl<T: Target> Session<T> {
         if starts { self.start(thread) } else { Ok(()) }
     }
 
-    /// A thread has another program: expressions are in its words.
+    /// Notes that a thread has another program, whose declarations expressions use.
     fn note_program(&mut self, program: UserProgram) {
         let programs = Arc::make_mut(&mut self.programs);
         programs.retain(|other| other.thread != program.thread);

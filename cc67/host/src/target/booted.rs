@@ -203,7 +203,7 @@ impl BootedTarget {
         }
     }
 
-    /// A tick is over: exchanges lines and characters with what is around the board.
+    /// Ends a tick: exchanges lines and characters with the surroundings of the board.
     fn complete_tick(&mut self, events: EventSink<'_>) {
         self.note_packets();
         let mut lines = std::mem::take(&mut self.state.early);

@@ -1,4 +1,4 @@
-//! A frame: what the board shows at an instant, in as few bytes as that takes.
+//! A frame: the visible state of the board at an instant, in few bytes.
 //!
 //! Numbers are little endian. `page/frame.js` reads what is written here:
 //!

@@ -13,7 +13,7 @@ use super::keep::{Kept, Run};
 use crate::hub::PageId;
 
 impl<T: Target> ViewState<T> {
-    /// The timeline takes up what was done; in the past, the run continues from there.
+    /// Adds the inputs to the timeline; in the past, the run continues from there.
     pub(super) fn keep(&mut self, session: &mut Session<T>) {
         let history = self.timeline.as_mut().map(|timeline| timeline.keep(session));
         if let Some(History::New(_)) = history {

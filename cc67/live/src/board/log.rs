@@ -137,7 +137,7 @@ impl Log {
         self.entries.iter().collect()
     }
 
-    /// The entries since the last time.
+    /// Takes the entries since the last call.
     pub(super) fn take_fresh(&mut self) -> Vec<&LogEntry> {
         let fresh = std::mem::take(&mut self.fresh);
         self.entries.iter().skip(self.entries.len() - fresh).collect()

@@ -29,7 +29,7 @@ impl<T: Target> ViewState<T> {
         }
     }
 
-    /// The machine file was saved.
+    /// Notes that the machine file was saved.
     pub(super) fn machine_saved(&mut self, session: &Session<T>, checked: Result<(), String>) {
         self.programs.machine = match checked {
             Ok(()) => MachineState::Saved,

@@ -247,7 +247,7 @@ impl<T: Target> ViewState<T> {
         }
     }
 
-    /// A page has connected: it receives everything.
+    /// Connects a page, which receives everything.
     fn join(&mut self, session: &mut Session<T>, id: PageId, mailbox: Arc<Mailbox>) {
         let page = Page { mailbox, every: None, last: now(), next_row: 0, generation: 0 };
         self.pages.insert(id, page);

@@ -19,9 +19,9 @@ pub(super) struct Programs {
     options: Options,
     /// True if a program that is saved is loaded at once.
     reloads: bool,
-    /// Those that were saved without errors and are not loaded yet.
+    /// The programs that were saved without errors and are not loaded yet.
     waiting: BTreeMap<ThreadId, UserProgram>,
-    /// Those that were loaded in place of the first ones.
+    /// The programs that were loaded in place of the first ones.
     loaded: BTreeMap<ThreadId, UserProgram>,
     /// The errors of those that were saved with some.
     wrong: BTreeMap<ThreadId, Vec<CompileMessage>>,
@@ -48,7 +48,7 @@ impl Programs {
         }
     }
 
-    /// A program was saved; what should be loaded now, if it may be.
+    /// Notes that a program was saved; returns the programs to load now, if that is allowed.
     pub(super) fn saved(&mut self, compiled: Compiled, may_load: bool) -> Vec<UserProgram> {
         self.note(compiled);
         if self.reloads && may_load { self.take() } else { Vec::new() }
@@ -70,7 +70,7 @@ impl Programs {
         programs
     }
 
-    /// Those that were loaded since the board was switched on, for the next time that it is.
+    /// The programs that were loaded since the board was switched on, for the next time that it is.
     pub(super) fn loaded(&self) -> Vec<UserProgram> {
         self.loaded.values().cloned().collect()
     }

@@ -76,7 +76,7 @@ pub(super) struct WrongSignal {
 #[derive(Debug, Default)]
 pub(super) struct Samples {
     names: Vec<String>,
-    /// Those of the list that cannot be followed.
+    /// The signals of the list that cannot be sampled.
     wrong: Vec<WrongSignal>,
     list: String,
     /// Ticks from one sample to the next at the pace of the real board.

@@ -63,7 +63,7 @@ impl<T: Target> ViewState<T> {
         }
     }
 
-    /// The board is shown no more.
+    /// Tells pages that the board is no longer shown.
     pub(super) fn close(&self) {
         self.pages.values().for_each(|page| page.mailbox.close());
     }

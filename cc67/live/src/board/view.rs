@@ -39,7 +39,7 @@ impl<T: Target> LiveView<T> {
         self.state.log.note(session, event);
     }
 
-    /// Does what pages have requested since the last time, without waiting, and sends them what is new. To be called
+    /// Executes the requests of pages since the last call, without waiting, and sends them what is new. To be called
     /// about a hundred times in a second.
     pub fn beat(&mut self, session: &mut Session<T>) -> OwnerRequests {
         self.state.take(session, &self.requests, Duration::ZERO);
@@ -55,7 +55,7 @@ impl<T: Target> LiveView<T> {
         self.state.tell(session);
     }
 
-    /// The session is over: pages are told.
+    /// Tells pages that the session is over.
     pub fn close(&self) {
         self.state.close();
     }

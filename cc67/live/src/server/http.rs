@@ -51,7 +51,7 @@ impl Head {
         target.starts_with('/').then_some(Self { target, headers })
     }
 
-    /// The path that is requested.
+    /// The requested path.
     pub(super) fn path(&self) -> &str {
         self.target.split('?').next().unwrap_or_default()
     }

@@ -47,7 +47,7 @@ impl EngineName {
         argument.value_parser(parser)
     }
 
-    /// Those that this command is built with and that take the same board time.
+    /// The engines that this command is built with and that take the same board time.
     pub(crate) fn available() -> Vec<Self> {
         let mut engines = vec![Self::Bytecode];
         if cfg!(feature = "native") {

@@ -11,7 +11,7 @@ use super::heading;
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = heading::PC)]
 pub(crate) struct UartArguments {
-    /// Let the serial port receive the characters of FILE, once the program first looks for them
+    /// Let the serial port receive the characters of FILE, once the program first reads the port
     #[arg(long, value_name = "FILE", conflicts_with = "uart")]
     pub(crate) uart_input: Option<PathBuf>,
     /// Write the serial port's output to FILE
@@ -23,7 +23,7 @@ pub(crate) struct UartArguments {
 }
 
 impl UartArguments {
-    /// These, and where they say nothing the files of a machine file.
+    /// Returns these options; where they are absent, the files of the machine file.
     pub(crate) fn or_those_of(&self, machine: &MachineFile) -> Self {
         let file = |name: &Option<String>| name.as_ref().map(PathBuf::from);
         let input = file(&machine.uart.input).filter(|_| self.uart.is_none());

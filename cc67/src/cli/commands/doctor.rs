@@ -1,4 +1,4 @@
-//! `cc67 doctor`: what is installed here, on one screen, for reports of faults.
+//! `cc67 doctor`: what is installed here, on one screen, for bug reports.
 //!
 //! Each row is found as the command itself would find it. Nothing is changed, and no controller is spoken to.
 

@@ -142,7 +142,7 @@ subcommands! {
         Study(package::PackageArguments) as arguments => package::run("study", arguments);
     }
     "More" {
-        /// Show what is installed, for reports of faults: command, engines, editors, controllers
+        /// Show what is installed, for bug reports: command, engines, editors, controllers
         Doctor(doctor::DoctorArguments) as arguments => doctor::doctor(arguments);
         /// Print the completion script for a shell
         Completions(shell::CompletionArguments) as arguments => shell::completions(arguments, Arguments::command());

@@ -123,7 +123,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
         self.packets = whether.then(Vec::new);
     }
 
-    /// The packets that programs have executed since the last time, if they are kept.
+    /// The packets that programs have executed since the last call, if they are kept.
     pub fn take_packets(&mut self) -> Vec<ProgramPacket> {
         self.packets.as_mut().map(std::mem::take).unwrap_or_default()
     }

@@ -17,7 +17,7 @@ use crate::file::FirmwareFile;
 use crate::loads::Loads;
 use crate::sent::SentLines;
 
-/// Longest start: many times what any version takes.
+/// The time limit for a start: many times that of any version.
 const LONGEST_START: u64 = 3 * SECOND;
 /// The address at which a board with flash starts, and its stack there.
 const FLASH_START: u32 = 0x1000_1000;

@@ -145,7 +145,7 @@ impl Races {
         }
     }
 
-    /// A context does something with what it has read.
+    /// Notes that a context uses a value that it has read.
     pub(super) fn settle(&mut self, own: usize, out: &mut Out) {
         for Half { actor, cell, size, other, is_seen } in std::mem::take(&mut self.tracks[own].reading.found)
         {

@@ -48,7 +48,7 @@ impl Player {
         }
     }
 
-    /// Takes the console lines that were sent since the last time.
+    /// Takes the console lines that were sent since the last call.
     fn hear(&mut self, out: &mut Out) {
         while let Some((at, line)) = out.next_line() {
             self.note_line(&line, at);

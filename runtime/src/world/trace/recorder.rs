@@ -43,7 +43,7 @@ impl Recorder {
         (sampled + count > tick.get()).then_some(Ticks::new(sampled))
     }
 
-    /// The values, if some of them have changed since the last time.
+    /// The values, if some of them have changed since the last call.
     pub(crate) fn sample(&mut self, view: &View<'_>) -> Option<Record> {
         let values: Vec<f64> = self.request.quantities.iter().map(|quantity| quantity.read(view)).collect();
         let enabled = AxisId::all()

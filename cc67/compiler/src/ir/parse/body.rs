@@ -149,24 +149,24 @@ impl Body {
         }
     }
 
-    /// A value has a class.
+    /// Records the class of a value.
     pub(super) fn say(&mut self, value: ValueId, class: Class) -> Read<()> {
         self.classes
             .say(value, class)
             .map_err(|before| format!("{value} is {before} elsewhere, {class} here"))
     }
 
-    /// A value is named in this line.
+    /// Notes that this line names a value.
     pub(super) fn mention(&mut self, value: ValueId) {
         self.values.entry(value).or_insert(self.at);
     }
 
-    /// A block is jumped to in this line.
+    /// Notes that this line jumps to a block.
     pub(super) fn target(&mut self, block: BlockId) {
         self.targets.entry(block).or_insert(self.at);
     }
 
-    /// An operand has a class according to this line.
+    /// Records the class of an operand in this line.
     pub(super) fn check_class(&mut self, operand: Operand, class: Class) {
         self.compared.push((operand, class, self.at));
     }

@@ -8,7 +8,7 @@ use super::index::TEXTS;
 /// The texts in one compilation.
 #[derive(Debug)]
 pub(in crate::pp) struct Prepared {
-    /// Those that were begun.
+    /// The files that were begun.
     pub(super) files: [Option<FileId>; TEXTS.len()],
     pub(super) headers: HeaderState,
     /// A declaration is read: macros of the program mean nothing there.

@@ -48,7 +48,7 @@ pub(super) struct LastSeen {
 pub(super) struct OpenCalls([ContextCalls; ContextId::COUNT]);
 
 impl OpenCalls {
-    /// The processor is at a packet, which may be the first of a function with this code.
+    /// Notes that the processor is at a packet, which may be the first of a function with this code.
     pub(super) fn arrive(&mut self, arrival: &Reached, begins: Option<Range<u32>>) {
         let Some(context) = context(arrival) else { return };
         let known = &mut self.0[context.index()];
@@ -80,7 +80,7 @@ impl OpenCalls {
         self.0[context.index()].last
     }
 
-    /// A thread has ended.
+    /// Notes that a thread has ended.
     pub(super) fn end(&mut self, thread: ThreadId) {
         self.0[ContextId::of(thread).index()] = ContextCalls::default();
     }

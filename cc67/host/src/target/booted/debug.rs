@@ -51,7 +51,7 @@ impl Debugging {
         self.held
     }
 
-    /// The context that is held continues.
+    /// Lets the held context continue.
     pub(super) const fn go_on(&mut self) {
         self.held = None;
         self.hold = None;

@@ -49,7 +49,7 @@ pub(crate) struct Project {
     pub(crate) path: PathBuf,
     /// Options of every command.
     common: Vec<OsString>,
-    /// Those of each command, as keys and values.
+    /// The options of each command, as keys and values.
     of_commands: BTreeMap<String, Vec<(String, Vec<OsString>)>>,
     /// The programs of the threads, which `cc67 check` compares.
     programs: Vec<OsString>,

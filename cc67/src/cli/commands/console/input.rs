@@ -46,7 +46,7 @@ impl Lines {
         self.inputs.recv().map_err(|_| RecvTimeoutError::Disconnected)
     }
 
-    /// The line is done, and another one may come.
+    /// Notes that the line is done, and allows another one.
     pub(super) fn ready(&self) {
         if let Some(ready) = &self.ready {
             // A keyboard that is gone ends the input, which the next line shows.

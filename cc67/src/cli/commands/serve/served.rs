@@ -113,7 +113,7 @@ impl<T: Target> Served<T> {
         self.rig.session.tap_wire();
     }
 
-    /// Returns the bytes that it has sent since the last time.
+    /// Returns the bytes that it has sent since the last call.
     pub(super) fn take_wire(&mut self) -> Vec<u8> {
         self.rig.session.take_wire()
     }
@@ -138,7 +138,7 @@ impl<T: Target> Served<T> {
         self.rig.session.debug().into_iter().map(|(_, debug)| debug).collect()
     }
 
-    /// It is served no more.
+    /// Ends serving it.
     pub(super) fn finish(&mut self, sink: &mut dyn FnMut(Event)) -> Result<()> {
         #[cfg(feature = "live")]
         self.view.iter().for_each(LiveView::close);

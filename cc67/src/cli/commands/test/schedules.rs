@@ -127,7 +127,7 @@ impl ScheduleSearch<'_> {
         Ok(FailingSchedule { seed, smallest: schedule, why: smallest.why, notes })
     }
 
-    /// Those of a list of schedules that fail.
+    /// Returns the failing schedules of a list.
     fn failing(&self, list: &str) -> Result<Vec<Failing>> {
         let golden = self.case.golden();
         let golden = golden.canonicalize().with_context(|| format!("cannot read {}", golden.display()))?;
