@@ -2,7 +2,7 @@
 
 use std::io;
 
-/// The reason alone: the number that the library adds is of no use to the user.
+/// The reason alone: the number that the library adds means nothing to the user.
 pub fn reason(error: &io::Error) -> String {
     let text = error.to_string();
     text.split(" (os error").next().unwrap_or_default().to_owned()
