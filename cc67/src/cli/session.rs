@@ -94,7 +94,7 @@ pub(crate) fn boot(file: &Path) -> Result<BootedFirmware> {
 /// The work of a command on a board of any target.
 pub(crate) trait Work {
     /// Does it.
-    fn on<T: Target>(self, rig: Rig<T>) -> Result<Exit>;
+    fn on<T: Target>(self, rig: BoardSession<T>) -> Result<Exit>;
 }
 
 impl Setup {
@@ -214,17 +214,17 @@ impl Setup {
     }
 
     /// A modelled board as the arguments want it, on an engine of the caller's choice.
-    pub(crate) fn rig<E: Engine>(self, engine: E) -> Result<Rig<Board<E>>> {
+    pub(crate) fn rig<E: Engine>(self, engine: E) -> Result<BoardSession<Board<E>>> {
         self.rig_with(|session, _| session.session_on(engine))
     }
 
     /// A firmware file as the arguments want it.
-    pub(crate) fn rig_of_firmware(self, firmware: &BootedFirmware) -> Result<Rig<BootedTarget>> {
+    pub(crate) fn rig_of_firmware(self, firmware: &BootedFirmware) -> Result<BoardSession<BootedTarget>> {
         self.rig_with(|session, _| session.session_on_firmware(firmware))
     }
 
     /// The connected controller, with the programs loaded and started.
-    fn rig_of_controller(mut self) -> Result<Rig<Controller>> {
+    fn rig_of_controller(mut self) -> Result<BoardSession<Controller>> {
         let Some(Connected { connection, terms }) = self.controller.take() else {
             bail!("no controller is connected");
         };
@@ -232,7 +232,7 @@ impl Setup {
     }
 
     /// The target that was requested; the modelled board on the interpreter.
-    pub(crate) fn rig_of_any(self) -> Result<Rig<AnyTarget>> {
+    pub(crate) fn rig_of_any(self) -> Result<BoardSession<AnyTarget>> {
         ensure!(self.controller.is_none(), "this does not work with `--on` yet: {WORK_WITH_CONTROLLER} do");
         self.rig_with(|session, code| match code {
             CodeFor::Engine(_) | CodeFor::Controller(_) => session.session_on_any(None),
@@ -243,7 +243,7 @@ impl Setup {
     fn rig_with<T: Target>(
         self,
         make: impl FnOnce(cc67_host::Setup, &CodeFor) -> Result<Session<T>, HostError>,
-    ) -> Result<Rig<T>> {
+    ) -> Result<BoardSession<T>> {
         let Self { session, code, uart, mut flash, controller: _ } = self;
         let session = make(session, &code).map_err(|error| match (&error, flash.file()) {
             (HostError::Flash(why), Some((path, _))) => {
@@ -254,7 +254,7 @@ impl Setup {
         if let (CodeFor::Firmware(_), Some(now)) = (&code, session.target().flash()) {
             flash.begins_with(now);
         }
-        Ok(Rig { session, code, uart, line: SerialLine::default(), flash, attendant: None })
+        Ok(BoardSession { session, code, uart, line: SerialLine::default(), flash, attendant: None })
     }
 
     /// The board for a debugger, on the engine that it can hold.
@@ -418,7 +418,7 @@ fn compile(
 
 /// A session that the arguments describe, with the serial port and the file of the flash of its board.
 #[derive(Debug)]
-pub(crate) struct Rig<T: Target> {
+pub(crate) struct BoardSession<T: Target> {
     /// The board under control.
     pub(crate) session: Session<T>,
     code: CodeFor,
@@ -429,7 +429,7 @@ pub(crate) struct Rig<T: Target> {
     pub(crate) attendant: Option<Box<dyn Attendant<T>>>,
 }
 
-impl<T: Target> Rig<T> {
+impl<T: Target> BoardSession<T> {
     /// Connects the serial port; a peer that has to be there is waited for.
     pub(crate) fn connect(&mut self) -> Result<()> {
         self.line = SerialLine::connect(&self.uart)?;

@@ -25,7 +25,7 @@ use crate::cli::args::time::{DEFAULT_LIMIT, seconds};
 use crate::cli::io::exit::Exit;
 use crate::cli::io::{output, terminal};
 use crate::cli::report::numbers::Tolerance;
-use crate::cli::session::{Rig, Setup, Started, Work, boot, run_with_boxes};
+use crate::cli::session::{BoardSession, Setup, Started, Work, boot, run_with_boxes};
 use outcome::Outcome;
 use random::RandomArguments;
 
@@ -273,7 +273,7 @@ impl CompareArguments {
         };
         // The model ends before the tick that the firmware has just begun.
         let until = Ticks::new(at.get() + 1).min(self.ticks());
-        let axes = |rig: &Rig<BootedTarget>| rig.session.target().axes();
+        let axes = |rig: &BoardSession<BootedTarget>| rig.session.target().axes();
         let mut before = axes(&rig);
         while rig.session.tick() < until {
             rig.session.step_tick(&mut |event| note(&mut outcome, &event));
@@ -310,7 +310,7 @@ struct OnController<'a> {
 }
 
 impl Work for OnController<'_> {
-    fn on<T: Target>(self, mut rig: Rig<T>) -> Result<Exit> {
+    fn on<T: Target>(self, mut rig: BoardSession<T>) -> Result<Exit> {
         let outcome = self.outcome;
         outcome.look_before(&rig.session);
         let mut sink = |event: Event| {
@@ -337,7 +337,7 @@ struct Model<'a> {
 }
 
 impl Work for Model<'_> {
-    fn on<T: Target>(self, mut rig: Rig<T>) -> Result<Exit> {
+    fn on<T: Target>(self, mut rig: BoardSession<T>) -> Result<Exit> {
         let outcome = self.outcome;
         let mut traps = Vec::new();
         let mut sink = |event: Event| {

@@ -25,7 +25,7 @@ use crate::cli::report::screen::{Audience, Screen, Style, no_run};
 use crate::cli::report::seen::Seen;
 use crate::cli::report::state::FinalState;
 use crate::cli::report::trace::{self, Trace};
-use crate::cli::session::{Rig, Setup, Started, Work, controller, run_with_boxes};
+use crate::cli::session::{BoardSession, Setup, Started, Work, controller, run_with_boxes};
 use schedules::ExploreArguments;
 
 /// Arguments of `cc67 run`.
@@ -121,7 +121,7 @@ fn run_profiled(arguments: &RunArguments, setup: Setup, target: &str) -> Result<
 }
 
 impl Work for &RunArguments {
-    fn on<T: Target>(self, mut rig: Rig<T>) -> Result<Exit> {
+    fn on<T: Target>(self, mut rig: BoardSession<T>) -> Result<Exit> {
         self.execute(&mut rig)
     }
 }
@@ -145,7 +145,7 @@ impl RunArguments {
     }
 
     /// Runs the board and shows what happens.
-    fn execute<T: Target>(&self, rig: &mut Rig<T>) -> Result<Exit> {
+    fn execute<T: Target>(&self, rig: &mut BoardSession<T>) -> Result<Exit> {
         let request = trace::request(&self.trace, &rig.session)?;
         let (programs, offered) = (rig.session.debug(), rig.session.offered());
         let mut screen = Screen::new(BufWriter::new(io::stdout().lock()), self.style(), programs, offered);

@@ -10,7 +10,7 @@ use kmotiondef::Ticks;
 use kmotiondef::limits::TIMEBASE;
 use runtime::{Event, OpenBox};
 
-use super::Rig;
+use super::BoardSession;
 use crate::cli::io::terminal;
 
 /// The time between two looks at boxes and answers, in seconds.
@@ -27,7 +27,7 @@ struct Person {
 
 /// Runs until everything has ended, or to the limit, and asks the person at the terminal for answers to boxes.
 pub(crate) fn run_with_boxes<T: Target>(
-    rig: &mut Rig<T>,
+    rig: &mut BoardSession<T>,
     limit: Ticks,
     sink: &mut dyn FnMut(Event),
 ) -> Result<End> {

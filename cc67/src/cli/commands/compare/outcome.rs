@@ -9,7 +9,7 @@ use kmotiondef::{AxisId, Bit, Cycles, Ticks};
 use runtime::{Event, EventKind};
 
 use crate::cli::report::numbers::{Deviation, Tolerance, deviation};
-use crate::cli::session::Rig;
+use crate::cli::session::BoardSession;
 
 /// Pins of the board.
 const PINS: i32 = 48;
@@ -103,7 +103,7 @@ impl Outcome {
     }
 
     /// Looks at what the modelled board, or a controller, is left with.
-    pub(super) fn look_at_model<T: Target>(&mut self, rig: &Rig<T>) {
+    pub(super) fn look_at_model<T: Target>(&mut self, rig: &BoardSession<T>) {
         let session = &rig.session;
         self.ticks = session.tick();
         self.user_data = user_data(session);

@@ -37,7 +37,7 @@ use crate::cli::io::exit::Exit;
 use crate::cli::io::pace::Pace;
 use crate::cli::report::seen::Seen;
 use crate::cli::report::trace::{self, Trace};
-use crate::cli::session::{Rig, Setup, Work};
+use crate::cli::session::{BoardSession, Setup, Work};
 
 /// The interval at which a board that keeps pace with the clock is run.
 const BEAT: Duration = Duration::from_millis(10);
@@ -112,7 +112,7 @@ impl ConsoleArguments {
 }
 
 impl Work for &ConsoleArguments {
-    fn on<T: Target>(self, mut rig: Rig<T>) -> Result<Exit> {
+    fn on<T: Target>(self, mut rig: BoardSession<T>) -> Result<Exit> {
         rig.connect()?;
         Console::new(self, rig)?.run()
     }
@@ -129,14 +129,14 @@ enum Flow {
 /// A board, and the person or script that talks to it.
 struct Console<'a, T: Target> {
     arguments: &'a ConsoleArguments,
-    rig: Rig<T>,
+    rig: BoardSession<T>,
     shown: Shown<'a>,
     /// Inputs that are pressed, and the level of each before.
     pressed: BTreeMap<Bit, bool>,
 }
 
 impl<'a, T: Target> Console<'a, T> {
-    fn new(arguments: &'a ConsoleArguments, rig: Rig<T>) -> Result<Self> {
+    fn new(arguments: &'a ConsoleArguments, rig: BoardSession<T>) -> Result<Self> {
         let request = trace::request(&arguments.trace, &rig.session)?;
         let mut rig = rig;
         if let Some(request) = &request {

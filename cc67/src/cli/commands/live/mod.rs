@@ -27,7 +27,7 @@ use crate::cli::args::time::seconds;
 use crate::cli::args::uart::UartArguments;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::terminal;
-use crate::cli::session::{Rig, Setup, Started, Work};
+use crate::cli::session::{BoardSession, Setup, Started, Work};
 use kept::KeptAccess;
 
 /// The port that is taken if it is free and no other is requested.
@@ -153,7 +153,7 @@ struct Demonstration {
 }
 
 impl Work for LivePage<'_> {
-    fn on<T: Target>(self, mut rig: Rig<T>) -> Result<Exit> {
+    fn on<T: Target>(self, mut rig: BoardSession<T>) -> Result<Exit> {
         let Self { arguments, waiting, server, end } = self;
         let mut show = arguments.show()?;
         // An editor that is attached cannot be given another board.

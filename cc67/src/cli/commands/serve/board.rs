@@ -10,7 +10,7 @@ use runtime::{Event, EventKind, Message};
 use super::Terms;
 use super::link::{CONSOLE_LINES, Unread};
 use super::log::ExchangeLog;
-use super::served::{PageWishes, Served};
+use super::served::{PageRequests, Served};
 use super::wire::{self, WireEnd};
 use crate::cli::io::exit::Exit;
 use crate::cli::io::pace::now;
@@ -160,7 +160,7 @@ impl<'a, T: Target> ServedBoard<'a, T> {
     }
 
     /// Shows the board on its page, if it has one, and does what is wished there; what is for the desk.
-    pub(super) fn show(&mut self) -> Option<PageWishes> {
+    pub(super) fn show(&mut self) -> Option<PageRequests> {
         let mut events = Vec::new();
         self.board.attend(&mut |event| events.push(event));
         self.take(events);

@@ -6,7 +6,7 @@ use cc67_host::Target;
 use cc67_host::session::EXCHANGE;
 use cc67_host::{Lock, Readiness};
 
-use super::desk::{Desk, Token, Waiting, Wanted};
+use super::desk::{Dispatcher, Token, Waiting, Wanted};
 use super::link::LinkLine;
 use super::message::{Call, Reply, Request, location};
 use crate::cli::io::terminal;
@@ -24,7 +24,7 @@ const TIMEOUT: i32 = 2;
 /// The error that a client receives when it gives up the link.
 const FAILED: &str = "Read Failed - Auto Disconnect";
 
-impl<T: Target> Desk<'_, T> {
+impl<T: Target> Dispatcher<'_, T> {
     /// Does what a client asks for; its reply, if that is known already.
     pub(super) fn ask(&mut self, client: u64, request: &Request) -> Option<Reply> {
         if request.index(self.slot.boards) != Some(self.slot.index) {

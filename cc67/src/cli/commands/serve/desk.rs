@@ -1,4 +1,4 @@
-//! The desk: takes one request after another for the one board, and keeps its time.
+//! The dispatcher: takes one request after another for the one board, and keeps its time.
 //!
 //! At the pace of a clock the board is never far from it: it waits for the clock, and requests wait for the board. Without
 //! a clock its time passes only while a client waits for an answer, so that the same questions get the same answers each
@@ -42,7 +42,7 @@ const TOKEN_PATIENCE: Duration = Duration::from_millis(500);
 /// Console lines that are sent before one reply at most.
 const LINES_AT_ONCE: usize = 10;
 
-/// A message to the desk.
+/// A message to the dispatcher.
 #[derive(Debug)]
 pub(super) enum Note {
     /// A client, and where its answers go.
@@ -130,7 +130,7 @@ pub(super) struct BoardSlot {
 }
 
 /// The board and its clients.
-pub(super) struct Desk<'a, T: Target> {
+pub(super) struct Dispatcher<'a, T: Target> {
     pub(super) board: ServedBoard<'a, T>,
     pub(super) slot: BoardSlot,
     terms: &'a Terms<'a>,
@@ -147,7 +147,7 @@ pub(super) struct Desk<'a, T: Target> {
     pub(super) page: PageState,
 }
 
-/// Messages to the desk.
+/// Messages to the dispatcher.
 #[derive(Debug)]
 struct Inbox {
     incoming: Receiver<Note>,
@@ -175,8 +175,8 @@ pub(super) struct PageState {
     commands: VecDeque<(Instant, String)>,
 }
 
-impl<'a, T: Target> Desk<'a, T> {
-    /// A desk for requests from `inbox`.
+impl<'a, T: Target> Dispatcher<'a, T> {
+    /// A dispatcher for requests from `inbox`.
     pub(super) fn new(
         board: ServedBoard<'a, T>,
         slot: BoardSlot,

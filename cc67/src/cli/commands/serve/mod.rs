@@ -55,10 +55,10 @@ use crate::cli::args::time::seconds;
 use crate::cli::args::trace::TraceArguments;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::{output, terminal};
-use crate::cli::session::{Rig, Setup, Work};
+use crate::cli::session::{BoardSession, Setup, Work};
 use board::ServedBoard;
 use boards::BoardFile;
-use desk::{BoardSlot, Desk, Note};
+use desk::{BoardSlot, Dispatcher, Note};
 pub(super) use link::{CONSOLE_LINES, UNHEARD_LINES};
 pub(super) use listen::MOST_CLIENTS;
 use listen::Places;
@@ -281,7 +281,7 @@ struct BoardWork<'a> {
 }
 
 impl Work for BoardWork<'_> {
-    fn on<T: Target>(self, mut rig: Rig<T>) -> Result<Exit> {
+    fn on<T: Target>(self, mut rig: BoardSession<T>) -> Result<Exit> {
         let Self { opening, inbox, index, name } = self;
         let terms = opening.terms;
         rig.connect()?;
@@ -290,7 +290,7 @@ impl Work for BoardWork<'_> {
         opening.note_ready()?;
         name.into_iter().for_each(terminal::name_subject);
         let slot = BoardSlot { index, boards: opening.desks.len() };
-        Desk::new(board, slot, terms, inbox).run()
+        Dispatcher::new(board, slot, terms, inbox).run()
     }
 }
 

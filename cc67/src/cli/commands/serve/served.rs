@@ -13,13 +13,13 @@ use runtime::Event;
 use runtime::debug::DebugInfo;
 
 use crate::cli::report::trace::{self, Trace};
-use crate::cli::session::Rig;
+use crate::cli::session::BoardSession;
 
 use super::Terms;
 
 /// The requests of pages to the desk.
 #[derive(Debug, Default)]
-pub(super) struct PageWishes {
+pub(super) struct PageRequests {
     /// The events of the ticks that a page has run.
     pub(super) events: Vec<Event>,
     /// Lines of script commands.
@@ -32,7 +32,7 @@ pub(super) struct PageWishes {
 
 /// A board that clients can use.
 pub(super) struct Served<T: Target> {
-    rig: Rig<T>,
+    rig: BoardSession<T>,
     /// The server is to end, even where a debugger has stopped the board.
     is_ending: Arc<AtomicBool>,
     #[cfg(feature = "live")]
@@ -42,7 +42,7 @@ pub(super) struct Served<T: Target> {
 impl<T: Target> Served<T> {
     /// The board of a session, on a page if the terms have one; and its trace.
     pub(super) fn new(
-        mut rig: Rig<T>,
+        mut rig: BoardSession<T>,
         terms: &Terms<'_>,
         is_ending: Arc<AtomicBool>,
     ) -> Result<(Self, Option<Trace>)> {
@@ -155,10 +155,10 @@ impl<T: Target> Served<T> {
 
     /// Shows how it is now, and does what pages ask for; what else they wish, if there are any.
     #[cfg(feature = "live")]
-    pub(super) fn beat(&mut self) -> Option<PageWishes> {
+    pub(super) fn beat(&mut self) -> Option<PageRequests> {
         let wishes = self.view.as_mut()?.beat(&mut self.rig.session);
         let cc67_live::OwnerRequests { events, commands, acts, speed } = wishes;
-        Some(PageWishes { events, commands, acts, speed })
+        Some(PageRequests { events, commands, acts, speed })
     }
 
     /// Nothing shows it.
@@ -169,7 +169,7 @@ impl<T: Target> Served<T> {
     /// There are no pages that wish anything.
     #[cfg(not(feature = "live"))]
     #[expect(clippy::unused_self, reason = "with a page, it is shown there")]
-    pub(super) fn beat(&mut self) -> Option<PageWishes> {
+    pub(super) fn beat(&mut self) -> Option<PageRequests> {
         None
     }
 }
