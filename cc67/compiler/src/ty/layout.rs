@@ -1,8 +1,8 @@
 //! Sizes, alignments and the layout of structures.
 //!
-//! Natural alignment, members in order, `double` on 8 (`dialect.md` 1.2). Bit-fields fill
-//! units of their declared type from bit 0 upwards; one that does not fit, or has a type of
-//! another size, opens a new unit, and width 0 closes the unit.
+//! Natural alignment, members in order, `double` on 8 (`dialect.md` 1.2). A bit-field follows the bit before it, from bit 0
+//! upwards, unless it would straddle a unit of its declared type, which it then opens; width 0 closes the unit. That is the
+//! layout of `gcc -m32 -malign-double`. The vendor's differs where types are mixed, and lets such fields overlap.
 
 use super::{BitRange, Layout, Member, QualifiedType, RecordId, Type, TypeId, Types};
 use crate::ast::RecordKind;
@@ -10,6 +10,8 @@ use crate::names::Name;
 
 /// The largest object that a declaration may ask for: all of the board's SDRAM.
 pub const MAX_OBJECT_SIZE: u32 = 0x100_0000;
+/// Bytes of the largest structure.
+const LARGEST: u32 = i32::MAX as u32 - 8;
 
 impl Types {
     /// Size in bytes; `None` for incomplete types. `void` and functions count 1, as in pointer steps.
@@ -68,23 +70,15 @@ pub struct LayoutBuilder {
     /// First byte after the members so far; for a union, the size of the largest.
     end: u32,
     align: u32,
-    /// The open unit of bit-fields.
-    unit: Option<Unit>,
-}
-
-/// A storage unit that bit-fields are put into.
-#[derive(Clone, Copy, Debug)]
-struct Unit {
-    offset: u32,
-    size: u32,
-    used: u32,
+    /// The bit after the last member, if that is a bit-field.
+    end_bit: Option<u64>,
 }
 
 impl LayoutBuilder {
     /// Begins a structure or union.
     #[must_use]
     pub fn new(kind: RecordKind) -> Self {
-        Self { kind, members: Vec::new(), end: 0, align: 1, unit: None }
+        Self { kind, members: Vec::new(), end: 0, align: 1, end_bit: None }
     }
 
     /// The members so far.
@@ -96,7 +90,7 @@ impl LayoutBuilder {
     /// Adds a member, aligned to `align` at least; an incomplete array takes no room. `None` if the structure grows
     /// beyond all bounds.
     pub fn member(&mut self, types: &Types, name: Option<Name>, ty: QualifiedType, align: u32) -> Option<()> {
-        self.unit = None;
+        self.end_bit = None;
         let offset = self.reserve(types.size_of(ty.ty).unwrap_or(0), types.align_of(ty.ty).max(align))?;
         self.members.push(Member { name, ty, offset, bits: None });
         Some(())
@@ -110,24 +104,29 @@ impl LayoutBuilder {
         ty: QualifiedType,
         width: u32,
     ) -> Option<()> {
-        if width == 0 {
-            self.unit = None;
+        let name = name.filter(|_| width > 0);
+        let size = types.size_of(ty.ty)?;
+        let (unit, width_in_bits) = (u64::from(size) * 8, u64::from(width));
+        if name.is_some() {
+            self.align = self.align.max(types.align_of(ty.ty));
+        }
+        if self.kind == RecordKind::Union {
+            self.end = self.end.max(width.div_ceil(8));
+            let bits = BitRange { shift: 0, width: width as u8 };
+            self.members.extend(name.map(|_| Member { name, ty, offset: 0, bits: Some(bits) }));
             return Some(());
         }
-        let size = types.size_of(ty.ty)?;
-        let unit = match self.unit {
-            Some(unit)
-                if unit.size == size && unit.used + width <= size * 8 && self.kind == RecordKind::Struct =>
-            {
-                unit
-            }
-            _ => Unit { offset: self.reserve(size, types.align_of(ty.ty))?, size, used: 0 },
-        };
+        let next = self.end_bit.unwrap_or(u64::from(self.end) * 8);
+        let straddles = next % unit + width_in_bits > unit;
+        let start = if straddles || width == 0 { next.next_multiple_of(unit) } else { next };
+        let end = start + width_in_bits;
+        self.end_bit = Some(end);
+        self.end = u32::try_from(end.div_ceil(8)).ok().filter(|end| *end <= LARGEST)?;
         if name.is_some() {
-            let bits = BitRange { shift: unit.used as u8, width: width as u8 };
-            self.members.push(Member { name, ty, offset: unit.offset, bits: Some(bits) });
+            let bits = BitRange { shift: (start % unit) as u8, width: width as u8 };
+            let offset = u32::try_from(start / unit).ok()? * size;
+            self.members.push(Member { name, ty, offset, bits: Some(bits) });
         }
-        self.unit = Some(Unit { used: unit.used + width, ..unit });
         Some(())
     }
 
@@ -152,7 +151,7 @@ impl LayoutBuilder {
         }
         let offset = self.end.next_multiple_of(align);
         let end = offset.checked_add(size)?;
-        if end > i32::MAX as u32 - 8 {
+        if end > LARGEST {
             return None;
         }
         self.end = end;
@@ -184,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn bit_fields_fill_units_of_their_type_and_never_straddle() {
+    fn bit_fields_follow_each_other_and_never_straddle_a_unit_of_their_type() {
         let types = Types::new();
         let mut names = crate::names::Names::new();
         let name = Some(names.intern("x"));
@@ -192,7 +191,7 @@ mod tests {
         for (ty, width) in [
             (Types::INT, 3),
             (Types::INT, 5),
-            (Types::INT, 25),
+            (Types::INT, 24),
             (Types::CHAR, 4),
             (Types::CHAR, 0),
             (Types::CHAR, 1),
@@ -205,8 +204,8 @@ mod tests {
         let bits = |shift, width| Some((shift, width));
         assert_eq!(
             found,
-            [(0, bits(0, 3)), (0, bits(3, 5)), (4, bits(0, 25)), (8, bits(0, 4)), (9, bits(0, 1))]
+            [(0, bits(0, 3)), (0, bits(3, 5)), (0, bits(8, 24)), (4, bits(0, 4)), (5, bits(0, 1))]
         );
-        assert_eq!(layout.size, 12);
+        assert_eq!(layout.size, 8);
     }
 }

@@ -75,13 +75,15 @@ fn structures_have_natural_alignment() {
 }
 
 #[test]
-fn bit_fields_are_packed_in_units_of_their_type() {
+fn bit_fields_are_packed_as_gcc_packs_them() {
     accept(
         "struct A { int a : 3, b : 5, c : 24; }; _Static_assert(sizeof(struct A) == 4, \"\");
         struct B { int a : 20, b : 20; }; _Static_assert(sizeof(struct B) == 8, \"\");
         struct C { int a : 3; int : 0; int b : 3; }; _Static_assert(sizeof(struct C) == 8, \"\");
         struct D { char a : 3; unsigned char b : 5; char c; }; _Static_assert(sizeof(struct D) == 2, \"\");
-        enum E { X }; struct F { enum E e : 2; short s : 16; }; _Static_assert(sizeof(struct F) == 8, \"\");",
+        enum E { X }; struct F { enum E e : 2; short s : 16; }; _Static_assert(sizeof(struct F) == 4, \"\");
+        struct G { int a : 5; char b; int c : 3; }; _Static_assert(sizeof(struct G) == 4, \"\");
+        struct H { int a : 19; unsigned char b : 8; }; _Static_assert(sizeof(struct H) == 4, \"\");",
     );
     said(
         "struct A { int a : 33; };\nstruct B { double d : 3; };\nstruct C { int x : 0; };\nint f(struct A *p) { return p->a; }",
