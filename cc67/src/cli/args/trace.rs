@@ -11,7 +11,7 @@ use super::heading;
 #[derive(Debug, Args)]
 #[command(next_help_heading = heading::TRACES)]
 pub(crate) struct TraceArguments {
-    /// Write a trace to FILE: .vcd for waveform viewers, .json for Perfetto, otherwise CSV
+    /// Write a trace to FILE: .vcd for waveform viewers, .json or .json.gz for Perfetto, otherwise CSV
     #[arg(long, value_name = "FILE")]
     pub(crate) trace: Vec<PathBuf>,
     /// Write every bit change with its time in nanoseconds and its thread to FILE (CSV)

@@ -42,6 +42,29 @@ pub(in crate::cli) struct Chart {
     pub(in crate::cli) strips: Vec<Strip>,
     /// The first and the last instant.
     pub(in crate::cli) range: (f64, f64),
+    /// The scale of the horizontal axis.
+    pub(in crate::cli) scale: Scale,
+}
+
+/// The scale of a horizontal axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::cli) enum Scale {
+    /// Positions are the numbers.
+    #[default]
+    Linear,
+    /// Positions are the logarithms of the numbers, to base 10.
+    Logarithmic,
+}
+
+impl Scale {
+    /// The number at a position.
+    pub(in crate::cli::report) fn shown(self, position: f64) -> f64 {
+        match self {
+            Self::Linear => position,
+            // Without the last digits, which the way through the logarithm has changed.
+            Self::Logarithmic => format!("{:.9e}", libm::pow(10.0, position)).parse().unwrap_or(position),
+        }
+    }
 }
 
 impl Line {

@@ -1,11 +1,13 @@
 //! Tables of numbers, as programs that gather data and `cc67 run --trace` write them.
 //!
 //! Columns are separated by commas, semicolons, tabs or blanks. A first line that is not all numbers names the columns.
-//! Lines that begin with `#` and empty lines are skipped.
+//! Lines that begin with `#` and empty lines are skipped. The files of the vendor's step response and Bode screens are known
+//! by their first column.
 
 use anyhow::{Result, bail};
 
 use super::chart::Chart;
+use super::responses;
 use super::samples::{Column, Samples};
 
 /// Names of a first column that is the time.
@@ -14,6 +16,11 @@ const TIMES: [&str; 5] = ["t", "time", "time_s", "seconds", "time (s)"];
 /// A chart of the table: one panel a column, over the first column if that is the time, else over the line's number.
 pub(super) fn chart(title: &str, text: &str) -> Result<Chart> {
     let table = read(text)?;
+    match table.names.first().map(String::as_str) {
+        Some("Sample") if table.names.len() >= 5 => return responses::step(title, &table),
+        Some("Freq") if table.names.len() >= 5 => return responses::bode(title, &table),
+        _ => {}
+    }
     let has_time = table.names.first().is_some_and(|name| TIMES.contains(&name.to_lowercase().as_str()));
     let times: Vec<f64> = match has_time {
         true => table.rows.iter().filter_map(|row| row.first().copied()).collect(),
@@ -36,13 +43,20 @@ pub(super) fn chart(title: &str, text: &str) -> Result<Chart> {
     }
     let range = (times.first().copied().unwrap_or_default(), end);
     let abscissa = if has_time { "time (s)" } else { "line" };
-    Ok(Chart { title: title.to_owned(), abscissa: abscissa.to_owned(), panels, strips, range })
+    Ok(Chart {
+        title: title.to_owned(),
+        abscissa: abscissa.to_owned(),
+        panels,
+        strips,
+        range,
+        ..Chart::default()
+    })
 }
 
 /// Named columns of numbers.
-struct Table {
-    names: Vec<String>,
-    rows: Vec<Vec<f64>>,
+pub(super) struct Table {
+    pub(super) names: Vec<String>,
+    pub(super) rows: Vec<Vec<f64>>,
 }
 
 fn read(text: &str) -> Result<Table> {

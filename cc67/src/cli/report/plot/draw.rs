@@ -7,13 +7,13 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::chart::{Chart, Line, Panel, Strip};
+use super::chart::{Chart, Line, Panel, Scale, Strip};
 use super::letters::{self, Pixels};
 
 /// Width of the picture in pixels.
 const WIDTH: u32 = 1000;
 /// Heights in pixels.
-const TITLE: u32 = 34;
+const TITLE: u32 = 54;
 const PANEL: u32 = 190;
 const STRIP: u32 = 26;
 const FOOT: u32 = 48;
@@ -131,7 +131,8 @@ fn draw<B: DrawingBackend>(chart: &Chart, area: &Area<B>, curves: Curves) -> Res
     let drawn = (|| -> Result<(), String> {
         area.fill(&WHITE).map_err(text_of)?;
         let (title, mut rest) = area.split_vertically(TITLE);
-        write(&title, &chart.title, (LEFT as i32, 10), 18, &BLACK)?;
+        write(&title, &chart.title, (LEFT as i32, 8), 18, &BLACK)?;
+        draw_marks(chart, &title, TITLE as i32 - 16)?;
         for panel in &chart.panels {
             let (part, below) = rest.split_vertically(PANEL);
             draw_panel(chart, panel, &part, curves)?;
@@ -170,7 +171,17 @@ fn write<B: DrawingBackend>(
 
 /// The instants at which the picture has vertical lines.
 fn marks(chart: &Chart) -> Vec<f64> {
-    steps(chart.range, 10)
+    match chart.scale {
+        Scale::Linear => steps(chart.range, 10),
+        Scale::Logarithmic => decades(chart.range),
+    }
+}
+
+/// The logarithms of 1, 2 and 5 in each decade of a range of logarithms.
+fn decades((low, high): (f64, f64)) -> Vec<f64> {
+    let decades = libm::floor(low) as i32..=libm::ceil(high) as i32;
+    let marks = decades.flat_map(|decade| [1.0, 2.0, 5.0].map(|part| f64::from(decade) + libm::log10(part)));
+    marks.filter(|mark| (low - 1e-9..=high + 1e-9).contains(mark)).collect()
 }
 
 /// About `count` round numbers in a range.
@@ -316,14 +327,21 @@ fn without_flat(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     kept
 }
 
-/// The axis of time.
-fn draw_foot<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Result<(), String> {
+/// The numbers of the horizontal axis, at a height of an area.
+fn draw_marks<B: DrawingBackend>(chart: &Chart, area: &Area<B>, top: i32) -> Result<(), String> {
     let style = ("sans-serif", 13).into_font();
-    for time in marks(chart) {
-        let label = number(time);
+    for mark in marks(chart) {
+        let label = number(chart.scale.shown(mark));
         let width = style.box_size(&label).map_err(text_of)?.0 as i32;
-        write(area, &label, (across(chart, time) - width / 2, 2), 13, &RGBColor(70, 70, 70))?;
+        write(area, &label, (across(chart, mark) - width / 2, top), 13, &RGBColor(70, 70, 70))?;
     }
+    Ok(())
+}
+
+/// The horizontal axis below the panels, with its label.
+fn draw_foot<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Result<(), String> {
+    draw_marks(chart, area, 2)?;
+    let style = ("sans-serif", 13).into_font();
     let width = style.box_size(&chart.abscissa).map_err(text_of)?.0 as i32;
     let middle = (LEFT + WIDTH - RIGHT) as i32 / 2;
     write(area, &chart.abscissa, (middle - width / 2, 22), 14, &BLACK)

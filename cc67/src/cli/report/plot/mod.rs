@@ -7,6 +7,7 @@ mod csv;
 mod draw;
 mod letters;
 mod page;
+mod responses;
 pub(crate) mod samples;
 mod vcd;
 

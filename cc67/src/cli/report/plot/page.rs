@@ -3,7 +3,7 @@
 use anyhow::Result;
 use serde::Serialize;
 
-use super::chart::{Chart, Line};
+use super::chart::{Chart, Line, Scale};
 use super::draw::COLORS;
 
 /// The page, with a mark in place of the data.
@@ -20,6 +20,9 @@ struct PageData<'a> {
     title: &'a str,
     abscissa: &'a str,
     range: (f64, f64),
+    /// Positions on the horizontal axis are logarithms.
+    #[serde(rename = "isLogarithmic")]
+    is_logarithmic: bool,
     colors: Vec<String>,
     panels: Vec<PagePanel<'a>>,
     strips: Vec<PageStrip<'a>>,
@@ -54,6 +57,7 @@ pub(super) fn html(chart: &Chart) -> Result<Vec<u8>> {
         title: &chart.title,
         abscissa: &chart.abscissa,
         range: chart.range,
+        is_logarithmic: chart.scale == Scale::Logarithmic,
         colors: COLORS.iter().map(|(red, green, blue)| format!("#{red:02x}{green:02x}{blue:02x}")).collect(),
         panels: chart
             .panels

@@ -24,7 +24,14 @@ pub(super) fn chart(title: &str, text: &str) -> Result<Chart> {
     if panels.is_empty() && strips.is_empty() {
         bail!("there is nothing in it that can be drawn");
     }
-    Ok(Chart { title: title.to_owned(), abscissa: "time (s)".to_owned(), panels, strips, range: (0.0, end) })
+    Ok(Chart {
+        title: title.to_owned(),
+        abscissa: "time (s)".to_owned(),
+        panels,
+        strips,
+        range: (0.0, end),
+        ..Chart::default()
+    })
 }
 
 /// The numbers as rows: one for each instant at which one of them changes.

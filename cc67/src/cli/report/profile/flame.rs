@@ -1,4 +1,6 @@
-//! The profile as a flame graph: a picture whose widths are board time.
+//! The profile as a flame graph: a picture whose widths are the time of the processor.
+//!
+//! A thread waits nearly always, and its waits would leave no room for what it computes: the table has them.
 
 use anyhow::{Context, Result};
 use inferno::flamegraph::{self, Options};
@@ -8,11 +10,11 @@ use super::Account;
 /// Cycles in a microsecond.
 const CYCLES_PER_US: i64 = 200;
 
-/// Draws the account; the tower of each thread holds its functions, lines, and waits.
+/// Draws the account; the tower of each thread holds its functions and lines.
 pub(super) fn draw(account: &Account) -> Result<Vec<u8>> {
     let lines = folded(account);
     let mut options = Options::default();
-    options.title = "Board time".to_owned();
+    options.title = "Processor time".to_owned();
     options.count_name = "µs".to_owned();
     options.deterministic = true;
     let mut picture = Vec::new();
@@ -31,15 +33,11 @@ fn folded(account: &Account) -> Vec<String> {
             None => frame.function.clone(),
         }));
         tower.extend(place.firmware.clone());
-        let mut add = |tower: &[String], cycles: i64| {
-            // Widths are whole microseconds; what is shorter cannot be seen in a picture.
-            if cycles >= CYCLES_PER_US {
-                lines.push(format!("{} {}", tower.join(";"), cycles / CYCLES_PER_US));
-            }
-        };
-        add(&tower, spent.computing.get());
-        tower.push("(waiting)".to_owned());
-        add(&tower, spent.waiting.get());
+        // Widths are whole microseconds; what is shorter cannot be seen in a picture.
+        let cycles = spent.computing.get();
+        if cycles >= CYCLES_PER_US {
+            lines.push(format!("{} {}", tower.join(";"), cycles / CYCLES_PER_US));
+        }
     }
     lines
 }

@@ -1,12 +1,15 @@
 //! A trace as the events of trace viewers: threads as tracks, bits and items as counters, prints as marks.
 //!
-//! The format is the "Trace Event Format" of Chrome, which Perfetto reads. Tracks are named where they begin.
+//! The format is the "Trace Event Format" of Chrome, which Perfetto reads; with the suffix `.json.gz` it is compressed, as
+//! Perfetto reads it as well. Tracks are named where they begin.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 use std::path::Path;
 
 use anyhow::Result;
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
 use runtime::trace::Item;
 use serde::Serialize;
@@ -66,9 +69,50 @@ fn microseconds(at: Cycles) -> f64 {
     nanoseconds(at) as f64 / 1000.0
 }
 
+/// The bytes of the file, as they are or compressed.
+enum TraceFile {
+    Plain(Draft),
+    Compressed(GzEncoder<Draft>),
+}
+
+impl TraceFile {
+    /// Begins the file; its suffix determines the form.
+    fn new(path: &Path) -> Result<Self> {
+        let draft = Draft::new(path)?;
+        let is_compressed = path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("gz"));
+        Ok(if is_compressed {
+            Self::Compressed(GzEncoder::new(draft, Compression::default()))
+        } else {
+            Self::Plain(draft)
+        })
+    }
+
+    fn writer(&mut self) -> &mut dyn Write {
+        match self {
+            Self::Plain(draft) => draft,
+            Self::Compressed(encoder) => encoder,
+        }
+    }
+
+    fn path(&self) -> &Path {
+        match self {
+            Self::Plain(draft) => draft.path(),
+            Self::Compressed(encoder) => encoder.get_ref().path(),
+        }
+    }
+
+    /// The file is complete.
+    fn commit(self) -> Result<()> {
+        match self {
+            Self::Plain(draft) => draft.commit(),
+            Self::Compressed(encoder) => encoder.finish()?.commit(),
+        }
+    }
+}
+
 /// The file in the making.
 pub(super) struct Events {
-    draft: Draft,
+    file: TraceFile,
     columns: Columns,
     /// True if an event precedes, after which a comma belongs.
     has_any: bool,
@@ -82,10 +126,10 @@ pub(super) struct Events {
 impl Events {
     /// Begins it.
     pub(super) fn new(path: &Path, columns: Columns) -> Result<Self> {
-        let mut draft = Draft::new(path)?;
-        write!(draft, "{{\"displayTimeUnit\":\"ns\",\"traceEvents\":[")?;
+        let mut file = TraceFile::new(path)?;
+        write!(file.writer(), "{{\"displayTimeUnit\":\"ns\",\"traceEvents\":[")?;
         let mut events = Self {
-            draft,
+            file,
             columns,
             has_any: false,
             threads: BTreeSet::new(),
@@ -101,8 +145,9 @@ impl Events {
 
     fn write(&mut self, event: &Event) -> io::Result<()> {
         let between: &[u8] = if std::mem::replace(&mut self.has_any, true) { b",\n" } else { b"\n" };
-        self.draft.write_all(between)?;
-        serde_json::to_writer(&mut self.draft, event).map_err(io::Error::from)
+        let mut writer = self.file.writer();
+        writer.write_all(between)?;
+        serde_json::to_writer(&mut writer, event).map_err(io::Error::from)
     }
 
     /// Shows the items whose values are new.
@@ -160,12 +205,12 @@ impl Sink for Events {
     }
 
     fn finish(mut self: Box<Self>, _: Ticks) -> Result<()> {
-        writeln!(self.draft, "\n]}}")?;
-        self.draft.commit()
+        writeln!(self.file.writer(), "\n]}}")?;
+        self.file.commit()
     }
 
     fn path(&self) -> &Path {
-        self.draft.path()
+        self.file.path()
     }
 }
 

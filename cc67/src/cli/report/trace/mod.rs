@@ -114,14 +114,18 @@ fn known_suffix(path: &Path) -> Result<()> {
         "" | "csv" | "txt" | "vcd" | "json" => Ok(()),
         "svg" | "png" | "html" => bail!("`--trace {0}`: a picture is drawn by `--plot {0}`", path.display()),
         other => bail!(
-            "`--trace {}`: unknown trace format `.{other}`; known: .csv, .txt, .vcd and .json",
+            "`--trace {}`: unknown trace format `.{other}`; known: .csv, .txt, .vcd, .json and .json.gz",
             path.display()
         ),
     }
 }
 
+/// The suffix that determines the format; that of a compressed file is the one before `.gz`, if it is known.
 fn suffix(path: &Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
+    let last = |path: &Path| path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let suffix = last(path);
+    let before = path.file_stem().map(|stem| last(Path::new(stem))).unwrap_or_default();
+    if suffix == "gz" && before == "json" { before } else { suffix }
 }
 
 /// Something that a trace shows; its instant comes with it.

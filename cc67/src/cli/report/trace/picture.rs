@@ -41,7 +41,14 @@ pub(super) fn chart(log: &Log, title: String, end: Ticks, axes: &BTreeMap<usize,
     if !(panels.is_empty() && strips.is_empty()) {
         strips.extend(threads(log));
     }
-    let chart = Chart { title, abscissa: "time (s)".to_owned(), panels, strips, range: (0.0, seconds(end)) };
+    let chart = Chart {
+        title,
+        abscissa: "time (s)".to_owned(),
+        panels,
+        strips,
+        range: (0.0, seconds(end)),
+        ..Chart::default()
+    };
     in_readable_units(chart)
 }
 
