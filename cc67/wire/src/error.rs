@@ -62,7 +62,7 @@ pub enum WireError {
     /// This build or system lacks a kind of link.
     #[error("{place}: {reason}")]
     NotBuilt {
-        /// The board.
+        /// The address of the board.
         place: String,
         /// The missing part, and its substitute.
         reason: String,
@@ -72,7 +72,7 @@ pub enum WireError {
         "{place}: disconnected{during}; the board has lost every program that is not in its flash if its power was off"
     )]
     Disconnected {
-        /// The board.
+        /// The address of the board.
         place: String,
         /// A phrase that names the operation; may be empty.
         during: String,

@@ -4,8 +4,7 @@ use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// Bytes of a source, an image, a machine file. A device that never ends, or a film with the wrong name, does not fill
-/// the memory.
+/// Bytes of a source, an image, a machine file. An endless device or a huge file does not fill the memory.
 pub const FILE_BYTES: u64 = SOURCE_BYTES as u64;
 
 /// The same for a source alone.

@@ -33,7 +33,7 @@ const ROUNDING: f64 = 10.0;
 /// Two decimal fractions are not as far apart as they are printed.
 const NOT_QUITE: f64 = 0.999_999;
 
-/// By how much printed numbers may differ.
+/// The allowed difference of printed numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tolerance {
     /// Times, in seconds.

@@ -165,7 +165,7 @@ impl Inbox {
 /// The actions and requests of pages.
 #[derive(Debug, Default)]
 pub(super) struct PageState {
-    /// Since when the clock is stopped.
+    /// The moment at which the clock was stopped.
     stopped: Option<Instant>,
     /// Requests of clients that have come since.
     held: Vec<Note>,
