@@ -116,7 +116,7 @@ fn a_homing_run_is_blessed_then_broken_then_caught() {
     let set = bench.step(["run", "--set", "persist.10=1,5", "mill/homing.c"], 2).stderr;
     assert!(set.contains("write f:1.5 for a float"), "{set}");
     let trace = bench.step(["run", "--trace", "a.xlsx", "mill/homing.c"], 2).stderr;
-    assert!(trace.contains("known: .csv, .txt, .vcd and .json"), "{trace}");
+    assert!(trace.contains("known: .csv, .txt, .vcd, .json and .json.gz"), "{trace}");
 
     // 14. A project file for the whole folder, and a program that runs before.
     fs::write(bench.scratch.path().join("mill/cc67.toml"), "first = \"first.c\"\n[test]\njobs = 1\n")

@@ -222,7 +222,7 @@ fn notice_replaced(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, functio
     }
 }
 
-/// Returns whether a target or speed is a number; tells of one that is not finite.
+/// Returns whether a target or speed is a number; reports one that is not finite.
 fn is_number(parts: &mut Parts, caller: &Caller<'_>, function: Function, value: f64) -> bool {
     if !value.is_finite() {
         let effect = if value.is_nan() {

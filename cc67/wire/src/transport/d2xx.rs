@@ -3,7 +3,7 @@
 //! On Windows the vendor's driver holds the chip, and its library, `ftd2xx.dll`, is the way to it. Nothing of the library is
 //! linked: without it, or with another one, there is an error, and the COM port and the vendor's server remain.
 //!
-//! Unsafe code of this crate stands here alone: functions of a library that was loaded at run time have the types that their
+//! This file has all unsafe code of this crate: functions of a library that was loaded at run time have the types that their
 //! documentation gives (FTDI, *D2XX Programmer's Guide*), which nothing checks.
 
 #![expect(
