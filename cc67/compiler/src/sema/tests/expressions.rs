@@ -67,7 +67,7 @@ fn members_are_offsets() {
     expression("gi = (*gp).c[i]", "@gi = (int)[*((short *)[(@gp + 16)] + (i * 2))]");
     expression("gi = gs.f + gs.u", "@gi = (@gs{20:int}<16+3> + (int)[@gs{20:unsigned int}<19+5>])");
     expression("p = &gp->a", "p = (int *)[@gp]");
-    expression("q = &gp[1].b", "q = (double *)[(@gp + 40)]");
+    expression("q = &gp[1].b", "q = (double *)[(@gp + 32)]");
     expression("gs = *gp", "(copy @gs <- *@gp, &@gs)");
 }
 
