@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 use vm::interp::BytecodeEngine;
 use vm::native::{NativeEngine, SharedCode};
 
-use crate::control::{AxisField, Control, Fault, Portion, LoggedSession, LogLine, Unwritten, fields};
+use crate::control::{AxisField, Control, Fault, LogLine, LoggedSession, Portion, Unwritten, fields};
 use crate::controller::{Controller, ControllerTerms};
 use crate::errors::{Error, ExpectationError, LinkError, RangeError, ThreadError, TrapError, input};
 use crate::program::{LinkableProgram, thread};
