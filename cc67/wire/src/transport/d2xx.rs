@@ -18,8 +18,8 @@ use std::time::Duration;
 
 use libloading::Library;
 
+use super::choice::{BOARD_NAMES, Candidate, choose, open_patiently};
 use super::ftdi;
-use crate::clock::now;
 use crate::error::WireError;
 use crate::found::FoundBoard;
 use crate::link::BoardLink;
@@ -44,9 +44,6 @@ const DESCRIPTION: usize = 64;
 const STEP: u32 = 50;
 /// The pause after a read that found nothing.
 const PAUSE: Duration = Duration::from_millis(1);
-/// The time that a board needs to start, in which it comes and goes.
-const OPEN_WITHIN: Duration = Duration::from_secs(3);
-const OPEN_EACH: Duration = Duration::from_millis(100);
 
 type Handle = *mut c_void;
 
@@ -118,10 +115,15 @@ struct Device {
 
 impl Device {
     fn address(&self) -> String {
-        format!("usb:{:08X}", self.location)
+        format!("usb:{}", self.location())
+    }
+}
+
+impl Candidate for Device {
+    fn location(&self) -> String {
+        format!("{:08X}", self.location)
     }
 
-    /// Returns whether a person means it by a location or a serial number.
     fn is_meant(&self, wanted: &str) -> bool {
         let location = u32::from_str_radix(wanted.trim_start_matches("0x"), 16);
         location == Ok(self.location) || !self.serial.is_empty() && self.serial == wanted
@@ -171,8 +173,7 @@ impl Driver {
         // SAFETY: the pointer is to a number of that type.
         check(unsafe { (self.0.create_list)(&raw mut count) })?;
         let devices = (0..count).map(|index| self.device(index)).collect::<Result<Vec<_>, _>>()?;
-        let is_board =
-            |device: &Device| super::BOARD_NAMES.iter().any(|name| device.description.contains(name));
+        let is_board = |device: &Device| BOARD_NAMES.iter().any(|name| device.description.contains(name));
         Ok(devices.into_iter().filter(is_board).collect())
     }
 
@@ -215,30 +216,11 @@ impl Driver {
 
     /// Opens the link to a board; one that is just starting is waited for.
     fn open(&self, wanted: Option<&str>) -> Result<BoardLink, WireError> {
-        let end = now() + OPEN_WITHIN;
-        loop {
-            match self.find(wanted).and_then(|device| self.claim(&device)) {
-                Err(WireError::Open { .. }) if now() < end => std::thread::sleep(OPEN_EACH),
-                result => return result,
-            }
-        }
+        open_patiently(|| self.find(wanted).and_then(|device| self.claim(&device)))
     }
 
     fn find(&self, wanted: Option<&str>) -> Result<Device, WireError> {
-        let mut devices = self.devices().map_err(|error| open_error("usb", error))?;
-        let present = devices.iter().map(Device::address).collect::<Vec<_>>().join(", ");
-        if let Some(wanted) = wanted {
-            let Some(index) = devices.iter().position(|device| device.is_meant(wanted)) else {
-                let present = if present.is_empty() { "none".into() } else { present };
-                return Err(WireError::NotThere { wanted: wanted.into(), present });
-            };
-            return Ok(devices.swap_remove(index));
-        }
-        match devices.len() {
-            1 => Ok(devices.swap_remove(0)),
-            0 => Err(WireError::NoBoard),
-            _ => Err(WireError::SeveralBoards(present)),
-        }
+        choose(self.devices().map_err(|error| open_error("usb", error))?, wanted)
     }
 
     fn claim(&self, device: &Device) -> Result<BoardLink, WireError> {
@@ -405,7 +387,7 @@ mod tests {
         };
         assert_eq!(found, [one]);
         let missing = driver.open(Some("00000999")).expect_err("there is none");
-        assert!(missing.to_string().contains("connected: usb:00000214"), "{missing}");
+        assert!(missing.to_string().contains("connected: 00000214"), "{missing}");
         for wanted in [Some("214"), Some("KF0001")] {
             assert!(driver.find(wanted).is_ok(), "{wanted:?}");
         }

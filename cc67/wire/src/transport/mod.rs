@@ -1,5 +1,7 @@
 //! Links of every kind.
 
+#[cfg(feature = "usb")]
+mod choice;
 #[cfg(all(feature = "usb", any(windows, test)))]
 mod d2xx;
 pub mod ftdi;
@@ -18,10 +20,6 @@ use d2xx as usb;
 pub(crate) use pipe::is_served;
 #[cfg(feature = "usb")]
 pub(crate) use usb::boards as usb_boards;
-
-/// One of these words is in the name of a board at USB.
-#[cfg(feature = "usb")]
-const BOARD_NAMES: [&str; 3] = ["KFLOP", "KMotion", "Dynomotion"];
 
 use crate::address::Address;
 use crate::error::WireError;

@@ -6,8 +6,8 @@ use std::time::Duration;
 use nusb::transfer::{Buffer, Bulk, ControlOut, ControlType, In, Out, Recipient, TransferError};
 use nusb::{DeviceInfo, Endpoint, ErrorKind, Interface, MaybeFuture};
 
+use super::choice::{BOARD_NAMES, Candidate, choose, open_patiently};
 use super::ftdi;
-use crate::clock::now;
 use crate::error::WireError;
 use crate::found::FoundBoard;
 use crate::link::BoardLink;
@@ -25,20 +25,18 @@ const STEP: Duration = Duration::from_millis(50);
 /// Bytes of a transfer, and transfers under way.
 const TRANSFER: usize = 4096;
 const TRANSFERS: usize = 4;
-/// The time that a board needs to start, in which it connects and disconnects.
-const OPEN_WITHIN: Duration = Duration::from_secs(3);
-const OPEN_EACH: Duration = Duration::from_millis(100);
 
 pub(super) fn open(location: Option<&str>) -> Result<BoardLink, WireError> {
-    let end = now() + OPEN_WITHIN;
-    loop {
-        match find(location).and_then(|device| claim(&device)) {
-            Err(error @ WireError::Open { .. }) if now() < end => {
-                drop(error);
-                std::thread::sleep(OPEN_EACH);
-            }
-            result => return result,
-        }
+    open_patiently(|| choose(devices()?, location).and_then(|device| claim(&device)))
+}
+
+impl Candidate for DeviceInfo {
+    fn location(&self) -> String {
+        location_of(self)
+    }
+
+    fn is_meant(&self, wanted: &str) -> bool {
+        location_of(self) == wanted || self.serial_number() == Some(wanted)
     }
 }
 
@@ -52,10 +50,7 @@ fn devices() -> Result<Vec<DeviceInfo>, WireError> {
 fn is_board(device: &DeviceInfo) -> bool {
     let is_known = device.vendor_id() == VENDOR && PRODUCTS.contains(&device.product_id());
     // Where the system does not tell the name, the identifier decides.
-    is_known
-        && device
-            .product_string()
-            .is_none_or(|name| super::BOARD_NAMES.iter().any(|word| name.contains(word)))
+    is_known && device.product_string().is_none_or(|name| BOARD_NAMES.iter().any(|word| name.contains(word)))
 }
 
 /// Bus and ports of a device, as Linux writes them.
@@ -64,25 +59,6 @@ fn location_of(device: &DeviceInfo) -> String {
     let bus = bus.trim_start_matches('0');
     let ports: Vec<String> = device.port_chain().iter().map(u8::to_string).collect();
     format!("{}-{}", if bus.is_empty() { "0" } else { bus }, ports.join("."))
-}
-
-fn find(location: Option<&str>) -> Result<DeviceInfo, WireError> {
-    let mut found = devices()?;
-    let present = found.iter().map(location_of).collect::<Vec<_>>().join(", ");
-    if let Some(wanted) = location {
-        let is_wanted =
-            |device: &DeviceInfo| location_of(device) == wanted || device.serial_number() == Some(wanted);
-        let Some(index) = found.iter().position(is_wanted) else {
-            let present = if present.is_empty() { "none".into() } else { present };
-            return Err(WireError::NotThere { wanted: wanted.into(), present });
-        };
-        return Ok(found.swap_remove(index));
-    }
-    match found.len() {
-        1 => Ok(found.swap_remove(0)),
-        0 => Err(WireError::NoBoard),
-        _ => Err(WireError::SeveralBoards(present)),
-    }
 }
 
 /// Takes the chip and prepares it.
