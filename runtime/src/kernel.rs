@@ -75,7 +75,7 @@ impl Kernel {
         Self::of_board(ModelledBoard::default(), files)
     }
 
-    /// The same with the firmware of a board.
+    /// A kernel with the firmware of a board.
     #[must_use]
     pub fn of_board(board: ModelledBoard, files: Box<dyn HostFiles>) -> Self {
         let mut signatures = signatures();

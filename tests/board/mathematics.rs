@@ -1,6 +1,6 @@
 //! The functions of mathematics, to the last bit: the same program on the modelled board and on the released firmware.
 //!
-//! Where `CC67_FIRMWARE` names its file. [`FUNCTIONS`] has the least number of 10,000 arguments for which both give the
+//! Needs the file of the firmware in `CC67_FIRMWARE`. [`FUNCTIONS`] has the least number of 10,000 arguments for which both give the
 //! same bits; a better function raises it.
 
 use std::fmt::Write as _;

@@ -109,7 +109,7 @@ fn by_hand<E: Engine>(mut session: Session<Board<E>>) -> (Shown, String) {
     (Shown { lines: kept, end, memory }, text)
 }
 
-/// The same setup with a recording as its stimulus.
+/// Runs a setup with a recording as its stimulus.
 fn again<E: Engine>(mut setup: Setup, engine: E, recording: &str, end: Ticks) -> Shown {
     setup.stimulus = Stimulus::parse(recording, "recording").expect("it is a stimulus");
     let mut session = setup.session_on(engine).expect("the programs fit");

@@ -58,7 +58,7 @@ fn other_reader(folder: &Path, names: &[String]) -> Option<Vec<String>> {
     Some(text.split("== ").skip(1).map(str::to_owned).collect())
 }
 
-/// The same numbers and names as our reader has them, in the same order.
+/// Numbers and names as our reader has them, in the order of the other reader.
 fn our_reader(bytes: &[u8]) -> Vec<String> {
     let image = Image::read(bytes).expect("the image is good");
     let mut rows = Vec::new();

@@ -245,8 +245,8 @@ enum cc67_result cc67_compile_and_load_coff(struct cc67_client *client,
                                             int thread);
 
 /*
- The same, with the reason of a failure in `message`: the compiler's messages, lines of `file:line: message`. It is
- cut to fit and always ended; it is empty on success.
+ Compiles a source and loads it, with the reason of a failure in `message`: the compiler's messages, lines of
+ `file:line: message`, cut to fit and always ended; empty on success.
 
  Requires:
  `client` is open, and no other call uses it meanwhile; the text ends with a 0; `message` has room for `size` bytes.

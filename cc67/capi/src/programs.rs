@@ -47,8 +47,8 @@ pub unsafe extern "C" fn cc67_compile_and_load_coff(
     })
 }
 
-/// The same, with the reason of a failure in `message`: the compiler's messages, lines of `file:line: message`. It is
-/// cut to fit and always ended; it is empty on success.
+/// Compiles a source and loads it, with the reason of a failure in `message`: the compiler's messages, lines of
+/// `file:line: message`, cut to fit and always ended; empty on success.
 ///
 /// # Safety
 /// `client` is open, and no other call uses it meanwhile; the text ends with a 0; `message` has room for `size` bytes.

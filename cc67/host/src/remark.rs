@@ -155,7 +155,7 @@ pub fn place(address: CodeAddr, programs: &[DebugInfo]) -> Option<SourceCall> {
     programs.iter().find_map(|debug| debug.place(address)).map(SourceCall::from)
 }
 
-/// The same in words.
+/// The source position of a code address, in words.
 fn source(address: CodeAddr, programs: &[DebugInfo]) -> Option<String> {
     place(address, programs).map(|place| place.to_string())
 }

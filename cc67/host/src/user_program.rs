@@ -89,7 +89,7 @@ impl UserProgram {
         Ok(Self::of_bytes(path, thread, read(path)?))
     }
 
-    /// The same program, to be started when it is loaded.
+    /// Has the program started when it is loaded.
     #[must_use]
     pub fn started(self) -> Self {
         Self { starts: true, ..self }

@@ -117,7 +117,7 @@ impl Setup {
         Self::of_firmware(started, board, compiler, &boot(file)?)
     }
 
-    /// The same for the modelled firmware, also where a firmware file is named.
+    /// Reads and compiles for the modelled firmware, also where a firmware file is named.
     pub(crate) fn of_model<'a>(
         started: impl Into<Started<'a>>,
         board: &BoardArguments,
@@ -126,7 +126,7 @@ impl Setup {
         Self::compiled(started, board, compiler, CodeFor::Engine(board.engine()))
     }
 
-    /// The same for a firmware that has started.
+    /// Reads and compiles for a firmware that has started.
     pub(crate) fn of_firmware<'a>(
         started: impl Into<Started<'a>>,
         board: &BoardArguments,
@@ -172,7 +172,7 @@ impl Setup {
         std::mem::take(&mut self.session.programs)
     }
 
-    /// The same board with its PC at the other end of its link.
+    /// Has the PC of the board at the other end of its link.
     pub(crate) fn with_pc_elsewhere(mut self) -> Self {
         let config = &mut self.session.config;
         config.host = false;
@@ -182,7 +182,7 @@ impl Setup {
         self
     }
 
-    /// The same by a schedule.
+    /// Has the programs run by a schedule.
     pub(crate) fn with_schedule(mut self, schedule: &Schedule) -> Result<Self> {
         self.session.schedule(schedule)?;
         Ok(self)
@@ -205,7 +205,7 @@ impl Setup {
         }
     }
 
-    /// The same on the engine that a debugger can hold, if editors may attach one.
+    /// Does the work on the engine that a debugger can hold, if editors may attach one.
     pub(crate) fn debugged(self, debugger: Option<AttachPoint>, work: impl Work) -> Result<Exit> {
         let Some(debugger) = debugger else { return self.on_its_target(work) };
         let mut rig = self.rig_of_any()?;

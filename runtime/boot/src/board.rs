@@ -133,7 +133,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
         &self.file
     }
 
-    /// The same, for another board of it.
+    /// The file that it was made of, for another board.
     #[must_use]
     pub fn shared_file(&self) -> Arc<FirmwareFile> {
         self.file.clone()
@@ -442,7 +442,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
         self.hardware.window.chips.pins.changes.take()
     }
 
-    /// The same board with this hardware connected, which is shown what was written to the registers so far.
+    /// Connects external hardware, which is shown the present state of the registers.
     #[must_use]
     pub fn connect<B: ExternalHardware>(self, external: Option<B>) -> BootedBoard<B> {
         let Self { file, core, hardware, sent, waits_since, loads, skips, packets, crash } = self;
@@ -456,7 +456,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
         self.hardware.window.external.as_ref()
     }
 
-    /// The same to change it, and memory, data only.
+    /// Returns the surroundings, to be changed, and the memory for data.
     pub const fn external_and_memory(&mut self) -> (Option<&mut A>, &mut GuestMemory) {
         let Hardware { memory, window, .. } = &mut self.hardware;
         (window.external.as_mut(), memory)

@@ -49,7 +49,7 @@ impl<A> Default for Hardware<A> {
 }
 
 impl<A: ExternalHardware> Hardware<A> {
-    /// The same with this hardware connected.
+    /// Connects external hardware.
     pub(super) fn connect<B: ExternalHardware>(self, external: Option<B>, now: u64) -> Hardware<B> {
         let Self { memory, timer, window, control, chip, first_look, forgives, touches } = self;
         let window = window.connect(external, now);

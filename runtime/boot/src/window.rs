@@ -67,7 +67,7 @@ impl<A: ExternalHardware> Window<A> {
         *self = Self { chips, link: old.link, kstep: old.kstep, external: old.external, touches: 0 };
     }
 
-    /// The same with this hardware connected: it finds directions and latches as they are.
+    /// Connects external hardware, which finds directions and latches as they are.
     pub(super) fn connect<B: ExternalHardware>(self, mut external: Option<B>, now: u64) -> Window<B> {
         let Self { chips, link, kstep, touches, .. } = self;
         if let Some(external) = &mut external {

@@ -7,7 +7,7 @@ use kmotiondef::Cycles;
 
 /// Ratio of the output to its supply for the first counts of duty.
 const FIRST: [f64; 8] = [0.001, 0.031, 0.044, 0.054, 0.062, 0.069, 0.074, 0.079];
-/// The same far up, where the curve is straight.
+/// A point far up, where the curve is straight.
 const FAR: (f64, f64) = (240.0, 0.970);
 /// Counts of a full duty.
 const FULL: f64 = 255.0;

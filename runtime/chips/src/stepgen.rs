@@ -31,11 +31,11 @@ const QUADRATURE: i32 = 16;
 const CLOCK: f64 = 50e6 / 3.0;
 const CLOCK_CYCLES: i64 = 12;
 const RATE_UNIT: f64 = CLOCK / (1 << 23) as f64;
-/// The same in steps a cycle.
+/// The unit of a rate, in steps a cycle.
 const RATE_UNIT_PER_CYCLE: f64 = 1.0 / CLOCK_CYCLES as f64 / (1 << 23) as f64;
 /// Fastest stepping, whatever the pulses' length.
 const FASTEST: f64 = 2.5e6;
-/// The same with the pulses of power-up.
+/// The limit with the pulses of power-up, in steps a second.
 const LIMIT: f64 = CLOCK / 2.0 / START as f64;
 
 /// Fields of the rate register: rate with a sign, an unused bit, generator, enable.
@@ -53,7 +53,7 @@ struct Generator {
     position: f64,
     /// Steps a second that a program has set.
     rate: f64,
-    /// The same as it was written, without a limit.
+    /// The rate as it was written, without a limit.
     units: i32,
     /// The instant up to which `position` counts the rate, where it is counted exactly.
     since: Cycles,

@@ -138,7 +138,7 @@ impl<E: Engine> Board<E> {
         self.load_code(thread, Code::Program(program.into()), entry);
     }
 
-    /// The same for code of any kind.
+    /// Makes `thread` ready to run code of any kind.
     fn load_code(&mut self, thread: ThreadId, code: Code, entry: GuestAddr) {
         let entry_points = PERSIST.field(Persist::ENTRY_POINTS);
         self.machine.memory_mut().set(entry_points.element(thread.index()), entry.get());

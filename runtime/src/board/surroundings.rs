@@ -79,7 +79,7 @@ pub struct Instant<'a> {
     pub memory: &'a mut GuestMemory,
     /// Since when the firmware is ready.
     pub now: Cycles,
-    /// The same in ticks.
+    /// The time in ticks.
     pub tick: Ticks,
     /// Steps that each generator has made.
     pub steps: [f64; N_CHANNELS],

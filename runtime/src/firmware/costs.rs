@@ -46,7 +46,7 @@ pub(super) const AFTER_MOVES: i64 = 3475;
 /// `MoveExp` after the wait for its slice.
 pub(super) const AFTER_EXP: i64 = 220;
 
-/// What a motion call takes before it waits for its slice.
+/// Cycles of a motion call before it waits for its slice.
 pub(super) const BEFORE_A_WAIT: i64 = 100;
 
 /// A motion call that does nothing: the axis is disabled, or beyond a limit.

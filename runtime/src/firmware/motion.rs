@@ -292,7 +292,7 @@ fn requested(memory: &GuestMemory, axis: AxisId, request: &MoveRequest) -> f64 {
     if request.is_soft { within_soft_limits(memory, axis, target) } else { target }
 }
 
-/// Whether a move may begin; what it takes is spent if not.
+/// Returns whether a move may begin; the cycles of a refusal are spent if not.
 fn begins(
     parts: &mut Parts,
     caller: &mut Caller<'_>,

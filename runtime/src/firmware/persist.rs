@@ -44,7 +44,7 @@ fn print(parts: &mut Parts, caller: &mut Caller<'_>, message: &[u8], result: i32
     Outcome::Wait(Wake::Retry)
 }
 
-/// The same without a message.
+/// `ProgramFlashNoMessages`: programs user flash without a message.
 pub(crate) fn program_flash_no_messages(
     parts: &mut Parts,
     caller: &mut Caller<'_>,

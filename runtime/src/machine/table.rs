@@ -1,4 +1,4 @@
-//! What a load moves through a coupling that gives: a screw with backlash, a spring.
+//! The table that a load moves through a coupling that gives: a screw with backlash, a spring.
 //!
 //! The encoder is on the motor; switches, probes and analog sources see the table.
 
@@ -9,7 +9,7 @@ use kmotiondef::limits::TIMEBASE;
 
 use super::description::{Spring, Travel};
 
-/// What is between a load and its table.
+/// The coupling between a load and its table.
 #[derive(Clone, Copy, Debug)]
 enum Coupling {
     /// Backlash in units of the axis.

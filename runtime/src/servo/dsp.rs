@@ -17,7 +17,7 @@ pub(crate) fn divide(dividend: f64, divisor: f64) -> f64 {
     dividend * reciprocal
 }
 
-/// The same of singles.
+/// Divides singles.
 pub(crate) fn divide_singles(dividend: f32, divisor: f32) -> f32 {
     let mut reciprocal = eight_bits(1.0 / f64::from(divisor)) as f32;
     if !reciprocal.is_normal() {

@@ -142,12 +142,12 @@ impl Path {
         Self { states: Vec::new(), end: start, root }
     }
 
-    /// The same with square roots that are doubles.
+    /// A path with square roots that are doubles.
     pub(super) fn exact(start: Point) -> Self {
         Self::from(start).exactly()
     }
 
-    /// The same path, continued with square roots that are doubles.
+    /// Continues the path with square roots that are doubles.
     pub(super) fn exactly(self) -> Self {
         Self { root: libm::sqrt, ..self }
     }

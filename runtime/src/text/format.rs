@@ -225,7 +225,7 @@ fn long<A: Arguments>(arguments: &mut A) -> Result<i64, A::Error> {
     Ok((arguments.long_long()? << UNUSED).cast_signed() >> UNUSED)
 }
 
-/// The same conversion without zero filling.
+/// Returns the conversion without zero filling.
 fn unzeroed(spec: &Spec) -> Spec {
     Spec { zero: false, ..*spec }
 }

@@ -21,7 +21,7 @@ impl Input {
         Self { name: name.into(), text: text.into(), says: None }
     }
 
-    /// The same with a message that must come.
+    /// The input, with a message that must come.
     #[must_use]
     pub(crate) fn says(mut self, part: &'static str) -> Self {
         self.says = Some(part);

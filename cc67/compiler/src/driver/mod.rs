@@ -345,7 +345,7 @@ impl CompileRequest<'_> {
         self.front_with(Headers::Whole, Arc::new(text), context).0
     }
 
-    /// The same with the declarations of the headers that are needed, or all of them.
+    /// Preprocesses, parses and checks, with the declarations of the headers that are needed, or all of them.
     fn front_with(
         self,
         headers: Headers,

@@ -7,7 +7,7 @@ use std::path::Path;
 /// Bytes of a source, an image, a machine file. An endless device or a huge file does not fill the memory.
 pub const FILE_BYTES: u64 = SOURCE_BYTES as u64;
 
-/// The same for a source alone.
+/// Bytes of the largest source.
 pub const SOURCE_BYTES: u32 = 32 << 20;
 
 /// Bytes of saved data that are drawn.

@@ -59,7 +59,7 @@ impl<'a> Values<'a> {
         Self { unit, pointers, writes, passed: BTreeMap::new() }
     }
 
-    /// The same where the caller passes these arguments.
+    /// The values where the caller passes these arguments.
     pub(super) fn with_arguments(mut self, function: &Function, arguments: &[Option<Constant>]) -> Self {
         let passed = function.params.iter().zip(arguments);
         let passed = passed.filter_map(|(value, constant)| Some((*value, (*constant)?)));

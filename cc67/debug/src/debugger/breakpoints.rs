@@ -92,12 +92,12 @@ impl Subject {
         if let Self::Access(watched) = self { Some(watched) } else { None }
     }
 
-    /// The expression of a watchpoint of any kind.
+    /// The expression of a watchpoint of any kind, to be changed.
     pub(super) const fn expression_mut(&mut self) -> Option<&mut WatchedExpression> {
         if let Self::Change(watched) | Self::Access(watched) = self { Some(watched) } else { None }
     }
 
-    /// The same, to look at.
+    /// The expression of a watchpoint of any kind.
     pub(super) const fn expression(&self) -> Option<&WatchedExpression> {
         if let Self::Change(watched) | Self::Access(watched) = self { Some(watched) } else { None }
     }

@@ -1,4 +1,4 @@
-//! Whether what has been met stops the board: a breakpoint, a change, an access, an expression that has become true.
+//! The decision to stop the board at a breakpoint, a change, an access, or an expression that has become true.
 
 use cc67_host::Target;
 use kmotiondef::CodeAddr;

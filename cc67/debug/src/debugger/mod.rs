@@ -120,7 +120,7 @@ pub enum Reason {
         old: Option<String>,
         /// Its value now.
         value: String,
-        /// Who did it.
+        /// The thread or part of the board that did it.
         by: String,
     },
     /// An expression has become true.
@@ -183,9 +183,9 @@ pub struct Catches {
     pub no_traps: bool,
     /// Remarks.
     pub remarks: bool,
-    /// Begins and ends of threads.
+    /// Begins of threads.
     pub starts: bool,
-    /// The same for ends.
+    /// Ends of threads.
     pub ends: bool,
     /// Console lines that contain one of these.
     pub texts: Vec<String>,

@@ -1,6 +1,6 @@
 //! Backwards: the past is executed again from a snapshot, and the last stop before the present is the one.
 //!
-//! What is searched is the interval from one snapshot to the next, the latest first. Stops are counted on a first pass;
+//! Each search covers the interval from one snapshot to the next, the latest first. Stops are counted on a first pass;
 //! on a second one the session goes to the one that is needed. Steps have more stops than can be kept, so only the last ticks are
 //! searched at first, then more.
 

@@ -74,7 +74,7 @@ impl fmt::Display for Ending {
 }
 
 impl Ending {
-    /// The same as lines.
+    /// The states at the end, as lines.
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
         let threads = self.threads.iter().map(ToString::to_string);

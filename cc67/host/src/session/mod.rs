@@ -163,7 +163,7 @@ impl<T: Target> Session<T> {
         }
     }
 
-    /// The same session with its target as another type.
+    /// Converts the target to another type.
     pub(crate) fn map_target<U: Target>(self, map: impl FnOnce(T) -> U) -> Session<U> {
         let Self { target, options, programs, offered, signals, recording, journal, interrupter } = self;
         Session { target: map(target), options, programs, offered, signals, recording, journal, interrupter }

@@ -33,7 +33,7 @@ pub(super) enum Voice {
 pub(super) struct LogEntry {
     /// When, in ticks.
     tick: u64,
-    /// The same in seconds, to a fraction of a tick.
+    /// The moment in seconds, to a fraction of a tick.
     seconds: f64,
     voice: Voice,
     text: String,

@@ -17,7 +17,7 @@ const SIGNALS: usize = 128;
 const ROWS_AT_ONCE: usize = 4096;
 /// Ticks from one sample to the next at the pace of the real board: 0.9 ms.
 const EVERY: u64 = 10;
-/// The same of a connected controller: 50 ms, in which its status record is read.
+/// Ticks between samples of a connected controller: 50 ms, in which its status record is read.
 const EVERY_STATUS: u64 = 555;
 
 /// Rows of samples, and how they are called.

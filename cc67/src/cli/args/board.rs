@@ -100,7 +100,7 @@ pub(crate) struct BoardArguments {
 
 /// Returns the words of a command line with `--boot FILE` for `--as firmware FILE`, the only option with two values, and
 /// with `--serves NAME=FILE` for `--board NAME=FILE`, which is about another board than `--board NAME`.
-pub(crate) fn with_boot(words: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+pub(crate) fn canonical_words(words: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut words = words.into_iter().peekable();
     let mut all: Vec<OsString> = Vec::new();
     let is_pair = |word: &OsString| word.to_str().is_some_and(|word| word.contains('='));
@@ -235,7 +235,7 @@ mod tests {
             ("run --as board firmware", "run --as board firmware"),
             ("run b.c --as firmware", "run b.c --as=firmware"),
         ] {
-            let words = with_boot(words.split(' ').map(OsString::from));
+            let words = canonical_words(words.split(' ').map(OsString::from));
             assert_eq!(words.join(std::ffi::OsStr::new(" ")), expect);
         }
     }

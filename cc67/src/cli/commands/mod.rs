@@ -41,7 +41,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use compiler::words::suggest;
 
 use self::deferred::Deferred;
-use super::args::board::with_boot;
+use super::args::board::canonical_words;
 use super::args::sidecars::Sidecars;
 use super::io::exit::Exit;
 use super::io::{output, stack, terminal};
@@ -209,7 +209,7 @@ fn command(arguments: Vec<OsString>) -> ExitCode {
         return drop_in::main(&arguments);
     }
     let arguments = serve::home::called_as_server(&arguments).unwrap_or(arguments);
-    let words = with_boot(arguments.into_iter().map(as_long_option));
+    let words = canonical_words(arguments.into_iter().map(as_long_option));
     if asks_for_version_in_full(&words) {
         return output::print(&doctor::version()).map_or(Exit::WrongInput, |()| Exit::Success).into();
     }
@@ -251,7 +251,7 @@ fn asks_for_version_in_full(words: &[OsString]) -> bool {
 }
 
 impl Arguments {
-    /// The same with the options of the project file and of the files beside the first program; one line names them.
+    /// Adds the options of the project file and of the files beside the first program; one line names them.
     fn with_sidecars(mut self, words: &[OsString]) -> Result<Self> {
         if let Some(Command::Compare(arguments)) = &mut self.command {
             // Each of its programs has its own.
@@ -283,8 +283,9 @@ impl Arguments {
         }
         let at = words.iter().position(|word| word == name).context("the subcommand is among the words")? + 1;
         let (before, given) = words.split_at(at);
-        let arguments =
-            Self::try_parse_from(with_boot([before, &sidecars.options, given, &sidecars.also].concat()));
+        let arguments = Self::try_parse_from(canonical_words(
+            [before, &sidecars.options, given, &sidecars.also].concat(),
+        ));
         let arguments = arguments.map_err(|error| {
             let text = error.to_string();
             let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ");

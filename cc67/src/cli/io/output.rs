@@ -21,7 +21,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     draft.commit()
 }
 
-/// The same, and returns only when it is on the disk.
+/// Writes a file, and returns only when it is on the disk.
 pub(crate) fn write_durably(path: &Path, bytes: &[u8]) -> Result<()> {
     let mut draft = Draft::new(path)?;
     let written = draft.write_all(bytes).and_then(|()| draft.writer.flush());

@@ -24,7 +24,7 @@ impl Pace {
         Self::with_speed(origin, 1.0)
     }
 
-    /// The same for a board that is `speed` times as fast as the real one.
+    /// A pace for a board that is `speed` times as fast as the real one.
     pub(crate) fn with_speed(origin: Ticks, speed: f64) -> Self {
         Self { start: now(), origin, speed }
     }

@@ -50,7 +50,7 @@ impl FinalState {
         }
     }
 
-    /// The same as lines of text.
+    /// The state as lines of text.
     pub(crate) fn lines(&self) -> Vec<String> {
         let axis = |state: &AxisState| {
             let enabled = if state.enabled { "enabled" } else { "disabled" };

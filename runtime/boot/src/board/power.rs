@@ -69,7 +69,7 @@ impl BootedBoard {
         Ok(board)
     }
 
-    /// The same from what the flash of such a board held, 2 MiB.
+    /// Starts from the flash content of such a board, 2 MiB.
     ///
     /// # Errors
     /// The flash is not of this firmware, or the firmware never comes to look for what the PC sends.

@@ -20,7 +20,7 @@ impl Wrong {
         Self { offset, message: message.into() }
     }
 
-    /// The same with line and column.
+    /// The error with line and column.
     pub(super) fn in_text(self, text: &str) -> MachineFileError {
         let before = text.get(..self.offset).unwrap_or(text);
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);

@@ -12,7 +12,7 @@ use super::super::parts::Parts;
 use crate::servo::independent::has_motion;
 use crate::servo::moves::Planner;
 
-/// How far a motion call has come with an axis.
+/// The progress of a motion call with one axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum PlanningStage {
     /// It begins.

@@ -17,7 +17,7 @@ const MOST: u16 = 125;
 /// Time without a character after which the rest of a frame is not waited for: 20 ms.
 const GAP: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 50);
 
-/// Why a request is refused, as an exception of the protocol.
+/// The reason of a refusal: an exception code of the protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Refusal {
     UnknownFunction = 1,
@@ -32,8 +32,9 @@ pub(crate) struct Modbus {
     registers: BTreeMap<u16, u16>,
     /// Time from a request to its answer.
     delay: Cycles,
-    /// What has arrived of a frame, and when the last character did.
+    /// The part of a frame that has arrived.
     frame: Vec<u8>,
+    /// The instant of its last character.
     last: Cycles,
 }
 

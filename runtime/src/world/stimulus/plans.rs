@@ -103,7 +103,7 @@ impl Plans {
         self.due.values().copied()
     }
 
-    /// The same, which is due no more.
+    /// Takes all that is due some time.
     pub(super) fn take_all(&mut self) -> impl Iterator<Item = Due> + use<> {
         std::mem::take(&mut self.due).into_values()
     }

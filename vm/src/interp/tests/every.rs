@@ -70,7 +70,7 @@ const SPECIAL: [&str; 23] = [
 
 /// The instruction with a register of its class wherever it has one, and an address of RAM.
 ///
-/// What it assigns is another register than what it reads, unless that is linked with what the one before assigns.
+/// It assigns another register than it reads, unless that is linked with what the one before assigns.
 fn line(step: &LinkedOp, label: &str) -> String {
     let mut word = [0; WORD];
     word[..2].copy_from_slice(&step.code.to_le_bytes());

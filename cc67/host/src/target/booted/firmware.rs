@@ -46,7 +46,7 @@ impl BootedFirmware {
         Ok(Self { file, ready, symbols: Firmware::File(Arc::new(symbols)) })
     }
 
-    /// The same from the name of a file.
+    /// Boots the firmware of a named file.
     ///
     /// # Errors
     /// It cannot be read, or as [`new`](Self::new).

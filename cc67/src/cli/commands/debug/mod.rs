@@ -17,7 +17,7 @@ use clap::{Args, Parser};
 use kmotiondef::Ticks;
 use kmotiondef::limits::TIMEBASE;
 
-use crate::cli::args::board::{BoardArguments, with_boot};
+use crate::cli::args::board::{BoardArguments, canonical_words};
 use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::args::engine::EngineName;
 use crate::cli::args::sidecars::{SidecarArguments, Sidecars};
@@ -67,7 +67,7 @@ impl DebugArguments {
     }
 }
 
-/// The same arguments as a client of the protocol gives them.
+/// The arguments as a client of the protocol gives them.
 #[derive(Debug, Parser)]
 #[command(name = "launch", no_binary_name = true, args_override_self = true)]
 struct LaunchArguments {
@@ -213,7 +213,7 @@ fn listen(arguments: &DebugArguments, port: u16, is_once: bool) -> Result<Exit> 
 /// the command line apply where the client names none.
 fn launch(arguments: &DebugArguments, request: &Launch) -> Result<Debugger<AnyTarget>, String> {
     let line = request.command_line().map_err(|error| error.to_string())?;
-    let words = with_boot([&arguments.words, line.as_slice()].concat());
+    let words = canonical_words([&arguments.words, line.as_slice()].concat());
     let arguments = LaunchArguments::with_sidecars(&words).map_err(|error| format!("{error:#}"))?;
     let debugger = debugger(&arguments.debug).map_err(|error| format!("{error:#}"))?;
     debugger.ok_or_else(|| "a program has errors; `cc67 check` shows them".to_owned())

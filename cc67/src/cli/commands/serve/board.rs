@@ -105,7 +105,7 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         self.until(TAKEN_WITHIN, |board| !board.is_receiving());
     }
 
-    /// The same for a page, which alone sees what the board answers.
+    /// Sends a line for a page, which alone sees what the board answers.
     pub(super) fn send_for_page(&mut self, before: &[u8], line: &[u8]) {
         self.log("page:");
         self.forward();

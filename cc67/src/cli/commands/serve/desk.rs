@@ -33,7 +33,7 @@ const TICKS_PER_POLL: u64 = 111;
 const AHEAD: f64 = 11.0;
 /// The time for which the board runs before requests are polled again.
 const AT_ONCE: Duration = Duration::from_millis(25);
-/// The same while a request waits.
+/// The time for which the board runs while a request waits.
 const BEFORE_ANSWER: Duration = Duration::from_millis(5);
 /// Seconds of the clock by which a board may be late; one that is later does not catch up.
 const PATIENCE: f64 = 0.25;
@@ -76,7 +76,7 @@ enum Course {
 pub(super) enum Wanted {
     /// A line of a reply, without its end.
     Answer,
-    /// The same with its end.
+    /// A line of a reply, with its end.
     Line,
     /// `Ready`; whether an error came before.
     Ready { after_error: bool },

@@ -12,7 +12,7 @@ use crate::cli::args::engine::EngineName;
 pub(super) enum Executor {
     /// An engine, with the modelled firmware.
     Engine(EngineName),
-    /// The same, with threads switched inside statements.
+    /// An engine, with threads switched inside statements.
     AsBoard(EngineName),
     /// The user's own firmware file.
     Boot(PathBuf),

@@ -27,7 +27,7 @@ use crate::cli::io::output;
 pub(crate) enum ProfileOutput {
     /// A table after the run.
     Table,
-    /// The same, and a flame graph.
+    /// The report, and a flame graph.
     Flame(PathBuf),
 }
 

@@ -349,7 +349,7 @@ mod testing {
         text
     }
 
-    /// The same records for pictures.
+    /// The records for pictures.
     pub(crate) fn log() -> Log {
         let mut log = Log::new(&request());
         for event in events() {
