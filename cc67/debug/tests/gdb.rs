@@ -229,8 +229,11 @@ fn is_there(name: &str) -> bool {
     found
 }
 
+/// The answer of gdb to a call where the system does not let it write the registers of a process.
+const CANNOT_CALL: &str = "Couldn't write extended state status";
+
 /// Returns the answers of gdb.
-fn of_gdb(folder: &Path, source: &Path) -> Vec<String> {
+fn of_gdb(folder: &Path, source: &Path, commands: &[&str]) -> Vec<String> {
     let program = folder.join("program");
     let built = Command::new("gcc")
         .args(["-g", "-O0", "-fno-pie", "-no-pie", "-o"])
@@ -252,16 +255,16 @@ fn of_gdb(folder: &Path, source: &Path) -> Vec<String> {
         .spawn()
         .expect("gdb is there");
     // Both kinds of text in the order in which they are written.
-    let script = format!("python import os; os.dup2(1, 2)\n{COMMANDS}kill\n");
+    let script = format!("python import os; os.dup2(1, 2)\n{}\nkill\n", commands.join("\n"));
     gdb.stdin.take().expect("it is piped").write_all(script.as_bytes()).expect("gdb reads");
     let output = gdb.wait_with_output().expect("gdb ends");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     let answers = text.split("(gdb) ").skip(2).map(str::to_owned);
-    answers.take(COMMANDS.lines().count()).collect()
+    answers.take(commands.len()).collect()
 }
 
 /// Returns the answers of cc67.
-fn of_cc67(source: &Path) -> Vec<String> {
+fn of_cc67(source: &Path, commands: &[&str]) -> Vec<String> {
     let mut setup = Setup::default();
     setup.options.level = Level::None;
     setup.options.gc_sections = false;
@@ -277,7 +280,7 @@ fn of_cc67(source: &Path) -> Vec<String> {
             Err(error) => format!("{said}{error}\n"),
         }
     };
-    COMMANDS.lines().map(answer).collect()
+    commands.iter().copied().map(answer).collect()
 }
 
 /// A text without what is known to be different: addresses of either program, blanks in a row, and what starts a process.
@@ -328,11 +331,18 @@ fn commands_answer_as_those_of_gdb() {
     fs::create_dir_all(&folder).expect("a folder");
     let source = folder.join("model.c");
     fs::write(&source, PROGRAM).expect("a file");
-    let (gdb, cc67) = (of_gdb(&folder, Path::new("model.c")), of_cc67(&source));
+    let mut commands: Vec<_> = COMMANDS.lines().collect();
+    let mut gdb = of_gdb(&folder, Path::new("model.c"), &commands);
+    if gdb.iter().any(|answer| answer.contains(CANNOT_CALL)) {
+        println!("calls are not compared: gdb cannot call functions on this system");
+        commands.retain(|command| !command.ends_with(')'));
+        gdb = of_gdb(&folder, Path::new("model.c"), &commands);
+    }
+    let cc67 = of_cc67(&source, &commands);
     fs::remove_dir_all(&folder).expect("the folder is ours");
     assert_eq!(gdb.len(), cc67.len(), "{gdb:#?}");
     let mut different = String::new();
-    for ((command, gdb), cc67) in COMMANDS.lines().zip(&gdb).zip(&cc67) {
+    for ((command, gdb), cc67) in commands.iter().copied().zip(&gdb).zip(&cc67) {
         let (expect, found) = (plain(gdb), plain(&without_additions(cc67)));
         // Within a function, gdb shows the line alone.
         let is_step = ["until", "next", "step"].contains(&command);
@@ -341,5 +351,5 @@ fn commands_answer_as_those_of_gdb() {
             let _ = write!(different, "{command}\ngdb:\n{expect}cc67:\n{found}\n");
         }
     }
-    assert!(COMMANDS.lines().count() > 40 && different.is_empty(), "{different}");
+    assert!(commands.len() > 40 && different.is_empty(), "{different}");
 }
