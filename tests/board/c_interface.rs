@@ -3,18 +3,20 @@
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::ffi::OsStr;
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use cbindgen::{Builder, Config, DocumentationStyle, EnumConfig, ExportConfig, Language, RenameRule, Style};
-use harness::{Scratch, root, run_in};
+use harness::{Scratch, command, root, run_in};
 
 /// The text of the header before its declarations.
 const HEAD: &str = "\
-/* The simulated KFLOP board as a library: the operations of the host interface under their names.
+/* A KFLOP board, simulated or connected, as a library: the operations of the host interface under their names.
 
    Times are board time, which passes only in calls: an exchange takes as long as on the wire, cc67_run_for and
-   cc67_run_until let more of it pass. So a test of a program of the PC does the same every time.
+   cc67_run_until let more of it pass. So a test of a program of the PC does the same every time. The time of a connected
+   controller passes by itself, and these calls wait.
 
        cc host.c -I cc67/capi/include -L target/release -lcc67board
 
@@ -104,6 +106,25 @@ fn the_program_of_the_book_compiles() {
     }
 }
 
+/// Compiles a C program of the tests' inputs with the library; returns the executable.
+fn host_program(scratch: &Scratch, source: &str) -> PathBuf {
+    let library = library();
+    let folder = library.parent().expect("a file has a folder");
+    let program = scratch.path().join("host");
+    let compiled = Command::new("cc")
+        .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-o"])
+        .arg(&program)
+        .arg(root().join("tests/board/inputs").join(source))
+        .arg("-I")
+        .arg(root().join("cc67/capi/include"))
+        .arg(&library)
+        .arg(format!("-Wl,-rpath,{}", folder.display()))
+        .output()
+        .expect("the C compiler starts");
+    assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
+    program
+}
+
 #[test]
 fn a_c_program_drives_a_board() {
     // Naming it keeps the library among what is built for these tests.
@@ -114,23 +135,35 @@ fn a_c_program_drives_a_board() {
     let scratch = Scratch::new("c-interface");
     scratch.write("good.c", "#include \"KMotionDef.h\"\nmain()\n{\n  printf(\"counting\\n\");\n  for (;;) { WaitNextTimeSlice(); persist.UserData[9]++; }\n}\n");
     scratch.write("bad.c", "main()\n{\n  retrun 1;\n}\n");
-    let library = library();
-    let folder = library.parent().expect("a file has a folder");
-    let program = scratch.path().join("host");
-    let compiled = Command::new("cc")
-        .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-o"])
-        .arg(&program)
-        .arg(root().join("tests/board/inputs/host.c"))
-        .arg("-I")
-        .arg(root().join("cc67/capi/include"))
-        .arg(&library)
-        .arg(format!("-Wl,-rpath,{}", folder.display()))
-        .output()
-        .expect("the C compiler starts");
-    assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
+    let program = host_program(&scratch, "host.c");
     let arguments = ["good.c", "bad.c"].map(|name| scratch.path().join(name));
     let output = run_in(program.to_str().expect("a name"), scratch.path(), arguments);
     let expect = "console: counting\nbad.c:3: expected `;` after `retrun` (or is an operator missing, such as `*`?)\nKFLOP 4.34 Build 16:07:06 Aug 14 2018\n\
                   remark: command: Move: axis 0 is disabled, so nothing moves\nagain: ONE\nagain: TWO\ndone\n---- exit 0\n";
+    assert_eq!(output.render(), expect);
+}
+
+#[cfg(feature = "usb")]
+#[test]
+fn a_c_program_drives_a_controller_at_a_link() {
+    if !has_compiler() {
+        return;
+    }
+    let scratch = Scratch::new("c-controller");
+    scratch.write("count.c", "#include \"KMotionDef.h\"\nmain()\n{\n  printf(\"counting\\n\");\n  for (;;) { Delay_sec(0.001); persist.UserData[9]++; }\n}\n");
+    let program = host_program(&scratch, "controller.c");
+    let mut server = Command::new(command());
+    server.args(["serve", "--listen", "tcp-raw:0"]).current_dir(scratch.path());
+    let mut server = server.stderr(Stdio::piped()).spawn().expect("the command under test starts");
+    let mut line = String::new();
+    let mut output = BufReader::new(server.stderr.take().expect("it is piped"));
+    output.read_line(&mut line).expect("it is text");
+    let place = line.trim_end().strip_prefix("cc67: a board is served on ").expect("it says where");
+    let output = run_in(program.to_str().expect("a name"), scratch.path(), [place, "count.c"]);
+    // A server that has ended is as good.
+    let _ = server.kill();
+    let _ = server.wait();
+    let expect = "no address: `lpt1` is not a board\nnobody there: connection refused\nKFLOP 4.34 Build 16:07:06 Aug 14 2018\n\
+                  console: counting\nloaded, started, stopped\n---- exit 0\n";
     assert_eq!(output.render(), expect);
 }

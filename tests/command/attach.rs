@@ -73,7 +73,7 @@ impl Drop for Running {
 }
 
 /// A client of the protocol.
-struct Editor {
+pub(crate) struct Editor {
     input: Box<dyn BufRead>,
     output: Box<dyn Write>,
     number: u64,
@@ -81,6 +81,17 @@ struct Editor {
 }
 
 impl Editor {
+    /// A client of a debugger that was started with pipes.
+    pub(crate) fn of(child: &mut Child) -> Self {
+        let (input, output) = (child.stdout.take().expect("piped"), child.stdin.take().expect("piped"));
+        Self {
+            input: Box::new(BufReader::new(input)),
+            output: Box::new(output),
+            number: 0,
+            events: Vec::new(),
+        }
+    }
+
     fn read(&mut self) -> Value {
         let mut length = 0;
         loop {
@@ -97,7 +108,7 @@ impl Editor {
     }
 
     /// Asks something; the response, which is one of success.
-    fn ask(&mut self, command: &str, arguments: Value) -> Value {
+    pub(crate) fn ask(&mut self, command: &str, arguments: Value) -> Value {
         self.number += 1;
         let message =
             json!({ "seq": self.number, "type": "request", "command": command, "arguments": arguments });
@@ -116,7 +127,7 @@ impl Editor {
     }
 
     /// The next event of this name.
-    fn event(&mut self, name: &str) -> Value {
+    pub(crate) fn event(&mut self, name: &str) -> Value {
         loop {
             if let Some(at) = self.events.iter().position(|event| event["event"] == name) {
                 return self.events.remove(at)["body"].clone();
@@ -196,13 +207,7 @@ fn an_editor_attaches_its_debugger_to_the_board_of_a_page() {
     let mut command = Command::new(harness::command());
     command.args(["debug", "--dap"]).stdin(Stdio::piped()).stdout(Stdio::piped());
     let mut child = command.spawn().expect("it starts");
-    let (input, output) = (child.stdout.take().expect("piped"), child.stdin.take().expect("piped"));
-    let mut editor = Editor {
-        input: Box::new(BufReader::new(input)),
-        output: Box::new(output),
-        number: 0,
-        events: Vec::new(),
-    };
+    let mut editor = Editor::of(&mut child);
     editor.attach(json!({ "address": format!("127.0.0.1:{}", board.port) }));
     assert_eq!(editor.event("capabilities")["capabilities"]["supportsStepBack"], false);
     board.breaks(&mut editor, &[8]);

@@ -10,7 +10,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 use harness::{Output, Scratch, cc67, cc67_with_input, command, files, root};
+use serde_json::json;
 
+use crate::attach::Editor;
 use crate::serve::Server;
 
 /// Prints, and changes an element of `persist.UserData`.
@@ -286,8 +288,60 @@ a connected controller cannot stop its time
 ";
     assert!(output.stdout.ends_with(refusals), "{output:?}");
     assert!(output.stderr.contains("thread 7 holds cc67's monitor now"), "{output:?}");
-    let output = on(&scratch, &["debug"], &place, &["--dap"]);
-    assert!(output.code == 2 && output.stderr.contains("do not work with `--on`"), "{output:?}");
+}
+
+#[test]
+fn an_editor_shows_variables_of_a_running_program_and_ends_it() {
+    let scratch = Scratch::new("controller-editor");
+    scratch.write("a.c", NAMED);
+    let (_server, place) = served("controller-editor-board", &[]);
+    let mut debugger = Command::new(command());
+    debugger.args(["debug", "--dap", "--yes", "--on", &place]).current_dir(scratch.path());
+    let mut child = debugger.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("it starts");
+    let mut editor = Editor::of(&mut child);
+    editor.ask("initialize", json!({ "adapterID": "cc67" }));
+    editor.ask("launch", json!({ "program": scratch.path().join("a.c") }));
+    let source = json!({ "path": scratch.path().join("a.c") });
+    let set = editor.ask("setBreakpoints", json!({ "source": source, "breakpoints": [{ "line": 7 }] }));
+    let breakpoint =
+        json!({ "verified": false, "message": "a connected controller cannot stop at breakpoints" });
+    assert_eq!(set["breakpoints"], json!([breakpoint]));
+    editor.ask("configurationDone", json!({}));
+    let first = editor.event("output")["output"].clone();
+    assert_eq!(
+        first,
+        "The programs run on a controller: Pause stops this view, not them. Stop kills their threads.\n"
+    );
+
+    editor.ask("pause", json!({ "threadId": 1 }));
+    assert_eq!(editor.event("stopped")["reason"], "pause");
+    let stack = editor.ask("stackTrace", json!({ "threadId": 1 }));
+    let frame = &stack["stackFrames"][0];
+    assert_eq!((&stack["totalFrames"], &frame["name"]), (&json!(1), &json!("(running)")));
+    let scopes = editor.ask("scopes", json!({ "frameId": frame["id"] }));
+    let globals = scopes["scopes"][1]["variablesReference"].clone();
+    let variables = editor.ask("variables", json!({ "variablesReference": globals }));
+    let names: Vec<_> =
+        variables["variables"].as_array().expect("a list").iter().map(|one| &one["name"]).collect();
+    assert_eq!(names, ["level", "point", "ticks"]);
+    // The program runs on meanwhile.
+    let ticks = |editor: &mut Editor| {
+        let value = editor.ask("evaluate", json!({ "expression": "ticks", "frameId": frame["id"] }));
+        value["result"].as_str().and_then(|text| text.parse::<u32>().ok()).expect("a number")
+    };
+    let before = ticks(&mut editor);
+    while ticks(&mut editor) == before {}
+
+    editor.ask("disconnect", json!({}));
+    loop {
+        let output = editor.event("output");
+        if output["output"] == "thread 1 of the controller was killed\n" {
+            break;
+        }
+    }
+    assert!(child.wait().expect("it ends").success());
+    let output = cc67_with_input(&scratch, ["console", "--yes", "--on", &place], "CheckThread1\n");
+    assert_eq!(output.stdout, "0\n", "{output:?}");
 }
 
 #[test]

@@ -1,7 +1,8 @@
-/* The simulated KFLOP board as a library: the operations of the host interface under their names.
+/* A KFLOP board, simulated or connected, as a library: the operations of the host interface under their names.
 
    Times are board time, which passes only in calls: an exchange takes as long as on the wire, cc67_run_for and
-   cc67_run_until let more of it pass. So a test of a program of the PC does the same every time.
+   cc67_run_until let more of it pass. So a test of a program of the PC does the same every time. The time of a connected
+   controller passes by itself, and these calls wait.
 
        cc host.c -I cc67/capi/include -L target/release -lcc67board
 
@@ -97,6 +98,21 @@ struct cc67_client *cc67_open_firmware(const char *firmware,
                                        const char *machine,
                                        char *message,
                                        uintptr_t size);
+
+/*
+ Connects to a controller, and makes its first client: programs are compiled for its processor and its firmware.
+ `address` is `usb`, `usb:LOCATION`, `serial:PATH`, `server`, `kogna` or `tcp:HOST:PORT`, as with `cc67 run --on`;
+ `files` is that of `cc67_open`. Connecting starts nothing, and programs that run already continue. Time passes by
+ itself: cc67_run_for and cc67_run_until wait. Nothing of cc67 has been tried on a controller yet, only on the released
+ firmware in emulation: switch the drives off for the first trials. Null on failure, with the reason in `message`.
+
+ Requires:
+ Texts end with a 0; `message` has room for `size` bytes.
+ */
+struct cc67_client *cc67_open_controller(const char *address,
+                                         const char *files,
+                                         char *message,
+                                         uintptr_t size);
 
 /*
  Makes one more client of the same board, for another thread or another part of the program. Null on failure, and in

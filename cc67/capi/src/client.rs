@@ -73,6 +73,40 @@ pub unsafe extern "C" fn cc67_open_firmware(
     })
 }
 
+/// Connects to a controller, and makes its first client: programs are compiled for its processor and its firmware.
+/// `address` is `usb`, `usb:LOCATION`, `serial:PATH`, `server`, `kogna` or `tcp:HOST:PORT`, as with `cc67 run --on`;
+/// `files` is that of `cc67_open`. Connecting starts nothing, and programs that run already continue. Time passes by
+/// itself: cc67_run_for and cc67_run_until wait. Nothing of cc67 has been tried on a controller yet, only on the released
+/// firmware in emulation: switch the drives off for the first trials. Null on failure, with the reason in `message`.
+///
+/// # Safety
+/// Texts end with a 0; `message` has room for `size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cc67_open_controller(
+    address: *const c_char,
+    files: *const c_char,
+    message: *mut c_char,
+    size: usize,
+) -> *mut Client {
+    guarded_or(ptr::null_mut(), || {
+        // SAFETY: the caller vouches for the buffer.
+        let message = unsafe { buffer(message, size) };
+        // SAFETY: the caller vouches for the text.
+        let address = unsafe { optional_text(address) };
+        // SAFETY: the caller vouches for the text.
+        let files = unsafe { optional_text(files) };
+        let (Ok(address), Ok(files)) = (address, files) else {
+            fill(message, "a name is not UTF-8");
+            return ptr::null_mut();
+        };
+        let Some(address) = address else {
+            fill(message, "the controller has no address");
+            return ptr::null_mut();
+        };
+        opened(connect(address, files.map(PathBuf::from)), message)
+    })
+}
+
 /// A client as C receives it, or the reason in its buffer.
 fn opened(client: Result<Client, String>, message: &mut [u8]) -> *mut Client {
     match client {
@@ -97,6 +131,24 @@ fn boot(firmware: &Path, files: Option<PathBuf>, machine: Option<&Path>) -> Resu
     let board = Board::booted(&firmware, config(files, machine)?).map_err(|error| error.to_string())?;
     let options = board.options();
     Ok(Client { board, options, number: BoardNumber::new() })
+}
+
+#[cfg(feature = "controller")]
+fn connect(address: &str, files: Option<PathBuf>) -> Result<Client, String> {
+    use cc67_controller::{Address, ControllerLink, LoadTerms};
+    use cc67_host::Setup;
+
+    let address: Address = address.parse().map_err(|error| format!("{error}"))?;
+    let link = ControllerLink::open(&address).map_err(|error| error.to_string())?;
+    let options = link.options();
+    let setup = Setup { config: config(files, None)?, options: options.clone(), ..Setup::default() };
+    let session = link.session(setup, LoadTerms::default(), |_, _| ()).map_err(|error| error.to_string())?;
+    Ok(Client { board: Board::from_session(session.on_any()), options, number: BoardNumber::new() })
+}
+
+#[cfg(not(feature = "controller"))]
+fn connect(address: &str, _: Option<PathBuf>) -> Result<Client, String> {
+    Err(format!("{address}: this library is built without controllers (feature `controller`)"))
 }
 
 /// The configuration of a board: the folder for its files and its machine file.

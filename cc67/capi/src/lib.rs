@@ -36,7 +36,7 @@ pub use handle::Client;
 
 pub use client::{
     cc67_another_client, cc67_close, cc67_firmware_version, cc67_list_locations, cc67_open,
-    cc67_open_firmware,
+    cc67_open_controller, cc67_open_firmware,
 };
 pub use lines::{
     cc67_check_for_ready, cc67_get_status, cc67_read_line_timeout, cc67_write_line,

@@ -4,6 +4,7 @@ use std::ffi::{c_int, c_void};
 
 use cc67_host::kmotiondef::Bit;
 use cc67_host::kmotiondef::limits::TIMEBASE;
+use cc67_host::{AnyTarget, Session, Target};
 
 use crate::border::{guarded, guarded_or, store};
 use crate::handle::{board, check};
@@ -72,9 +73,12 @@ pub unsafe extern "C" fn cc67_user_data(client: *mut Client, element: c_int, val
     guarded(|| {
         let element = usize::try_from(element).map_err(|_| Outcome::Argument)?;
         // SAFETY: the caller vouches for the client.
-        let found = unsafe { board(client) }?.with_session(|session| session.user_data(element));
+        let found = unsafe { board(client) }?.with_session(|session| {
+            let found = session.user_data(element).ok_or(Outcome::Argument)?;
+            present(session).map(|()| found)
+        });
         // SAFETY: the caller vouches for the place.
-        unsafe { store(value, found.ok_or(Outcome::Argument)?) }
+        unsafe { store(value, found?) }
     })
 }
 
@@ -87,10 +91,17 @@ pub unsafe extern "C" fn cc67_set_user_data(client: *mut Client, element: c_int,
     guarded(|| {
         let element = usize::try_from(element).map_err(|_| Outcome::Argument)?;
         // SAFETY: the caller vouches for the client.
-        let is_stored =
-            unsafe { board(client) }?.with_session(|session| session.set_user_data(element, value));
-        if is_stored { Ok(()) } else { Err(Outcome::Argument) }
+        unsafe { board(client) }?.with_session(|session| {
+            let is_stored = session.set_user_data(element, value);
+            present(session)?;
+            if is_stored { Ok(()) } else { Err(Outcome::Argument) }
+        })
     })
+}
+
+/// Returns an error for a controller that cannot be reached any more.
+fn present(session: &Session<AnyTarget>) -> Result<(), Outcome> {
+    if session.target().lost().is_some() { Err(Outcome::NotConnected) } else { Ok(()) }
 }
 
 /// Drives an input bit, 0 to 2047, from outside: 0 low, any other number high.
@@ -103,6 +114,6 @@ pub unsafe extern "C" fn cc67_drive_input(client: *mut Client, bit: c_int, level
         let bit = Bit::new(bit).ok_or(Outcome::Argument)?;
         // SAFETY: the caller vouches for the client.
         let driven = unsafe { board(client) }?.with_session(|session| session.drive_input(bit, level != 0));
-        driven.map_err(|_| Outcome::Argument)
+        Ok(driven?)
     })
 }

@@ -2,6 +2,9 @@
 
 use cc67_host::{HostError, Session, Setup};
 use cc67_wire::{Address, Client, Progress, WireError};
+use compiler::Options;
+use compiler::firmware::Firmware;
+use compiler::target::Target as CodeTarget;
 use kmotiondef::ThreadId;
 use kmotiondef::boards::TargetBoard;
 
@@ -37,6 +40,14 @@ impl ControllerLink {
     #[must_use]
     pub fn board(&self) -> Option<&'static TargetBoard> {
         TargetBoard::of_version(self.version().trim_end())
+    }
+
+    /// Returns the options for programs and expressions of this controller: its processor and its firmware.
+    #[must_use]
+    pub fn options(&self) -> Options {
+        let other = self.board().filter(|board| !board.is_default());
+        let firmware = other.map_or_else(Firmware::default, Firmware::Board);
+        Options { firmware, target: CodeTarget::C67x, ..Options::default() }
     }
 
     /// Loads the programs of a setup and starts those that should be started.

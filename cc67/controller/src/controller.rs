@@ -8,7 +8,7 @@ use std::fmt;
 use std::time::{Duration, Instant};
 
 use cc67_host::target::Target;
-use cc67_host::{Capability, EventSink, HostError, SnapshotError, TargetSnapshot, Unsupported, UserProgram};
+use cc67_host::{Capability, EventSink, HostError, NoSnapshot, SnapshotError, Unsupported, UserProgram};
 use cc67_wire::{Client, Progress, Status, WireError};
 use compiler::Options;
 use compiler::firmware::FirmwareNames;
@@ -221,24 +221,6 @@ impl Controller {
 /// The error of a link, for sessions.
 pub(crate) fn link(error: WireError) -> HostError {
     HostError::Link(error.to_string())
-}
-
-/// A controller has no snapshots.
-#[derive(Debug)]
-pub enum NoSnapshot {}
-
-impl TargetSnapshot for NoSnapshot {
-    fn tick(&self) -> Ticks {
-        match *self {}
-    }
-
-    fn is_held(&self) -> bool {
-        match *self {}
-    }
-
-    fn bytes_beyond(&self, _: &Self) -> usize {
-        match *self {}
-    }
 }
 
 impl Target for Controller {

@@ -50,7 +50,7 @@ mod seen;
 mod terms;
 mod threads;
 
-pub use cc67_wire::{Address, AddressError, Client, FoundBoard, Progress, WireError, boards};
+pub use cc67_wire::{Address, AddressError, Client, FoundBoard, Progress, WireError, boards, kognas};
 pub use connection::ControllerLink;
 pub use controller::Controller;
 pub use saving::Unsettled;

@@ -503,13 +503,10 @@ fn go<T: Target>(
             debugger.start(thread_of(place)?)?;
             debugger.go_on(events)
         }
-        "run" if !debugger.session().can(Capability::StopTime) => {
-            debugger.start_all()?;
-            debugger.go_on(events)
-        }
         "run" => {
-            if debugger.stop().reason != Reason::Begin {
-                debugger.restart()?;
+            let is_simulated = debugger.session().can(Capability::StopTime);
+            if !is_simulated || debugger.stop().reason != Reason::Begin {
+                debugger.start_again()?;
             }
             debugger.go_on(events)
         }

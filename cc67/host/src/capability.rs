@@ -25,6 +25,8 @@ pub enum Capability {
     Recordings,
     /// Threads are paused one by one while the others run.
     Pauses,
+    /// Received lines are echoed to the client.
+    Echoes,
     /// Boxes of programs are answered by calls, not by statements.
     Answers,
 }
@@ -40,6 +42,7 @@ impl fmt::Display for Capability {
             Self::Calls => "call functions of a program from an expression",
             Self::ProcessorCode => "stop code of the controller's processor",
             Self::Pauses => "pause one thread while the others run",
+            Self::Echoes => "echo the lines that it receives",
             Self::Answers => "be given answers by a call: a statement of a stimulus does",
             Self::Recordings => "be recorded",
             Self::Surroundings => "be connected to a stimulus, a machine file or a recorder",

@@ -9,7 +9,7 @@ use runtime::{Config, Event};
 
 use crate::session::{EXCHANGE, ticks};
 use crate::state::{State, Status};
-use crate::{AnyTarget, BootedFirmware, HostError, Session, Setup, UserProgram, fill};
+use crate::{AnyTarget, BootedFirmware, Capability, HostError, Session, Setup, UserProgram, fill};
 use compiler::Options;
 
 /// Seconds that [`Board::write_line_read_line`] waits for its reply.
@@ -245,7 +245,7 @@ impl Board {
     /// Sends a line that the board echoes, and after which it says `Ready`.
     ///
     /// # Errors
-    /// [`HostError::NotConnected`].
+    /// [`HostError::NotConnected`]; [`HostError::Unsupported`] of a connected controller.
     ///
     /// ```
     /// use cc67_host::{Board, Readiness};
@@ -258,6 +258,7 @@ impl Board {
     pub fn write_line_with_echo(&mut self, line: &str) -> Result<(), HostError> {
         let mut state = self.state();
         state.connected()?;
+        state.session.require(Capability::Echoes)?;
         state.send_line(&[line.as_bytes(), b"\r"].concat());
         Ok(())
     }
@@ -329,6 +330,9 @@ impl Board {
         let mut state = self.state();
         if !state.is_connected {
             state.connect();
+        }
+        if state.is_lost() {
+            return Lock::NotConnected;
         }
         if !self.has_token && state.is_locked {
             return Lock::InUse;

@@ -66,7 +66,8 @@ pub use session::{
 };
 pub use state::{REPLY_BYTES, Status};
 pub use target::{
-    AnyTarget, BootedFirmware, BootedTarget, CONSOLE_LINES, EventSink, FirmwareError, Target, TargetSnapshot,
+    AnyTarget, BootedFirmware, BootedTarget, CONSOLE_LINES, Connected, EventSink, FirmwareError, NoSnapshot,
+    Target, TargetSnapshot,
 };
 pub use user_program::UserProgram;
 /// The crates whose types are in this interface, for programs that depend on no other crate of ours.

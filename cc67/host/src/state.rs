@@ -115,9 +115,14 @@ impl State {
         std::iter::from_fn(|| self.remarks.pop_front()).find_map(|event| remark::describe(&event, &programs))
     }
 
-    /// Fails when the connection was given up.
-    pub(super) const fn connected(&self) -> Result<(), HostError> {
-        if self.is_connected { Ok(()) } else { Err(HostError::NotConnected) }
+    /// Fails when the connection was given up or lost.
+    pub(super) fn connected(&self) -> Result<(), HostError> {
+        if self.is_connected && !self.is_lost() { Ok(()) } else { Err(HostError::NotConnected) }
+    }
+
+    /// Returns whether the controller cannot be reached any more.
+    pub(super) fn is_lost(&self) -> bool {
+        self.session.target().lost().is_some()
     }
 
     /// Connects again: what was under way is dropped.

@@ -18,7 +18,7 @@ mod any;
 mod booted;
 mod model;
 
-pub use any::AnyTarget;
+pub use any::{AnyTarget, Connected, NoSnapshot};
 pub use booted::{BootedFirmware, BootedTarget, FirmwareError};
 
 use std::fmt::Debug;

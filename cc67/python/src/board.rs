@@ -5,11 +5,7 @@ use std::sync::{LazyLock, Mutex, PoisonError, TryLockError};
 use std::thread::{self, ThreadId};
 use std::time::{Duration, Instant};
 
-use cc67_controller::ControllerLink;
 use cc67_host::{Session, Target, Until};
-use compiler::Options;
-use compiler::firmware::Firmware;
-use compiler::target::Target as CodeTarget;
 use kmotiondef::Bit;
 use kmotiondef::limits::TIMEBASE;
 use numpy::PyArray1;
@@ -139,13 +135,6 @@ where
     Box::new(LoggedSession::new(session))
 }
 
-/// Returns the options for programs and expressions of a controller: its processor and its firmware.
-fn connected_options(link: &ControllerLink) -> Options {
-    let other = link.board().filter(|board| !board.is_default());
-    let firmware = other.map_or_else(Firmware::default, Firmware::Board);
-    Options { firmware, target: CodeTarget::C67x, ..Options::default() }
-}
-
 /// Converts the reason why a value is not stored into an exception.
 fn unwritten(reason: Unwritten) -> PyErr {
     match reason {
@@ -193,7 +182,7 @@ impl Board {
     ) -> PyResult<Self> {
         let arranged = request.arrange()?;
         let (link, mut setup) = (controller.take()?, arranged.setup);
-        setup.options = connected_options(&link);
+        setup.options = link.options();
         let control = py.detach(|| link.session(setup, terms.into(), |_, _| ()).map(boxed));
         let used = Mutex::new(Used { control: Some(control.map_err(refused)?), owner: None });
         Ok(Self { used, axes: arranged.axes, number: NUMBERS.fetch_add(1, Ordering::Relaxed) })

@@ -12,8 +12,8 @@ use std::ffi::OsString;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use anyhow::{Context, Result, anyhow, bail, ensure};
-use cc67_controller::{Controller, ControllerLink, LoadTerms, ProgramStart};
+use anyhow::{Context, Result, anyhow};
+use cc67_controller::{ControllerLink, LoadTerms, ProgramStart};
 use cc67_debug::dap::AttachPoint;
 use cc67_host::{
     AnyTarget, Attendant, BootedFirmware, BootedTarget, End, HostError, Idle, Schedule, Session, Target,
@@ -32,7 +32,6 @@ use vm::native::NativeEngine;
 
 use super::args::board::BoardArguments;
 use super::args::compiler::CompilerArguments;
-use super::args::controller::WORK_WITH_CONTROLLER;
 use super::args::engine::EngineName;
 use super::args::program::{ProgramFile, assign};
 use super::args::setting::{self, Setting};
@@ -200,8 +199,7 @@ impl Setup {
             CodeFor::Engine(EngineName::Native) => {
                 anyhow::bail!("this cc67 is built without the native engine")
             }
-            CodeFor::Engine(_) | CodeFor::Firmware(_) => work.on(self.rig_of_any()?),
-            CodeFor::Controller(_) => work.on(self.rig_of_controller()?),
+            CodeFor::Engine(_) | CodeFor::Firmware(_) | CodeFor::Controller(_) => work.on(self.rig_of_any()?),
         }
     }
 
@@ -223,20 +221,15 @@ impl Setup {
         self.rig_with(|session, _| session.session_on_firmware(firmware))
     }
 
-    /// The connected controller, with the programs loaded and started.
-    fn rig_of_controller(mut self) -> Result<BoardSession<Controller>> {
-        let Some(Connected { connection, terms }) = self.controller.take() else {
-            bail!("no controller is connected");
-        };
-        self.rig_with(|session, _| connection.session(session, terms, controller::progress()))
-    }
-
     /// The target that was requested; the modelled board on the interpreter.
-    pub(crate) fn rig_of_any(self) -> Result<BoardSession<AnyTarget>> {
-        ensure!(self.controller.is_none(), "this does not work with `--on` yet: {WORK_WITH_CONTROLLER} do");
-        self.rig_with(|session, code| match code {
-            CodeFor::Engine(_) | CodeFor::Controller(_) => session.session_on_any(None),
-            CodeFor::Firmware(firmware) => session.session_on_any(Some(firmware)),
+    pub(crate) fn rig_of_any(mut self) -> Result<BoardSession<AnyTarget>> {
+        let controller = self.controller.take();
+        self.rig_with(|session, code| match (code, controller) {
+            (_, Some(Connected { connection, terms })) => {
+                Ok(connection.session(session, terms, controller::progress())?.on_any())
+            }
+            (CodeFor::Firmware(firmware), None) => session.session_on_any(Some(firmware)),
+            (CodeFor::Engine(_) | CodeFor::Controller(_), None) => session.session_on_any(None),
         })
     }
 
@@ -257,8 +250,12 @@ impl Setup {
         Ok(BoardSession { session, code, uart, line: SerialLine::default(), flash, attendant: None })
     }
 
-    /// The board for a debugger, on the engine that it can hold.
-    pub(crate) fn for_debugger(self) -> Result<Session<AnyTarget>> {
+    /// The board for a debugger, on the engine that it can hold; on a connected controller the programs are loaded and
+    /// not started.
+    pub(crate) fn for_debugger(mut self) -> Result<Session<AnyTarget>> {
+        if let Some(Connected { terms, .. }) = &mut self.controller {
+            (terms.start, terms.has_monitor) = (ProgramStart::ByCall, true);
+        }
         if self.uart.uart.is_some() || self.uart.uart_output.is_some() {
             anyhow::bail!(
                 "a debugged board has no peer at its serial port, which could not go back in time: `--uart-input`"
@@ -273,14 +270,6 @@ impl Setup {
             (terms.start, terms.has_monitor) = (ProgramStart::WithTime, true);
         }
         self
-    }
-
-    /// The connected controller for a debugger, with the programs loaded and not started.
-    pub(crate) fn controller_for_debugger(mut self) -> Result<Session<Controller>> {
-        if let Some(Connected { terms, .. }) = &mut self.controller {
-            (terms.start, terms.has_monitor) = (ProgramStart::ByCall, true);
-        }
-        Ok(self.rig_of_controller()?.session)
     }
 }
 

@@ -8,7 +8,7 @@ const SERVER_PORT: u16 = 57777;
 /// The socket of the vendor's server.
 const SERVER_SOCKET: &str = "/tmp/kmotionsocket";
 /// The TCP port at which a Kogna listens.
-const BOARD_PORT: u16 = 2000;
+pub(crate) const BOARD_PORT: u16 = 2000;
 
 /// The place of a board.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,6 +19,8 @@ pub enum Address {
     Serial(String),
     /// A board that the vendor's server holds.
     Server(ServerAddress),
+    /// A Kogna in the networks of this computer: the only one, or the one with a serial number.
+    Kogna(Option<u32>),
     /// Raw bytes over TCP.
     Tcp {
         /// Name or number of the computer.
@@ -42,7 +44,7 @@ pub enum ServerAddress {
 /// A name that is not an address of a board.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "`{name}` is not a board: {reason}; write usb, usb:LOCATION, serial:PATH, server, server:PATH, server:HOST:PORT or tcp:HOST:PORT"
+    "`{name}` is not a board: {reason}; write usb, usb:LOCATION, serial:PATH, server, server:PATH, server:HOST:PORT, kogna, kogna:SERIAL or tcp:HOST:PORT"
 )]
 pub struct AddressError {
     name: String,
@@ -63,6 +65,11 @@ impl FromStr for Address {
             ("serial", Some(place)) => Ok(Self::Serial(place.to_owned())),
             ("serial", None) => Err(wrong("a serial port needs its path")),
             ("server", place) => server(place).map(Self::Server).map_err(wrong),
+            ("kogna", None) => Ok(Self::Kogna(None)),
+            ("kogna", Some(serial)) => match serial.parse() {
+                Ok(serial) => Ok(Self::Kogna(Some(serial))),
+                Err(_) => Err(wrong("a Kogna is chosen by its serial number, or by tcp:HOST")),
+            },
             ("tcp", Some(place)) => {
                 let (host, port) = host_and_port(place, BOARD_PORT).map_err(wrong)?;
                 Ok(Self::Tcp { host, port })
@@ -103,6 +110,8 @@ impl fmt::Display for Address {
             Self::Server(ServerAddress::Socket(path)) => write!(f, "server:{path}"),
             Self::Server(ServerAddress::Tcp(host, port)) => write!(f, "server:{host}:{port}"),
             Self::Server(ServerAddress::Pipe) => f.write_str("server:pipe"),
+            Self::Kogna(None) => f.write_str("kogna"),
+            Self::Kogna(Some(serial)) => write!(f, "kogna:{serial}"),
             Self::Tcp { host, port } => write!(f, "tcp:{host}:{port}"),
         }
     }
@@ -122,6 +131,8 @@ mod tests {
             ("server:/run/kmotion", "server:/run/kmotion"),
             ("server:shop:57777", "server:shop:57777"),
             ("server:pipe", "server:pipe"),
+            ("kogna", "kogna"),
+            ("kogna:12", "kogna:12"),
             ("tcp:10.0.0.7", "tcp:10.0.0.7:2000"),
             ("tcp::4000", "tcp:localhost:4000"),
         ] {
@@ -136,6 +147,7 @@ mod tests {
             ("usb:", "nothing follows the colon"),
             ("serial", "needs its path"),
             ("tcp:host:http", "not a number"),
+            ("kogna:10.0.0.7", "or by tcp:HOST"),
         ] {
             let error = text.parse::<Address>().expect_err("it is wrong").to_string();
             assert!(error.contains(expect) && error.contains("serial:PATH"), "{error}");

@@ -23,8 +23,23 @@ pub enum WireError {
         present: String,
     },
     /// Several boards are connected.
-    #[error("several boards are connected: {0}; choose one, such as --on usb:LOCATION")]
+    #[error("several boards are connected: {0}; choose one, such as --on usb:LOCATION or --on kogna:SERIAL")]
     SeveralBoards(String),
+    /// No Kogna was found.
+    #[error(
+        "no Kogna{serial} answers in the networks of this computer; found: {present}; `--on tcp:HOST` needs no search"
+    )]
+    NoKogna {
+        /// The requested serial number in words; may be empty.
+        serial: String,
+        /// The controllers that answer.
+        present: String,
+    },
+    /// The networks cannot be searched.
+    #[error(
+        "the networks cannot be searched for a Kogna: {0} (answers come to UDP port 25001, which the vendor's server uses, too); `--on tcp:HOST` needs no search"
+    )]
+    KognaSearch(io::Error),
     /// The user may not open the device.
     #[error(
         "{place}: no permission. On Linux, put this line into /etc/udev/rules.d/70-kflop.rules, then unplug and plug the board: {UDEV_RULE}"

@@ -1,7 +1,7 @@
 //! The link to a controller: transports, and a client of the board's byte protocol.
 //!
 //! ```text
-//! address    names of boards: usb, serial:PATH, server, tcp:HOST:PORT
+//! address    names of boards: usb, serial:PATH, server, kogna, tcp:HOST:PORT
 //! transport  opens the link that an address names
 //! boards     lists the boards that are connected
 //! queue      several users of one board, in turn
@@ -45,4 +45,4 @@ pub use found::FoundBoard;
 pub use lines::{Decoder, Incoming};
 pub use link::BoardLink;
 pub use queue::Queue;
-pub use transport::{ftdi, open};
+pub use transport::{ftdi, kognas, open};

@@ -4,7 +4,7 @@ mod board;
 
 use std::time::Duration;
 
-use board::{Fault, VERSION, board, program};
+use board::{Fault, KOGNA_VERSION, VERSION, board, program};
 use cc67_wire::{Client, DiskAnswer, LoadImage, PcFiles, Queue, WireError};
 use kmotiondef::ThreadId;
 
@@ -45,6 +45,16 @@ fn single_bytes_are_understood() {
 #[test]
 fn a_board_that_answers_the_second_abort_byte_is_connected() {
     is_in_order(&mut connect(Fault::SilentOnce));
+}
+
+#[test]
+fn a_kogna_that_answers_the_abort_byte_with_a_line_is_connected() {
+    let mut client = connect(Fault::Kogna);
+    assert_eq!(client.version(), KOGNA_VERSION);
+    assert_eq!(console(&mut client), [""; 0]);
+    is_in_order(&mut client);
+    client.reconnect().expect("the board answers");
+    assert_eq!(console(&mut client), [""; 0]);
 }
 
 #[test]

@@ -113,6 +113,14 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         let context = context_of(number).ok_or("there is no such thread")?;
         let debugger = self.debugger()?;
         let frames = debugger.frames(context);
+        if frames.is_empty()
+            && debugger.session().thread(context.thread().unwrap_or(debugger.thread())).is_active()
+            && !debugger.session().can(Capability::StopTime)
+        {
+            // Editors show variables only below a frame.
+            let frame = json!({ "id": number * FRAMES, "name": "(running)", "line": 0, "column": 0 });
+            return Ok(json!({ "stackFrames": [frame], "totalFrames": 1 }));
+        }
         let start = arguments["startFrame"].as_u64().unwrap_or(0) as usize;
         let levels =
             arguments["levels"].as_u64().filter(|levels| *levels > 0).unwrap_or(FRAMES as u64) as usize;

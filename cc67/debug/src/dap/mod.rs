@@ -8,6 +8,7 @@
 
 mod attach;
 mod breakpoints;
+mod connected;
 mod door;
 mod launch;
 mod look;
@@ -157,6 +158,9 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         {
             return self.command(request, &line);
         }
+        if matches!(command.as_str(), "disconnect" | "terminate") && self.launcher.is_some() {
+            self.kill_launched(arguments)?;
+        }
         let reply = self.reply(&command, arguments);
         let is_ok = reply.is_ok();
         self.wire.respond(request, reply)?;
@@ -259,7 +263,8 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         if self.launcher.is_none() {
             return Ok(());
         }
-        let result = self.run(Move::Forward(StepKind::Continue))?;
+        let first = self.first_move()?;
+        let result = self.run(first)?;
         self.tell_result(result)
     }
 
@@ -343,7 +348,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
             Move::Back => debugger.reverse_next(),
             Move::BackInstruction => Ok(debugger.reverse_step_instruction()),
             Move::BackOn => Ok(debugger.reverse_continue()),
-            Move::Again => debugger.restart().map(|_| debugger.go_on(&mut tell)),
+            Move::Again => debugger.start_again().map(|()| debugger.go_on(&mut tell)),
         };
         let Herald { failed, has_trapped, late, .. } = herald;
         self.has_trapped |= has_trapped;

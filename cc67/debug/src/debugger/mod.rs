@@ -281,6 +281,14 @@ impl<T: Target> Debugger<T> {
         threads.into_iter().try_for_each(|thread| self.start(thread))
     }
 
+    /// Starts the programs again: a simulated board from its beginning, a controller as it is.
+    ///
+    /// # Errors
+    /// The board has no beginning to go back to, or the target does not answer.
+    pub fn start_again(&mut self) -> Result<(), DebugError> {
+        if self.session.can(Capability::StopTime) { self.restart().map(drop) } else { self.start_all() }
+    }
+
     /// Stops a thread.
     pub fn kill(&mut self, thread: ThreadId) {
         self.session.stop(thread);

@@ -111,7 +111,7 @@ use vm::thread::ThreadState;
 
 use crate::HostError;
 use crate::capability::{Capability, Unsupported};
-use crate::target::{BootedTarget, Target};
+use crate::target::{AnyTarget, BootedTarget, Connected, Target};
 use journal::Journal;
 use signals::Signals;
 
@@ -327,6 +327,14 @@ impl<T: Target> Session<T> {
 /// Ticks in some seconds.
 pub(crate) fn ticks(seconds: f64) -> u64 {
     (seconds / kmotiondef::limits::TIMEBASE).round() as u64
+}
+
+impl<T: Connected + 'static> Session<T> {
+    /// Converts a session of a connected controller to one of any target.
+    #[must_use]
+    pub fn on_any(self) -> Session<AnyTarget> {
+        self.map_target(|target| AnyTarget::Connected(Box::new(target)))
+    }
 }
 
 impl Session<BootedTarget> {

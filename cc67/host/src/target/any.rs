@@ -1,5 +1,7 @@
 //! One of several targets, chosen at run time: for views that are built once for all of them.
 
+use std::fmt::Debug;
+
 use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
 use runtime::standing::{StandingAxis, StandingThread};
@@ -22,6 +24,31 @@ pub enum AnyTarget {
     Model(Box<Board>),
     /// A firmware file.
     Booted(Box<BootedTarget>),
+    /// A connected controller.
+    Connected(Box<dyn Connected>),
+}
+
+/// A target without snapshots, such as a connected controller.
+pub trait Connected: Target<Snapshot = NoSnapshot> + Debug + Send {}
+
+impl<T: Target<Snapshot = NoSnapshot> + Debug + Send> Connected for T {}
+
+/// The state of a target that has no snapshots: there is none.
+#[derive(Clone, Copy, Debug)]
+pub enum NoSnapshot {}
+
+impl TargetSnapshot for NoSnapshot {
+    fn tick(&self) -> Ticks {
+        match *self {}
+    }
+
+    fn is_held(&self) -> bool {
+        match *self {}
+    }
+
+    fn bytes_beyond(&self, _: &Self) -> usize {
+        match *self {}
+    }
 }
 
 /// The state of an [`AnyTarget`] at an instant.
@@ -33,23 +60,30 @@ pub enum AnySnapshot {
     Booted(Box<<BootedTarget as Target>::Snapshot>),
 }
 
-/// Does the same with whichever it is.
+/// Calls a method of the target inside.
 macro_rules! with {
-    ($kind:ident, $any:expr, $it:ident => $body:expr) => {
+    ($any:expr, $it:ident => $body:expr) => {
         match $any {
-            $kind::Model($it) => $body,
-            $kind::Booted($it) => $body,
+            AnyTarget::Model($it) => $body,
+            AnyTarget::Booted($it) => $body,
+            AnyTarget::Connected($it) => $body,
         }
     };
 }
 
 impl TargetSnapshot for AnySnapshot {
     fn tick(&self) -> Ticks {
-        with!(Self, self, it => TargetSnapshot::tick(it.as_ref()))
+        match self {
+            Self::Model(it) => TargetSnapshot::tick(it.as_ref()),
+            Self::Booted(it) => TargetSnapshot::tick(it.as_ref()),
+        }
     }
 
     fn is_held(&self) -> bool {
-        with!(Self, self, it => TargetSnapshot::is_held(it.as_ref()))
+        match self {
+            Self::Model(it) => TargetSnapshot::is_held(it.as_ref()),
+            Self::Booted(it) => TargetSnapshot::is_held(it.as_ref()),
+        }
     }
 
     fn bytes_beyond(&self, other: &Self) -> usize {
@@ -65,12 +99,12 @@ impl TargetSnapshot for AnySnapshot {
 macro_rules! delegate {
     ($(fn $name:ident(&self $(, $argument:ident: $ty:ty)*) $(-> $result:ty)?;)*) => {$(
         fn $name(&self $(, $argument: $ty)*) $(-> $result)? {
-            with!(Self, self, it => Target::$name(it.as_ref() $(, $argument)*))
+            with!(self, it => Target::$name(it.as_ref() $(, $argument)*))
         }
     )*};
     (mut $(fn $name:ident(&mut self $(, $argument:ident: $ty:ty)*) $(-> $result:ty)?;)*) => {$(
         fn $name(&mut self $(, $argument: $ty)*) $(-> $result)? {
-            with!(Self, self, it => Target::$name(it.as_mut() $(, $argument)*))
+            with!(self, it => Target::$name(it.as_mut() $(, $argument)*))
         }
     )*};
 }
@@ -80,6 +114,7 @@ impl Target for AnyTarget {
 
     delegate! {
         fn name(&self) -> &'static str;
+        fn lost(&self) -> Option<&str>;
         fn can(&self, capability: Capability) -> bool;
         fn tick(&self) -> Ticks;
         fn now(&self) -> Cycles;
@@ -125,6 +160,8 @@ impl Target for AnyTarget {
         fn load(&mut self, program: &UserProgram) -> Result<(), HostError>;
         fn start(&mut self, thread: ThreadId) -> Result<(), HostError>;
         fn stop(&mut self, thread: ThreadId);
+        fn pause(&mut self, thread: ThreadId) -> Result<(), HostError>;
+        fn resume(&mut self, thread: ThreadId) -> Result<(), HostError>;
         fn write(&mut self, address: GuestAddr, bytes: &[u8]) -> Result<(), HostError>;
         fn refresh(&mut self);
         fn receive(&mut self, bytes: &[u8]);
@@ -151,6 +188,7 @@ impl Target for AnyTarget {
         Ok(match self {
             Self::Model(board) => AnySnapshot::Model(Box::new(Target::snapshot(board.as_mut())?)),
             Self::Booted(target) => AnySnapshot::Booted(Box::new(Target::snapshot(target.as_mut())?)),
+            Self::Connected(target) => match target.snapshot()? {},
         })
     }
 
@@ -160,7 +198,7 @@ impl Target for AnyTarget {
             (Self::Booted(target), AnySnapshot::Booted(snapshot)) => {
                 Target::restore(target.as_mut(), snapshot)
             }
-            (Self::Model(_) | Self::Booted(_), _) => Err(SnapshotError::OtherTarget),
+            (Self::Model(_) | Self::Booted(_) | Self::Connected(_), _) => Err(SnapshotError::OtherTarget),
         }
     }
 }

@@ -347,6 +347,7 @@ impl Target for BootedTarget {
             | Capability::Snapshots
             | Capability::Breakpoints
             | Capability::Watchpoints
+            | Capability::Echoes
             | Capability::ProcessorCode => true,
             Capability::Surroundings | Capability::Recordings => self.board.external().is_some(),
             Capability::AccessWatchpoints | Capability::Answers | Capability::Calls | Capability::Pauses => {

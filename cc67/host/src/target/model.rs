@@ -61,6 +61,7 @@ impl<E: Engine> Target for Board<E> {
             Capability::StopTime
             | Capability::Snapshots
             | Capability::Surroundings
+            | Capability::Echoes
             | Capability::Recordings => true,
             Capability::Breakpoints
             | Capability::Calls

@@ -35,7 +35,8 @@ def connect(
     Conditions are tested about 20 times a second.
 
     Args:
-        address: `usb`, `usb:LOCATION`, `serial:/dev/ttyUSB0`, `serial:COM3`, `server`, `tcp:HOST:PORT`, as with `--on`.
+        address: `usb`, `usb:LOCATION`, `serial:/dev/ttyUSB0`, `serial:COM3`, `server`, `kogna`,
+            `tcp:HOST:PORT`, as with `--on`.
         programs, load, set, files, answers, on_fault: as for `Board`. Sources are compiled for the controller's
             processor and firmware; a `Program` must have been compiled with `target="c67x"`. Boxes that programs open
             stay open until they are answered; each of `answers` answers one.

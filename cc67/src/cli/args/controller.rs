@@ -14,7 +14,7 @@ pub(crate) const WORK_WITH_CONTROLLER: &str = "run, console, live, test, debug a
 #[command(next_help_heading = heading::CONTROLLER)]
 pub(crate) struct ControllerArguments {
     /// Use a connected controller in place of a simulated board (run, console, live, test, debug, compare): usb[:LOCATION], serial:PATH, server[:PATH|:HOST:PORT],
-    /// tcp:HOST:PORT; `cc67 boards` lists what is connected
+    /// kogna[:SERIAL], tcp:HOST:PORT; `cc67 boards` lists what is connected
     #[arg(long, value_name = "BOARD")]
     pub(crate) on: Option<Address>,
     /// With --on, load programs also if they were linked for another firmware than the controller runs; their calls may

@@ -1,7 +1,7 @@
 //! `cc67 boards`: the controllers that are connected to this computer.
 
 use anyhow::Result;
-use cc67_controller::{Address, ControllerLink, FoundBoard, boards as found_boards};
+use cc67_controller::{Address, ControllerLink, FoundBoard, boards as found_boards, kognas};
 use clap::Args;
 
 use crate::cli::io::exit::Exit;
@@ -10,7 +10,7 @@ use crate::cli::io::{output, terminal};
 /// Arguments of `cc67 boards`.
 #[derive(Debug, Args)]
 pub(super) struct BoardsArguments {
-    /// Send nothing to the controllers: their firmware is not requested
+    /// Send nothing: the firmware of controllers is not requested, and networks are not searched for a Kogna
     #[arg(long)]
     quiet: bool,
     /// Print one JSON object per line
@@ -20,16 +20,21 @@ pub(super) struct BoardsArguments {
 
 /// Lists the controllers, one line each.
 pub(super) fn boards(arguments: &BoardsArguments) -> Result<Exit> {
-    let found = found_boards()?;
+    let mut found = found_boards()?;
+    if !arguments.quiet {
+        match kognas() {
+            Ok(kognas) => found.extend(kognas),
+            Err(error) => terminal::note(&error.to_string()),
+        }
+    }
     for board in &found {
         let firmware = firmware(board, arguments.quiet);
         output::print(&if arguments.json { json(board, &firmware) } else { line(board, &firmware) })?;
     }
     if found.is_empty() {
         terminal::note(
-            "no controller found: looked for USB devices 0403:f231 and 0403:f230, and for the vendor's server; \
-             serial ports of other names and controllers in the network are not searched: `--on serial:PATH`, \
-             `--on tcp:HOST`",
+            "no controller found: looked for USB devices 0403:f231 and 0403:f230, for a Kogna in networks 10, 172 and \
+             192, and for the vendor's server; serial ports of other names are not searched: `--on serial:PATH`",
         );
         return Ok(Exit::Failure);
     }

@@ -28,7 +28,7 @@ pub(super) struct FlashArguments {
     /// Threads that start by themselves at power-up, such as 1,3, or `none`; without it as the controller has it
     #[arg(long, value_name = "THREADS", value_parser = Startup::parse)]
     startup: Option<Startup>,
-    /// The controller: usb[:LOCATION], serial:PATH, server[:PATH|:HOST:PORT], tcp:HOST:PORT; `cc67 boards` lists what is
+    /// The controller: usb[:LOCATION], serial:PATH, server[:PATH|:HOST:PORT], kogna[:SERIAL], tcp:HOST:PORT; `cc67 boards` lists what is
     /// connected
     #[arg(long, value_name = "BOARD", required = true, help_heading = heading::CONTROLLER)]
     on: Option<Address>,

@@ -11,6 +11,10 @@ use crate::lines::Incoming;
 const ABORT: &[u8] = b"\x03";
 /// The number of attempts at a board that does not answer.
 const ATTEMPTS: usize = 5;
+/// The answer of a Kogna, which is a whole line of its console; a KFLOP's is told apart by the decoder.
+const KOGNA_ANSWER: &[u8] = b"C";
+/// The name of that board in its version.
+const KOGNA: &str = "KOGNA";
 /// Within which time it is answered.
 const ABORTED_WITHIN: Duration = Duration::from_secs(1);
 
@@ -36,7 +40,7 @@ impl Client {
         self.link.send(ABORT.to_vec())?;
         let end = now() + ABORTED_WITHIN;
         while let Some(item) = self.next(end)? {
-            if item == Incoming::Aborted {
+            if item == Incoming::Aborted || self.is_answer_of_kogna(&item) {
                 return Ok(true);
             }
             if now() >= end {
@@ -44,6 +48,17 @@ impl Client {
             }
         }
         Ok(false)
+    }
+
+    /// Returns whether a Kogna has answered the abort byte. Before the version is known, any board may be one: a console
+    /// line of a KFLOP that looks like the answer does no harm, as the version is requested next.
+    fn is_answer_of_kogna(&mut self, item: &Incoming) -> bool {
+        let may_be_kogna = self.version.is_empty() || self.version.contains(KOGNA);
+        let is_answer = may_be_kogna && matches!(item, Incoming::Console(line) if line == KOGNA_ANSWER);
+        if is_answer && !self.version.is_empty() {
+            self.console.pop_back();
+        }
+        is_answer
     }
 
     fn read_version(&mut self) -> Result<(), WireError> {
@@ -54,6 +69,9 @@ impl Client {
             let line = String::from_utf8_lossy(&line).into_owned();
             // Something else is left of another user.
             if line.contains(" Build ") {
+                if line.contains(KOGNA) {
+                    self.console.retain(|line| line != KOGNA_ANSWER);
+                }
                 self.version = line;
                 return Ok(());
             }

@@ -5,6 +5,7 @@ mod choice;
 #[cfg(all(feature = "usb", any(windows, test)))]
 mod d2xx;
 pub mod ftdi;
+mod kogna;
 mod messages;
 mod pipe;
 #[cfg(feature = "serial")]
@@ -16,6 +17,7 @@ mod usb;
 
 #[cfg(all(feature = "usb", windows))]
 use d2xx as usb;
+pub use kogna::kognas;
 #[cfg(windows)]
 pub(crate) use pipe::is_served;
 #[cfg(feature = "usb")]
@@ -41,6 +43,7 @@ pub fn open(address: &Address) -> Result<BoardLink, WireError> {
         #[cfg(not(feature = "serial"))]
         Address::Serial(_) => Err(not_built(place, "serial")),
         Address::Server(server) => server::open(server, place),
+        Address::Kogna(serial) => kogna::open(*serial, place),
         Address::Tcp { host, port } => tcp::open(host, *port, place),
     }
 }

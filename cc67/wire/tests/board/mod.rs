@@ -13,6 +13,9 @@ use kmotiondef::ThreadId;
 /// The reply to `Version`.
 pub(crate) const VERSION: &str = "KFLOP 4.34 Build 16:07:06 Aug 14 2018";
 
+/// The reply of a Kogna.
+pub(crate) const KOGNA_VERSION: &str = "KOGNA 5.3.2 Build 18:10:31 Jan 31 2024";
+
 /// A disturbance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Fault {
@@ -40,6 +43,8 @@ pub(crate) enum Fault {
     LosesLine,
     /// A thread continues when it is killed.
     Unstoppable,
+    /// It is a Kogna: its answer to the abort byte is a whole line.
+    Kogna,
 }
 
 /// The board's memory as far as it was written, and the commands that it executed.
@@ -124,6 +129,7 @@ impl Board {
                         match self.fault() {
                             Fault::Silent => {}
                             Fault::SilentOnce => self.heal(),
+                            Fault::Kogna => self.say("\x1bC\r\n"),
                             _ => self.say("\x1bC\r"),
                         }
                     }
@@ -196,7 +202,8 @@ impl Board {
             self.say("17\r\n");
         }
         if part == "VERSION" {
-            self.say(&format!("{VERSION}\r\n"));
+            let version = if self.fault() == Fault::Kogna { KOGNA_VERSION } else { VERSION };
+            self.say(&format!("{version}\r\n"));
         } else if let Some(arguments) = part.strip_prefix("LOADDATA ") {
             let mut words = arguments.split(' ');
             let mut number = || u32::from_str_radix(words.next().unwrap_or_default(), 16).unwrap_or_default();

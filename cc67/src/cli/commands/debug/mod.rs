@@ -91,10 +91,6 @@ impl LaunchArguments {
 /// Debugs programs.
 pub(super) fn debug(arguments: &DebugArguments) -> Result<Exit> {
     anyhow::ensure!(
-        arguments.board.controller.on.is_none() || arguments.dap.is_none() && arguments.listen.is_none(),
-        "`--dap` and `--listen` do not work with `--on`: an editor has nothing to stop there"
-    );
-    anyhow::ensure!(
         arguments.programs.is_empty() || arguments.dap.is_none() && arguments.listen.is_none(),
         "with `--dap` and `--listen` the editor names the programs: leave them out"
     );
@@ -107,10 +103,6 @@ pub(super) fn debug(arguments: &DebugArguments) -> Result<Exit> {
         (Some(port), _) => return listen(arguments, port, true),
         (None, Some(port)) => return listen(arguments, port, false),
         (None, None) => {}
-    }
-    if arguments.board.controller.on.is_some() {
-        let Some(setup) = setup(arguments)? else { return Ok(Exit::Failure) };
-        return converse(Debugger::new(setup.controller_for_debugger()?, limit(arguments)), arguments);
     }
     let Some(debugger) = debugger(arguments)? else { return Ok(Exit::Failure) };
     converse(debugger, arguments)
