@@ -14,7 +14,7 @@ use kmotiondef::variables::{
 use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId};
 use vm::bus::Bus;
 use vm::firmware::{
-    Caller, ExecutedPacket, Firmware, NextAccess, Outcome, Pure, ReadState, SharedAccess, Signature,
+    Caller, ExecutedPacket, Firmware, NextAccess, Outcome, Pure, ReadState, Repeats, SharedAccess, Signature,
     SwitchPoint, TickContext, Value,
 };
 use vm::memory::GuestMemory;
@@ -371,14 +371,17 @@ impl Firmware for Kernel {
         Ok(outcome)
     }
 
-    fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory) {
+    fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory) -> Repeats {
         let Parts { races, out, switches, .. } = &mut self.parts;
-        if let Some(races) = races {
-            races.accessed(access, memory, out);
-        }
+        let repeats = races.as_mut().map(|races| races.accessed(access, memory, out));
         if let (Some(switches), Some(thread)) = (switches, access.thread) {
             switches.made(thread, access.at, access.address);
         }
+        repeats.unwrap_or(Repeats::Redundant)
+    }
+
+    fn take_ordering(&mut self) -> bool {
+        self.parts.races.as_mut().is_some_and(|races| races.take_ordering())
     }
 
     fn switch_at(&mut self, access: &NextAccess) -> Option<SwitchPoint> {

@@ -185,8 +185,15 @@ fn programs_that_run_together_are_compared() {
 fn reports<'a>(folder: &Path, programs: impl Iterator<Item = &'a str>, options: &[&str]) -> Vec<String> {
     let programs = programs.zip(1..).map(|(program, thread)| format!("{thread}:{program}"));
     let arguments = ["run", "--races", "--json", "--for", "3"].map(str::to_owned).into_iter().chain(programs);
-    let output = cc67(folder, arguments.chain(options.iter().map(|option| (*option).to_owned())));
-    assert_eq!(output.code, 0, "{}", output.render());
+    let arguments: Vec<_> = arguments.chain(options.iter().map(|option| (*option).to_owned())).collect();
+    let run = |engine: &str| {
+        let engine = ["--engine", engine].map(str::to_owned);
+        let output = cc67(folder, arguments.iter().cloned().chain(engine));
+        assert_eq!(output.code, 0, "{}", output.render());
+        output
+    };
+    let output = run("native");
+    assert_eq!(output.stdout, run("bytecode").stdout, "{arguments:?}");
     let codes = [
         "race-",
         "order-early",

@@ -39,6 +39,18 @@ pub enum Stop {
     Trapped(Trap),
 }
 
+/// The accesses to memory that threads can share which an engine reports.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Observed {
+    /// None.
+    #[default]
+    None,
+    /// In each slice of a thread, those that the firmware does not take for [redundant](crate::firmware::Repeats).
+    Fresh,
+    /// All, each before it is made, too ([`Firmware::switch_at`]); bytecode is interpreted then.
+    All,
+}
+
 /// The points at which a thread that runs bytecode can lose the processor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Preemption {
@@ -380,9 +392,9 @@ pub trait Executor: Default {
     /// Determines where contexts that are started from now on can lose the processor.
     fn set_preemption(&mut self, preemption: Preemption);
 
-    /// Has contexts that are started from now on report their accesses to memory that threads can share
+    /// Determines which accesses to memory that threads can share are reported by contexts that are started from now on
     /// ([`Firmware::accessed`]).
-    fn observe(&mut self);
+    fn observe(&mut self, observed: Observed);
 
     /// Gives `id` a fresh context that is at the beginning of the function at `entry`.
     ///

@@ -257,6 +257,15 @@ pub struct SharedAccess<'a> {
     pub now: Cycles,
 }
 
+/// The treatment of an access that an instruction makes again in the same slice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Repeats {
+    /// It is reported, too.
+    Reported,
+    /// It tells nothing new; the machine may leave it out.
+    Redundant,
+}
+
 /// A point at which a thread loses the processor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SwitchPoint {
@@ -400,8 +409,15 @@ pub trait Firmware: Bus {
     }
 
     /// A program has made an access; reported where the machine [observes](crate::machine::Config::observed) them.
-    fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory) {
+    fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory) -> Repeats {
         let _ = (access, memory);
+        Repeats::Reported
+    }
+
+    /// Returns whether a call or an access since the last question has changed what orders accesses: all of them are
+    /// reported again then.
+    fn take_ordering(&mut self) -> bool {
+        false
     }
 
     /// Returns where a thread loses the processor at an access to shared memory that it is about to make, if it does; asked

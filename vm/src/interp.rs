@@ -16,7 +16,7 @@ mod dispatch;
 mod holds;
 mod jumps;
 mod memory;
-mod observe;
+pub(crate) mod observe;
 mod parts;
 mod sequences;
 mod split;
@@ -37,8 +37,8 @@ use self::split::Split;
 use self::steps::{NextStep, Stepping};
 use crate::call::CallArguments;
 use crate::engine::{
-    AccessRange, CallEnd, CallStack, ContextId, Executor, ForeignSnapshot, FrameView, Hold, Preemption,
-    Slice, Stack, Stop,
+    AccessRange, CallEnd, CallStack, ContextId, Executor, ForeignSnapshot, FrameView, Hold, Observed,
+    Preemption, Slice, Stack, Stop,
 };
 use crate::firmware::{Firmware, Outcome, SwitchPoint};
 use crate::kind::OpKind;
@@ -65,6 +65,12 @@ struct Running {
 }
 
 impl BytecodeEngine {
+    /// Has `observer` observe contexts that are started from now on.
+    #[cfg(feature = "native")]
+    pub(crate) fn observe_with(&mut self, observer: Option<Observer>) {
+        self.steps.observer = observer;
+    }
+
     /// The program that `id` runs.
     pub(crate) fn program(&self, id: ContextId) -> Option<&Arc<Program>> {
         self.contexts[id.index()].as_ref().map(|running| &running.code.program)
@@ -75,7 +81,7 @@ impl BytecodeEngine {
     /// Gives all contexts the words at which they should be held now.
     fn refresh(&mut self) {
         for Running { code, .. } in self.contexts.iter_mut().flatten() {
-            let observed = self.steps.observer.is_some();
+            let observed = self.steps.observed();
             let encode = |program: &Program| Encoded::new(program, observed, &|_| None);
             let plain = self.words.get(&code.program, |program| Arc::new(encode(program)));
             code.words = self.holds.words(&code.program, plain);
@@ -88,6 +94,8 @@ impl BytecodeEngine {
 pub struct BytecodeSnapshot {
     contexts: [Option<(Code, Saved)>; ContextId::COUNT],
     passes: [bool; ContextId::COUNT],
+    /// The marks of the owners of pages, where accesses are reported.
+    owners: Option<Box<[u8]>>,
 }
 
 impl Executor for BytecodeEngine {
@@ -98,8 +106,8 @@ impl Executor for BytecodeEngine {
         self.steps.preemption = preemption;
     }
 
-    fn observe(&mut self) {
-        self.steps.observer = Some(Observer::default());
+    fn observe(&mut self, observed: Observed) {
+        self.steps.observer = Observer::new(observed);
     }
 
     fn start<F: Firmware + ?Sized>(
@@ -111,7 +119,7 @@ impl Executor for BytecodeEngine {
         firmware: &F,
     ) -> Result<(), TrapKind> {
         let function = program.function_at(entry).ok_or(TrapKind::BadCallTarget { addr: entry })?;
-        let observed = self.steps.observer.is_some();
+        let observed = self.steps.observed();
         if let Some(observer) = &mut self.steps.observer {
             observer.forget();
         }
@@ -122,6 +130,9 @@ impl Executor for BytecodeEngine {
         let code = Code { program: Arc::clone(program), words };
         let place = &mut self.contexts[id.index()];
         let mut context = place.take().map_or_else(Context::new, |running| running.context);
+        if context.filter.is_none() {
+            context.filter = self.steps.observer.as_ref().and_then(|observer| observer.filter(id));
+        }
         context.reset(function, stack);
         *place = Some(Running { code, context });
         Ok(())
@@ -150,6 +161,7 @@ impl Executor for BytecodeEngine {
         BytecodeSnapshot {
             contexts: std::array::from_fn(|index| self.contexts[index].as_ref().map(save)),
             passes: self.holds.passes,
+            owners: self.steps.observer.as_ref().map(|observer| observer.owners().marks()),
         }
     }
 
@@ -163,6 +175,9 @@ impl Executor for BytecodeEngine {
             });
         }
         self.holds.passes = snapshot.passes;
+        if let (Some(observer), Some(marks)) = (&self.steps.observer, &snapshot.owners) {
+            observer.owners().put_back(marks);
+        }
         self.refresh();
         Ok(())
     }
@@ -303,6 +318,9 @@ fn run<F: Firmware + ?Sized>(
     slice: &mut Slice<'_, F>,
     steps: &mut Stepping,
 ) -> Result<Stop, TrapKind> {
+    if let Some(filter) = &context.filter {
+        filter.continues(slice.tick);
+    }
     loop {
         let mut exit = Exit::Shared;
         if context.split.is_none() {
@@ -312,10 +330,13 @@ fn run<F: Firmware + ?Sized>(
         if is_alone {
             let access = steps.observer.as_mut().and_then(|observer| observer.about_to(program, context));
             if let Some(access) = access.as_ref().filter(|_| !context.has_high_word())
-                && let Some(point) = access.switch_at(id, slice)
+                && let Some(point) = access.switch_at(id, program, slice)
             {
-                if point == SwitchPoint::BetweenWords && context.stores_low_word(program, slice)? {
-                    access.report(id, context, slice);
+                if point == SwitchPoint::BetweenWords
+                    && context.stores_low_word(program, slice)?
+                    && let Some(observer) = &mut steps.observer
+                {
+                    access.report(id, program, context, observer, slice);
                 }
                 slice.budget = Cycles::default();
                 return Ok(Stop::Preempted);
@@ -323,8 +344,10 @@ fn run<F: Firmware + ?Sized>(
             match context.next_step(program, words, slice)? {
                 NextStep::Held => return Ok(Stop::Held),
                 step @ (NextStep::Preempted | NextStep::StoredLowWord) => {
-                    if let (NextStep::StoredLowWord, Some(access)) = (step, access) {
-                        access.report(id, context, slice);
+                    if let (NextStep::StoredLowWord, Some(access), Some(observer)) =
+                        (step, access, &mut steps.observer)
+                    {
+                        access.report(id, program, context, observer, slice);
                     }
                     return Ok(Stop::Preempted);
                 }
@@ -334,10 +357,10 @@ fn run<F: Firmware + ?Sized>(
             let pc = context.calls.pc;
             let alone = steps.single.with(program, words, pc, |word| execute(program, word, context, slice));
             exit = alone.unwrap_or(Exit::Trap(TrapKind::Unreachable));
-            if let Some(access) =
-                access.filter(|_| matches!(exit, Exit::Held | Exit::Copy { .. } | Exit::Clear { .. }))
+            if let (Some(access), Some(observer)) = (access, &mut steps.observer)
+                && matches!(exit, Exit::Held | Exit::Copy { .. } | Exit::Clear { .. })
             {
-                access.report(id, context, slice);
+                access.report(id, program, context, observer, slice);
             }
         }
         match exit {
@@ -410,9 +433,10 @@ fn execute<F: Firmware + ?Sized>(
     context: &mut Context,
     slice: &mut Slice<'_, F>,
 ) -> Exit {
-    let (calls, registers) = context.parts();
+    let (calls, registers, filter) = context.execution();
     let (sdram, ram) = slice.memory.split();
-    let mut state = State { words, program, ram, budget: slice.budget.get(), registers, calls, exit: None };
+    let budget = slice.budget.get();
+    let mut state = State { words, program, ram, budget, registers, calls, exit: None, filter };
     let exit = dispatch::execute(&mut state, sdram);
     slice.budget = Cycles::new(state.budget);
     exit
@@ -436,7 +460,13 @@ fn call_firmware<F: Firmware + ?Sized>(
     }
     slice.firmware.signature(address).ok_or(missing)?.check_call(address, called)?;
     let arguments = CallArguments::from_slots(context.arguments(called.params.len()));
-    match slice.call_firmware(id, address, arguments, program.address_of(context.calls.pc))? {
+    let outcome = slice.call_firmware(id, address, arguments, program.address_of(context.calls.pc))?;
+    if let Some(filter) = &context.filter
+        && slice.firmware.take_ordering()
+    {
+        filter.forget();
+    }
+    match outcome {
         Outcome::Done(value) => {
             context.calls.result = value.into_slot();
             context.calls.pc += 1;

@@ -18,6 +18,7 @@
 //!   processor
 //! - `engine`, `access`, `translations`: the interface of every engine, and code shared by engines
 //! - `polling`: the loops of a program that may only wait
+//! - `shared`, `filter`: accesses to memory that threads can share, and which of them are reported
 //! - `loaded`, `verify/`, `program`: the program of a thread, and how bytes become a program
 //! - `firmware`, `call`, `varargs`, `wake`: how a program leaves the machine, and what it waits for
 //! - `thread`, `scheduler`: the states of the seven threads, and their rotation
@@ -43,6 +44,7 @@ pub mod bus;
 pub mod call;
 pub mod dsp;
 pub mod engine;
+mod filter;
 pub mod firmware;
 pub mod guard;
 pub mod interp;

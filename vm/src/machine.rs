@@ -19,7 +19,7 @@ use self::engines::Engines;
 use self::held::Held;
 pub use self::snapshot::Snapshot;
 use crate::dsp::{DspEngine, HotCode};
-use crate::engine::{ContextId, Engine, Polling, Preemption, Slice, Stop};
+use crate::engine::{ContextId, Engine, Observed, Polling, Preemption, Slice, Stop};
 use crate::firmware::{Firmware, TickContext};
 use crate::interp::BytecodeEngine;
 use crate::loaded::Loaded;
@@ -56,8 +56,8 @@ pub struct Config {
     pub faults: Faults,
     /// The points at which threads that run bytecode lose the processor.
     pub preemption: Preemption,
-    /// Report each access of bytecode to memory that threads can share to the firmware; bytecode is interpreted then.
-    pub observed: bool,
+    /// The accesses of bytecode to memory that threads can share which are reported to the firmware.
+    pub observed: Observed,
 }
 
 impl Default for Config {
@@ -68,7 +68,7 @@ impl Default for Config {
             strict_stack: false,
             faults: Faults::Trap,
             preemption: Preemption::Segments,
-            observed: false,
+            observed: Observed::None,
         }
     }
 }
@@ -115,9 +115,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         let hot = if E::TRANSLATES { HotCode::HERE } else { None };
         let mut engine = engine;
         engine.set_preemption(config.preemption);
-        if config.observed {
-            engine.observe();
-        }
+        engine.observe(config.observed);
         Self {
             config,
             memory,

@@ -39,8 +39,9 @@ use self::context::{Context, Saved};
 use self::fiber::Fiber;
 use self::protected::ProtectedBlocks;
 use self::translate::FirmwareFacts;
-use crate::engine::{ContextId, Executor, ForeignSnapshot, Preemption, Slice, Stack, Stop};
+use crate::engine::{ContextId, Executor, ForeignSnapshot, Observed, Preemption, Slice, Stack, Stop};
 use crate::firmware::Firmware;
+use crate::interp::observe::Observer;
 use crate::interp::{BytecodeEngine, BytecodeSnapshot};
 use crate::program::Program;
 use crate::translations::Translations;
@@ -58,8 +59,8 @@ pub struct NativeEngine {
     /// Runs the contexts whose program cannot be compiled.
     bytecode: BytecodeEngine,
     preemption: Preemption,
-    /// True if accesses to shared memory are reported; the interpreter does so.
-    observed: bool,
+    /// The observer of accesses to shared memory, if any is reported; where all are, the interpreter does so.
+    observer: Option<Observer>,
     /// Identifies this engine: a suspended fiber can continue only in its own engine.
     identity: Arc<()>,
 }
@@ -81,11 +82,14 @@ impl NativeEngine {
 
     /// The machine code of `program`.
     fn code(&mut self, program: &Arc<Program>, facts: FirmwareFacts<'_>) -> Option<Arc<MachineCode>> {
-        if self.observed {
+        let is_observed = self.observer.is_some();
+        if self.observer.as_ref().is_some_and(Observer::reports_all) {
             return None;
         }
-        let (shared, preemption) = (&self.shared, self.preemption);
-        let compile = |program: &Program| MachineCode::compile(program, facts, preemption).ok().map(Arc::new);
+        let (shared, preemption) = (self.shared.as_ref().filter(|_| !is_observed), self.preemption);
+        let compile = |program: &Program| {
+            MachineCode::compile(program, facts, (preemption, is_observed)).ok().map(Arc::new)
+        };
         self.code.get(program, |program| match shared {
             Some(shared) => shared.get(program, preemption, compile),
             None => compile(program),
@@ -107,9 +111,9 @@ impl Executor for NativeEngine {
         self.bytecode.set_preemption(preemption);
     }
 
-    fn observe(&mut self) {
-        self.observed = true;
-        self.bytecode.observe();
+    fn observe(&mut self, observed: Observed) {
+        self.observer = Observer::new(observed);
+        self.bytecode.observe_with(self.observer.as_ref().map(Observer::beside));
     }
 
     fn start<F: Firmware + ?Sized>(
@@ -123,6 +127,9 @@ impl Executor for NativeEngine {
         let missing = TrapKind::BadCallTarget { addr: entry };
         let function = program.function_at(entry).ok_or_else(|| missing.clone())?;
         let old = self.contexts[id.index()].take().map(Context::into_fiber);
+        if let Some(observer) = &mut self.observer {
+            observer.forget();
+        }
         let facts = FirmwareFacts {
             pure: &|address| firmware.pure(address),
             readers: &|address| firmware.reads(address),
@@ -140,7 +147,7 @@ impl Executor for NativeEngine {
         let Some(context) = &mut self.contexts[id.index()] else {
             return self.bytecode.resume(id, slice);
         };
-        context.run(id, slice, &mut self.protected).unwrap_or_else(|kind| {
+        context.run(id, slice, (&mut self.protected, &mut self.observer)).unwrap_or_else(|kind| {
             let trap = Trap::new(kind, context.address(), id.thread());
             context.end(Stop::Trapped(trap))
         })
@@ -168,7 +175,7 @@ impl Executor for NativeEngine {
     }
 
     fn takes_long_slices(&self, id: ContextId) -> bool {
-        self.contexts[id.index()].is_some()
+        self.contexts[id.index()].is_some() && self.observer.is_none()
     }
 
     fn stack_used(&self, id: ContextId) -> u32 {

@@ -11,9 +11,11 @@ use std::sync::Arc;
 use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 
 use crate::bus::Bus;
-use crate::engine::{ContextId, Executor, ForeignSnapshot, Polling, Preemption, Slice, Stack, Stop};
+use crate::engine::{
+    ContextId, Executor, ForeignSnapshot, Observed, Polling, Preemption, Slice, Stack, Stop,
+};
 use crate::firmware::{
-    Caller, Firmware, NextAccess, Outcome, SharedAccess, Signature, SwitchPoint, TickContext, Value,
+    Caller, Firmware, NextAccess, Outcome, Repeats, SharedAccess, Signature, SwitchPoint, TickContext, Value,
 };
 use crate::interp::{BytecodeEngine, BytecodeSnapshot};
 use crate::memory::GuestMemory;
@@ -156,8 +158,8 @@ impl Executor for ProfilingEngine {
     /// Always [`Preemption::Segments`]: the account is of whole segments.
     fn set_preemption(&mut self, _: Preemption) {}
 
-    fn observe(&mut self) {
-        self.inner.observe();
+    fn observe(&mut self, observed: Observed) {
+        self.inner.observe(observed);
     }
 
     fn start<F: Firmware + ?Sized>(
@@ -258,8 +260,12 @@ impl<F: Firmware + ?Sized> Firmware for Metered<'_, F> {
         outcome
     }
 
-    fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory) {
-        self.firmware.accessed(access, memory);
+    fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory) -> Repeats {
+        self.firmware.accessed(access, memory)
+    }
+
+    fn take_ordering(&mut self) -> bool {
+        self.firmware.take_ordering()
     }
 
     fn switch_at(&mut self, access: &NextAccess) -> Option<SwitchPoint> {

@@ -33,6 +33,12 @@ pub(crate) const fn is_of_program(address: u32) -> bool {
     address >= PROGRAM_BASE && address < PROGRAM_LIMIT
 }
 
+/// Returns whether accesses to an address are reported, of a program that sets the call-back or does not.
+#[inline(always)]
+pub(crate) const fn is_noticed(address: u32, has_call_back: bool) -> bool {
+    is_shared(address) || has_call_back && is_of_program(address)
+}
+
 impl Program {
     /// Returns whether the program sets the call-back.
     pub(crate) fn has_call_back(&self) -> bool {

@@ -11,7 +11,7 @@ use std::str::FromStr;
 
 use kmotiondef::{Cycles, ThreadId};
 use runtime::stimulus::{Stimulus, Trigger};
-use vm::engine::Preemption;
+use vm::engine::{Observed, Preemption};
 
 use crate::{HostError, Setup};
 
@@ -110,7 +110,7 @@ impl Setup {
         }
         self.stimulus.extend(Stimulus::parse(&starts, "--schedule")?);
         self.config.machine.preemption = Preemption::Instructions;
-        self.config.machine.observed = true;
+        self.config.machine.observed = Observed::All;
         self.config.switches.clone_from(&schedule.switches);
         Ok(())
     }

@@ -27,7 +27,7 @@ use kmotiondef::structs::Persist;
 use kmotiondef::timing::Timing;
 use kmotiondef::variables::{PERSIST, cell_name};
 use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
-use vm::engine::{CallEnd, ContextId, Engine};
+use vm::engine::{CallEnd, ContextId, Engine, Observed};
 use vm::interp::BytecodeEngine;
 use vm::machine::{Config as MachineConfig, Machine};
 use vm::memory::{Faults, GuestMemory};
@@ -148,7 +148,7 @@ impl<E: Engine> Board<E> {
         kernel.parts.pc.host.connect(config.host && connected.pc.is_connected);
         kernel.parts.pc.host.answer_with(config.answers.unwrap_or_else(|| connected.pc.answers.clone()));
         kernel.parts.timing = config.timing;
-        kernel.parts.races = config.machine.observed.then(Box::default);
+        kernel.parts.races = (config.machine.observed != Observed::None).then(Box::default);
         kernel.parts.switches =
             (!config.switches.is_empty()).then(|| Box::new(Switches::new(config.switches)));
         connect::install(&mut kernel.parts, connected);

@@ -10,6 +10,7 @@ use kmotiondef::GuestAddr;
 use super::code::Words;
 use super::context::{Calls, Window};
 use super::sequences::AHEAD;
+use crate::filter::AccessFilter;
 use crate::kind::Width;
 use crate::memory::{RamRest, Sdram};
 use crate::operand::{FuncRef, Label, RegF32, RegF64, RegI32, RegI64, SigRef};
@@ -147,6 +148,8 @@ pub(super) struct State<'m> {
     pub(super) calls: &'m mut Calls,
     /// The reason why the execution ended, once it has.
     pub(super) exit: Option<Exit>,
+    /// The accesses that are not reported again.
+    pub(super) filter: Option<&'m AccessFilter>,
 }
 
 /// A call of a function while it executes.

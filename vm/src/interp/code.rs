@@ -10,17 +10,20 @@ use std::sync::Arc;
 
 use super::context::Head;
 use super::dispatch::{
-    ENDS_ITERATION, ENDS_ITERATION_IF, ENDS_ITERATION_UNLESS, Handler, OBSERVED, SHARED, handler_of,
+    ENDS_ITERATION, ENDS_ITERATION_IF, ENDS_ITERATION_UNLESS, Handler, OBSERVED, OBSERVED_AT,
+    OBSERVED_WITH_CALL_BACK, SHARED, handler_of,
 };
 use super::observe::{self, AccessPlace};
 use super::parts::{A, B, DST, Parts, is_commutative, parts_of};
 use super::sequences::{AHEAD, BREAK, Text};
+use crate::engine::Observed;
 use crate::kind::OpKind;
 use crate::meter::branch_target;
 use crate::op::{Op, WORD};
 use crate::operand::{FuncRef, Label};
 use crate::polling::{PollingLoop, Readers, polling_loops};
 use crate::program::Program;
+use crate::shared::is_noticed;
 
 /// An instruction.
 #[derive(Clone, Copy, Debug)]
@@ -52,15 +55,15 @@ impl Word {
     /// The word of an instruction whose accesses to shared memory are reported.
     fn observed(op: &Op, has_call_back: bool) -> Self {
         let plain = Self::plain(op);
-        let is_plain =
-            |address| !(observe::is_shared(address) || has_call_back && observe::is_of_program(address));
-        match observe::place_of(op) {
-            Some(AccessPlace::Constant(address)) if is_plain(address) => plain,
-            Some(AccessPlace::Register) if has_call_back => Self { handler: SHARED, ..plain },
-            Some(AccessPlace::Register) => Self { handler: OBSERVED, ..plain },
-            Some(AccessPlace::Constant(_) | AccessPlace::Block) => Self { handler: SHARED, ..plain },
-            None => plain,
-        }
+        let handler = match observe::place_of(op) {
+            Some(AccessPlace::Constant(address)) if !is_noticed(address, has_call_back) => return plain,
+            Some(AccessPlace::Constant(_)) => OBSERVED_AT,
+            Some(AccessPlace::Register) if has_call_back => OBSERVED_WITH_CALL_BACK,
+            Some(AccessPlace::Register) => OBSERVED,
+            Some(AccessPlace::Block) => SHARED,
+            None => return plain,
+        };
+        Self { handler, ..plain }
     }
 
     /// The word of a branch with which an iteration of a waiting loop may end.
@@ -103,16 +106,16 @@ impl Word {
 #[derive(Clone)]
 pub(super) struct Encoded {
     words: Box<Words>,
-    /// True if accesses to shared memory are reported.
-    observed: bool,
-    /// The loops that may only wait; none where accesses are reported.
+    /// The accesses to shared memory that are reported.
+    observed: Observed,
+    /// The loops that may only wait; none where all accesses are reported.
     loops: Arc<[PollingLoop]>,
 }
 
 impl Encoded {
     /// Encodes `program`, with accesses to shared memory reported or not, for a firmware with these `readers`.
-    pub(super) fn new(program: &Program, observed: bool, readers: Readers<'_>) -> Self {
-        let loops = if observed { Vec::new() } else { polling_loops(program, readers) };
+    pub(super) fn new(program: &Program, observed: Observed, readers: Readers<'_>) -> Self {
+        let loops = if observed == Observed::All { Vec::new() } else { polling_loops(program, readers) };
         Self::with(program, observed, loops.into(), &|_, _| false)
     }
 
@@ -123,16 +126,17 @@ impl Encoded {
 
     fn with(
         program: &Program,
-        observed: bool,
+        observed: Observed,
         loops: Arc<[PollingLoop]>,
         is_held: &dyn Fn(usize, &Op) -> bool,
     ) -> Self {
-        let is_observed =
-            |pc: usize, op: &Op| observed && !is_held(pc, op) && observe::place_of(op).is_some();
+        let is_observed = |pc: usize, op: &Op| {
+            observed != Observed::None && !is_held(pc, op) && observe::place_of(op).is_some()
+        };
         let branches: BTreeSet<usize> = loops.iter().flat_map(|polling| polling.branches.clone()).collect();
         let is_alone = |pc: usize, op: &Op| is_held(pc, op) || is_observed(pc, op) || branches.contains(&pc);
         let mut words = encode(program, &is_alone);
-        let has_call_back = observed && program.has_call_back();
+        let has_call_back = observed != Observed::None && program.has_call_back();
         for (pc, op) in program.ops().iter().enumerate().filter(|(pc, op)| is_observed(*pc, op)) {
             words[pc] = Word::observed(op, has_call_back);
         }

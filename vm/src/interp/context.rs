@@ -7,6 +7,7 @@ use kmotiondef::{CodeAddr, GuestAddr};
 use super::jumps::{JumpPoint, Jumps};
 use super::split::Split;
 use crate::engine::{FrameView, Stack};
+use crate::filter::AccessFilter;
 use crate::operand::FuncRef;
 use crate::program::{Program, body_of};
 use crate::trap::TrapKind;
@@ -175,6 +176,8 @@ pub(super) struct Context {
     pub(super) pending: Option<FuncRef>,
     /// The segment that is executed in steps, if the slice ends or has ended in one.
     pub(super) split: Option<Split>,
+    /// The accesses of the slice that are not reported again; `None` where all are reported, or none.
+    pub(super) filter: Option<Box<AccessFilter>>,
 }
 
 /// A context as it was at an instant.
@@ -186,6 +189,7 @@ pub(super) struct Saved {
     calls: Calls,
     pending: Option<FuncRef>,
     split: Option<Split>,
+    filter: Option<Box<AccessFilter>>,
 }
 
 impl Context {
@@ -197,12 +201,13 @@ impl Context {
             calls: self.calls.clone(),
             pending: self.pending,
             split: self.split.clone(),
+            filter: self.filter.clone(),
         }
     }
 
     /// Makes the context what it was.
     pub(super) fn put_back(&mut self, saved: &Saved) {
-        let Saved { registers, calls, pending, split } = saved;
+        let Saved { registers, calls, pending, split, filter } = saved;
         if self.registers.len() < registers.len() + WINDOW {
             self.registers.resize(registers.len() + WINDOW, 0);
         }
@@ -210,6 +215,7 @@ impl Context {
         self.calls.clone_from(calls);
         self.pending = *pending;
         self.split.clone_from(split);
+        self.filter.clone_from(filter);
     }
 
     pub(super) fn new() -> Self {
@@ -226,6 +232,7 @@ impl Context {
             },
             pending: None,
             split: None,
+            filter: None,
         }
     }
 
@@ -241,6 +248,9 @@ impl Context {
         calls.result = 0;
         self.pending = Some(function);
         self.split = None;
+        if let Some(filter) = &self.filter {
+            filter.forget();
+        }
     }
 
     /// Begins the outermost call; its parameters are 0.
@@ -277,6 +287,12 @@ impl Context {
         }
         self.calls.frames.reserve(1);
         Ok(())
+    }
+
+    /// What the execution of instructions works on: the calls, the registers of all of them, and the filter of accesses.
+    pub(super) fn execution(&mut self) -> (&mut Calls, &[Cell<u64>], Option<&AccessFilter>) {
+        let registers = Cell::from_mut(&mut self.registers[..]).as_slice_of_cells();
+        (&mut self.calls, registers, self.filter.as_deref())
     }
 
     /// The calls, and the registers of all of them.

@@ -23,12 +23,12 @@
 use super::activation::{Activation, Exit, Flow, State};
 use super::code::Words;
 use super::context::Window;
-use super::observe::is_shared;
 use super::parts::{Assigned, COND};
 use super::sequences::{BREAK, for_each_sequence};
 use crate::for_each_op;
 use crate::memory::Sdram;
 use crate::operand::Label;
+use crate::shared::is_noticed;
 use crate::slot::Slot;
 use crate::trap::TrapKind;
 
@@ -159,12 +159,15 @@ pub(super) const fn handler_of(code: u16) -> Handler {
     if code == BREAK { held } else { ROWS[code as usize] }
 }
 
-/// An access through a register where those to shared memory are reported.
-pub(super) const OBSERVED: Handler = observed;
+/// An access through a register, of which those to shared memory are reported; of a program that shares its own data
+/// with a call-back; and through a constant address in shared memory.
+pub(super) const OBSERVED: Handler = observed_through_register::<false>;
+pub(super) const OBSERVED_WITH_CALL_BACK: Handler = observed_through_register::<true>;
+pub(super) const OBSERVED_AT: Handler = observed_at;
 /// An access that is always reported.
 pub(super) const SHARED: Handler = shared;
 
-fn observed<'m>(
+fn observed_through_register<'m, const HAS_CALL_BACK: bool>(
     state: &mut State<'m>,
     window: &'m Window,
     code: &Words,
@@ -175,10 +178,35 @@ fn observed<'m>(
     let Some(word) = code.first() else { return };
     let [opcode, _, base, off] = word.parts;
     let address = (window[usize::from(base)].get() as u32).wrapping_add_signed((off as i16).into());
-    if is_shared(address) {
+    let is_reported = is_noticed(address, HAS_CALL_BACK)
+        && !is_known(state, code, address)
+        && !state.filter.is_some_and(|filter| filter.owns(address));
+    if is_reported {
         return shared(state, window, code, sdram, double, single);
     }
     ROWS[usize::from(opcode)](state, window, code, sdram, double, single);
+}
+
+fn observed_at<'m>(
+    state: &mut State<'m>,
+    window: &'m Window,
+    code: &Words,
+    sdram: &mut Sdram,
+    double: f64,
+    single: f32,
+) {
+    let Some(word) = code.first() else { return };
+    let [opcode, _, low, high] = word.parts;
+    if !is_known(state, code, u32::from(low) | u32::from(high) << 16) {
+        return shared(state, window, code, sdram, double, single);
+    }
+    ROWS[usize::from(opcode)](state, window, code, sdram, double, single);
+}
+
+/// Reports whether the first instruction of `code` has made its access in this slice.
+#[inline(always)]
+fn is_known(state: &State<'_>, code: &Words, address: u32) -> bool {
+    state.filter.is_some_and(|filter| filter.knows(state.words.len() - code.len(), address))
 }
 
 fn shared<'m>(

@@ -134,7 +134,7 @@ impl Holds {
     fn access(&self, program: &Program, context: &Context) -> Option<HoldReason> {
         let op = program.ops().get(context.calls.pc).filter(|_| !self.accessed.is_empty())?;
         let by = program.address_of(context.calls.pc);
-        observe::accesses(op, context).iter().find_map(|part| {
+        observe::accesses(op, context).iter().flatten().find_map(|part| {
             let index = self.accessed.iter().position(|range| overlaps(range, part))?;
             Some(HoldReason::Accessed { index, by, is_store: part.is_store })
         })

@@ -3,20 +3,19 @@
 //! A load or store through a register tests its address before it is executed; a constant address is tested once. An
 //! instruction with a shared access leaves the execution, is executed alone and reported; the results stay the same.
 
-use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use kmotiondef::{CodeAddr, GuestAddr};
 
 use super::context::Context;
-use crate::engine::{ContextId, Slice};
-use crate::firmware::{Firmware, NextAccess, SharedAccess, SwitchPoint};
+use crate::engine::{ContextId, Observed, Slice};
+use crate::filter::{AccessFilter, PageOwners};
+use crate::firmware::{Firmware, NextAccess, Repeats, SharedAccess, SwitchPoint};
 use crate::kind::{Name, OpKind};
 use crate::op::Op;
 use crate::operand::{Addr, Count, Off, RegI32};
 use crate::program::Program;
-pub(super) use crate::shared::{is_of_program, is_shared};
-use crate::shared::{loads_of, loads_together, registers};
+use crate::shared::{is_noticed, loads_of, loads_together, registers};
 
 /// The form of an access's address.
 #[derive(Clone, Copy, Debug)]
@@ -58,95 +57,197 @@ pub(super) fn place_of(op: &Op) -> Option<AccessPlace> {
 
 /// A part of an access that is about to be made.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct AccessPart {
-    pub(super) address: GuestAddr,
+pub(crate) struct AccessPart {
+    pub(crate) address: GuestAddr,
     /// Number of bytes.
-    pub(super) size: u32,
-    pub(super) is_store: bool,
+    pub(crate) size: u32,
+    pub(crate) is_store: bool,
 }
 
+/// The parts of an access: two of the copy of a block, otherwise one.
+pub(super) type AccessParts = [Option<AccessPart>; 2];
+
 /// The accesses that the present instruction of `context` is about to make.
-pub(super) fn accesses(op: &Op, context: &Context) -> Vec<AccessPart> {
+pub(super) fn accesses(op: &Op, context: &Context) -> AccessParts {
     let pointer = |name| op.operand::<RegI32>(name).map(|register| context.get(register.0) as u32);
     let part = |address, size, is_store| AccessPart { address: GuestAddr::new(address), size, is_store };
     let one = |address: u32| op.kind().width().map(|width| part(address, width.bytes(), is_store(op)));
     match place_of(op) {
-        None => Vec::new(),
+        None => [None; 2],
         Some(AccessPlace::Block) => {
             let len = op.operand::<Count>(Name::Len).map_or(0, |Count(len)| len.into());
-            let (to, from) = (pointer(Name::To), pointer(Name::Src));
-            let parts = [(from, false), (to, true)].into_iter();
-            parts.filter_map(|(address, is_store)| Some(part(address?, len, is_store))).collect()
+            [(Name::Src, false), (Name::To, true)]
+                .map(|(name, is_store)| Some(part(pointer(name)?, len, is_store)))
         }
-        Some(AccessPlace::Constant(address)) => one(address).into_iter().collect(),
+        Some(AccessPlace::Constant(address)) => [one(address), None],
         Some(AccessPlace::Register) => {
             let address = op.operand(Name::Off).zip(pointer(Name::Base));
             let address = address.map(|(Off(off), base)| base.wrapping_add_signed(off.into()));
-            address.and_then(one).into_iter().collect()
+            [address.and_then(one), None]
         }
     }
 }
 
 /// Facts about the text of programs, computed when first needed.
 #[derive(Debug, Default)]
-pub(super) struct Observer {
-    /// The loads that stored values depend on, or that are used with a load, by instruction.
-    loads: BTreeMap<CodeAddr, Arc<[CodeAddr]>>,
-    /// The functions whose loads are known.
-    functions: BTreeSet<CodeAddr>,
-    /// The programs, by their start, and whether each shares its own data with a call-back.
-    has_call_back: BTreeMap<GuestAddr, bool>,
+pub(crate) struct Observer {
+    /// True if all accesses are reported, those that are redundant too.
+    reports_all: bool,
+    /// The contexts that alone access pages of SDRAM.
+    owners: Arc<PageOwners>,
+    /// The programs, by their start.
+    programs: Vec<(GuestAddr, ProgramFacts)>,
+}
+
+/// Facts about the text of a program.
+#[derive(Debug)]
+struct ProgramFacts {
+    /// True if it shares its own data with a call-back.
+    has_call_back: bool,
+    /// By word, the loads that the stored value depends on, or that are used with the load, once they were asked for.
+    loads: Vec<Option<Box<[CodeAddr]>>>,
+}
+
+impl ProgramFacts {
+    fn of(program: &Program) -> Self {
+        Self { has_call_back: program.has_call_back(), loads: vec![None; program.ops().len()] }
+    }
+
+    /// Returns the loads that the access of `word` is made of, or used with if it is a load.
+    fn loads_at(&mut self, program: &Program, word: usize, is_store: bool) -> &[CodeAddr] {
+        if self.loads.get(word).is_some_and(Option::is_none) {
+            self.find_loads(program, word, is_store);
+        }
+        self.loads.get(word).and_then(Option::as_deref).unwrap_or_default()
+    }
+
+    fn find_loads(&mut self, program: &Program, word: usize, is_store: bool) {
+        if is_store {
+            self.loads[word] = Some(loads_of(program, word).into());
+            return;
+        }
+        let function = program.function_around(word);
+        for (at, loads) in function.map(|function| loads_together(program, function)).unwrap_or_default() {
+            if let Some(place) = program.word_at(at).and_then(|word| self.loads.get_mut(word)) {
+                *place = Some(loads.into_iter().collect());
+            }
+        }
+        self.loads[word].get_or_insert_default();
+    }
 }
 
 /// An access that is about to be made.
 #[derive(Debug)]
 pub(super) struct Pending {
     op: Op,
-    at: CodeAddr,
-    made_of: Arc<[CodeAddr]>,
-    parts: Vec<AccessPart>,
+    word: usize,
+    parts: AccessParts,
     /// The stored value.
     stored: u64,
 }
 
+/// An access that a context has made.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Made {
+    /// The instruction.
+    pub(crate) word: usize,
+    pub(crate) part: AccessPart,
+    /// The value as a register slot; 0 for the copy of a block.
+    pub(crate) value: u64,
+}
+
 impl Observer {
+    /// The observer of accesses, if any is reported.
+    pub(crate) fn new(observed: Observed) -> Option<Self> {
+        match observed {
+            Observed::None => None,
+            Observed::Fresh => Some(Self::default()),
+            Observed::All => Some(Self { reports_all: true, ..Self::default() }),
+        }
+    }
+
+    /// Returns whether all accesses are reported.
+    pub(crate) const fn reports_all(&self) -> bool {
+        self.reports_all
+    }
+
+    /// The filter of the accesses of a new context, if not all of them are reported.
+    pub(super) fn filter(&self, context: ContextId) -> Option<Box<AccessFilter>> {
+        (!self.reports_all).then(|| Box::new(AccessFilter::with_owners(&self.owners, context)))
+    }
+
+    /// The owners of pages.
+    pub(crate) const fn owners(&self) -> &Arc<PageOwners> {
+        &self.owners
+    }
+
+    /// An observer of other contexts of the same machine.
+    #[cfg(feature = "native")]
+    pub(crate) fn beside(&self) -> Self {
+        Self { reports_all: self.reports_all, owners: Arc::clone(&self.owners), ..Self::default() }
+    }
+
     /// Forgets what it knows of programs.
-    pub(super) fn forget(&mut self) {
-        *self = Self::default();
+    pub(crate) fn forget(&mut self) {
+        let owners = Arc::clone(&self.owners);
+        *self = Self { reports_all: self.reports_all, owners, ..Self::default() };
     }
 
-    /// Returns the loads that the access of the word `pc` is made of, or used with if it is a load.
-    fn loads_at(&mut self, program: &Program, pc: usize, is_store: bool) -> Arc<[CodeAddr]> {
-        let at = program.address_of(pc);
-        if is_store {
-            return Arc::clone(self.loads.entry(at).or_insert_with(|| loads_of(program, pc).into()));
-        }
-        if let Some(function) = program.function_around(pc)
-            && self.functions.insert(program.address_of(function.body.start))
-        {
-            let together = loads_together(program, function);
-            self.loads.extend(together.into_iter().map(|(at, loads)| (at, loads.into_iter().collect())));
-        }
-        Arc::clone(self.loads.entry(at).or_default())
+    /// The facts about a program.
+    fn facts(&mut self, program: &Program) -> &mut ProgramFacts {
+        let base = program.base();
+        let place = self.programs.iter().position(|(start, _)| *start == base);
+        let place = place.unwrap_or_else(|| {
+            self.programs.push((base, ProgramFacts::of(program)));
+            self.programs.len() - 1
+        });
+        &mut self.programs[place].1
     }
 
-    /// The access that the present instruction of `context` is about to make, if it is to shared memory.
+    /// The access that the present instruction of `context` is about to make, if it is reported.
     pub(super) fn about_to(&mut self, program: &Program, context: &Context) -> Option<Pending> {
-        let pc = context.calls.pc;
-        let op = *program.ops().get(pc)?;
-        let at = program.address_of(pc);
+        let word = context.calls.pc;
+        let op = *program.ops().get(word)?;
         place_of(&op)?;
-        let has_call_back = self.has_call_back.entry(program.base());
-        let has_call_back = *has_call_back.or_insert_with(|| program.has_call_back());
-        let is_noticed = |address: u32| is_shared(address) || has_call_back && is_of_program(address);
-        let mut parts = accesses(&op, context);
-        parts.retain(|part| is_noticed(part.address.get()));
-        if parts.is_empty() {
+        let has_call_back = self.facts(program).has_call_back;
+        let is_block = op.kind() == OpKind::Block;
+        let known = |part: &AccessPart| {
+            !is_block && context.filter.as_ref().is_some_and(|filter| filter.knows(word, part.address.get()))
+        };
+        let parts = accesses(&op, context)
+            .map(|part| part.filter(|part| !known(part) && is_noticed(part.address.get(), has_call_back)));
+        if parts.iter().all(Option::is_none) {
             return None;
         }
         let stored = registers(&op).sources.first().map_or(0, |register| context.get(*register));
-        let made_of = self.loads_at(program, pc, is_store(&op));
-        Some(Pending { op, at, made_of, parts, stored })
+        Some(Pending { op, word, parts, stored })
+    }
+
+    /// Reports an access that has been made, unless it is not to be.
+    pub(crate) fn report<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        program: &Program,
+        Made { word, part, value }: Made,
+        filter: Option<&AccessFilter>,
+        slice: &mut Slice<'_, F>,
+    ) {
+        let AccessPart { address, size, is_store } = part;
+        let is_private = !self.reports_all && self.owners.claim(id, address, size);
+        let facts = self.facts(program);
+        if is_private || !is_noticed(address.get(), facts.has_call_back) {
+            return;
+        }
+        let (thread, at, now) = (id.thread(), program.address_of(word), slice.now());
+        let made_of = facts.loads_at(program, word, is_store);
+        let access = SharedAccess { thread, at, address, size, is_store, value, made_of, now };
+        let repeats = slice.firmware.accessed(&access, slice.memory);
+        let Some(filter) = filter else { return };
+        if slice.firmware.take_ordering() {
+            filter.forget();
+        } else if repeats == Repeats::Redundant && size <= 8 {
+            filter.note(word, address.get());
+        }
     }
 }
 
@@ -155,11 +256,12 @@ impl Pending {
     pub(super) fn switch_at<F: Firmware + ?Sized>(
         &self,
         id: ContextId,
+        program: &Program,
         slice: &mut Slice<'_, F>,
     ) -> Option<SwitchPoint> {
-        let (thread, part) = (id.thread()?, *self.parts.first()?);
+        let (thread, part) = (id.thread()?, self.parts.into_iter().flatten().next()?);
         let AccessPart { address, size, is_store } = part;
-        let (at, now) = (self.at, slice.now());
+        let (at, now) = (program.address_of(self.word), slice.now());
         slice.firmware.switch_at(&NextAccess { thread, at, address, size, is_store, now })
     }
 
@@ -167,23 +269,21 @@ impl Pending {
     pub(super) fn report<F: Firmware + ?Sized>(
         &self,
         id: ContextId,
+        program: &Program,
         context: &Context,
+        observer: &mut Observer,
         slice: &mut Slice<'_, F>,
     ) {
-        let Self { op, at, made_of, parts, stored } = self;
-        let now = slice.now();
-        for AccessPart { address, size, is_store } in parts.iter().copied() {
-            let loaded = registers(op).assigned.map_or(0, |register| context.get(register));
-            let value = if op.kind() == OpKind::Block {
-                0
-            } else if is_store {
-                *stored
-            } else {
-                loaded
-            };
-            let thread = id.thread();
-            let access = SharedAccess { thread, at: *at, address, size, is_store, value, made_of, now };
-            slice.firmware.accessed(&access, slice.memory);
+        let Self { op, word, parts, stored } = self;
+        let value = if op.kind() == OpKind::Block {
+            0
+        } else if is_store(op) {
+            *stored
+        } else {
+            registers(op).assigned.map_or(0, |register| context.get(register))
+        };
+        for part in parts.iter().flatten().copied() {
+            observer.report(id, program, Made { word: *word, part, value }, context.filter.as_deref(), slice);
         }
     }
 }

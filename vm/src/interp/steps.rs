@@ -8,9 +8,9 @@ use kmotiondef::{Cycles, GuestAddr};
 
 use super::code::{Word, Words};
 use super::context::Context;
-use super::observe::Observer;
+use super::observe::{self, Observer};
 use super::split::Split;
-use crate::engine::{Preemption, Slice};
+use crate::engine::{Observed, Preemption, Slice};
 use crate::firmware::Firmware;
 use crate::kind::{Name, OpKind, Width};
 use crate::op::Op;
@@ -33,10 +33,35 @@ impl SingleText {
         work: impl FnOnce(&Words) -> R,
     ) -> Option<R> {
         let op = program.ops().get(pc)?;
+        self.with_word(program, words, pc, Word::plain(op), work)
+    }
+
+    /// As [`with`](Self::with), for an instruction whose accesses are reported if those of `words` are.
+    pub(super) fn with_observed<R>(
+        &mut self,
+        program: &Program,
+        words: &Words,
+        pc: usize,
+        work: impl FnOnce(&Words) -> R,
+    ) -> Option<R> {
+        let (op, word) = (program.ops().get(pc)?, words.get(pc)?);
+        let word = if observe::place_of(op).is_some() { *word } else { Word::plain(op) };
+        self.with_word(program, words, pc, word, work)
+    }
+
+    fn with_word<R>(
+        &mut self,
+        program: &Program,
+        words: &Words,
+        pc: usize,
+        word: Word,
+        work: impl FnOnce(&Words) -> R,
+    ) -> Option<R> {
+        let op = program.ops().get(pc)?;
         if self.0.len() < words.len() {
             self.0.resize(words.len(), Word::HELD);
         }
-        self.0[pc] = Word::plain(op);
+        self.0[pc] = word;
         // A call takes from there what it needs to know of the function.
         let callee = op.operand::<FuncRef>(Name::Func).map(|function| function.0 as usize);
         if let Some(callee) = callee {
@@ -61,6 +86,17 @@ pub(super) struct Stepping {
     pub(super) waiting: SingleText,
     /// The observer of accesses to shared memory, if they are reported.
     pub(super) observer: Option<Observer>,
+}
+
+impl Stepping {
+    /// The accesses that are reported.
+    pub(super) fn observed(&self) -> Observed {
+        match &self.observer {
+            None => Observed::None,
+            Some(observer) if observer.reports_all() => Observed::All,
+            Some(_) => Observed::Fresh,
+        }
+    }
 }
 
 /// The next step of a segment that is executed in steps.

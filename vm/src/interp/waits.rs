@@ -68,7 +68,9 @@ impl WaitingContext<'_> {
                 return Ok(None);
             }
             let run = |word: &Words| super::run(self.id, self.program, word, context, slice, steps);
-            let stop = text.with(self.program, self.words, at, run).unwrap_or(Err(TrapKind::Unreachable))?;
+            let stop = text
+                .with_observed(self.program, self.words, at, run)
+                .unwrap_or(Err(TrapKind::Unreachable))?;
             if stop != Stop::Held {
                 return Ok(Some(stop));
             }

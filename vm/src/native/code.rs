@@ -67,9 +67,16 @@ struct CodeMemory(ManuallyDrop<JITModule>);
 
 impl CodeMemory {
     /// Room for the code of `program`.
-    fn new(program: &Program, loops: &[PollingLoop], preemption: Preemption) -> Result<Self, CompileError> {
+    fn new(
+        program: &Program,
+        loops: &[PollingLoop],
+        preemption: Preemption,
+        is_observed: bool,
+    ) -> Result<Self, CompileError> {
         // A segment that may be split is there a second time.
         let copies = if preemption == Preemption::Instructions { 3 } else { 1 };
+        // A report takes about as much as the access.
+        let copies = copies * (1 + usize::from(is_observed));
         // So is an iteration of a loop that may only wait.
         let repeated: usize = loops.iter().map(|polling| polling.words.len()).sum();
         Self::with_room(
@@ -104,15 +111,15 @@ impl MachineCode {
     pub(super) fn compile(
         program: &Program,
         facts: FirmwareFacts<'_>,
-        preemption: Preemption,
+        (preemption, is_observed): (Preemption, bool),
     ) -> Result<Self, CompileError> {
         let mut lengths = program.functions().iter().map(|function| function.body.len());
         if let Some(length) = lengths.find(|length| *length > MAX_WORDS) {
             return Err(CompileError::TooLong(length));
         }
         let loops = polling_loops(program, facts.readers);
-        let mut memory = CodeMemory::new(program, &loops, preemption)?;
-        let functions = compile(&mut *memory.0, program, facts.pure, &loops, preemption)?;
+        let mut memory = CodeMemory::new(program, &loops, preemption, is_observed)?;
+        let functions = compile(&mut *memory.0, program, facts.pure, &loops, (preemption, is_observed))?;
         memory.0.finalize_definitions()?;
         let at = |id: FuncId| memory.0.get_finalized_function(id);
         let entries = functions.entries.into_iter();

@@ -13,8 +13,8 @@ use kmotiondef::jumps::JumpFunction;
 
 use super::state::BYTES_PER_CALL;
 use super::translate::{
-    PureFunctions, Translation, begin_signature, function_signature, request_signature, thunk_signature,
-    translate, translate_begin, translate_request, translate_thunk,
+    ObservedProgram, PureFunctions, Translation, begin_signature, function_signature, request_signature,
+    thunk_signature, translate, translate_begin, translate_request, translate_thunk,
 };
 use crate::engine::Preemption;
 use crate::op::Op;
@@ -104,7 +104,7 @@ pub(super) fn compile(
     program: &Program,
     pure: PureFunctions<'_>,
     loops: &[PollingLoop],
-    preemption: Preemption,
+    (preemption, is_observed): (Preemption, bool),
 ) -> Result<Functions, CompileError> {
     let jumps =
         |op: &Op| matches!(op, Op::CallFw { addr, .. } if JumpFunction::at(GuestAddr::new(addr.0)).is_some());
@@ -117,12 +117,14 @@ pub(super) fn compile(
     let begin = compiler.begin()?;
     let (thunks, thunk_frame) = compiler.thunks(program)?;
     let mut stack = StackUse::default();
+    let observed = is_observed.then(|| ObservedProgram { has_call_back: program.has_call_back() });
     for (function, id) in program.functions().iter().zip(&functions) {
         if function.classes.len() > MAX_REGISTERS {
             return Err(CompileError::TooManyRegisters(function.classes.len()));
         }
+        let functions = &functions;
         let translation =
-            Translation { program, function, functions: &functions, request, pure, loops, preemption };
+            Translation { program, function, functions, request, pure, loops, preemption, observed };
         let frame = compiler.function(*id, translation)? + thunk_frame;
         let guest = function.frame + BYTES_PER_CALL;
         stack.native_per_guest = stack.native_per_guest.max(frame.div_ceil(guest));

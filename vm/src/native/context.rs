@@ -11,7 +11,10 @@ use super::state::BYTES_PER_CALL;
 use crate::access::HighWord;
 use crate::call::ArgumentList;
 use crate::engine::{ContextId, Iteration, Slice, Stack, Stop};
+use crate::filter::owner_code;
 use crate::firmware::{Firmware, Outcome};
+use crate::interp::observe::{AccessPart, Made, Observer};
+use crate::kind::OpKind;
 use crate::operand::{FuncRef, SigRef};
 use crate::polling::TimeTests;
 use crate::program::Program;
@@ -193,13 +196,19 @@ impl Context {
         &mut self,
         id: ContextId,
         slice: &mut Slice<'_, F>,
-        protected: &mut ProtectedBlocks,
+        (protected, observer): (&mut ProtectedBlocks, &mut Option<Observer>),
     ) -> Result<Stop, TrapKind> {
+        if let Some(observer) = observer {
+            let state = self.fiber.state();
+            state.filter.continues(slice.tick);
+            state.signs.owner.set(owner_code(id).into());
+            state.ram.owners.set(observer.owners().first());
+        }
         let mut step = match &self.next {
             Next::Answer(answer) => NextStep::Go(*answer),
             Next::Request(request) => {
                 let request = *request;
-                self.answer(id, slice, request)?
+                self.answer(id, slice, request, observer.as_mut())?
             }
             Next::HighWord(word) => {
                 slice.store_high_word(*word)?;
@@ -224,7 +233,7 @@ impl Context {
             };
             self.at = request.at as usize;
             self.stack_pointer = request.stack_pointer;
-            step = self.answer(id, slice, request)?;
+            step = self.answer(id, slice, request, observer.as_mut())?;
         }
     }
 
@@ -265,6 +274,7 @@ impl Context {
         id: ContextId,
         slice: &mut Slice<'_, F>,
         request: Request,
+        observer: Option<&mut Observer>,
     ) -> Result<NextStep, TrapKind> {
         let address = GuestAddr::new(request.a as u32);
         if slice.is_long && request.involves_board() {
@@ -279,18 +289,24 @@ impl Context {
             }
             Reason::StoreLowWord => {
                 let width = request.width().ok_or(TrapKind::Unreachable)?;
-                let Some(word) = slice.store_low_word(address, width, request.b)? else {
-                    return Ok(NextStep::Go(Answer::Slot(0)));
-                };
+                let word = slice.store_low_word(address, width, request.b)?;
+                self.report(id, slice, &request, observer);
+                let Some(word) = word else { return Ok(NextStep::Go(Answer::Slot(0))) };
                 return Ok(self.halt(Halt::Preempted, Next::HighWord(word)));
+            }
+            Reason::Accessed => {
+                self.report(id, slice, &request, observer);
+                0
             }
             Reason::Copy => {
                 let from = GuestAddr::new((request.a >> 32) as u32);
                 slice.memory.copy(address, from, request.b as u32)?;
+                self.report(id, slice, &request, observer);
                 0
             }
             Reason::Clear => {
                 slice.memory.fill(address, 0, request.b as u32)?;
+                self.report(id, slice, &request, observer);
                 0
             }
             Reason::CallFirmware => return self.begin_firmware(id, slice, address, SigRef(request.b as u16)),
@@ -312,6 +328,35 @@ impl Context {
             Reason::Unreachable => return Err(TrapKind::Unreachable),
         };
         Ok(NextStep::Go(Answer::Slot(slot)))
+    }
+
+    /// Reports the access of a request, which has been made.
+    fn report<F: Firmware + ?Sized>(
+        &self,
+        id: ContextId,
+        slice: &mut Slice<'_, F>,
+        request: &Request,
+        observer: Option<&mut Observer>,
+    ) {
+        let Some(observer) = observer else { return };
+        let (address, source) = (request.a as u32, (request.a >> 32) as u32);
+        let part = |address, size, is_store| AccessPart { address: GuestAddr::new(address), size, is_store };
+        let is_store =
+            self.program.ops().get(self.at).is_some_and(|op| matches!(op.kind(), OpKind::Store(_)));
+        let (parts, value) = match (request.reason(), request.width()) {
+            (Some(Reason::Copy), _) => (
+                [Some(part(source, request.b as u32, false)), Some(part(address, request.b as u32, true))],
+                0,
+            ),
+            (Some(Reason::Clear), _) => ([None, Some(part(address, request.b as u32, true))], 0),
+            (_, Some(width)) => ([Some(part(address, width.bytes(), is_store)), None], request.b),
+            (_, None) => return,
+        };
+        let filter = &self.fiber.state().filter;
+        let is_known = parts[1].is_none() && filter.knows(self.at, address);
+        for part in parts.into_iter().flatten().filter(|_| !is_known) {
+            observer.report(id, &self.program, Made { word: self.at, part, value }, Some(filter), slice);
+        }
     }
 
     /// Passes over iterations of the waiting loop that has requested it.
@@ -368,7 +413,11 @@ impl Context {
         let given = &self.fiber.state().exchange.arguments;
         let parameters = &self.program.signature(signature).params;
         let arguments = self.arguments.gather(parameters, |position, _| given[position].get());
-        Ok(match slice.call_firmware(id, address, arguments, self.program.address_of(self.at))? {
+        let outcome = slice.call_firmware(id, address, arguments, self.program.address_of(self.at))?;
+        if slice.firmware.take_ordering() {
+            self.fiber.state().filter.forget();
+        }
+        Ok(match outcome {
             Outcome::Done(value) => NextStep::Go(Answer::Slot(value.into_slot())),
             Outcome::Wait(wake) => {
                 self.next = Next::CallFirmware(address, signature);

@@ -59,6 +59,8 @@ codes! {
         /// Store the low word of the register slot `b` to the address `a`, end the slice, and store the high word in the
         /// next.
         StoreLowWord,
+        /// Report the access of the address `a`, which was made with the register slot `b`.
+        Accessed,
         /// Copy: `a` is the destination, with the source in its upper half; `b` the length.
         Copy,
         /// Clear `b` bytes at `a`.
@@ -112,6 +114,7 @@ impl Request {
                 Reason::Load
                 | Reason::Store
                 | Reason::StoreLowWord
+                | Reason::Accessed
                 | Reason::CallFirmware
                 | Reason::NeedsBoard,
             ) => true,

@@ -12,6 +12,7 @@ use kmotiondef::map::STACK_SIZE;
 
 use super::request::{Request, Yielder};
 use crate::engine::Stack;
+use crate::filter::AccessFilter;
 use crate::verify::MAX_PARAMETERS;
 
 /// Bytes of a stack that hold at most one call: a call takes at least as many.
@@ -90,6 +91,8 @@ shared! {
         iram: Cell<*mut u8>,
         /// One byte for each block of SDRAM, not 0 where a store must be checked.
         protected: Cell<*const u8>,
+        /// One byte for each page of SDRAM, the mark of the context that alone accesses it.
+        owners: Cell<*const u8>,
         /// Stretches of SDRAM without program text; the first holds the program's own data, the second all stacks.
         windows: [Window; 2],
     }
@@ -100,6 +103,8 @@ shared! {
         touched: Cell<u32>,
         /// Not 0 in a long slice.
         is_long: Cell<u32>,
+        /// The mark of the context on its pages.
+        owner: Cell<u32>,
         /// The tick of the slice.
         tick: Cell<u64>,
     }
@@ -147,8 +152,16 @@ shared! {
         calls: [Cell<u32>; CALLS],
         /// Requests and calls.
         exchange: Exchange,
+        /// The accesses that are not reported again.
+        filter: AccessFilter,
         /// An address on the native stack near that at which the fiber is suspended.
         suspended_at: Cell<usize>,
+    }
+}
+
+impl PutBack for AccessFilter {
+    fn put_back(&self, saved: &Self) {
+        Self::put_back(self, saved);
     }
 }
 
@@ -167,10 +180,16 @@ impl State {
                 sdram: Cell::new(std::ptr::null_mut()),
                 iram: Cell::new(std::ptr::null_mut()),
                 protected: Cell::new(std::ptr::null()),
+                owners: Cell::new(std::ptr::null()),
                 windows: [window(), window()],
             },
             ways_out,
-            signs: Signs { touched: Cell::new(0), is_long: Cell::new(0), tick: Cell::new(0) },
+            signs: Signs {
+                touched: Cell::new(0),
+                is_long: Cell::new(0),
+                owner: Cell::new(0),
+                tick: Cell::new(0),
+            },
             yielder: Cell::new(std::ptr::null()),
             stack: Bounds {
                 limit: Cell::new(stack.limit),
@@ -186,6 +205,7 @@ impl State {
                 callee: Cell::new(std::ptr::null()),
                 arguments: [const { Cell::new(0) }; MAX_PARAMETERS],
             },
+            filter: AccessFilter::new(),
             suspended_at: Cell::new(0),
         }
     }
@@ -196,6 +216,7 @@ impl State {
         self.stack.lowest.set(stack.top);
         self.stack.top.set(stack.top);
         self.exchange.arguments.iter().for_each(|argument| argument.set(0));
+        self.filter.forget();
     }
 
     /// Sets where compiled code may store without asking, as offsets in SDRAM.

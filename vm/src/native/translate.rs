@@ -22,6 +22,7 @@ mod control;
 mod fast;
 mod memory;
 mod nan;
+mod observe;
 mod parts;
 mod shortcut;
 mod split;
@@ -43,6 +44,7 @@ use cranelift_module::{FuncId, Module};
 
 use kmotiondef::GuestAddr;
 
+pub(super) use self::observe::ObservedProgram;
 use self::parts::{CallParts, Flags, FrameParts, Registers, UnrollState, WaitParts};
 use self::unroll::Plan;
 use super::request::{Reason, Request};
@@ -83,6 +85,8 @@ pub(super) struct Translation<'a> {
     pub(super) loops: &'a [PollingLoop],
     /// The points at which the function loses the processor.
     pub(super) preemption: Preemption,
+    /// The program, if its accesses to memory that threads can share are reported.
+    pub(super) observed: Option<ObservedProgram>,
 }
 
 /// The lookup of firmware functions that only compute.
@@ -507,7 +511,7 @@ impl<'a, 'b> Translator<'a, 'b> {
             | OpKind::Argument(_)
             | OpKind::Result(_)
             | OpKind::Return(_)
-            | OpKind::Stop => memory::is_in_sdram(op).then_some(0),
+            | OpKind::Stop => (memory::is_in_sdram(op) && !self.is_always_observed(op)).then_some(0),
         }
     }
 

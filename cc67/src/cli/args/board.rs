@@ -8,7 +8,7 @@ use cc67_host::Schedule;
 use clap::{Args, ValueEnum};
 use compiler::words::suggest;
 use runtime::{Directory, HostFiles, MachineFile, Overlay, REMARKS};
-use vm::engine::Preemption;
+use vm::engine::{Observed, Preemption};
 use vm::machine::Config as MachineConfig;
 
 use super::controller::ControllerArguments;
@@ -144,7 +144,11 @@ impl BoardArguments {
         MachineConfig {
             shortcuts: !self.no_shortcuts,
             preemption: self.form().preemption(),
-            observed: self.races || self.schedule.is_some(),
+            observed: match (self.schedule.is_some(), self.races) {
+                (true, _) => Observed::All,
+                (false, true) => Observed::Fresh,
+                (false, false) => Observed::None,
+            },
             ..MachineConfig::default()
         }
     }

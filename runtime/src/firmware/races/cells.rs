@@ -3,16 +3,16 @@
 use kmotiondef::{CodeAddr, Cycles};
 
 use super::conflicts::{Conflict, ConflictKind, Store};
+use super::locks::LockSet;
 use super::reports::lost_at;
-use super::{
-    AccessMark, Actor, CONTEXTS, Races, Suspect, VectorClock, context, index, is_of_axis, is_request, join,
-};
+use super::table::Uses;
+use super::{AccessMark, Actor, Races, Suspect, VectorClock, context, index, is_of_axis, is_request, join};
 use crate::out::{Message, OtherPlace, Out};
 
 /// The accesses of threads to a cell.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cell {
-    pub(super) uses: [Use; CONTEXTS],
+    pub(super) uses: Uses,
     pub(super) writer: Option<Writer>,
     /// The number of stores.
     stores: u32,
@@ -43,7 +43,9 @@ struct EarlyLoad {
 /// The accesses of a context to a cell.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Use {
+    /// Its last load, and the last ones of other instructions.
     pub(super) load: Option<Load>,
+    other_loads: Vec<Load>,
     /// Its last store of what it had loaded from the cell before.
     pub(super) update: Option<AccessMark>,
     /// Its last store after it had found 0 there.
@@ -65,7 +67,7 @@ pub(super) struct Use {
     pub(super) replaced: Option<u64>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Load {
     pub(super) at: CodeAddr,
     /// The context's knowledge before the load, without the values read from the cell since its last store.
@@ -81,7 +83,7 @@ pub(super) struct Load {
 }
 
 /// The last store to a cell.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Writer {
     pub(super) context: usize,
     pub(super) at: CodeAddr,
@@ -91,8 +93,11 @@ pub(super) struct Writer {
     pub(super) value: u64,
     /// True if it has changed both words of eight bytes.
     pub(super) tears: bool,
-    pub(super) locks: Vec<u32>,
+    pub(super) locks: LockSet,
 }
+
+/// The instructions whose last loads of a cell are remembered, besides the last one.
+const MOST_LOADS: usize = 4;
 
 impl Races {
     /// A context has loaded `size` bytes.
@@ -100,7 +105,7 @@ impl Races {
         let own = index(actor.thread);
         let (clock, mark, order) = (self.tracks[own].clock, self.mark(actor), self.tracks[own].order);
         let last = self.tracks[own].last_load.replace((address, actor.now));
-        let cell = self.cells.entry(address).or_default();
+        let Some(cell) = self.cells.at(address) else { return };
         let before = match &cell.uses[own].load {
             Some(load) if load.store == cell.stores => load.before,
             _ => clock,
@@ -112,16 +117,16 @@ impl Races {
         };
         let ordinal = cell.uses[own].load.as_ref().map_or(1, |load| load.ordinal.saturating_add(1));
         let load = Load { at: actor.at, before, spun, value, now: actor.now, store: cell.stores, ordinal };
-        cell.uses[own].load = Some(load);
+        cell.uses[own].note_load(load);
         cell.early.take_if(|early| index(early.actor.thread) == own);
         cell.uses[own].is_loaded_at_leisure |= order.is_none();
         if size == 8 {
-            cell.uses[own].wide_load = Some(mark.clone());
+            cell.uses[own].wide_load = Some(mark);
         }
-        let Some(writer) = cell.writer.clone().filter(|writer| writer.context != own) else { return };
+        let Some(writer) = cell.writer.filter(|writer| writer.context != own) else { return };
         let (stores, posts) = (cell.uses[writer.context].stores, cell.uses[writer.context].posts);
         let is_unordered = writer.epoch > before[writer.context];
-        let shares_lock = writer.locks.iter().any(|lock| mark.locks.contains(lock));
+        let shares_lock = writer.locks.shares(mark.locks);
         join(&mut self.tracks[own].clock, &writer.clock);
         if size == 8 && writer.tears && is_unordered && !shares_lock && stores > 1 && !is_of_axis(address) {
             let other = OtherPlace { thread: context(writer.context), at: writer.at };
@@ -134,17 +139,17 @@ impl Races {
             return;
         }
         if let Some((posted, poster, epoch)) = order.filter(|(posted, ..)| *posted != address) {
-            let posts = self.cells.get(&posted).map_or(0, |cell| cell.uses[poster].posts);
+            let posts = self.cells.get(posted).map_or(0, |cell| cell.uses[poster].posts);
             let is_late = writer.context == poster && writer.epoch > epoch && is_unordered;
             if is_late && stores <= posts {
-                let posted_at = self.cells.get(&posted).and_then(|cell| cell.writer.as_ref());
+                let posted_at = self.cells.get(posted).and_then(|cell| cell.writer.as_ref());
                 let posted_at = posted_at.map_or(actor.at, |writer| writer.at);
                 let suspect = Suspect { cell: address, stored_at: writer.at, posted_at };
                 self.tracks[own].suspects.push(suspect);
             }
         }
         // A status that is never cleared is no order.
-        let clears = |address| self.cells.get(&address).is_some_and(|cell| cell.uses[own].clears);
+        let clears = |address| self.cells.get(address).is_some_and(|cell| cell.uses[own].clears);
         let is_better = order.is_none_or(|(posted, ..)| !clears(posted) && clears(address));
         if size == 4 && posts > 0 && value != 0 && is_better {
             self.tracks[own].order = Some((address, writer.context, writer.epoch));
@@ -164,9 +169,9 @@ impl Races {
         let own = index(actor.thread);
         let (clock, mark) = (self.tracks[own].clock, self.mark(actor));
         self.tracks[own].last_store = Some(address);
-        let cell = self.cells.entry(address).or_default();
+        let Some(cell) = self.cells.at(address) else { return };
         let store = Store { own, clock, mark: &mark, value, size, address };
-        let source = cell.uses[own].load.clone().filter(|load| made_of.contains(&load.at));
+        let source = cell.uses[own].source(made_of);
         let claimed = cell.claim(&store, source.as_ref(), actor.now);
         let conflicts = [
             cell.update_conflict(&store, source.as_ref()),
@@ -180,7 +185,7 @@ impl Races {
         if is_change {
             self.note_change(own, address);
             let change = CellChange { by: own, at: actor.at, number: self.changes };
-            if let Some(cell) = self.cells.get_mut(&address) {
+            if let Some(cell) = self.cells.get_mut(address) {
                 cell.note_change(change, source.is_some());
             }
         }
@@ -255,7 +260,7 @@ impl Races {
     /// Reports cells that were loaded once, before their first store, where nothing made the load wait for the store.
     pub(super) fn read_early(&mut self, now: Cycles, out: &mut Out) {
         let early: Vec<_> =
-            self.cells.iter().filter_map(|(address, cell)| Some((*address, cell.early?))).collect();
+            self.cells.iter().filter_map(|(address, cell)| Some((address, cell.early?))).collect();
         for (address, EarlyLoad { actor, stored }) in early {
             let other = OtherPlace { thread: context(stored.by), at: stored.at };
             let cell = self.name_of(address, 4);
@@ -271,7 +276,7 @@ impl Races {
         };
         for suspect in std::mem::take(&mut self.tracks[own].suspects) {
             let Suspect { cell, stored_at, posted_at } = suspect;
-            let is_parameter = self.cells.get(&cell).is_some_and(|cell| !cell.uses[own].is_loaded_at_leisure);
+            let is_parameter = self.cells.get(cell).is_some_and(|cell| !cell.uses[own].is_loaded_at_leisure);
             if is_parameter {
                 let poster = Actor { thread: context(poster), at: stored_at, now: actor.now };
                 let (cell, order) = (self.name_of(cell, 4), self.name_of(address, 4));
@@ -300,6 +305,11 @@ impl Cell {
         self.change
     }
 
+    /// Returns whether another context than `own` has loaded it.
+    pub(super) fn is_loaded_by_another(&self, own: usize) -> bool {
+        self.uses.iter().any(|(other, used)| other != own && used.load.is_some())
+    }
+
     /// Returns whether a context changes it by a load and a store.
     pub(super) fn is_updated_by(&self, context: usize) -> bool {
         self.uses[context].update.is_some()
@@ -311,20 +321,20 @@ impl Cell {
         &self,
         own: usize,
         clock: &VectorClock,
-        locks: &[u32],
+        locks: LockSet,
     ) -> Option<CellChange> {
         let writer = self.writer.as_ref().filter(|writer| writer.context != own && self.stores > 1)?;
         let is_unordered = writer.epoch > clock[writer.context];
-        let shares_lock = writer.locks.iter().any(|lock| locks.contains(lock));
+        let shares_lock = writer.locks.shares(locks);
         self.change.filter(|_| is_unordered && !shares_lock)
     }
 
     /// The clock of `writer` when it stored last, if it has stored often and nothing orders that before what `clock`
     /// knows.
-    pub(super) fn unordered_epoch(&self, writer: usize, clock: &VectorClock, locks: &[u32]) -> Option<u32> {
+    pub(super) fn unordered_epoch(&self, writer: usize, clock: &VectorClock, locks: LockSet) -> Option<u32> {
         let last = self.writer.as_ref().filter(|last| last.context == writer && self.stores > 2)?;
         let is_unordered = last.epoch > clock[writer];
-        let shares_lock = last.locks.iter().any(|lock| locks.contains(lock));
+        let shares_lock = last.locks.shares(locks);
         (is_unordered && !shares_lock).then_some(last.epoch)
     }
 
@@ -339,20 +349,20 @@ impl Cell {
         used.stored = Some(actor.now);
         used.posts += u32::from(value != 0);
         if source.is_some() {
-            used.update = Some(mark.clone());
+            used.update = Some(*mark);
         }
         if is_claim {
-            used.claim = Some((mark.clone(), value));
+            used.claim = Some((*mark, value));
         }
         used.releases |= value == 0 && used.claim.is_some();
         used.clears |= value == 0;
         if is_request(address) && value != 0 {
-            used.request = Some(mark.clone());
+            used.request = Some(*mark);
         }
         self.stores += 1;
         let old = self.writer.as_ref().map_or(0, |writer| writer.value);
         let tears = size == 8 && (old ^ value) >> 32 != 0 && (old ^ value) as u32 != 0;
-        let AccessMark { at, locks, .. } = mark.clone();
+        let AccessMark { at, locks, .. } = *mark;
         let epoch = clock[own];
         self.writer = Some(Writer { context: own, at, epoch, clock, now: actor.now, value, tears, locks });
     }
@@ -368,7 +378,7 @@ impl Cell {
 
     /// The only load of another context, if the first store, which makes `stored`, does not come after it.
     fn early_load(&self, stored: CellChange, clock: &VectorClock) -> Option<EarlyLoad> {
-        let others = self.uses.iter().enumerate().filter(|(other, _)| *other != stored.by && *other != 0);
+        let others = self.uses.iter().filter(|(other, _)| *other != stored.by && *other != 0);
         let mut loads = others.filter(|(_, used)| used.stores == 0).filter_map(|(other, used)| {
             let load = used.load.as_ref().filter(|load| load.ordinal == 1)?;
             (load.before[other] > clock[other]).then_some((other, load))
@@ -381,6 +391,38 @@ impl Cell {
 }
 
 impl Use {
+    /// No access.
+    pub(super) const NONE: Self = Self {
+        load: None,
+        other_loads: Vec::new(),
+        update: None,
+        claim: None,
+        releases: false,
+        clears: false,
+        request: None,
+        wide_load: None,
+        stores: 0,
+        posts: 0,
+        stored: None,
+        is_loaded_at_leisure: false,
+        replaced: None,
+    };
+
+    /// Takes up a load.
+    fn note_load(&mut self, load: Load) {
+        self.other_loads.retain(|other| other.at != load.at);
+        let last = self.load.replace(load).filter(|last| last.at != load.at);
+        if let Some(last) = last {
+            self.other_loads.truncate(MOST_LOADS - 1);
+            self.other_loads.insert(0, last);
+        }
+    }
+
+    /// The last of the loads that a stored value is made of.
+    fn source(&self, made_of: &[CodeAddr]) -> Option<Load> {
+        self.load.iter().chain(&self.other_loads).find(|load| made_of.contains(&load.at)).copied()
+    }
+
     /// The load after which its next store comes, if it has loaded since its last one.
     pub(super) fn replacing(&self) -> Option<&Load> {
         self.load.as_ref().filter(|load| self.stored.is_none_or(|stored| stored < load.now))

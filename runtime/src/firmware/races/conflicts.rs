@@ -1,11 +1,9 @@
 //! Accesses of the same cell that can go wrong together.
 
-use std::array;
-
 use kmotiondef::{CodeAddr, Cycles};
 
 use super::cells::{Cell, Load};
-use super::{AccessMark, CLAIM_TIME, CONTEXTS, VectorClock, conflict, is_of_axis, is_request};
+use super::{AccessMark, CLAIM_TIME, VectorClock, conflict, is_of_axis, is_request};
 
 /// A store that is about to be taken up.
 #[derive(Debug)]
@@ -45,7 +43,7 @@ impl Cell {
     /// The load after which a store takes the cell, which was free.
     pub(super) fn claim(&self, store: &Store<'_>, source: Option<&Load>, now: Cycles) -> Option<Load> {
         let used = &self.uses[store.own];
-        used.load.clone().filter(|load| {
+        used.load.filter(|load| {
             let is_fresh = used.stored.is_none_or(|stored| stored < load.now);
             let is_soon = now - load.now < CLAIM_TIME;
             source.is_none() && store.value != 0 && store.size == 4 && load.value == 0 && is_fresh && is_soon
@@ -66,14 +64,13 @@ impl Cell {
     pub(super) fn update_conflict(&self, store: &Store<'_>, source: Option<&Load>) -> Option<Conflict> {
         let used = &self.uses[store.own];
         // What the call-back does, no thread interrupts.
-        let updates: [Option<AccessMark>; CONTEXTS] = array::from_fn(|other| match (other, source) {
-            (0, None) => None,
-            _ => self.uses[other].update.clone(),
-        });
+        let counts = |other: &usize| *other != 0 || source.is_some();
+        let updates = self.uses.iter().filter(|(other, _)| counts(other));
+        let updates = updates.filter_map(|(other, used)| Some((other, used.update?)));
         // A store that follows a load of always the same value waits for that value.
         let replaced = used.replacing().filter(|load| used.replaced.is_some_and(|last| last != load.value));
         let clock = source.or(replaced).map_or(&store.clock, |load| &load.before);
-        let (by, at) = conflict(updates.iter().enumerate(), store.own, clock, &store.mark.locks)?;
+        let (by, at) = conflict(updates, store.own, clock, store.mark.locks)?;
         let kind = if source.is_some() { ConflictKind::Update } else { ConflictKind::Store };
         Some(Conflict { at, by, kind })
     }
@@ -81,13 +78,12 @@ impl Cell {
     /// A store to a cell that was free, which another context takes in the same way.
     pub(super) fn claim_conflict(&self, store: &Store<'_>, load: &Load) -> Option<Conflict> {
         let own = store.own;
-        let claims: [Option<AccessMark>; CONTEXTS] = array::from_fn(|other| {
-            let used = &self.uses[other];
-            let (claim, taken) = used.claim.as_ref()?;
-            let differs = *taken != store.value || used.releases || self.uses[own].releases;
-            differs.then(|| claim.clone())
+        let claims = self.uses.iter().filter_map(|(other, used)| {
+            let (claim, taken) = used.claim?;
+            let differs = taken != store.value || used.releases || self.uses[own].releases;
+            differs.then_some((other, claim))
         });
-        let (by, at) = conflict(claims.iter().enumerate(), own, &load.spun, &store.mark.locks)?;
+        let (by, at) = conflict(claims, own, &load.spun, store.mark.locks)?;
         Some(Conflict { at, by, kind: ConflictKind::Claim })
     }
 
@@ -96,9 +92,8 @@ impl Cell {
         if !is_request(store.address) || store.value == 0 {
             return None;
         }
-        let requests: [Option<AccessMark>; CONTEXTS] =
-            array::from_fn(|other| self.uses[other].request.clone());
-        let (by, at) = conflict(requests.iter().enumerate(), store.own, &store.clock, &store.mark.locks)?;
+        let requests = self.uses.iter().filter_map(|(other, used)| Some((other, used.request?)));
+        let (by, at) = conflict(requests, store.own, &store.clock, store.mark.locks)?;
         Some(Conflict { at, by, kind: ConflictKind::Request })
     }
 
@@ -110,9 +105,8 @@ impl Cell {
         if !tears || self.uses[store.own].stores < 2 || is_of_axis(store.address) {
             return None;
         }
-        let loads: [Option<AccessMark>; CONTEXTS] =
-            array::from_fn(|other| self.uses[other].wide_load.clone());
-        let (by, at) = conflict(loads.iter().enumerate(), store.own, &store.clock, &store.mark.locks)?;
+        let loads = self.uses.iter().filter_map(|(other, used)| Some((other, used.wide_load?)));
+        let (by, at) = conflict(loads, store.own, &store.clock, store.mark.locks)?;
         Some(Conflict { at, by, kind: ConflictKind::Torn })
     }
 }

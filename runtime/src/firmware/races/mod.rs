@@ -17,22 +17,24 @@ mod records;
 mod reports;
 pub(crate) mod shared;
 pub(crate) mod switches;
+mod table;
 mod wakes;
 
 use std::collections::BTreeMap;
+use std::mem;
 use std::sync::Arc;
 
 use kmotiondef::structs::Persist;
 use kmotiondef::variables::{CHAN, PERSIST, USER_CALL_BACK, cell_name, variable_around};
 use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId};
-use vm::firmware::SharedAccess;
+use vm::firmware::{Repeats, SharedAccess};
 use vm::memory::GuestMemory;
 use vm::thread::{Progress, ThreadState, Threads};
 
-use self::cells::Cell;
-use self::locks::{Lock, Orders};
+use self::locks::{Lock, LockSet, Orders};
 use self::records::JointReads;
 use self::reports::Reports;
+use self::table::Cells;
 use self::wakes::{Paused, Resumed};
 use crate::firmware::calls::Named;
 use crate::out::{Message, OtherPlace, Out};
@@ -71,16 +73,18 @@ fn context(index: usize) -> Option<ThreadId> {
 struct Track {
     clock: VectorClock,
     began: Cycles,
-    /// The locks that it holds, and where it took them.
+    /// The locks that it holds, and where it took them; the same as a set.
     held: Vec<(u32, CodeAddr)>,
+    locks: LockSet,
     /// The knowledge of the context that started it.
     starter: VectorClock,
     /// The order that it has read and not yet cleared: the cell, who posted it, and that one's clock then.
     order: Option<(u32, usize, u32)>,
     /// Parameters that were stored after such an order.
     suspects: Vec<Suspect>,
-    /// The cells that it reads together.
+    /// The cells that it reads together, and whether another context changes any of them.
     reading: JointReads,
+    reads_records: bool,
     /// The cell that it loaded last, and when; the one that it stored last.
     last_load: Option<(u32, Cycles)>,
     last_store: Option<u32>,
@@ -109,18 +113,18 @@ struct Suspect {
 }
 
 /// An access that a later one is compared with.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 struct AccessMark {
     at: CodeAddr,
     epoch: u32,
-    locks: Vec<u32>,
+    locks: LockSet,
 }
 
 /// The accesses of all contexts, as far as rules need them.
 #[derive(Clone, Debug)]
 pub(crate) struct Races {
     tracks: [Track; CONTEXTS],
-    cells: BTreeMap<u32, Cell>,
+    cells: Cells,
     locks: BTreeMap<u32, Lock>,
     orders: Orders,
     /// The last uses of what the board has once.
@@ -128,6 +132,8 @@ pub(crate) struct Races {
     reports: Reports,
     /// The number of stores so far that changed a cell.
     changes: u64,
+    /// True if what orders accesses has changed since the last question for that.
+    is_reordered: bool,
     /// The named objects of the programs that are loaded.
     objects: [Arc<[Named]>; ThreadId::MAX as usize],
 }
@@ -139,12 +145,13 @@ impl Default for Races {
         tracks[0].clock[0] = 1;
         Self {
             tracks,
-            cells: BTreeMap::new(),
+            cells: Cells::default(),
             locks: BTreeMap::new(),
             orders: Orders::new(),
             things: BTreeMap::new(),
             reports: Reports::default(),
             changes: 0,
+            is_reordered: false,
             objects: std::array::from_fn(|_| Arc::from([])),
         }
     }
@@ -195,10 +202,16 @@ impl Races {
         let clock = self.tracks[own].clock;
         self.tracks[index(Some(started))].starter = clock;
         self.tracks[own].clock[own] += 1;
+        self.is_reordered = true;
     }
 
     /// A program has made an access; rules and names are about addresses of the tables.
-    pub(crate) fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory, out: &mut Out) {
+    pub(crate) fn accessed(
+        &mut self,
+        access: &SharedAccess<'_>,
+        memory: &GuestMemory,
+        out: &mut Out,
+    ) -> Repeats {
         let actor = Actor { thread: access.thread, at: access.at, now: access.now };
         let is_block = access.size > 8;
         let (size, count) = if !is_block { (access.size, 1) } else { (4, access.size / 4) };
@@ -223,6 +236,27 @@ impl Races {
             }
             self.loaded(actor, (address, size), value, out);
         }
+        if is_block || self.may_tell_more(access, address) { Repeats::Reported } else { Repeats::Redundant }
+    }
+
+    /// Returns whether an access can tell more when it is made again in the same slice: values that belong together are
+    /// compared load by load, and the stores of their reader say which of them it has done with.
+    fn may_tell_more(&mut self, access: &SharedAccess<'_>, address: u32) -> bool {
+        let own = index(access.thread);
+        let Some(cell) = self.cells.get(address) else { return false };
+        let track = &mut self.tracks[own];
+        if access.is_store {
+            return track.reads_records && cell.is_loaded_by_another(own);
+        }
+        let is_joint =
+            !access.made_of.is_empty() && cell.last_change().is_some_and(|change| change.by != own);
+        track.reads_records |= is_joint;
+        is_joint
+    }
+
+    /// Returns whether a call or an access since the last question has changed what orders accesses.
+    pub(crate) const fn take_ordering(&mut self) -> bool {
+        mem::replace(&mut self.is_reordered, false)
     }
 
     /// A context has stored a cell: if it sets the call-back, that knows what it knows; if it ends it, the reverse.
@@ -239,6 +273,7 @@ impl Races {
             self.tracks[own].clock[own] += 1;
         }
         self.tracks[0].clock[0] += 1;
+        self.is_reordered = true;
     }
 
     /// A function of the firmware changes a word in one step.
@@ -259,8 +294,9 @@ impl Races {
         let own = index(actor.thread);
         let (clock, mark) = (self.tracks[own].clock, self.mark(actor));
         let marks = self.things.entry(thing).or_default();
-        marks[own] = Some(mark.clone());
-        let conflict = conflict(marks.iter().enumerate(), own, &clock, &mark.locks);
+        marks[own] = Some(mark);
+        let marks = marks.iter().enumerate().filter_map(|(other, mark)| Some((other, (*mark)?)));
+        let conflict = conflict(marks, own, &clock, mark.locks);
         if let Some((other, at)) = conflict {
             let other = OtherPlace { thread: context(other), at };
             let message = match thing {
@@ -294,11 +330,7 @@ impl Races {
     fn mark(&self, actor: Actor) -> AccessMark {
         let own = index(actor.thread);
         let track = &self.tracks[own];
-        AccessMark { at: actor.at, epoch: track.clock[own], locks: self.locks_of(own) }
-    }
-
-    fn locks_of(&self, own: usize) -> Vec<u32> {
-        self.tracks[own].held.iter().map(|(lock, _)| *lock).collect()
+        AccessMark { at: actor.at, epoch: track.clock[own], locks: track.locks }
     }
 
     /// Returns the name in programs for the memory at an address, their own data included.
@@ -316,17 +348,16 @@ impl Races {
 }
 
 /// The first of the marks of other contexts that is not before what `clock` knows and shares no lock with `locks`.
-fn conflict<'a>(
-    marks: impl Iterator<Item = (usize, &'a Option<AccessMark>)>,
+fn conflict(
+    mut marks: impl Iterator<Item = (usize, AccessMark)>,
     own: usize,
     clock: &VectorClock,
-    locks: &[u32],
+    locks: LockSet,
 ) -> Option<(usize, CodeAddr)> {
-    let mut found = marks.filter_map(|(other, mark)| Some((other, mark.as_ref()?)));
-    let is_conflict = |(other, mark): &(usize, &AccessMark)| {
-        *other != own && mark.epoch > clock[*other] && !mark.locks.iter().any(|lock| locks.contains(lock))
+    let is_conflict = |(other, mark): &(usize, AccessMark)| {
+        *other != own && mark.epoch > clock[*other] && !mark.locks.shares(locks)
     };
-    found.find(is_conflict).map(|(other, mark)| (other, mark.at))
+    marks.find(is_conflict).map(|(other, mark)| (other, mark.at))
 }
 
 /// Returns whether an address is in an axis structure, of which the servo reads the newest values.

@@ -82,7 +82,7 @@ impl Races {
         let mut parts = reading.parts.iter().copied().filter(|part| belongs(part) && part.address != address);
         let first = parts.clone().next();
         let before = first.map_or(*clock, |part| part.before);
-        let change = self.cells.get(&address).and_then(Cell::last_change).filter(|change| change.by != own);
+        let change = self.cells.get(address).and_then(Cell::last_change).filter(|change| change.by != own);
         let older = change.and_then(|CellChange { by, number, .. }| {
             parts.find(|part| part.changed_by == Some(by) && number > part.changes)
         });
@@ -97,7 +97,7 @@ impl Races {
             });
         }
         let (Some(CellChange { by, at, .. }), Some(part)) = (change, older.or(first)) else { return };
-        let counts = |address: &u32| self.cells.get(address).is_some_and(|cell| cell.is_updated_by(by));
+        let counts = |address: &u32| self.cells.get(*address).is_some_and(|cell| cell.is_updated_by(by));
         if self.reports.knows(actor.at, at) || [address, part.address].iter().all(counts) {
             return;
         }
@@ -111,8 +111,8 @@ impl Races {
     /// Returns whether two cells are changed by another context at about the same time, each time `own` reads both, and nothing
     /// orders that before what `clock` knows.
     fn is_record(&mut self, own: usize, writer: usize, cells: [u32; 2], clock: &VectorClock) -> bool {
-        let locks = self.locks_of(own);
-        let epoch = |cell| self.cells.get(&cell)?.unordered_epoch(writer, clock, &locks);
+        let locks = self.tracks[own].locks;
+        let epoch = |cell| self.cells.get(cell)?.unordered_epoch(writer, clock, locks);
         let [Some(one), Some(other)] = cells.map(epoch) else { return false };
         let pairs = &mut self.tracks[own].reading.pairs;
         if one.abs_diff(other) > RECORD_STORES {
@@ -127,9 +127,9 @@ impl Races {
     /// A context copies `count` words at once, a structure perhaps.
     pub(super) fn copies(&mut self, actor: Actor, (address, count): (u32, u32), out: &mut Out) {
         let own = index(actor.thread);
-        let (clock, locks) = (self.tracks[own].clock, self.locks_of(own));
-        let cells = (0..count).filter_map(|word| self.cells.get(&(address + 4 * word)));
-        let mut written = cells.filter_map(|cell| cell.unordered_writer(own, &clock, &locks));
+        let (clock, locks) = (self.tracks[own].clock, self.tracks[own].locks);
+        let cells = (0..count).filter_map(|word| self.cells.get(address + 4 * word));
+        let mut written = cells.filter_map(|cell| cell.unordered_writer(own, &clock, locks));
         let (Some(CellChange { by, at, .. }), Some(_)) = (written.next(), written.next()) else { return };
         if !self.reports.knows(actor.at, at) {
             let other = OtherPlace { thread: context(by), at };

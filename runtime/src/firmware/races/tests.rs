@@ -28,12 +28,15 @@ fn codes(steps: &str) -> Vec<&'static str> {
             SharedAccess { thread, at, address: place, size: 4, is_store, value, made_of, now }
         };
         let actor = Actor { thread, at: at(0), now };
+        let mut accessed = |access| {
+            races.accessed(&access, &memory, &mut out);
+        };
         match step.as_bytes()[1] {
-            b'l' => races.accessed(&access(false, &[]), &memory, &mut out),
-            b's' => races.accessed(&access(true, &[]), &memory, &mut out),
+            b'l' => accessed(access(false, &[])),
+            b's' => accessed(access(true, &[])),
             b'u' => {
-                races.accessed(&access(false, &[]), &memory, &mut out);
-                races.accessed(&access(true, &made_of), &memory, &mut out);
+                accessed(access(false, &[]));
+                accessed(access(true, &made_of));
             }
             b'L' => races.locks(actor, place, true, &mut out),
             b'U' => races.unlocks(actor, place),

@@ -220,6 +220,9 @@ impl Translator<'_, '_> {
         let access = *fast.plan.accesses.get(&(fast.iteration, self.at))?;
         let shared = fast.plan.groups.get(&access.root).copied();
         let shared = shared.filter(|group| group.covers(access.at, width, is_store));
+        // What is reported is accessed elsewhere: only the program's own memory is in the windows.
+        let in_windows = is_store || self.translation.observed.is_some();
+        let shared = shared.map(|group| Group { has_store: group.has_store || in_windows, ..group });
         if let (Some(group), Some(pointer)) = (shared, fast.checked.get(&access.root)) {
             return Some((*pointer, access.at - group.first));
         }
@@ -227,7 +230,7 @@ impl Translator<'_, '_> {
         let before = stride.and_then(|stride| fast.checked.get(&stride.before?).copied());
         let end = access.at + width.bytes().cast_signed();
         let group =
-            shared.unwrap_or(Group { first: access.at, end, width: width.bytes(), has_store: is_store });
+            shared.unwrap_or(Group { first: access.at, end, width: width.bytes(), has_store: in_windows });
         let pointer = if let (Some(before), Some(stride)) = (before, stride) {
             let step = self.step(stride);
             self.builder.ins().iadd(before, step)

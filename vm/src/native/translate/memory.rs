@@ -13,6 +13,7 @@ use kmotiondef::map::{IRAM, PROGRAM_BASE, PROGRAM_LIMIT, Region, SDRAM};
 use super::super::protected::BLOCK_BITS;
 use super::super::request::Reason;
 use super::super::state::State;
+use super::observe::ObservedAddress;
 use super::{Register, Translator, offset};
 use crate::kind::{Name, Width};
 use crate::op::Op;
@@ -104,6 +105,7 @@ impl Translator<'_, '_> {
             let value = self.load_in_attempt(attempt, base, off, width);
             return self.set(dst, value);
         }
+        let observed = self.observed_address(base, off);
         let place = self.place(base, off);
         let [elsewhere, slow, behind] = self.access_blocks();
         let offset_in_sdram = self.builder.ins().uextend(types::I64, place);
@@ -121,6 +123,7 @@ impl Translator<'_, '_> {
         let pointer = self.enter_access(behind);
         let value = self.load_guest(pointer, 0, width);
         self.set(dst, value);
+        self.observe(observed, R::CLASS, value, width);
     }
 
     fn load_at<R: Register>(&mut self, dst: R, addr: Addr, width: Width) {
@@ -138,6 +141,8 @@ impl Translator<'_, '_> {
             }
         };
         self.set(dst, value);
+        let observed = self.notices(addr).then_some(ObservedAddress::Constant(addr.0));
+        self.observe(observed, R::CLASS, value, width);
     }
 
     fn store<R: Register>(&mut self, src: R, base: RegI32, off: Off, width: Width) {
@@ -146,6 +151,7 @@ impl Translator<'_, '_> {
             return self.store_guest(value, pointer, place, width);
         }
         let value = self.get(src);
+        let observed = self.observed_address(base, off);
         let place = self.place(base, off);
         let inside = self.builder.create_block();
         let [elsewhere, slow, behind] = self.access_blocks();
@@ -170,6 +176,7 @@ impl Translator<'_, '_> {
 
         let pointer = self.enter_access(behind);
         self.store_guest(value, pointer, 0, width);
+        self.observe(observed, R::CLASS, value, width);
     }
 
     /// Loads the pointer to the marks of protected blocks.
@@ -182,6 +189,12 @@ impl Translator<'_, '_> {
 
     fn store_at<R: Register>(&mut self, src: R, addr: Addr, width: Width) {
         let value = self.get(src);
+        self.store_value_at::<R>(value, addr, width);
+        let observed = self.notices(addr).then_some(ObservedAddress::Constant(addr.0));
+        self.observe(observed, R::CLASS, value, width);
+    }
+
+    fn store_value_at<R: Register>(&mut self, value: Value, addr: Addr, width: Width) {
         let address = self.builder.ins().iconst(types::I32, i64::from(addr.0));
         let Some((field, place)) = ram_field(addr, width) else {
             return self.request_store(R::CLASS, value, address, width);

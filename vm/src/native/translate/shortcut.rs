@@ -35,9 +35,9 @@ const MAX_ATTEMPTS: usize = 16;
 pub(super) type ShortcutWords = Rc<BTreeSet<usize>>;
 
 /// The words of `function` from which an attempt gets to a return; `None` if its first word is not one.
-fn shortcut(program: &Program, function: &Function) -> Option<BTreeSet<usize>> {
+fn shortcut(program: &Program, function: &Function, may_load: bool) -> Option<BTreeSet<usize>> {
     let first = function.body.start;
-    let mut search = ReturnSearch { program, leads: BTreeMap::new() };
+    let mut search = ReturnSearch { program, may_load, leads: BTreeMap::new() };
     let found = function.classes.len() <= MAX_REGISTERS && search.leads_to_return(first);
     found.then(|| search.leads.into_iter().filter(|(_, leads)| *leads).map(|(at, _)| at).collect())
 }
@@ -45,6 +45,8 @@ fn shortcut(program: &Program, function: &Function) -> Option<BTreeSet<usize>> {
 /// Looks for paths to a return.
 struct ReturnSearch<'a> {
     program: &'a Program,
+    /// False where loads are reported.
+    may_load: bool,
     /// True for each visited word that leads to a return.
     leads: BTreeMap<usize, bool>,
 }
@@ -68,7 +70,7 @@ impl ReturnSearch<'_> {
                 self.leads_to_return(at + 1)
             }
             OpKind::Arithmetic => !may_divide_by_zero(&op) && self.leads_to_return(at + 1),
-            OpKind::Load(_) => is_in_sdram(&op) && self.leads_to_return(at + 1),
+            OpKind::Load(_) => self.may_load && is_in_sdram(&op) && self.leads_to_return(at + 1),
             OpKind::Jump => self.branch(at, &op),
             OpKind::Branch => {
                 let next = self.leads_to_return(at + 1);
@@ -125,7 +127,8 @@ impl<'a> Translator<'a, '_> {
             return None;
         }
         let program = self.translation.program;
-        let find = || shortcut(program, &program.functions()[index]).map(Rc::new);
+        let may_load = self.translation.observed.is_none();
+        let find = || shortcut(program, &program.functions()[index], may_load).map(Rc::new);
         self.calls.shortcuts.entry(index).or_insert_with(find).clone()
     }
 
