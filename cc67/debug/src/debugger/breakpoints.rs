@@ -402,6 +402,10 @@ impl<T: Target> Debugger<T> {
             let why = self.programs.unknown().next();
             return Err(why.unwrap_or_else(|| format!("Function \"{rest}\" not defined.")).into());
         }
+        // The line at which it stops, not that of the function's name.
+        for statement in &mut found {
+            statement.line = self.place(statement.address).map_or(statement.line, |place| place.line);
+        }
         Ok((found, String::new()))
     }
 
