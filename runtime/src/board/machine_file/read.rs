@@ -104,6 +104,9 @@ impl<'a> Value<'a> {
             DeValue::Integer(number) => number.as_str().to_owned(),
             DeValue::Float(number) => number.as_str().to_owned(),
             DeValue::Boolean(flag) => flag.to_string(),
+            DeValue::Array(values) if values.iter().any(|value| value.get_ref().is_table()) => {
+                format!("`[[{}]]`", self.path)
+            }
             other => format!("a value of type {}", other.type_str()),
         };
         Wrong::new(self.source.span().start, format!("`{}` must be {expected}, not {found}", self.path))
@@ -242,7 +245,16 @@ impl<'a> Value<'a> {
     pub(super) fn table(&self) -> Read<Table<'a>> {
         match self.source.get_ref() {
             DeValue::Table(entries) => Ok(Table::new(&self.path, self.source.span().start, entries)),
+            DeValue::Array(_) => Err(self.is_wrong(&format!("one table, `[{}]`", self.path))),
             _ => Err(self.is_wrong("a table")),
+        }
+    }
+
+    /// A table of tables, whose keys are numbers.
+    pub(super) fn numbered(&self) -> Read<Table<'a>> {
+        match self.source.get_ref() {
+            DeValue::Table(_) => self.table(),
+            _ => Err(self.is_wrong(&format!("tables with a number, such as `[{}.0]`", self.path))),
         }
     }
 

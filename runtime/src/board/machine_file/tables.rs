@@ -26,7 +26,7 @@ pub(super) fn apply(machine: &mut MachineFile, text: &str) -> Result<(), Machine
 
 fn root(machine: &mut MachineFile, statements: &mut Vec<(usize, String)>, table: &Table<'_>) -> Read<()> {
     keys!(table, |key, value| {
-        "axis" => axes(machine, &value.table()?)?;
+        "axis" => axes(machine, &value.numbered()?)?;
         "switch" => machine.connected.switches.extend(each(&value, switch)?);
         "probe" => machine.connected.probes.extend(each(&value, probe)?);
         "encoder" => machine.connected.encoders.extend(each(&value, handwheel)?);

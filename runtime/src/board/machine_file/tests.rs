@@ -184,6 +184,11 @@ fn mistakes_are_named_with_their_place() {
             "[[encoder]]\nmoves = [[1, 2]]",
             "2:10: `encoder[0].moves[0]` must be [start in seconds, counts, duration in seconds], not a value of type array",
         ),
+        (
+            "[[axis]]\nkind = 1",
+            "1:1: `axis` must be tables with a number, such as `[axis.0]`, not `[[axis]]`",
+        ),
+        ("[[board]]\nkonnect = []", "1:1: `board` must be one table, `[board]`, not `[[board]]`"),
         ("[cpu]\nservo_us = 95", "2:12: `cpu.servo_us` must be below the 90 µs of a tick, not 95"),
         ("[board]\nkonnect = [8]", "2:12: `board.konnect[0]` must be a whole number, 0 to 7, not 8"),
         (

@@ -47,9 +47,26 @@ pub(super) fn tokens(line: &str) -> Result<Vec<Token>, Mistake> {
                 None => TokenKind::Word(word(&characters, &mut at)),
             },
         };
+        if let TokenKind::Word(word) = &kind
+            && let Some(element) = element(word)
+        {
+            tokens.push(Token { kind: TokenKind::Word(PERSIST.to_owned()), column });
+            let number = TokenKind::Word(element.to_owned());
+            tokens.push(Token { kind: number, column: column + PERSIST.len() + 1 });
+            continue;
+        }
         tokens.push(Token { kind, column });
     }
     Ok(tokens)
+}
+
+/// The first word of statements and conditions about an element of `persist.UserData`.
+const PERSIST: &str = "persist";
+
+/// The number of an element that is written as `--set` takes it, `persist.5`.
+fn element(word: &str) -> Option<&str> {
+    let number = word.strip_prefix(PERSIST)?.strip_prefix('.')?;
+    (!number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())).then_some(number)
 }
 
 /// The spellings of signs, the longer ones first, each with its canonical form.
@@ -142,6 +159,14 @@ mod tests {
         let columns: Vec<_> = tokens.iter().map(|token| token.column).collect();
         assert_eq!(columns, [1, 4, 7, 11, 12, 13, 14, 16, 21], "{kinds:?}");
         assert_eq!(tokens[8].kind, TokenKind::Text(b"aA\r#".to_vec()));
+    }
+
+    #[test]
+    fn an_element_is_written_with_a_blank_or_a_dot() {
+        let kinds =
+            |line| tokens(line).expect("it is right").into_iter().map(|token| token.kind).collect::<Vec<_>>();
+        assert_eq!(kinds("expect persist.20 = 5"), kinds("expect persist 20 = 5"));
+        assert_eq!(kinds("persist.UserData[5] = 1").len(), 3);
     }
 
     #[test]
