@@ -156,6 +156,8 @@ macro_rules! for_each_lint {
             ConstantComparison = "constant-comparison", On, pass constant_comparison;
             /// A loop never begins, or counts away from its end.
             LoopCondition = "loop-condition", On, pass loop_condition;
+            /// A variable is changed twice in an expression, in no order.
+            Unsequenced = "unsequenced", On, pass unsequenced;
             /// An angle is given in degrees where radians are needed.
             Degrees = "degrees", On, pass degrees;
             /// A time is given in milliseconds where seconds are needed.

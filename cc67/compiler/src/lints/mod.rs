@@ -42,6 +42,7 @@ mod stack_size;
 mod text_comparison;
 mod text_overflow;
 mod uninitialized;
+mod unsequenced;
 mod unused_variable;
 mod user_data_pointer;
 mod user_data_type;
