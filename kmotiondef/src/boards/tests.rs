@@ -119,6 +119,43 @@ fn version_texts_become_version_stamps() {
     assert_eq!(stamp("KFLOP"), None);
 }
 
+/// Adding a firmware is a file of facts, which `cc67 firmware facts` prints: the next version, with every address moved.
+#[test]
+fn the_facts_of_a_made_up_version_are_a_board() {
+    let known = board("kflop-5.3.2");
+    let version = "KFLOP 5.3.3 Build 10:00:00 Jun  1 2025";
+    let mut symbols = known.symbols();
+    symbols.iter_mut().for_each(|(_, address)| *address = address.offset(0x20));
+    symbols.push(("ArrivedIn533", GuestAddr::new(0x8001_2340)));
+    let facts = known.facts_of(version, 1_750_000_000, &symbols);
+    let facts: &'static str = Box::leak((facts + "declare int ArrivedIn533(int axis)\n").into_boxed_str());
+    let next = TargetBoard::read(facts);
+    assert_eq!((next.name, next.version, next.time_stamp), ("kflop-5.3.3", version, Some(1_750_000_000)));
+    assert_eq!((next.version_stamp(), next.axes, next.is_proven), (533, 8, true));
+    assert_eq!(next.structures(), known.structures());
+    assert_eq!(next.programs(), known.programs());
+    for (name, address) in known.symbols() {
+        let moved = |address: GuestAddr| address.offset(0x20);
+        assert_eq!(next.variable(name), known.variable(name).map(moved), "{name}");
+        let types = |board: &TargetBoard| board.function(name).map(|function| (function.ty, function.origin));
+        assert_eq!(types(&next), types(known), "{name}");
+        assert!(next.symbols().contains(&(name, address.offset(0x20))), "{name}");
+    }
+    let arrived = next.function("ArrivedIn533").map(|function| (function.address.get(), function.origin));
+    assert_eq!(arrived, Some((0x8001_2340, Origin::Header)));
+    let header = |board: &TargetBoard| {
+        let texts = board.headers().iter().map(|(_, text)| String::from_utf8_lossy(text).into_owned());
+        texts.collect::<String>()
+    };
+    let expect = header(known).replace("5.3.2", "5.3.3");
+    assert_eq!(header(&next).replace("int ArrivedIn533(int axis);\n", ""), expect);
+    let changes = known.differences(&next);
+    let change = |name: &str| changes.iter().find(|one| one.name == name).map(|one| one.change.as_str());
+    assert_eq!(changes.len(), 2, "{changes:?}");
+    assert_eq!(change("ArrivedIn533"), Some("only in kflop-5.3.3"));
+    assert_eq!(change("KMOTION_VER"), Some("`\"5.3.2\"` in kflop-5.3.2, `\"5.3.3\"` in kflop-5.3.3"));
+}
+
 #[test]
 fn differences_name_what_a_program_meets_that_moves() {
     let differences = board("kflop-4.34").differences(board("kflop-5.3.2"));
