@@ -6,13 +6,16 @@
 use std::fmt::{self, Write};
 
 use crate::auxiliary::Auxiliary;
-use crate::image::{Contents, Image, Line, Section, Symbol};
+use crate::image::{Container, Contents, Image, Line, Section, Symbol};
 use crate::names::SectionNumber;
 
 /// The headers of the file and of its sections.
 #[must_use]
 pub fn headers(image: &Image) -> String {
     listing(|out| {
+        if image.container == Container::Elf {
+            write!(out, "ELF, ")?;
+        }
         write!(out, "target {}, flags {}", image.target, image.flags)?;
         writeln!(out, ", timestamp {}", image.timestamp)?;
         if let Some(program) = &image.program {

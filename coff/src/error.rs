@@ -18,6 +18,12 @@ pub enum ErrorKind {
     /// The file begins with something else.
     #[error("not a COFF2 image: the magic number is {0:#06x}, not 0x00c2")]
     Magic(u16),
+    /// The file is an ELF file whose structure is wrong.
+    #[error("damaged ELF file: {0}")]
+    Elf(object::read::Error),
+    /// The file is an ELF file of another kind.
+    #[error("not a linked ELF program of the C6000")]
+    OtherElf,
     /// The file is a COFF2 image of a big-endian processor.
     #[error("the image is big endian")]
     BigEndian,

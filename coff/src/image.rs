@@ -17,6 +17,8 @@ use crate::raw;
 /// An image: a linked program, or an object that a linker completes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
+    /// The kind of file that holds it.
+    pub container: Container,
     /// The processor it is for.
     pub target: Target,
     /// The creation time, in Unix seconds; 0 in images of compilers.
@@ -29,6 +31,16 @@ pub struct Image {
     pub sections: Vec<Section>,
     /// The symbols in the order of the table.
     pub symbols: Vec<Symbol>,
+}
+
+/// A kind of file that holds an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Container {
+    /// TI COFF2.
+    #[default]
+    Coff,
+    /// ELF: a linked program without line numbers.
+    Elf,
 }
 
 /// The part of the optional header that describes the program.

@@ -1,4 +1,4 @@
-//! Reader and writer of TI COFF2 images.
+//! Reader and writer of TI COFF2 images, and of linked ELF programs for the same processors.
 //!
 //! [`Image::read`] accepts any bytes and either returns the whole image or reports the fault and its offset;
 //! [`Image::write`] gives the same bytes for the same image on every host. [`File::parse`] does the same checks without
@@ -24,6 +24,9 @@
 //! compiler it does not. The reader accepts both; the writer uses TI's form. Section numbers in comments refer to
 //! `coff.md` of the specification.
 //!
+//! The firmware of the Kogna board and programs for it may be ELF files in place of that. [`Image::read`] and
+//! [`Image::write`] have them as the same values, see [`Container`].
+//!
 //! Invariants:
 //! - No input causes a panic or a large allocation: the sizes that an image claims are first compared with the length
 //!   of the file.
@@ -42,7 +45,9 @@
 )]
 
 mod auxiliary;
+mod budget;
 pub mod dump;
+mod elf;
 mod error;
 mod file;
 mod image;
@@ -54,7 +59,7 @@ mod write;
 pub use auxiliary::Auxiliary;
 pub use error::{Error, ErrorKind, Part};
 pub use file::{File, SectionView, SymbolView};
-pub use image::{Aux, Contents, Image, Line, Name, Program, Relocation, Section, Symbol};
+pub use image::{Aux, Container, Contents, Image, Line, Name, Program, Relocation, Section, Symbol};
 pub use names::{
     BaseType, Derivation, FileFlags, SectionFlags, SectionNumber, StorageClass, SymbolType, Target,
 };

@@ -1,26 +1,28 @@
 //! Bytes to an image of its own: what [`File`] has checked, copied.
-//!
-//! The parts of a file may lie anywhere, and the same bytes could be claimed by many of
-//! them. What the image takes is therefore charged against the length of the file, so that
-//! a small file cannot make a large image.
 
-use crate::error::{Error, ErrorKind, Part};
+use crate::budget::{NAME_SHARING, length, spend};
+use crate::elf;
+use crate::error::{Error, Part};
 use crate::file::{File, SectionView, SymbolView};
-use crate::image::{Contents, Image, Name, Section, Symbol};
+use crate::image::{Container, Contents, Image, Name, Section, Symbol};
 use crate::raw;
 
 impl Image {
-    /// Reads an image.
+    /// Reads an image: TI COFF2, or a linked ELF program.
     ///
     /// # Errors
-    /// If the bytes are not a complete little-endian COFF2 image.
+    /// If the bytes are neither, or incomplete.
     pub fn read(bytes: &[u8]) -> Result<Self, Error> {
+        if bytes.starts_with(elf::MAGIC) {
+            return elf::read(bytes);
+        }
         let file = File::parse(bytes)?;
         let mut reader = Reader::new(bytes);
         let sections = file.sections().zip(1..).map(|(section, number)| reader.section(&section?, number));
         let sections = sections.collect::<Result<_, _>>()?;
         let symbols = file.symbols().map(|symbol| reader.symbol(&symbol?)).collect::<Result<_, _>>()?;
         Ok(Self {
+            container: Container::Coff,
             target: file.target(),
             timestamp: file.timestamp(),
             flags: file.flags(),
@@ -30,9 +32,6 @@ impl Image {
         })
     }
 }
-
-/// Maximum number of names of an image, on average, that may share a byte of the string table.
-const NAME_SHARING: u64 = 4;
 
 /// The work that reading an image may still cause, bounded by the size of the file.
 struct Reader {
@@ -101,15 +100,4 @@ impl Reader {
         }
         Ok(Name::new(name))
     }
-}
-
-/// Takes `amount` of what is left, or reports that `part` overlaps with what was taken before.
-fn spend(left: &mut u64, amount: u64, at: u64, part: Part) -> Result<(), Error> {
-    *left = left.checked_sub(amount).ok_or(Error { at, kind: ErrorKind::Overlap(part) })?;
-    Ok(())
-}
-
-/// A length in bytes; a usize has at most 64 bits.
-fn length(bytes: usize) -> u64 {
-    u64::try_from(bytes).unwrap_or(u64::MAX)
 }

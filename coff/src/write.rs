@@ -9,16 +9,20 @@ use std::collections::BTreeMap;
 use zerocopy::IntoBytes;
 use zerocopy::little_endian::{I16, U16, U32};
 
+use crate::elf;
 use crate::error::{Error, ErrorKind, Part};
-use crate::image::{Contents, Image, Line, Name, Program, Relocation, Section, Symbol};
+use crate::image::{Container, Contents, Image, Line, Name, Program, Relocation, Section, Symbol};
 use crate::raw;
 
 impl Image {
-    /// Writes the image.
+    /// Writes the image in its container.
     ///
     /// # Errors
     /// If a name contains a NUL, or something exceeds what the format can count.
     pub fn write(&self) -> Result<Vec<u8>, Error> {
+        if self.container == Container::Elf {
+            return elf::write(self);
+        }
         let layout = Layout::of(self)?;
         let mut bytes = Vec::with_capacity(layout.size);
         self.write_headers(&layout, &mut bytes)?;

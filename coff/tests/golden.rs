@@ -3,8 +3,8 @@
 use std::num::NonZeroU16;
 
 use coff::{
-    Aux, BaseType, Contents, Derivation, Error, ErrorKind, FileFlags, Image, Line, Part, Program, Section,
-    SectionFlags, SectionNumber, StorageClass, Symbol, SymbolType, Target, dump, raw,
+    Aux, BaseType, Container, Contents, Derivation, Error, ErrorKind, FileFlags, Image, Line, Part, Program,
+    Section, SectionFlags, SectionNumber, StorageClass, Symbol, SymbolType, Target, dump, raw,
 };
 
 fn statement(address: u32, line: u16) -> Line {
@@ -27,6 +27,7 @@ fn tiny() -> Image {
     });
     let main = symbol("main", 0x8005_0000, 1, int.derived(Derivation::Function), StorageClass::EXTERNAL);
     Image {
+        container: Container::Coff,
         target: Target::C6000,
         timestamp: 0,
         flags: FileFlags::LINKED,

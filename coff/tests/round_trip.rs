@@ -3,8 +3,8 @@
 use std::num::NonZeroU16;
 
 use coff::{
-    Aux, Contents, FileFlags, Image, Line, Name, Program, Relocation, Section, SectionFlags, SectionNumber,
-    StorageClass, Symbol, SymbolType, Target, dump,
+    Aux, Container, Contents, FileFlags, Image, Line, Name, Program, Relocation, Section, SectionFlags,
+    SectionNumber, StorageClass, Symbol, SymbolType, Target, dump,
 };
 use proptest::collection::vec;
 use proptest::option;
@@ -82,6 +82,7 @@ fn program() -> impl Strategy<Value = Program> {
 fn image() -> impl Strategy<Value = Image> {
     (any::<(u16, u32, u16)>(), option::of(program()), vec(section(), 0..5), vec(symbol(), 0..10)).prop_map(
         |((target, timestamp, flags), program, sections, symbols)| Image {
+            container: Container::Coff,
             target: Target(target),
             timestamp,
             flags: FileFlags(flags),

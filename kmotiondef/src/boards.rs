@@ -11,6 +11,8 @@
 //! |---|---|
 //! | `board NAME`, `version TEXT`, `time SECONDS` | the name for `--board`, the answer to `Version`, the time stamp of the firmware file |
 //! | `programs BASE SIZE LIMIT`, `axes N` | the space of thread 1's program, its size, the end of the last; the number of axes |
+//! | `clock MHZ` | the clock of the processor |
+//! | `elf` | its firmware file is an ELF file, and its loader takes ELF images beside COFF2 ones |
 //! | `unproven` | nothing of it was compared with a board or its firmware in execution |
 //! | `declare PROTOTYPE`, `undeclare NAME` | a function that the header declares, or does not |
 //! | `function PROTOTYPE` | a function that the header does not declare |
@@ -55,8 +57,12 @@ pub struct TargetBoard {
     pub time_stamp: Option<u32>,
     /// The number of axes.
     pub axes: u32,
+    /// The clock of the processor, in megahertz: 200 on a KFLOP.
+    pub clock: u32,
     /// True if programs for the board were compared with its firmware in execution.
     pub is_proven: bool,
+    /// True if its firmware file is an ELF file and its loader takes ELF images beside COFF2 ones.
+    pub has_elf: bool,
     programs: ProgramSpaces,
     /// The differences from the default board; `None` for that board.
     facts: Option<BoardFacts>,
@@ -160,7 +166,9 @@ impl TargetBoard {
         version: VERSION.trim_ascii_end(),
         time_stamp: Some(1_534_288_030),
         axes: N_CHANNELS as u32,
+        clock: 200,
         is_proven: true,
+        has_elf: false,
         programs: ProgramSpaces { base: PROGRAM_BASE, size: PROGRAM_SIZE, limit: PROGRAM_LIMIT },
         facts: None,
     };
@@ -188,6 +196,20 @@ impl TargetBoard {
             true => Some(Self::default_board()),
             false => BOARDS.iter().find(|board| board.version == version),
         }
+    }
+
+    /// The board that an image is linked for: that of its version stamp, with its code in a space for programs.
+    #[must_use]
+    pub fn of_image(version_stamp: i16, code: u32) -> Option<&'static Self> {
+        let holds = |board: &&Self| (board.programs.base..board.programs.limit).contains(&code);
+        BOARDS.iter().filter(|board| board.version_stamp() == version_stamp).find(holds)
+    }
+
+    /// Cycles of the processor between two interrupts of the servo.
+    #[must_use]
+    pub const fn cycles_of_tick(&self) -> u32 {
+        // The interrupts are 90 µs apart on every board.
+        self.clock * 90
     }
 
     /// The kind of board: `KFLOP`.
@@ -359,9 +381,13 @@ impl TargetBoard {
         let mut text = format!(
             "# The facts of one board where they differ from those of kflop-4.34, which the tables in src/ hold.\n\
              # Written by `cc67 firmware facts`; declarations, constants and structures are those of {}.\n\n\
-             board {kind}-{number}\nversion {version}\ntime {time_stamp}\n",
+             board {kind}-{number}\nversion {version}\n",
             self.name
         );
+        // ELF files have none.
+        if time_stamp > 0 {
+            text += &format!("time {time_stamp}\n");
+        }
         let own = format!("define KMOTION_VER \"{}\"", self.number());
         for line in self.facts.iter().flat_map(|facts| &facts.kind).filter(|line| **line != own) {
             text += &format!("{line}\n");
@@ -479,6 +505,8 @@ impl TargetBoard {
                     let mut next = || words.next().unwrap_or_default();
                     board.programs = ProgramSpaces { base: next(), size: next(), limit: next() };
                 }
+                "clock" => board.clock = number(rest, 10),
+                "elf" => board.has_elf = true,
                 "unproven" => board.is_proven = false,
                 _ => facts.read(line, word, rest),
             }

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::PathBuf;
 
 use coff::{
-    BaseType, Contents, FileFlags, Image, Name, Section, SectionFlags, SectionNumber, StorageClass, Symbol,
-    SymbolType, Target,
+    BaseType, Container, Contents, FileFlags, Image, Name, Section, SectionFlags, SectionNumber,
+    StorageClass, Symbol, SymbolType, Target,
 };
 use harness::{Output, Scratch, cc67, run_in};
 use kmotiondef::GuestAddr;
@@ -30,6 +30,7 @@ fn firmware(without: &[&str]) -> Vec<u8> {
     };
     let kept = functions.chain(variables).filter(|(name, _)| !without.contains(name));
     let image = Image {
+        container: Container::Coff,
         target: Target::C6000,
         timestamp: 0,
         flags: FileFlags::LINKED,

@@ -79,6 +79,7 @@ const SAMPLES: &[(&str, &[&str], &[&str])] = &[
     ("--map", &["--map"], &[]),
     ("--asm", &["--asm"], &[]),
     ("--download-script", &["--download-script"], &[]),
+    ("--form", &["--form=elf"], &["--board=kogna-5.3.2"]),
     ("--emit", &["--emit=map"], &[]),
     ("--stack", &["--stack"], &[]),
     ("--headers", &["--headers"], &[]),

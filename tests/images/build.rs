@@ -253,7 +253,8 @@ fn a_program_is_built_for_another_board() {
     let expect =
         "`--board`: kogna-5.3.2 is not simulated; programs can be built for it, and run on kflop-4.34";
     assert!(refused.stderr.contains(expect), "{}", refused.stderr);
-    succeed(&scratch, &["build", "--board", "kogna-5.3.2", "--thread", "2", "a.c"]);
+    let output = cc67(&scratch, ["build", "--board", "kogna-5.3.2", "--thread", "2", "a.c"]);
+    assert!(output.stderr.ends_with("was never compared with a board\n"), "{}", output.stderr);
     let shown = cc67(&scratch, ["inspect", "a(2).out"]).stdout.to_lowercase();
     assert!(shown.contains("c00c0000"), "{shown}");
 }

@@ -71,7 +71,8 @@ fn truncated_or_foreign_files_are_refused() {
     for length in [0, 10, 30, 100, 300, whole.len() - 1] {
         refused_bytes(&whole[..length], "not a KFLOP image: ");
     }
-    refused_bytes(b"\x7fELF and so on, long enough", "not a KFLOP image: not a COFF2 image");
+    refused_bytes(b"MZ and so on, long enough", "not a KFLOP image: not a COFF2 image");
+    refused_bytes(b"\x7fELF and so on, long enough", "not a KFLOP image: damaged ELF file");
     refused(|image| image.target = Target(0x14c), "code for target 332");
 }
 

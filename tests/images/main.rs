@@ -3,6 +3,7 @@
 mod build;
 mod formats;
 mod inspect;
+mod kogna;
 mod loader;
 mod loading;
 mod own_firmware;

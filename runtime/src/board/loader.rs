@@ -74,6 +74,14 @@ pub enum LoadError {
         /// The version of the board's firmware.
         board: &'static str,
     },
+    /// Linked for a board with other addresses of programs.
+    #[error("linked for {}; the board runs {board}", found.title())]
+    OtherBoard {
+        /// The board with these addresses.
+        found: &'static TargetBoard,
+        /// The version of the simulated board's firmware.
+        board: &'static str,
+    },
     /// Linked against another build of this version.
     #[error(
         "linked against another build of firmware version {number}: its file has the time stamp {found}, not {board}"
@@ -179,6 +187,9 @@ fn check_origin(image: &Image, board: &TargetBoard) -> Result<(), LoadError> {
         Target::CC67 | Target::C6000 => {}
         other => return Err(LoadError::OtherTarget(other)),
     }
+    if let Some(found) = other_board(image, board) {
+        return Err(LoadError::OtherBoard { found, board: board.version });
+    }
     let has_relocations = image.sections.iter().any(|section| !section.relocations.is_empty());
     if has_relocations || !image.flags.contains(FileFlags::EXECUTABLE) {
         return Err(LoadError::NotLinked);
@@ -200,6 +211,12 @@ fn check_origin(image: &Image, board: &TargetBoard) -> Result<(), LoadError> {
         }
         _ => Ok(()),
     }
+}
+
+/// The board that an image is linked for, if it has its programs elsewhere than `board`.
+fn other_board(image: &Image, board: &TargetBoard) -> Option<&'static TargetBoard> {
+    let linked = TargetBoard::of_image(image.program?.version_stamp, image.section(".text")?.address)?;
+    (linked.programs() != board.programs()).then_some(linked)
 }
 
 /// Returns whether the stamp of an image is the version of its firmware. Other linkers use the field for a stamp of

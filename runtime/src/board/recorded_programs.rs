@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use coff::{Contents, FileFlags, Image, Name, Program, Section, SectionFlags, Target};
+use coff::{Container, Contents, FileFlags, Image, Name, Program, Section, SectionFlags, Target};
 use kmotiondef::{ThreadId, Ticks};
 use serde_json::Value;
 use vm::engine::{ContextId, Executor};
@@ -46,6 +46,7 @@ fn image(line: &Value) -> Vec<u8> {
         }
     });
     let image = Image {
+        container: Container::Coff,
         target: Target::C6000,
         timestamp: 0,
         flags: FileFlags::EXECUTABLE,

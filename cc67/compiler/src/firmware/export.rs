@@ -1,11 +1,11 @@
 //! The simulated board's firmware as a file that programs can be linked against.
 //!
 //! It has what linkers and the version check of the vendor's library look at: every name that
-//! programs can use, with the underscore that TI's compiler puts before it, and the version
-//! text in `.const`. There is no code in it.
+//! programs can use, in a COFF2 file with the underscore that TI's compiler puts before it, and
+//! the version text in `.const`. There is no code in it.
 
 use coff::{
-    BaseType, Contents, Derivation, Error, FileFlags, Image, Name, Program, Section, SectionFlags,
+    BaseType, Container, Contents, Derivation, Error, FileFlags, Image, Name, Program, Section, SectionFlags,
     SectionNumber, StorageClass, Symbol, SymbolType, Target,
 };
 use kmotiondef::GuestAddr;
@@ -32,7 +32,8 @@ pub fn export(board: &TargetBoard) -> Result<Vec<u8>, Error> {
         lines: Vec::new(),
     };
     let image = Image {
-        target: Target::CC67,
+        container: if board.has_elf { Container::Elf } else { Container::Coff },
+        target: if board.has_elf { Target::C6000 } else { Target::CC67 },
         timestamp: board.time_stamp.filter(|_| !board.is_default()).unwrap_or(0),
         flags: FileFlags::LINKED,
         program: Some(Program { version_stamp: board.version_stamp(), ..Program::default() }),
@@ -43,12 +44,13 @@ pub fn export(board: &TargetBoard) -> Result<Vec<u8>, Error> {
 }
 
 fn symbols(board: &TargetBoard) -> Vec<Symbol> {
+    let prefix = if board.has_elf { "" } else { "_" };
     let int = SymbolType::new(BaseType::INT);
     let symbol = |(name, address): (&str, GuestAddr)| {
         let is_version = name == VERSION_NAME;
         let is_function = board.function(name).is_some();
         Symbol {
-            name: Name::from(format!("_{name}").as_str()),
+            name: Name::from(format!("{prefix}{name}").as_str()),
             value: address.get(),
             section: if is_version { SectionNumber(1) } else { SectionNumber::ABSOLUTE },
             ty: if is_function { int.derived(Derivation::Function) } else { int },

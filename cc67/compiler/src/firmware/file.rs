@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use coff::{BaseType, Derivation, File, StorageClass, SymbolType};
+use coff::{BaseType, Container, Derivation, File, Image, SectionNumber, StorageClass, SymbolType};
 use kmotiondef::GuestAddr;
 use kmotiondef::boards::{TargetBoard, stamp};
 
@@ -17,7 +17,7 @@ const MAX_VERSION: usize = 80;
 /// The reason why a file cannot serve as firmware.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FirmwareError {
-    /// The bytes are not a TI COFF image.
+    /// The bytes are neither a TI COFF image nor an ELF program.
     #[error("not a firmware file: {0}")]
     NotAnImage(#[from] coff::Error),
     /// The image exports no symbols.
@@ -40,6 +40,9 @@ impl FirmwareFile {
     /// # Errors
     /// If it is no image or exports no symbols.
     pub fn read(bytes: &[u8]) -> Result<Self, FirmwareError> {
+        if let Ok(image @ Image { container: Container::Elf, .. }) = Image::read(bytes) {
+            return Self::of_elf(&image);
+        }
         let file = File::parse(bytes)?;
         let mut symbols = BTreeMap::new();
         let mut version = None;
@@ -48,8 +51,11 @@ impl FirmwareFile {
             if symbol.class() != StorageClass::EXTERNAL {
                 continue;
             }
-            if symbol.name == b"_VersionAndBuildTime" {
-                version = version_text(&file, symbol.value());
+            if symbol.name == b"_VersionAndBuildTime"
+                && let Some(section) = file.section(".const")
+            {
+                let start = section.header().physical.get();
+                version = version_text(section.data().unwrap_or_default(), start, symbol.value());
             }
             if is_exported(symbol.ty()) {
                 let name = String::from_utf8_lossy(program_name(symbol.name)).into_owned();
@@ -61,6 +67,24 @@ impl FirmwareFile {
         }
         let time_stamp = file.timestamp();
         Ok(Self { symbols, version, time_stamp })
+    }
+
+    /// Takes the symbols and the version of an ELF file, whose names are as programs spell them.
+    fn of_elf(image: &Image) -> Result<Self, FirmwareError> {
+        let is_exported =
+            |class, section| class == StorageClass::EXTERNAL && section != SectionNumber::UNDEFINED;
+        let exported = image.symbols.iter().filter(|symbol| is_exported(symbol.class, symbol.section));
+        let symbols: BTreeMap<_, _> = exported
+            .map(|symbol| (symbol.name.to_string(), (GuestAddr::new(symbol.value), symbol.ty)))
+            .collect();
+        if symbols.is_empty() {
+            return Err(FirmwareError::NoSymbols);
+        }
+        let version = symbols.get("VersionAndBuildTime").and_then(|(address, _)| {
+            let section = image.section(".const")?;
+            version_text(section.data(), section.address, address.get())
+        });
+        Ok(Self { symbols, version, time_stamp: image.timestamp })
     }
 
     /// The firmware's answer to `Version`; `None` if the file does not contain it.
@@ -140,11 +164,10 @@ fn program_name(name: &[u8]) -> &[u8] {
     }
 }
 
-/// The text at `address` in the section `.const`, without the newline at its end.
-fn version_text(file: &File<'_>, address: u32) -> Option<String> {
-    let section = file.section(".const")?;
-    let offset = address.checked_sub(section.header().physical.get())?;
-    let bytes = section.data()?.get(offset as usize..)?;
+/// The text at `address` in the section `.const` with these bytes from `start` on, without the newline at its end.
+fn version_text(section: &[u8], start: u32, address: u32) -> Option<String> {
+    let offset = address.checked_sub(start)?;
+    let bytes = section.get(offset as usize..)?;
     let bytes = &bytes[..bytes.len().min(MAX_VERSION)];
     let text = &bytes[..bytes.iter().position(|byte| *byte == 0)?];
     let (_, text) = text.split_last()?;

@@ -7,7 +7,7 @@
 use std::fmt::{self, Write};
 use std::iter;
 
-use coff::{Contents, FileFlags, Image, Name, Program, Section, SectionFlags, Target};
+use coff::{Container, Contents, FileFlags, Image, Name, Program, Section, SectionFlags, Target};
 use kmotiondef::limits::N_BYTES_PER_LINE;
 use kmotiondef::{GuestAddr, ThreadId};
 
@@ -185,6 +185,7 @@ impl Download {
         }
         let program = Program { version_stamp, entry: self.entry.get(), ..Program::default() };
         Image {
+            container: Container::Coff,
             target: Target::CC67,
             timestamp: 0,
             flags: FileFlags::LINKED,

@@ -17,8 +17,8 @@ pub mod map;
 pub use coff::Error as WriteError;
 use coff::raw::{BoundaryAux, FunctionAux};
 use coff::{
-    Aux, BaseType, Contents, Derivation, Error, FileFlags, Image, Layout, Line, Name, Program, SectionFlags,
-    SectionNumber, StorageClass, Symbol, SymbolType, Target,
+    Aux, BaseType, Container, Contents, Derivation, Error, FileFlags, Image, Layout, Line, Name, Program,
+    SectionFlags, SectionNumber, StorageClass, Symbol, SymbolType, Target,
 };
 use kmotiondef::GuestAddr;
 
@@ -30,12 +30,23 @@ use crate::object::{base_type, class, function_type, statement, to_u16, whole_li
 /// # Errors
 /// If the program exceeds what the format can count.
 pub fn write(linked: &Linked) -> Result<Vec<u8>, Error> {
-    let mut image = bare(linked);
+    write_as(Container::Coff, linked)
+}
+
+/// Writes the program as a kind of file; ELF files have no line numbers.
+///
+/// # Errors
+/// If the program exceeds what the format can count.
+pub fn write_as(container: Container, linked: &Linked) -> Result<Vec<u8>, Error> {
+    let mut image = Image { container, ..bare(linked) };
     let mut table = SymbolTable::default();
     table.functions(linked);
     table.objects(linked);
     table.markers(linked);
     image.symbols = table.symbols;
+    if container == Container::Elf {
+        return image.write();
+    }
     if let Some(text) = image.sections.first_mut() {
         text.lines = table.lines;
     }
@@ -62,6 +73,7 @@ pub fn write_stripped(linked: &Linked) -> Result<Vec<u8>, Error> {
 /// The image without symbols and line numbers.
 fn bare(linked: &Linked) -> Image {
     Image {
+        container: Container::Coff,
         target: match linked.target {
             crate::target::Target::Sim => Target::CC67,
             crate::target::Target::C67x => Target::C6000,

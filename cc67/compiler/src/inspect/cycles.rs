@@ -10,9 +10,6 @@ use super::disassembly::Sources;
 use super::machine::{self, Block, Called, Routine};
 use super::{Inspection, calls::firmware_name};
 
-/// Cycles between two interrupts of the servo: 90 µs at 200 MHz.
-const SLICE: u32 = 18_000;
-
 /// A loop: a jump back to a block before it.
 #[derive(Debug)]
 struct Loop {
@@ -30,15 +27,16 @@ impl Inspection {
             Ok(functions) => functions,
             Err(reason) => return format!("no cycles: {reason}\n"),
         };
-        let mut out = format!("cycles at 200 MHz; share of the {SLICE} between two interrupts (90 µs)\n");
+        let (clock, slice) = (self.board().clock, self.board().cycles_of_tick());
+        let mut out = format!("cycles at {clock} MHz; share of the {slice} between two interrupts (90 µs)\n");
         // Writing to a string cannot fail.
         let _ = writeln!(out, "{:>13} {:>8}", "cycles", "share");
         for code in &functions {
             let own = code.path(0, None).unwrap_or_default();
-            let _ = writeln!(out, "{}  {}, {} bytes", span(own), code.name, code.bytes);
+            let _ = writeln!(out, "{}  {}, {} bytes", span(own, slice), code.name, code.bytes);
             for found in code.loops() {
                 let lines = self.lines_of(code, &found);
-                let _ = write!(out, "{}    an iteration of the loop{lines}", span(found.iteration));
+                let _ = write!(out, "{}    an iteration of the loop{lines}", span(found.iteration, slice));
                 let calls = self.called(&code.blocks[found.first..=found.last]);
                 let _ = match calls.as_str() {
                     "" => writeln!(out),
@@ -93,16 +91,16 @@ impl Inspection {
 }
 
 /// "7 cycles, 0.04%" or "7–20 cycles, 0.11%".
-fn cycles(own: (u32, u32)) -> String {
-    let text = span(own);
+fn cycles(own: (u32, u32), slice: u32) -> String {
+    let text = span(own, slice);
     let (cycles, share) = text.trim_start().split_once(' ').unwrap_or_default();
     format!("{cycles} cycles, {}", share.trim_start())
 }
 
 /// "7" or "7–20" cycles, and the share of a slice.
-fn span((least, most): (u32, u32)) -> String {
+fn span((least, most): (u32, u32), slice: u32) -> String {
     let cycles = if least == most { most.to_string() } else { format!("{least}–{most}") };
-    format!("{cycles:>13} {:7.2}%", f64::from(most) * 100.0 / f64::from(SLICE))
+    format!("{cycles:>13} {:7.2}%", f64::from(most) * 100.0 / f64::from(slice))
 }
 
 impl Routine {
@@ -203,7 +201,7 @@ impl Listing<'_> {
             code.address,
             code.bytes,
             super::frames::deepest(code).map_or_else(|| "unknown".to_owned(), |bytes| bytes.to_string()),
-            cycles(own),
+            cycles(own, self.inspection.board().cycles_of_tick()),
         );
         let mut last = None;
         let loops = code.loops();

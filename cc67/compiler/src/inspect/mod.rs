@@ -25,6 +25,7 @@ use std::fmt::Write as _;
 
 use coff::{Image, Target, dump};
 use kmotiondef::GuestAddr;
+use kmotiondef::boards::TargetBoard;
 use vm::program::Program;
 use vm::verify::verify_image;
 
@@ -72,6 +73,13 @@ impl Inspection {
             let _ = writeln!(text, "entry is `{}`", entry.name);
         }
         text + &dump::relocations(&self.image)
+    }
+
+    /// The board that the image is linked for; the default board where it does not say.
+    fn board(&self) -> &'static TargetBoard {
+        let program = self.image.program.as_ref();
+        let known = program.and_then(|it| TargetBoard::of_image(it.version_stamp, it.text_start));
+        known.unwrap_or_else(TargetBoard::default_board)
     }
 
     /// The address of `main`; an image of bytecode is entered before it.

@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::fmt::Write as _;
 
-use coff::{Image, SectionNumber, StorageClass, Symbol, Target};
+use coff::{BaseType, Container, Derivation, Image, SectionNumber, StorageClass, Symbol, Target};
 
 use super::Inspection;
 
@@ -97,7 +97,8 @@ pub(super) fn collect(image: &Image) -> Vec<Entry> {
             section: section(image, symbol),
             kind,
             is_external: symbol.class == StorageClass::EXTERNAL,
-            file: files.last().filter(|_| kind == EntryKind::Function).cloned(),
+            // The external functions of an ELF file are after those of all files.
+            file: files.last().filter(|_| kind == EntryKind::Function && !is_elf(image)).cloned(),
         });
     }
     // Of several names for one address the one that says most comes last, where it is found.
@@ -112,12 +113,22 @@ fn kind(image: &Image, symbol: &Symbol) -> EntryKind {
     match symbol.section {
         SectionNumber::UNDEFINED => EntryKind::Undefined,
         SectionNumber::ABSOLUTE => EntryKind::Absolute,
+        _ if is_elf(image) => match symbol.ty.outermost() {
+            Some(Derivation::Function) => EntryKind::Function,
+            _ if symbol.ty.base() == BaseType::STRUCT => EntryKind::Object,
+            _ => EntryKind::Label,
+        },
         SectionNumber(1) => EntryKind::Function,
         _ if image.target == Target::CC67 => EntryKind::Object,
         // The vendor's compiler writes section 2 for everything; the address tells.
         _ if inside(image, symbol.value) => EntryKind::Object,
         _ => EntryKind::Absolute,
     }
+}
+
+/// Reports whether the types and sections of symbols are those that the file states.
+fn is_elf(image: &Image) -> bool {
+    image.container == Container::Elf
 }
 
 /// Reports whether an address lies between the first and the last byte of the program.
@@ -131,14 +142,14 @@ fn inside(image: &Image, address: u32) -> bool {
 
 /// The vendor's compiler writes an entry without a size after everything but functions.
 fn size(image: &Image, symbol: &Symbol, kind: EntryKind) -> Option<u32> {
-    let has_size = image.target == Target::CC67 || kind == EntryKind::Function;
+    let has_size = image.target == Target::CC67 || is_elf(image) || kind == EntryKind::Function;
     symbol.size().filter(|_| has_size)
 }
 
 fn section(image: &Image, symbol: &Symbol) -> String {
     let index = usize::try_from(symbol.section.0).ok().and_then(|number| number.checked_sub(1));
     match index.and_then(|index| image.sections.get(index)) {
-        Some(section) if image.target == Target::CC67 || section.flags.0 & 0x20 != 0 => {
+        Some(section) if image.target == Target::CC67 || is_elf(image) || section.flags.0 & 0x20 != 0 => {
             section.name.to_string()
         }
         Some(_) => {

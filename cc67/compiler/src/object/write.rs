@@ -19,8 +19,8 @@
 
 use coff::raw::{BoundaryAux, FunctionAux, ObjectAux};
 use coff::{
-    Aux, Contents, Error, FileFlags, Image, Layout, Line, Name, Section, SectionFlags, SectionNumber,
-    StorageClass, Symbol, SymbolType, Target,
+    Aux, Container, Contents, Error, FileFlags, Image, Layout, Line, Name, Section, SectionFlags,
+    SectionNumber, StorageClass, Symbol, SymbolType, Target,
 };
 
 use cranelift_entity::EntitySet;
@@ -244,6 +244,7 @@ impl<'a> Writer<'a> {
         let data = section(".data", SectionFlags::DATA, data, data_relocations.collect());
         let bss = section(".bss", SectionFlags::BSS, Contents::Uninitialised(self.bss), Vec::new());
         let mut image = Image {
+            container: Container::Coff,
             target: if self.object.code.is_some() { Target::C6000 } else { Target::CC67 },
             timestamp: 0,
             flags: FileFlags::LITTLE_ENDIAN,

@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use coff::{
-    Contents, FileFlags, Image, Name, Program, Section, SectionFlags, SectionNumber, StorageClass, Symbol,
-    SymbolType, Target,
+    Container, Contents, FileFlags, Image, Name, Program, Section, SectionFlags, SectionNumber, StorageClass,
+    Symbol, SymbolType, Target,
 };
 
 use crate::{BootedBoard, FirmwareError, FirmwareFile, FlashError, Halted, Sent};
@@ -107,6 +107,7 @@ fn image(start: &str) -> Image {
         aux: Vec::new(),
     };
     Image {
+        container: Container::Coff,
         target: Target::C6000,
         timestamp: 0,
         flags: FileFlags::EXECUTABLE,

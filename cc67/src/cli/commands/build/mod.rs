@@ -6,15 +6,16 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
 use clap::{Args, ValueEnum};
-use coff::Image;
+use coff::{Container, Image};
 use kmotiondef::ThreadId;
+use kmotiondef::boards::TargetBoard;
 use kmotiondef::timing::Timing;
 
 use super::inspect::Folder;
 use crate::cli::args::compiler::{SourceArguments, TargetArguments};
 use crate::cli::compile::units;
 use crate::cli::io::exit::Exit;
-use crate::cli::io::output;
+use crate::cli::io::{output, terminal};
 use crate::cli::report::diagnostics;
 use compiler::diag::levels::Levels;
 use compiler::image::{self, download, map};
@@ -48,6 +49,9 @@ pub(super) struct BuildArguments {
     /// Also write the commands that download the program to a controller's thread
     #[arg(long)]
     download_script: bool,
+    /// Form of the image: COFF, or ELF for boards that load it
+    #[arg(long, value_name = "FORM", value_enum, default_value_t)]
+    form: ImageForm,
     /// Files to write, separated by commas
     #[arg(long, value_name = "KIND", value_enum, value_delimiter = ',')]
     emit: Vec<Emit>,
@@ -55,6 +59,25 @@ pub(super) struct BuildArguments {
     compiler: SourceArguments,
     #[command(flatten)]
     target: TargetArguments,
+}
+
+/// A form of the image.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum ImageForm {
+    /// As the vendor's compiler writes it, with line numbers
+    #[default]
+    Coff,
+    /// As TI's compiler writes it, without line numbers; for Kogna alone
+    Elf,
+}
+
+impl From<ImageForm> for Container {
+    fn from(form: ImageForm) -> Self {
+        match form {
+            ImageForm::Coff => Self::Coff,
+            ImageForm::Elf => Self::Elf,
+        }
+    }
 }
 
 /// A form of output.
@@ -85,6 +108,7 @@ pub(super) fn build(arguments: &BuildArguments) -> Result<Exit> {
     let levels = arguments.compiler.levels()?;
     let emit = arguments.emit();
     arguments.check_target(&emit)?;
+    arguments.check_form(options.firmware.board())?;
     let mut units = units::compile(&arguments.files, &options)?;
     arguments.check_objects(&units)?;
     if emit == [Emit::Object] {
@@ -101,6 +125,13 @@ pub(super) fn build(arguments: &BuildArguments) -> Result<Exit> {
     output::write_all(&objects)?;
     arguments.write_program(&linked, &emit)?;
     output::print(&(sizes(&linked, warnings(&units, &levels)) + "\n"))?;
+    let board = options.firmware.board();
+    if !board.is_proven {
+        terminal::note(&format!(
+            "{} is known from its header, manual and firmware file, and was never compared with a board",
+            board.name
+        ));
+    }
     Ok(Exit::Success)
 }
 
@@ -122,6 +153,18 @@ impl BuildArguments {
             !emit.contains(&Emit::Bytecode),
             "`--emit bytecode` needs `--target sim`: it is made of bytecode"
         );
+        Ok(())
+    }
+
+    /// Refuses ELF images where no loader takes them.
+    fn check_form(&self, board: &TargetBoard) -> Result<()> {
+        if self.form == ImageForm::Elf {
+            ensure!(board.has_elf, "`--form elf`: {} loads COFF images alone", board.name);
+            ensure!(
+                self.target() == Target::C67x,
+                "`--form elf` needs the controller's code: leave out `--target sim`"
+            );
+        }
         Ok(())
     }
 
@@ -191,7 +234,7 @@ impl BuildArguments {
         if self.files.contains(&program) {
             bail!("`-o {}` would overwrite an input", program.display());
         }
-        let bytes = image::write(linked).with_context(|| first.display().to_string())?;
+        let bytes = image::write_as(self.form.into(), linked).with_context(|| first.display().to_string())?;
         for kind in emit {
             match kind {
                 Emit::Image => output::write(&program, &bytes)?,
