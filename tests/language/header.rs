@@ -267,6 +267,37 @@ fn macros_are_all_defined() {
     }
 }
 
+/// The text by which the headers of a board define a macro, without blanks.
+fn expansion(board: &TargetBoard, name: &str) -> Option<String> {
+    let (_, rest) = board.headers().iter().find_map(|(_, text)| {
+        let text = str::from_utf8(text).expect("headers are UTF-8");
+        text.lines().find_map(|line| {
+            let rest = line.strip_prefix("#define ")?.trim_start().strip_prefix(name)?;
+            let code = rest.split("//").next()?;
+            rest.starts_with(['(', ' ']).then_some((name, code.to_owned()))
+        })
+    })?;
+    let body = match rest.strip_prefix('(').and_then(|rest| rest.split_once(')')) {
+        Some((_, body)) => body,
+        None => &rest,
+    };
+    Some(body.split_whitespace().collect())
+}
+
+#[test]
+fn macros_expand_to_what_the_tables_have() {
+    for (board, count) in boards([16, 19, 36]) {
+        // The tables describe the macros for texts of modes in words.
+        let rows = table(board, "macros.csv").into_iter();
+        let rows: Vec<_> = rows.filter(|row| !row["expansion"].starts_with("string by")).collect();
+        assert_eq!(rows.len(), count, "{}", board.name);
+        for row in rows {
+            let expect: String = row["expansion"].split_whitespace().collect();
+            assert_eq!(expansion(board, &row["name"]), Some(expect), "{}: {}", board.name, row["name"]);
+        }
+    }
+}
+
 #[test]
 fn every_function_links_except_the_one_the_board_lacks() {
     for (board, absent) in boards([1, 3, 4]) {

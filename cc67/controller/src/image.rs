@@ -3,7 +3,7 @@
 use cc67_host::{HostError, UserProgram};
 use cc67_wire::LoadImage;
 use coff::{Image, Target};
-use kmotiondef::boards::stamp;
+use kmotiondef::boards::{TargetBoard, stamp};
 
 /// Returns the bytes of a program at their addresses, with the firmware that it was linked for.
 ///
@@ -34,8 +34,37 @@ pub(crate) fn of_program(
         (0, true) => None,
         (0, false) => Some(linked_for.to_owned()),
         (_, false) if stamp(linked_for) == Some(stated) => Some(linked_for.to_owned()),
-        _ if stamp(board) != Some(stated) => Some(format!("version {}.{:02}", stated / 100, stated % 100)),
-        _ => None,
+        _ => other_firmware(stated, header.text_start, board),
     };
     Ok(LoadImage { thread: program.thread, entry: header.entry, parts, firmware })
+}
+
+/// The firmware that an image states, with code at an address, if it is not the one that the board reports.
+fn other_firmware(stated: i16, code: u32, board: &str) -> Option<String> {
+    if stamp(board) != Some(stated) {
+        return Some(format!("version {}.{:02}", stated / 100, stated % 100));
+    }
+    // KFLOP and Kogna have firmware of the same version, at other addresses.
+    let linked = TargetBoard::of_image(stated, code)?;
+    (!board.starts_with(linked.kind())).then(|| linked.title())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_image_of_another_version_or_kind_of_board_is_not_of_its_firmware() {
+        const KFLOP: &str = "KFLOP 5.3.2 Build 18:10:31 Jan 31 2024";
+        const KOGNA: &str = "KOGNA 5.3.2 Build 18:10:31 Jan 31 2024";
+        for (stated, code, board, expect) in [
+            (532, 0x8005_0000, KFLOP, None),
+            (532, 0xC008_0000, KOGNA, None),
+            (532, 0xC008_0000, KFLOP, Some("KOGNA firmware 5.3.2")),
+            (532, 0x8005_0000, KOGNA, Some("KFLOP firmware 5.3.2")),
+            (434, 0x8005_0000, KFLOP, Some("version 4.34")),
+        ] {
+            assert_eq!(other_firmware(stated, code, board).as_deref(), expect, "{code:#x} on {board}");
+        }
+    }
 }

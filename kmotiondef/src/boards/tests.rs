@@ -86,6 +86,25 @@ fn structures_have_the_layout_of_the_specification() {
 }
 
 #[test]
+fn programs_and_variables_of_kogna_lie_where_its_memory_map_has_them() {
+    let board = board("kogna-5.3.2");
+    let (mut spaces, mut variables) = (0, 0);
+    for row in table_of(board.name, "memory-map.csv") {
+        let name = row["region"].split('[').next().unwrap_or_default();
+        if let Some(thread) = name.strip_prefix("user program space thread ") {
+            let thread = thread.parse().ok().and_then(ThreadId::new).expect("a thread");
+            assert_eq!(hexadecimal_address(board.program_base(thread)), row["start"]);
+            assert_eq!(format!("0x{:X}", board.programs().size), row["size"]);
+            spaces += 1;
+        } else if let Some(address) = board.variable(name) {
+            assert_eq!(hexadecimal_address(address), row["start"], "{name}");
+            variables += 1;
+        }
+    }
+    assert_eq!((spaces, variables), (7, 4));
+}
+
+#[test]
 fn the_default_board_is_that_of_the_tables() {
     let board = TargetBoard::default_board();
     assert_eq!((board.number(), board.version_stamp()), ("4.34", 434));
