@@ -23,6 +23,7 @@
 //! | `io/` | the chips of [`chips`], option boards, timer, flash in guest memory | `Io` |
 //! | `out/` | events, console text, requests to the board | `Out` |
 //! | `views.rs`, `text/` | typed access to guest memory; the board's `printf` and `scanf` | none |
+//! | `arithmetic/` | divisions, roots, elementary functions with the bits of the board | none |
 //!
 //! Invariants:
 //! - Imports point downwards in this table; `tests/tidy` checks it.
@@ -37,6 +38,7 @@
 
 #![forbid(unsafe_code)]
 
+mod arithmetic;
 mod board;
 pub mod commands;
 mod firmware;

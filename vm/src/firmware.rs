@@ -108,11 +108,11 @@ pub struct Pure {
 }
 
 macro_rules! pure_functions {
-    ($($(#[$doc:meta])+ $variant:ident $(($pointer:ty))? = ($($parameter:ident),+) -> $result:ident;)*) => {
+    ($($(#[$doc:meta])+ $variant:ident($pointer:ty) = ($($parameter:ident),+) -> $result:ident;)*) => {
         /// The computation of a [`Pure`] function.
         #[derive(Clone, Copy, Debug)]
         pub enum PureFunction {
-            $($(#[$doc])+ $variant $(($pointer))?,)*
+            $($(#[$doc])+ $variant($pointer),)*
         }
 
         impl PureFunction {
@@ -133,18 +133,14 @@ macro_rules! pure_functions {
             }
         }
 
-        $($(impl From<$pointer> for PureFunction {
+        $(impl From<$pointer> for PureFunction {
             fn from(pointer: $pointer) -> Self {
                 Self::$variant(pointer)
             }
-        })?)*
+        })*
     };
 }
 pure_functions! {
-    /// The square root, rounded to nearest; every NaN is that of [`crate::arith`].
-    SqrtF64 = (F64) -> F64;
-    /// The square root, rounded to nearest; every NaN is that of [`crate::arith`].
-    SqrtF32 = (F32) -> F32;
     /// A function of a double.
     F64(extern "C" fn(f64) -> f64) = (F64) -> F64;
     /// A function of two doubles.
@@ -156,15 +152,14 @@ pure_functions! {
 }
 
 impl PureFunction {
-    /// The function that computes it; `None` for those that are one instruction of any processor.
+    /// The function that computes it.
     #[must_use]
-    pub fn pointer(self) -> Option<*const ()> {
+    pub fn pointer(self) -> *const () {
         match self {
-            Self::SqrtF64 | Self::SqrtF32 => None,
-            Self::F64(function) => Some(function as *const ()),
-            Self::F64F64(function) => Some(function as *const ()),
-            Self::F32(function) => Some(function as *const ()),
-            Self::F32F32(function) => Some(function as *const ()),
+            Self::F64(function) => function as *const (),
+            Self::F64F64(function) => function as *const (),
+            Self::F32(function) => function as *const (),
+            Self::F32F32(function) => function as *const (),
         }
     }
 }

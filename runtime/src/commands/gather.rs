@@ -18,9 +18,9 @@ use super::arguments::Values;
 use super::data::{Data, DataKind, GATHER_WORDS, WORDS_PER_LINE};
 use super::memory::Experiment;
 use super::session::{Answer, Session};
+use crate::arithmetic::division::divide_singles;
 use crate::firmware::gather;
 use crate::firmware::parts::Parts;
-use crate::servo::dsp::divide_singles;
 use crate::servo::{Servo, moves};
 use crate::views::{Typed, chan};
 

@@ -1,15 +1,13 @@
 //! Mathematics, from `libm` so that every host computes the same; where the firmware's own results are known, those.
 
-mod elementary;
-mod singles;
-
 use kmotiondef::GuestAddr;
 use vm::arith::{self, WordDivision, canonical_f32, canonical_f64};
 use vm::firmware::{Caller, PureFunction};
 use vm::trap::TrapKind;
 
 use super::parts::Parts;
-use crate::servo::dsp::{divide, divide_singles};
+use crate::arithmetic::division::{divide, divide_singles};
+use crate::arithmetic::{doubles, powers, singles};
 use crate::servo::sine::two_phases;
 
 /// A floating number, so that every NaN can be made that of all arithmetic: what `libm` makes differs between hosts.
@@ -39,7 +37,6 @@ macro_rules! functions {
         /// The function of this name, if it only computes.
         pub(crate) fn pure(name: &str) -> Option<PureFunction> {
             Some(match name {
-                "sqrt" => PureFunction::SqrtF64,
                 $(stringify!($name) => {
                     extern "C" fn compute($($x: $ty),+) -> $ty {
                         Number::canonical($value)
@@ -54,53 +51,53 @@ macro_rules! functions {
 
 functions! {
     /// Square root.
-    sqrt(x) -> f64 = libm::sqrt(x);
+    sqrt(x) -> f64 = doubles::sqrt(x);
     /// Square root.
     sqrtf(x) -> f32 = singles::sqrt(x);
     /// e to the power x.
-    exp(x) -> f64 = elementary::exp(x);
+    exp(x) -> f64 = doubles::exp(x);
     /// e to the power x.
-    expf(x) -> f32 = libm::expf(x);
+    expf(x) -> f32 = singles::exp(x);
     /// Natural logarithm.
-    log(x) -> f64 = elementary::log(x);
+    log(x) -> f64 = doubles::log(x);
     /// Natural logarithm.
-    logf(x) -> f32 = libm::logf(x);
+    logf(x) -> f32 = singles::log(x);
     /// Logarithm to base 10.
-    log10(x) -> f64 = elementary::log10(x);
+    log10(x) -> f64 = doubles::log10(x);
     /// Logarithm to base 10.
-    log10f(x) -> f32 = libm::log10f(x);
+    log10f(x) -> f32 = singles::log10(x);
     /// x to the power y.
-    pow(x, y) -> f64 = libm::pow(x, y);
+    pow(x, y) -> f64 = powers::pow(x, y);
     /// x to the power y.
-    powf(x, y) -> f32 = libm::powf(x, y);
+    powf(x, y) -> f32 = powers::powf(x, y);
     /// Sine.
-    sin(x) -> f64 = elementary::sin(x);
+    sin(x) -> f64 = doubles::sin(x);
     /// Sine.
     sinf(x) -> f32 = singles::sin(x);
     /// Cosine.
-    cos(x) -> f64 = elementary::cos(x);
+    cos(x) -> f64 = doubles::cos(x);
     /// Cosine.
     cosf(x) -> f32 = singles::cos(x);
     /// Cube root.
     cube_root(x) -> f64 = libm::cbrt(x);
     /// Tangent.
-    tan(x) -> f64 = elementary::tan(x);
+    tan(x) -> f64 = doubles::tan(x);
     /// Tangent.
     tanf(x) -> f32 = singles::tan(x);
     /// Arc sine.
-    asin(x) -> f64 = elementary::asin(x);
+    asin(x) -> f64 = doubles::asin(x);
     /// Arc sine.
-    asinf(x) -> f32 = libm::asinf(x);
+    asinf(x) -> f32 = singles::asin(x);
     /// Arc cosine.
-    acos(x) -> f64 = elementary::acos(x);
+    acos(x) -> f64 = doubles::acos(x);
     /// Arc cosine.
-    acosf(x) -> f32 = libm::acosf(x);
+    acosf(x) -> f32 = singles::acos(x);
     /// Arc tangent.
-    atan(x) -> f64 = elementary::atan(x);
+    atan(x) -> f64 = doubles::atan(x);
     /// Arc tangent.
     atanf(x) -> f32 = singles::atan(x);
     /// Arc tangent of y/x in all four quadrants.
-    atan2(y, x) -> f64 = elementary::atan2(y, x);
+    atan2(y, x) -> f64 = doubles::atan2(y, x);
     /// Arc tangent of y/x in all four quadrants.
     atan2f(y, x) -> f32 = singles::atan2(y, x);
     /// Absolute value.
@@ -112,17 +109,17 @@ functions! {
     /// Absolute value.
     fabsf(x) -> f32 = x.abs();
     /// 2 to the power x.
-    exp2(x) -> f64 = elementary::exp2(x);
+    exp2(x) -> f64 = doubles::exp2(x);
     /// 2 to the power x.
-    exp2f(x) -> f32 = libm::exp2f(x);
+    exp2f(x) -> f32 = singles::exp2(x);
     /// 10 to the power x.
-    exp10(x) -> f64 = elementary::exp10(x);
+    exp10(x) -> f64 = doubles::exp10(x);
     /// 10 to the power x.
-    exp10f(x) -> f32 = libm::exp10f(x);
+    exp10f(x) -> f32 = singles::exp10(x);
     /// Logarithm to base 2.
-    log2(x) -> f64 = elementary::log2(x);
+    log2(x) -> f64 = doubles::log2(x);
     /// Logarithm to base 2.
-    log2f(x) -> f32 = libm::log2f(x);
+    log2f(x) -> f32 = singles::log2(x);
     /// Largest whole number not above x.
     floor(x) -> f64 = libm::floor(x);
     /// Largest whole number not above x.

@@ -23,6 +23,8 @@ use vm::memory::GuestMemory;
 use super::calls::Continuation;
 use super::parts::Parts;
 use super::{axis_check, costs};
+use crate::arithmetic::division::divide;
+use crate::arithmetic::doubles::exp;
 use crate::io::bits;
 use crate::out::Message;
 use crate::servo::coordinated::system;
@@ -611,7 +613,7 @@ pub(crate) fn move_exp(
     // Only mode, ratio and target of the first state are written; the rest keeps what stood there.
     let first = MotionState {
         mode: Mode::Exponential,
-        a: libm::exp(-TIMEBASE / tau),
+        a: exp(divide(-TIMEBASE, tau)),
         b: x,
         ..state(memory, axis, 0)
     };

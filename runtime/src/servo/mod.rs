@@ -11,7 +11,6 @@ mod closed_form;
 mod compensation;
 pub(crate) mod coordinated;
 mod direct;
-pub(crate) mod dsp;
 mod duration;
 #[cfg(test)]
 mod equations;

@@ -1,12 +1,12 @@
 //! Third-order (jerk-limited) profiles: lists of states of constant jerk.
 //!
 //! Source: measurements of the released firmware (`axes-and-motion.md` section 4, `motion.jsonl`). Some of its
-//! intermediate results are singles, and its divisions are those of [`dsp`](super::dsp); they are so here too, because
+//! intermediate results are singles, and its divisions are those of [`division`](crate::arithmetic::division); they are so here too, because
 //! programs see the states, down to those of a few attoseconds that only rounding leaves.
 
 use kmotiondef::limits::TIMEBASE;
 
-use super::dsp::{divide, root};
+use crate::arithmetic::division::{divide, root};
 
 /// Seconds at constant velocity in front of a profile planned in motion: the board's planning time.
 pub(crate) const LEAD: f64 = 0.0018;

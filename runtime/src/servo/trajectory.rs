@@ -5,8 +5,8 @@
 
 use kmotiondef::limits::TIMEBASE;
 
-use super::dsp::{divide, root};
 use super::profile::{Mode, MotionState, Point};
+use crate::arithmetic::division::{divide, root};
 
 /// The position of a motion in its list.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,13 +5,15 @@
 use kmotiondef::limits::{MAX_SEGMENTS, TIMEBASE};
 use kmotiondef::variables::{
     COORD_SYSTEM0, CS0_DOING_RAPID, CS0_FLUSHED, CS0_T, CS0_TIME_DOWNLOADED, CS0_TIME_EXECUTED,
-    CS0_TIME_LOST, KLP, LAST_COORD_SYSTEM0, PARAMETRIC_COEFFS, PARAMETRIC_COEFFS_END, PARAMETRIC_INDEX,
-    PARAMETRIC_INDEX_WRAPPED, TAU_KLP,
+    CS0_TIME_LOST, KLP, LAST_COORD_SYSTEM0, LAST_VALID_TRAJ_SEGMENT, PARAMETRIC_COEFFS,
+    PARAMETRIC_COEFFS_END, PARAMETRIC_INDEX, PARAMETRIC_INDEX_WRAPPED, TAU_KLP,
 };
 use vm::memory::GuestMemory;
 
 use super::segment::{Entry, Kind, SIZE};
 use super::{rate, system};
+use crate::arithmetic::division::divide;
+use crate::arithmetic::doubles::log;
 use crate::out::Message;
 use crate::views::Typed;
 
@@ -55,7 +57,9 @@ pub(crate) fn open(memory: &mut GuestMemory) {
     memory.set(CS0_DOING_RAPID, 0);
     let start = memory.get(PARAMETRIC_COEFFS);
     Entry::at(start).end_path(memory);
-    memory.set(COORD_SYSTEM0, kmotiondef::GuestAddr::NULL);
+    for entry in [COORD_SYSTEM0, LAST_VALID_TRAJ_SEGMENT] {
+        memory.set(entry, kmotiondef::GuestAddr::NULL);
+    }
     memory.set(LAST_COORD_SYSTEM0, start);
 }
 
@@ -90,7 +94,7 @@ fn add(memory: &mut GuestMemory, time: kmotiondef::Place<f64>, seconds: f64) {
 /// Executes what the buffer holds beyond what was executed before; a path being executed begins again.
 pub(crate) fn execute(memory: &mut GuestMemory) {
     let klp = memory.get(KLP);
-    memory.set(TAU_KLP, if klp > 0.0 { (-TIMEBASE / libm::log(klp)) as f32 } else { 0.0 });
+    memory.set(TAU_KLP, if klp > 0.0 { divide(-TIMEBASE, log(klp)) as f32 } else { 0.0 });
     memory.set(CS0_FLUSHED, 0);
     memory.set(CS0_T, 0.0);
     rate::start(memory, system::nominal_change_time(memory));

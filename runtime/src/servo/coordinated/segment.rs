@@ -6,6 +6,7 @@ use kmotiondef::{AxisId, Bit, Field, GuestAddr, GuestType, Place};
 use vm::memory::GuestMemory;
 
 use super::system::LETTERS;
+use crate::arithmetic::doubles::sin;
 use crate::views::Typed;
 
 /// Bytes of an entry.
@@ -129,6 +130,14 @@ impl Entry {
         }
     }
 
+    /// Returns the axes of its letters.
+    pub(crate) fn axes(self, memory: &GuestMemory) -> [Option<AxisId>; LETTERS] {
+        let fields =
+            ARC_LETTERS.map(|(field, _)| field).into_iter().chain(LINEAR_LETTERS.map(|(field, _)| field));
+        let mut axes = fields.map(|field| AxisId::new(i32::from(memory.get(self.field(field)))));
+        std::array::from_fn(|_| axes.next().flatten())
+    }
+
     /// Returns the positions of the axes `t` seconds into the segment.
     pub(crate) fn positions(self, memory: &GuestMemory, t: f64) -> [Option<(AxisId, f64)>; LETTERS] {
         let Kind::Segment(shape) = self.kind(memory) else { return [None; LETTERS] };
@@ -165,7 +174,7 @@ impl Entry {
         let (c, d) = (value(TripCircleLinear::C), value(TripCircleLinear::D));
         match shape {
             Shape::Linear => c * p + d,
-            Shape::Circular => c * libm::sin(p * value(TripCircleLinear::A) + value(TripCircleLinear::B)) + d,
+            Shape::Circular => c * sin(p * value(TripCircleLinear::A) + value(TripCircleLinear::B)) + d,
         }
     }
 }

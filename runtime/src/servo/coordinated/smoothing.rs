@@ -2,11 +2,13 @@
 
 use kmotiondef::limits::TIMEBASE;
 use kmotiondef::structs::Chan;
-use kmotiondef::variables::{KLP, SPLINE_TAU_FACTOR, TAU_KLP};
+use kmotiondef::variables::{CS0_TIME_BASE, KLP, LAST_VALID_TRAJ_SEGMENT, SPLINE_TAU_FACTOR, TAU_KLP};
 use kmotiondef::{AxisId, GuestAddr};
 use vm::memory::GuestMemory;
 
-use super::system::{self, LETTERS};
+use super::segment::Entry;
+use super::system::LETTERS;
+use crate::arithmetic::division::divide;
 use crate::views::Typed;
 
 /// Stores where the path puts an axis, and its destination after the filter.
@@ -23,10 +25,37 @@ pub(crate) fn move_to(memory: &mut GuestMemory, axis: AxisId, position: f64) {
 pub(crate) struct Spline {
     /// The entry that ended the path; a program that starts another path moves away from it.
     end: GuestAddr,
-    /// Seconds done.
+    /// The time of the next tick. That of the first is the time base of the path.
     t: f64,
     duration: f64,
     cubics: [Option<Cubic>; LETTERS],
+}
+
+/// The factors of a duration T, with which the cubics of all axes are computed. The board rounds 1/T and its square to
+/// singles.
+struct Factors {
+    /// 2/T³.
+    cubic_of_way: f64,
+    /// 1/T².
+    cubic_of_speed: f64,
+    /// −3T/2.
+    square_of_cubic: f64,
+    /// 1/2T.
+    square_of_speed: f64,
+}
+
+impl Factors {
+    fn new(duration: f64) -> Self {
+        let rate = divide(1.0, duration) as f32;
+        let square = f64::from(rate * rate);
+        let rate = f64::from(rate);
+        Self {
+            cubic_of_way: (rate + rate) * square,
+            cubic_of_speed: square,
+            square_of_cubic: duration * -1.5,
+            square_of_speed: rate * 0.5,
+        }
+    }
 }
 
 /// The motion of one axis: x0 + v0·t + b·t² + a·t³.
@@ -41,17 +70,19 @@ struct Cubic {
 
 impl Spline {
     /// The spline from the axes' destinations and velocities to rest at the end of the path; `None` if the path is
-    /// not smoothed. One that is smoothed by a `KLP` without its `TauKLP` divides by a duration of 0: the destinations
-    /// are not numbers then (coordinated-motion.md section 6).
+    /// not smoothed or has not moved. One that is smoothed by a `KLP` without its `TauKLP` divides by a duration of 0: the
+    /// destinations are not numbers then (coordinated-motion.md section 6).
+    ///
+    /// It moves the axes of the last segment, which need not be those of the coordinate system any more.
     pub(crate) fn plan(memory: &GuestMemory, end: GuestAddr) -> Option<Self> {
-        let exact = f64::from(memory.get(SPLINE_TAU_FACTOR)) * f64::from(memory.get(TAU_KLP));
-        let duration = f64::from(exact as f32);
-        let is_undefined = memory.get(KLP) != 0.0 && duration == 0.0;
-        if duration < TIMEBASE && !is_undefined {
+        let last = memory.get(LAST_VALID_TRAJ_SEGMENT);
+        if memory.get(KLP) == 0.0 || last.is_null() {
             return None;
         }
-        let cubics = system::letters(memory).map(|axis| Some(Cubic::plan(memory, axis?, exact, duration)));
-        Some(Self { end, t: 0.0, duration, cubics })
+        let duration = f64::from(memory.get(SPLINE_TAU_FACTOR) * memory.get(TAU_KLP));
+        let factors = Factors::new(duration);
+        let cubics = Entry::at(last).axes(memory).map(|axis| Some(Cubic::plan(memory, axis?, &factors)));
+        Some(Self { end, t: memory.get(CS0_TIME_BASE), duration, cubics })
     }
 
     /// Returns whether it belongs to the path that ended at an entry.
@@ -59,24 +90,23 @@ impl Spline {
         self.end == end
     }
 
-    /// One tick. Says whether another one follows: the last is the one before the duration has passed.
+    /// One tick. Says whether another one follows: there is one at least.
     pub(crate) fn step(&mut self, memory: &mut GuestMemory) -> bool {
-        self.t += TIMEBASE;
         for cubic in self.cubics.iter().flatten() {
             memory.set_axis(cubic.axis, Chan::DEST, cubic.at(self.t));
         }
-        self.t + TIMEBASE <= self.duration
+        self.t += TIMEBASE;
+        self.t <= self.duration
     }
 }
 
 impl Cubic {
-    /// The board divides by the duration as a single, and multiplies with the exact one.
-    fn plan(memory: &GuestMemory, axis: AxisId, exact: f64, duration: f64) -> Self {
+    fn plan(memory: &GuestMemory, axis: AxisId, factors: &Factors) -> Self {
         let x0 = memory.axis(axis, Chan::DEST);
         let v0 = f64::from(memory.axis(axis, Chan::LAST_VEL));
-        let way = memory.axis(axis, Chan::UNFILTERED_DEST) - x0;
-        let b = (3.0 * way - 2.0 * v0 * exact) / (duration * duration);
-        let a = (v0 * exact - 2.0 * way) / (duration * duration * duration);
+        let back = x0 - memory.axis(axis, Chan::UNFILTERED_DEST);
+        let a = factors.cubic_of_way * back + factors.cubic_of_speed * v0;
+        let b = factors.square_of_cubic * a - factors.square_of_speed * v0;
         Self { axis, a, b, v0, x0 }
     }
 

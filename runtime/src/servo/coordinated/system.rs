@@ -8,7 +8,7 @@ use kmotiondef::variables::{
 use kmotiondef::{AxisId, Place};
 use vm::memory::GuestMemory;
 
-use crate::servo::dsp::{divide_singles, root};
+use crate::arithmetic::division::{divide_singles, root};
 use crate::views::Typed;
 
 /// Letters of the coordinate system: x y z a b c u v.

@@ -193,24 +193,18 @@ impl Translator<'_, '_> {
             self.spend(cycles);
         }
         let arguments = std::mem::take(&mut self.calls.arguments);
-        let value = match pure.function.pointer() {
-            Some(pointer) => self.call_host(pure.function, pointer, &arguments),
-            None => {
-                let root = self.builder.ins().sqrt(arguments[0]);
-                self.canonical(pure.function.result(), root)
-            }
-        };
+        let value = self.call_host(pure.function, &arguments);
         self.calls.result = Some(value);
     }
 
-    /// Calls the host's function at `pointer`.
-    fn call_host(&mut self, function: PureFunction, pointer: *const (), arguments: &[Value]) -> Value {
+    /// Calls the host's function.
+    fn call_host(&mut self, function: PureFunction, arguments: &[Value]) -> Value {
         let mut signature = Signature::new(self.module.isa().default_call_conv());
         let parameters = function.parameters().iter().map(|class| AbiParam::new(type_of(*class)));
         signature.params.extend(parameters);
         signature.returns.push(AbiParam::new(type_of(function.result())));
         let signature = self.builder.import_signature(signature);
-        let pointer = self.builder.ins().iconst(types::I64, pointer.expose_provenance() as i64);
+        let pointer = self.builder.ins().iconst(types::I64, function.pointer().expose_provenance() as i64);
         let call = self.builder.ins().call_indirect(signature, pointer, arguments);
         self.builder.inst_results(call)[0]
     }

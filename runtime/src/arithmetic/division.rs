@@ -19,14 +19,19 @@ pub(crate) fn divide(dividend: f64, divisor: f64) -> f64 {
 
 /// Divides singles.
 pub(crate) fn divide_singles(dividend: f32, divisor: f32) -> f32 {
+    let reciprocal = reciprocal_of_single(divisor, 2);
+    if reciprocal.is_normal() { dividend * reciprocal } else { dividend / divisor }
+}
+
+/// The processor's reciprocal of a single, after some of Newton's iterations.
+pub(super) fn reciprocal_of_single(divisor: f32, iterations: u32) -> f32 {
     let mut reciprocal = eight_bits(1.0 / f64::from(divisor)) as f32;
-    if !reciprocal.is_normal() {
-        return dividend / divisor;
+    if reciprocal.is_normal() {
+        for _ in 0..iterations {
+            reciprocal *= 2.0 - divisor * reciprocal;
+        }
     }
-    for _ in 0..2 {
-        reciprocal *= 2.0 - divisor * reciprocal;
-    }
-    dividend * reciprocal
+    reciprocal
 }
 
 /// The square root of a single as the board computes it; 0 of what has none.

@@ -1,15 +1,14 @@
-//! The elementary functions of the firmware's library, which prints the last digits that programs see.
+//! The elementary functions of doubles, as the firmware's library computes them.
 //!
 //! They are those of Cody and Waite (Software Manual for the Elementary Functions), with the firmware's divisions; its
-//! arc sine is a plain polynomial, whose coefficients are measured: they are those that the released firmware has in its
-//! memory. The order in which sums are formed was found by comparison with it; the board's tests have the share of equal
-//! results. Arc sines and cosines beyond one half depend on its square root, which is not known.
+//! square root, arc sine and arc tangent are of another make. Coefficients and the order of the operations are those of
+//! the released firmware; the board's tests have the share of equal bits.
 
 use std::f64::consts::{
-    FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, FRAC_PI_6, LN_2, LN_10, LOG2_E, LOG10_E, PI, SQRT_2,
+    FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4, FRAC_PI_6, LN_2, LN_10, LOG2_E, LOG10_E, PI, SQRT_2,
 };
 
-use crate::servo::dsp::divide;
+use super::division::divide;
 
 /// π in two parts, of which the first has few digits.
 const PI_HIGH: f64 = 3.141_601_562_5;
@@ -53,11 +52,11 @@ fn sine(angle: f64, sign: f64) -> f64 {
     sign * (rest + rest * change)
 }
 
-pub(super) fn sin(x: f64) -> f64 {
+pub(crate) fn sin(x: f64) -> f64 {
     sine(x.abs(), if x < 0.0 { -1.0 } else { 1.0 })
 }
 
-pub(super) fn cos(x: f64) -> f64 {
+pub(crate) fn cos(x: f64) -> f64 {
     sine(x.abs() + FRAC_PI_2, 1.0)
 }
 
@@ -71,7 +70,7 @@ const SMALLEST: f64 = -708.396_418_532_264_1;
 /// The largest power of two that the firmware multiplies with.
 const LARGEST_POWER: f64 = 1023.0;
 
-pub(super) fn exp(x: f64) -> f64 {
+pub(crate) fn exp(x: f64) -> f64 {
     const P: [f64; 3] = [0.25, 0.694_360_001_511_792_9e-2, 0.165_203_300_268_279_13e-4];
     const Q: [f64; 3] = [0.5, 0.555_538_666_969_001_2e-1, 0.495_862_884_905_441_3e-3];
     if x > LARGEST {
@@ -92,16 +91,16 @@ pub(super) fn exp(x: f64) -> f64 {
     libm::ldexp(half, power as i32 + 1)
 }
 
-pub(super) fn exp2(x: f64) -> f64 {
+pub(crate) fn exp2(x: f64) -> f64 {
     exp(x * LN_2)
 }
 
-pub(super) fn exp10(x: f64) -> f64 {
+pub(crate) fn exp10(x: f64) -> f64 {
     exp(x * LN_10)
 }
 
 /// The natural logarithm; of what has none the lowest number.
-pub(super) fn log(x: f64) -> f64 {
+pub(crate) fn log(x: f64) -> f64 {
     const A: [f64; 3] = [-64.124_943_423_745_58, 16.383_943_563_021_534, -0.789_561_128_874_912_6];
     const B: [f64; 4] = [-769.499_321_084_948_8, 312.032_220_919_245_3, -35.667_977_739_034_65, 1.0];
     if x < f64::MIN_POSITIVE {
@@ -119,11 +118,11 @@ pub(super) fn log(x: f64) -> f64 {
     f64::from(power) * LN_2 + (z + z * (square * ratio))
 }
 
-pub(super) fn log2(x: f64) -> f64 {
+pub(crate) fn log2(x: f64) -> f64 {
     scaled(log(x), LOG2_E)
 }
 
-pub(super) fn log10(x: f64) -> f64 {
+pub(crate) fn log10(x: f64) -> f64 {
     scaled(log(x), LOG10_E)
 }
 
@@ -151,25 +150,45 @@ fn arc(x: f64, square: f64) -> f64 {
     x + x * (polynomial(&COEFFICIENTS, square) * square)
 }
 
+/// The square root; 0 of what has none.
+pub(crate) fn sqrt(x: f64) -> f64 {
+    if x.is_nan() || x <= 0.0 || x.is_infinite() {
+        return if x > 0.0 { x } else { 0.0 };
+    }
+    // A straight line through the reciprocal root of the fraction, then Newton's iteration.
+    let (fraction, power) = libm::frexp(x);
+    let mut line = 2.528_32 + fraction * -1.145_508;
+    let power = power - 1;
+    if power & 1 != 0 {
+        line *= FRAC_1_SQRT_2;
+    }
+    let mut reciprocal = libm::ldexp(line, !(power >> 1));
+    for _ in 0..3 {
+        reciprocal += (0.5 - reciprocal * (0.5 * (x * reciprocal))) * reciprocal;
+    }
+    let root = x * reciprocal;
+    root + root * (0.5 - reciprocal * (0.5 * root))
+}
+
 /// −2 arcsin √((1 − x)/2), which is the arc sine of `x` less a quarter of a turn.
 fn beyond_half(x: f64) -> f64 {
-    let square = (1.0 - x) * 0.5;
-    arc(-2.0 * libm::sqrt(square), square)
+    let square = 0.5 * ((0.5 - x) + 0.5);
+    arc(-2.0 * sqrt(square), square)
 }
 
 /// The arc sine; of what has none that of the nearest number that has one.
-pub(super) fn asin(x: f64) -> f64 {
+pub(crate) fn asin(x: f64) -> f64 {
     let magnitude = x.abs().min(1.0);
     let angle = if magnitude <= 0.5 {
         arc(magnitude, magnitude * magnitude)
     } else {
-        FRAC_PI_2 + beyond_half(magnitude)
+        (FRAC_PI_4 + beyond_half(magnitude)) + FRAC_PI_4
     };
     if x < 0.0 { -angle } else { angle }
 }
 
 /// The arc cosine; of what has none that of the nearest number that has one.
-pub(super) fn acos(x: f64) -> f64 {
+pub(crate) fn acos(x: f64) -> f64 {
     let magnitude = x.abs().min(1.0);
     if magnitude <= 0.5 {
         let angle = arc(magnitude, magnitude * magnitude);
@@ -181,70 +200,79 @@ pub(super) fn acos(x: f64) -> f64 {
     }
 }
 
-/// The arc tangent of a quotient that is not negative, whose angle is counted from `angle` on.
-fn arc_tangent(mut rest: f64, mut angle: usize) -> f64 {
-    const P: [f64; 4] =
-        [-13.688_768_894_191_927, -20.505_855_195_861_652, -8.494_624_035_132_068, -0.837_582_993_681_500_6];
-    const Q: [f64; 5] =
-        [41.066_306_682_575_78, 86.157_349_597_130_24, 59.578_436_142_597_35, 15.024_001_160_028_576, 1.0];
-    /// The tangent of 15°, up to which the quotient is good.
+/// The arc tangent.
+pub(crate) fn atan(x: f64) -> f64 {
+    const COEFFICIENTS: [f64; 8] = [
+        -0.333_333_333_333_299_2,
+        0.199_999_999_987_262_37,
+        -0.142_857_141_024_675_98,
+        0.111_110_978_784_541_42,
+        -0.090_903_705_591_875_23,
+        0.076_793_590_902_482_65,
+        -0.064_831_111_420_579_68,
+        0.044_386_644_545_235_51,
+    ];
+    /// The tangent of 15°, up to which the polynomial is good.
     const LIMIT: f64 = 0.267_949_192_431_122_7;
+    /// √3, and what is left of it without 1.
     const ROOT_3: f64 = 1.732_050_807_568_877_2;
-    /// The angles of the intervals: 0°, 30°, 90°, 60°.
-    const ANGLES: [f64; 4] = [0.0, FRAC_PI_6, FRAC_PI_2, FRAC_PI_3];
+    const ROOT_3_LESS_1: f64 = 0.732_050_807_568_877_3;
+    /// The angles of the intervals: 0°, 30°, 90°, and 60° with the last bit of the board.
+    #[expect(clippy::approx_constant, reason = "the last bit is another")]
+    const ANGLES: [f64; 4] = [0.0, FRAC_PI_6, FRAC_PI_2, 1.047_197_551_196_597_9];
+    let (mut rest, mut angle) = (x.abs(), 0);
+    if rest > 1.0 {
+        (rest, angle) = (divide(1.0, rest), 2);
+    }
     if rest > LIMIT {
-        rest = divide((((ROOT_3 - 1.0) * rest - 0.5) - 0.5) + rest, ROOT_3 + rest);
+        rest = divide(rest + ((ROOT_3_LESS_1 * rest - 0.5) - 0.5), ROOT_3 + rest);
         angle += 1;
     }
     let square = rest * rest;
-    let arc = rest + rest * divide(polynomial(&P, square) * square, polynomial(&Q, square));
-    ANGLES[angle] + if angle > 1 { -arc } else { arc }
-}
-
-pub(super) fn atan(x: f64) -> f64 {
-    let magnitude = x.abs();
-    if magnitude < f64::MIN_POSITIVE {
-        return 0.0;
-    }
-    let result =
-        if magnitude > 1.0 { arc_tangent(divide(1.0, magnitude), 2) } else { arc_tangent(magnitude, 0) };
+    let arc = rest + rest * (square * polynomial(&COEFFICIENTS, square));
+    let result = ANGLES[angle] + if angle > 1 { -arc } else { arc };
     if x < 0.0 { -result } else { result }
 }
 
 /// The angle of a point in all four quadrants.
-pub(super) fn atan2(y: f64, x: f64) -> f64 {
-    let (up, along) = (y.abs(), x.abs());
-    let angle = if up > along {
-        arc_tangent(divide(along, up), 2)
-    } else if along > 0.0 {
-        arc_tangent(divide(up, along), 0)
+pub(crate) fn atan2(y: f64, x: f64) -> f64 {
+    let quotient = if x == 0.0 { f64::INFINITY } else { divide(y, x).abs() };
+    let angle = if x == 0.0 && y == 0.0 {
+        0.0
+    } else if quotient.is_infinite() {
+        FRAC_PI_2
     } else {
-        return 0.0;
+        atan(quotient)
     };
     let angle = if x < 0.0 { PI - angle } else { angle };
     if y < 0.0 { -angle } else { angle }
 }
 
 /// The tangent.
-pub(super) fn tan(x: f64) -> f64 {
-    const P: [f64; 4] =
-        [1.0, -0.133_383_500_064_219_6, 0.342_488_782_358_905_9e-2, -0.178_617_073_422_544_27e-4];
-    const Q: [f64; 5] = [
-        1.0,
+pub(crate) fn tan(x: f64) -> f64 {
+    const P: [f64; 3] = [-0.133_383_500_064_219_62, 0.342_488_782_358_905_9e-2, -0.178_617_073_422_544_27e-4];
+    const Q: [f64; 4] = [
         -0.466_716_833_397_552_94,
         0.256_638_322_894_401_13e-1,
         -0.311_815_319_070_100_27e-3,
-        0.498_194_339_937_865_1e-6,
+        4.981_943_399_378_651e-7,
     ];
-    let quarters = libm::round(x * std::f64::consts::FRAC_2_PI);
-    let rest = (x - quarters * (PI_HIGH / 2.0)) - quarters * (PI_LOW / 2.0);
+    /// The second part of π/2, which is not that of π.
+    const HALF_PI_LOW: f64 = -4.454_455_103_380_769e-6;
+    let product = std::f64::consts::FRAC_2_PI * x;
+    let quarters = libm::trunc(if product < 0.0 { product - 0.5 } else { product + 0.5 });
+    let whole = libm::trunc(x);
+    let rest = ((x - whole) + (whole - PI_HIGH / 2.0 * quarters)) - HALF_PI_LOW * quarters;
+    let rest = rest.clamp(-FRAC_PI_4, FRAC_PI_4);
     let square = rest * rest;
-    let numerator = rest * polynomial(&P, square);
-    let denominator = polynomial(&Q, square);
+    let numerator = rest + rest * (square * polynomial(&P, square));
+    let denominator = (0.5 + square * polynomial(&Q, square)) + 0.5;
     if libm::fmod(quarters, 2.0) == 0.0 {
         divide(numerator, denominator)
+    } else if numerator == 0.0 {
+        f64::MAX
     } else {
-        divide(-denominator, numerator)
+        -divide(denominator, numerator)
     }
 }
 
@@ -260,6 +288,9 @@ mod tests {
                 (sin(x), libm::sin(x)),
                 (cos(x), libm::cos(x)),
                 (atan(x), libm::atan(x)),
+                (atan2(x, 2.5), libm::atan2(x, 2.5)),
+                (atan2(-2.5, x), libm::atan2(-2.5, x)),
+                (sqrt(x.abs()), libm::sqrt(x.abs())),
                 (exp(x) / libm::exp(x), 1.0),
                 (exp2(x) / libm::exp2(x), 1.0),
                 (log(x.abs() + 0.1), libm::log(x.abs() + 0.1)),
@@ -278,6 +309,8 @@ mod tests {
     fn what_has_no_result_has_that_of_the_board() {
         assert_eq!([log(0.0), log(-1.0), exp(1000.0)], [-f64::MAX, -f64::MAX, f64::MAX]);
         assert_eq!([asin(2.0), acos(2.0), exp(-1000.0)], [FRAC_PI_2, 0.0, 0.0]);
+        assert_eq!([sqrt(0.0), sqrt(-1.0), sqrt(4.0), sqrt(f64::INFINITY)], [0.0, 0.0, 2.0, f64::INFINITY]);
+        assert_eq!([atan2(0.0, -1.0), atan2(0.0, 0.0), atan2(-1.0, 0.0)], [PI, 0.0, -FRAC_PI_2]);
         assert_eq!([sin(1e10), cos(f64::INFINITY), exp(709.5)], [0.0; 3]);
     }
 }
