@@ -36,16 +36,17 @@ impl SingleText {
         self.with_word(program, words, pc, Word::plain(op), work)
     }
 
-    /// As [`with`](Self::with), for an instruction whose accesses are reported if those of `words` are.
+    /// As [`with`](Self::with), for an instruction whose access is reported if `is_observed`. Words of accesses are of single
+    /// instructions then.
     pub(super) fn with_observed<R>(
         &mut self,
-        program: &Program,
-        words: &Words,
+        (program, words): (&Program, &Words),
         pc: usize,
+        is_observed: bool,
         work: impl FnOnce(&Words) -> R,
     ) -> Option<R> {
         let (op, word) = (program.ops().get(pc)?, words.get(pc)?);
-        let word = if observe::place_of(op).is_some() { *word } else { Word::plain(op) };
+        let word = if is_observed && observe::place_of(op).is_some() { *word } else { Word::plain(op) };
         self.with_word(program, words, pc, word, work)
     }
 

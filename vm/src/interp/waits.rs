@@ -67,10 +67,10 @@ impl WaitingContext<'_> {
             if self.words.get(at).is_none_or(Word::is_held) {
                 return Ok(None);
             }
+            let is_observed = steps.observer.is_some();
             let run = |word: &Words| super::run(self.id, self.program, word, context, slice, steps);
-            let stop = text
-                .with_observed(self.program, self.words, at, run)
-                .unwrap_or(Err(TrapKind::Unreachable))?;
+            let stop = text.with_observed((self.program, self.words), at, is_observed, run);
+            let stop = stop.unwrap_or(Err(TrapKind::Unreachable))?;
             if stop != Stop::Held {
                 return Ok(Some(stop));
             }
