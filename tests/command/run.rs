@@ -319,47 +319,6 @@ fn switches_silence_warnings_or_make_them_errors() {
     }
 }
 
-/// Recorded with firmware 4.34, whose feedhold the primary thread plans in its second slice after the event.
-#[test]
-fn limits_stop_axes_in_the_tick_of_the_firmware_where_no_thread_is_active() {
-    let scratch = Scratch::new("held-alone");
-    let check = |limit: &str, ends: [f64; 2]| {
-        let source = format!(
-            "#include \"KMotionDef.h\"
-void watch(void) {{ if (ch0->Dest > 40) VirtualBits |= 2; }}
-main()
-{{
-  int i;
-  for (i = 0; i < 2; i++)
-  {{
-    chan[i].Vel = 1000; chan[i].Accel = 10000; chan[i].Jerk = 100000;
-    chan[i].InputMode = NO_INPUT_MODE;
-    EnableAxisDest(i, 0);
-  }}
-  DefineCoordSystem(0, 1, -1, -1);
-  {limit}
-  WaitNextTimeSlice();
-  MoveAtVel(0, 100.0, 500.0f);
-  MoveAtVel(1, 100.0, 500.0f);
-}}
-"
-        );
-        scratch.write("a.c", source);
-        let output = cc67(&scratch, ["run", "--json", "a.c"]);
-        let last = output.stdout.lines().last().expect("it has an end");
-        let end: serde_json::Value = serde_json::from_str(last).expect("it is JSON");
-        for (axis, expect) in ends.iter().enumerate() {
-            let dest = end["axes"][axis]["dest"].as_f64().expect("a number");
-            assert!((dest - expect).abs() < 1e-9, "{limit} axis {axis}: {dest}, recorded {expect}");
-        }
-    };
-    check("ch0->SoftLimitPos = 60.01;", [96.434_998_370_838_73, 96.479_998_370_838_73]);
-    check(
-        "ch0->LimitSwitchOptions = 0x31000022; UserCallBack = watch;",
-        [76.454_998_370_838_77, 76.499_998_370_838_77],
-    );
-}
-
 #[test]
 fn a_json_run_prints_one_object_per_line_and_a_summary() {
     let scratch = Scratch::new("json");

@@ -241,8 +241,7 @@ fn check_soft(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, end: &End
 }
 
 /// Acts on the limits in the primary thread's slice; returns whether a stop was tried. Where no other thread is active,
-/// it stops the first axis for a command without being interrupted; at a limit it plans that in its next slice all the
-/// same.
+/// it stops the first axis without being interrupted.
 pub(crate) fn slice(servo: &mut Servo, out: &mut Out, memory: &mut GuestMemory, is_alone: bool) -> bool {
     if hold::stop_next(servo, memory) {
         return true;
@@ -259,8 +258,7 @@ pub(crate) fn slice(servo: &mut Servo, out: &mut Out, memory: &mut GuestMemory, 
         return false;
     }
     let stops = hold::begin(servo, memory);
-    let is_commanded = asked.as_ref().is_some_and(|(_, tells)| *tells == Tells::Never);
-    if is_alone && is_commanded {
+    if is_alone {
         hold::stop_next(servo, memory);
     }
     let is_told = |tells| match tells {
