@@ -7,6 +7,7 @@
 mod called;
 mod engines;
 mod held;
+mod lateness;
 mod long;
 mod snapshot;
 
@@ -37,9 +38,6 @@ pub const BOARD_STACK_USABLE: u32 = BOARD_STACK_SIZE - 128;
 const CALLBACK_TICKS: i64 = 100;
 /// The computer's work for a tick besides programs, in cycles of programs that take as long.
 const TICK_WORK: u64 = 500;
-
-/// The cycles by which servo interrupts differ where threads lose the processor as on the board.
-const UNEVENNESS: u64 = 64;
 
 const CALLBACK_LIMIT: Cycles = Cycles::new(CALLBACK_TICKS * Cycles::PER_TICK.get());
 
@@ -90,6 +88,8 @@ pub struct Machine<F, E = BytecodeEngine> {
     /// The tick in progress, if a debugger holds it.
     held: Option<Held>,
     work: u64,
+    /// The cycles that the last slice had beyond its end in the shadow of a branch.
+    shadow: Option<Cycles>,
 }
 
 /// The span of one tick that a thread may use.
@@ -133,6 +133,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             stack_reported: ThreadSet::EMPTY,
             held: None,
             work: 0,
+            shadow: None,
         }
     }
 
@@ -302,7 +303,8 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         self.with_context(begin, |firmware, context| firmware.tick(context));
         self.turn = scheduler::next(self.threads.active(), self.turn);
         let end = end_of(self.tick);
-        let window = Window { start: (begin + self.servo_time()).min(end), end, callback };
+        let start = begin + self.servo_time() + self.take_lateness();
+        let window = Window { start: start.min(end), end, callback };
         let turn = self.turn;
         self.with_context(window.start + callback, |firmware, context| {
             firmware.switch_to(turn, context);
@@ -317,11 +319,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
 
     /// The cycles that the servo interrupt takes of the present tick.
     fn servo_time(&self) -> Cycles {
-        let time = self.config.servo.unwrap_or_else(|| self.firmware.servo_time(&self.memory));
-        match self.config.preemption {
-            Preemption::Segments => time,
-            Preemption::Instructions => time + unevenness(self.tick),
-        }
+        self.config.servo.unwrap_or_else(|| self.firmware.servo_time(&self.memory))
     }
 
     /// Runs the call-back, if there is one, and returns what it spent; `None` if it is held.
@@ -478,7 +476,8 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
 
     /// Notes how `thread` has stopped in the slice that ends at `end`, with `left` of its budget.
     fn stopped(&mut self, thread: ThreadId, end: Cycles, left: Cycles, stop: Stop) {
-        self.threads.set_debt(thread, (Cycles::default() - left).max(Cycles::default()));
+        let debt = self.overdrawn(&stop, (Cycles::default() - left).max(Cycles::default()));
+        self.threads.set_debt(thread, debt);
         self.report_stack(thread);
         match stop {
             Stop::Preempted | Stop::NeedsBoard | Stop::Held => {
@@ -541,7 +540,11 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         let begin = start_of(self.tick);
         let turn = self.turn;
         self.with_context(begin, |firmware, context| firmware.skip_ticks(count, context));
-        self.with_context(begin + self.servo_time(), |firmware, context| firmware.switch_to(turn, context));
+        if count > 1 {
+            self.shadow = None;
+        }
+        let start = begin + self.servo_time() + self.take_lateness();
+        self.with_context(start, |firmware, context| firmware.switch_to(turn, context));
     }
 
     /// Number of the next ticks in which no user thread can run.
@@ -566,17 +569,6 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             TickContext { memory: &mut self.memory, threads: &mut self.threads, tick: self.tick, now };
         work(&mut self.firmware, &mut context);
     }
-}
-
-/// The additional cycles of the servo interrupt in one tick, where threads lose the processor as on the board.
-///
-/// The firmware's interrupt is not always equally long. Slices that were would end in the same place of a loop each
-/// time, or never there. The number is a function of the tick alone (the mixer of SplitMix64).
-fn unevenness(tick: Ticks) -> Cycles {
-    let mut bits = tick.get().wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    bits = (bits ^ bits >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    Cycles::new(((bits ^ bits >> 31) % UNEVENNESS).cast_signed())
 }
 
 /// The beginning of a tick.

@@ -25,6 +25,7 @@ pub struct Snapshot<S> {
     turn: Turn,
     stack_reported: ThreadSet,
     held: Option<Held>,
+    shadow: Option<Cycles>,
 }
 
 impl<S> Snapshot<S> {
@@ -62,6 +63,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             turn: self.turn,
             stack_reported: self.stack_reported,
             held: self.held,
+            shadow: self.shadow,
         }
     }
 
@@ -73,8 +75,18 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     /// # Errors
     /// [`ForeignSnapshot`] for a snapshot of another machine with native threads; nothing has changed then.
     pub fn restore(&mut self, snapshot: &Snapshot<E::Snapshot>) -> Result<(), ForeignSnapshot> {
-        let Snapshot { memory, threads, loaded, longest_steps, engines, tick, turn, stack_reported, held } =
-            snapshot;
+        let Snapshot {
+            memory,
+            threads,
+            loaded,
+            longest_steps,
+            engines,
+            tick,
+            turn,
+            stack_reported,
+            held,
+            shadow,
+        } = snapshot;
         self.engines.restore(engines)?;
         self.memory.restore(memory);
         self.threads.clone_from(threads);
@@ -84,6 +96,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         self.turn = *turn;
         self.stack_reported = *stack_reported;
         self.held = *held;
+        self.shadow = *shadow;
         Ok(())
     }
 }
