@@ -381,9 +381,14 @@ mod tests {
         let (mut inside, mut refused, mut escaped) = (0_u64, 0_u64, 0_u64);
         std::thread::scope(|scope| {
             scope.spawn(|| {
-                for _ in 0..swaps {
+                for swap in 0..swaps {
                     // An error here is found below: nothing is refused then.
                     let _ = renameat_with(CWD, &folder, CWD, &link, RenameFlags::EXCHANGE);
+                    // The system refuses every read during which names change, so the folder and the link stay now and
+                    // then for a moment.
+                    if swap % 17 == 0 {
+                        std::thread::sleep(std::time::Duration::from_micros(20));
+                    }
                 }
                 has_ended.store(true, Ordering::Relaxed);
             });

@@ -18,7 +18,8 @@ const UNEVENNESS: u64 = 64;
 /// The most cycles for which the shadow of a branch holds off an interrupt; what is beyond is a function of the firmware.
 const LONGEST_SHADOW: Cycles = Cycles::new(8);
 
-/// How late the interrupt comes in the system's thread of the released firmware, as often as each was measured.
+/// The lateness of the interrupt in the system's thread of the released firmware, each value about as often as in 102 slices
+/// between two counting threads.
 const IN_SYSTEM_THREAD: [i64; 32] =
     [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3, 4, 5, 5, 9, 10, 12, 12, 13];
 
