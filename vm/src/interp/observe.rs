@@ -104,7 +104,7 @@ pub(crate) struct Observer {
 struct ProgramFacts {
     /// True if it shares its own data with a call-back.
     has_call_back: bool,
-    /// By word, the loads that the stored value depends on, or that are used with the load, once they were asked for.
+    /// By word, the loads that the stored value depends on, or that are used with the load; `None` before they are needed.
     loads: Vec<Option<Box<[CodeAddr]>>>,
 }
 

@@ -19,7 +19,7 @@ type Page = Box<[u32; PAGE as usize]>;
 /// The cells that were accessed.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cells {
-    /// The pages of both regions, one after the other, as far as one was needed.
+    /// The pages of the first region, then those of the second; `None` for one that was not needed yet.
     pages: Vec<Option<Page>>,
     /// The cells with their addresses, from number 1.
     cells: Vec<(u32, Cell)>,
