@@ -289,7 +289,7 @@ impl Context {
         Ok(())
     }
 
-    /// What the execution of instructions works on: the calls, the registers of all of them, and the filter of accesses.
+    /// Returns the calls, the registers of all of them, and the filter of accesses, for the execution of instructions.
     pub(super) fn execution(&mut self) -> (&mut Calls, &[Cell<u64>], Option<&AccessFilter>) {
         let registers = Cell::from_mut(&mut self.registers[..]).as_slice_of_cells();
         (&mut self.calls, registers, self.filter.as_deref())
