@@ -219,7 +219,6 @@ fn options_of_a_simulated_board_and_missing_consent_are_refused_by_name() {
     scratch.write("a.c", PROGRAM);
     for (option, value) in [
         ("--machine", Some("m.toml")),
-        ("--stim", Some("t=0.5 bit 136=1")),
         ("--races", None),
         ("--engine", Some("bytecode")),
         ("--flash", Some("flash.bin")),
@@ -574,13 +573,60 @@ fn tests_run_on_a_controller_and_say_what_was_not_checked() {
     let expect = "\
 not checked on the controller: board times of b
 not checked on the controller: remarks of a
-skipped  c: `--stim` is about a simulated board: it does not work with `--on`
+skipped  c: c.stim:1:1: only the model of a machine does this: before the action, `manual \"press START\"` asks a person at \
+the controller to do it
 2 passed, 0 failed, 1 skipped
 ";
     assert_eq!((output.code, output.stdout.as_str()), (0, expect), "{output:?}");
     scratch.write("a.expected", "count 7\n");
     let output = on(&scratch, &["test"], &place, &["a.c"]);
     assert!(output.code == 1 && output.stdout.contains("- count 7"), "{output:?}");
+}
+
+/// Waits for a value from the PC, and for a door that a person closes.
+const DOOR: &str = "\
+#include \"KMotionDef.h\"
+main()
+{
+    printf(\"ready\\n\");
+    while (!persist.UserData[20]) WaitNextTimeSlice();
+    printf(\"started %d\\n\", persist.UserData[20]);
+    while (!ReadBit(1030)) WaitNextTimeSlice();
+    printf(\"door closed\\n\");
+}
+";
+
+#[test]
+fn a_person_at_the_controller_is_asked_for_what_the_model_does() {
+    let scratch = Scratch::new("controller-manual");
+    scratch.write("door.c", DOOR);
+    let stimulus = "\
+at 0.3 persist 20 = 7
+once printed \"started\" after 100ms manual \"close the door\" set bit 1030
+expect printed \"door closed\"
+expect bit 1030 = 1
+never printed \"fault\"
+";
+    scratch.write("door.stim", stimulus);
+    scratch.write("door.expected", "ready\nstarted 7\ndoor closed\n");
+    let model = cc67(&scratch, ["test", "."]);
+    assert_eq!((model.code, model.stdout.as_str()), (0, "1 passed, 0 failed\n"), "{model:?}");
+
+    // The served board's own stimulus is the person.
+    let person = ["--stim", "once printed \"started\" after 600ms set bit 1030"];
+    let (_server, place) = served("controller-manual-board", &person);
+    let output = on(&scratch, &["test"], &place, &["."]);
+    assert_eq!((output.code, output.stdout.as_str()), (0, "1 passed, 0 failed\n"), "{output:?}");
+    let asked =
+        "cc67: door: by hand: close the door\ncc67: door: not checked on the controller: door.stim:5:1\n";
+    assert_eq!(output.stderr, asked);
+
+    scratch.write("late.c", PROGRAM);
+    scratch.write("late.stim", "expect printed \"count 3\"; expect persist 5 = 3\n");
+    let output = on(&scratch, &["run"], &place, &["--stim", "late.stim", "late.c"]);
+    let unmet = "no line contains \"count 3\", expected one";
+    assert!(output.code == 5 && output.stderr.contains(unmet), "{output:?}");
+    assert_eq!(output.stderr.matches("late.stim").count(), 1, "{output:?}");
 }
 
 #[cfg(unix)]

@@ -52,20 +52,23 @@ impl ControllerLink {
 
     /// Loads the programs of a setup and starts those that should be started.
     ///
-    /// Of the setup the controller takes the programs, the values of `persist.UserData`, and the PC's files. `progress` is
+    /// Of the setup the controller takes the programs, the values of `persist.UserData`, the PC's files, and of the stimulus
+    /// what a person and the PC do. `progress` is
     /// called after each piece of a download.
     ///
     /// # Errors
-    /// A program is refused, a value is not in `persist.UserData`, or the link fails.
+    /// A program is refused, a value is not in `persist.UserData`, the stimulus needs a model of the machine, or the link
+    /// fails.
     pub fn session(
         self,
         setup: Setup,
         terms: LoadTerms,
         progress: impl FnMut(ThreadId, Progress) + Send + 'static,
     ) -> Result<Session<Controller>, HostError> {
-        let Setup { config, options, programs, offered, values, .. } = setup;
+        let Setup { config, options, programs, offered, values, stimulus, .. } = setup;
         let mut target = Controller::new(self.0, &options, terms, Box::new(progress));
         target.serve(config.files, config.answers);
+        target.accompany(stimulus)?;
         target.begin(&programs, &values)?;
         Ok(Session::on_target(target, options, programs, offered))
     }

@@ -1,6 +1,7 @@
 //! The target: a connected controller.
 
 mod acting;
+mod attending;
 mod reading;
 
 use std::cell::RefCell;
@@ -15,11 +16,13 @@ use compiler::firmware::FirmwareNames;
 use kmotiondef::boards::TargetBoard;
 use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
+use runtime::stimulus::Stimulus;
 use runtime::trace::{Item, TraceRequest};
 use runtime::{Answers, Event, EventKind, HostFiles, OpenBox, RemoteBoard as _, RequestServer};
 use vm::scheduler::Turn;
 use vm::thread::ThreadState;
 
+use crate::bench::Bench;
 use crate::clock::{PassingTime, now};
 use crate::commands::Commands;
 use crate::files::{FileRemarks, Files};
@@ -64,6 +67,10 @@ pub struct Controller {
     pending: Vec<EventKind>,
     remarks: FileRemarks,
     recording: Option<BoardRecording>,
+    /// What a person and the PC do meanwhile.
+    bench: Bench,
+    /// The status record has been read since the bench looked at it.
+    is_fresh: bool,
     /// The reason why the controller cannot be reached any more.
     lost: Option<String>,
 }
@@ -100,6 +107,8 @@ impl Controller {
             pending: Vec::new(),
             remarks: FileRemarks::default(),
             recording: None,
+            bench: Bench::default(),
+            is_fresh: false,
             lost: None,
         }
     }
@@ -110,6 +119,15 @@ impl Controller {
         self.client.get_mut().serve_files(Box::new(files));
         self.requests = RequestServer::new(answers);
         self.requests.leave_boxes_open();
+    }
+
+    /// Lets a person and the PC do what a stimulus says.
+    ///
+    /// # Errors
+    /// A statement needs a model of the machine.
+    pub(crate) fn accompany(&mut self, stimulus: Stimulus) -> Result<(), HostError> {
+        self.bench = Bench::new(stimulus)?;
+        Ok(())
     }
 
     /// Returns the last status record.
@@ -196,6 +214,7 @@ impl Controller {
             )));
         }
         let remarks = self.remarks.take().into_iter().map(EventKind::Host);
+        lines.iter().for_each(|line| self.bench.note_line(line));
         let lines = lines.into_iter().map(EventKind::ConsoleLine);
         let all: Vec<_> = lines.chain(remarks).chain(self.pending.drain(..)).collect();
         all.into_iter().for_each(|kind| events(Event { at, kind }));
@@ -265,6 +284,7 @@ impl Target for Controller {
         }
         self.poll();
         self.time.note();
+        self.attend();
         self.deliver(events);
     }
 
@@ -275,6 +295,8 @@ impl Target for Controller {
             self.note_error(&error);
         }
         self.time.note();
+        self.deliver(events);
+        self.end_attending();
         self.deliver(events);
         self.end_recording(events);
     }
@@ -288,6 +310,7 @@ impl Target for Controller {
     fn has_ended(&self) -> bool {
         self.lost.is_some()
             || !self.threads.has_own_active()
+                && !self.bench.has_plans()
                 && self.pending.is_empty()
                 && now().duration_since(self.time.heard) >= SILENCE
     }

@@ -8,6 +8,7 @@
 //! connection  a controller that answers, before it is given programs
 //! saving      saving to flash
 //! controller  the target: load, start, stop, status
+//! bench       a stimulus without a model: what a person and the PC do
 //! commands    what a PC does for the requests of programs
 //! monitor     a program in a free thread, for what no command does
 //! files       files of the PC, for programs on the controller
@@ -37,6 +38,7 @@
 
 #![forbid(unsafe_code)]
 
+mod bench;
 mod clock;
 mod commands;
 mod connection;
@@ -55,6 +57,11 @@ pub use connection::ControllerLink;
 pub use controller::Controller;
 pub use saving::Unsettled;
 pub use terms::{LoadTerms, ProgramStart};
+
+/// The beginning of a request to the person at the controller, in an [event](runtime::EventKind::Host).
+pub const BY_HAND: &str = "by hand: ";
+/// The beginning of the event that names expectations of a stimulus which a controller does not check.
+pub const UNCHECKED: &str = "not checked on the controller: ";
 
 /// The facts that a person should know before the first connection of a project.
 pub const FIRST_TIME: &str = "\

@@ -25,6 +25,7 @@ impl Controller {
         }
         self.seen.note_status(&status);
         self.status = Some(status);
+        self.is_fresh = true;
     }
 
     /// Reads the status record if it is due.

@@ -172,7 +172,6 @@ impl BoardArguments {
             ("--schedule", self.schedule.is_some()),
             ("--assist", self.assist),
             ("--machine", self.machine.is_some()),
-            ("--stim", !self.stim.is_empty()),
             ("--flash", self.pc.has_flash()),
             ("--uart", self.uart.uart.is_some()),
             ("--uart-input", self.uart.uart_input.is_some()),

@@ -9,7 +9,8 @@ use std::sync::Arc;
 use kmotiondef::{AxisId, Bit, Cycles, ThreadId};
 use vm::memory::GuestMemory;
 
-use super::acts::{computer, lines, mechanics, options};
+use super::acts::manual::ManualStep;
+use super::acts::{computer, lines, manual, mechanics, options};
 use super::expectation;
 use super::expectation::Expectation;
 use super::reader::StatementReader;
@@ -237,6 +238,12 @@ actions! {
         does computer::kill;
         written { "stop thread N" => computer::read_kill, "kill thread N" => computer::read_kill }
         keys { "kill" => Form::One("kill {value}") }
+    }
+    /// Does what a person at the machine does; on a connected controller the person is asked to.
+    Manual(step: ManualStep) {
+        does manual::act;
+        announces manual::announce;
+        written { "manual \"TEXT\" ACTION" => manual::read_manual }
     }
     /// Connects a device.
     Attach(device: DeviceSpec) {

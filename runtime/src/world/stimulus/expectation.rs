@@ -100,7 +100,22 @@ impl PartialEq for Expression {
 const OF_AXIS: &[(&str, &str)] =
     &[("position", "pos"), ("dest", "dest"), ("velocity", "vel"), ("output", "out"), ("load", "load")];
 
-/// The parts of the board that expectations examine.
+/// The facts about a board that expectations examine.
+pub trait Facts {
+    /// Returns a value; `None` where it cannot be known.
+    fn value(&self, subject: &Subject) -> Option<f64>;
+
+    /// Returns whether the text that an expectation waits for was printed.
+    fn has_printed(&self, text: &str) -> bool;
+
+    /// Returns whether an axis is enabled.
+    fn is_enabled(&self, axis: AxisId) -> bool;
+
+    /// Returns whether a thread is active.
+    fn is_active(&self, thread: ThreadId) -> bool;
+}
+
+/// The parts of a simulated board that expectations examine.
 pub(super) struct Look<'a> {
     pub(super) view: View<'a>,
     pub(super) threads: ThreadSet,
@@ -108,36 +123,55 @@ pub(super) struct Look<'a> {
     pub(super) said: bool,
 }
 
+impl Facts for Look<'_> {
+    fn value(&self, subject: &Subject) -> Option<f64> {
+        subject.value(&self.view)
+    }
+
+    fn has_printed(&self, _: &str) -> bool {
+        self.said
+    }
+
+    fn is_enabled(&self, axis: AxisId) -> bool {
+        self.view.memory.axis(axis, Chan::ENABLE) != 0
+    }
+
+    fn is_active(&self, thread: ThreadId) -> bool {
+        self.threads.contains(thread)
+    }
+}
+
 /// The result of an examination.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Seen {
+pub struct Seen {
     /// True if the expectation is met.
-    pub(super) is_met: bool,
+    pub is_met: bool,
     /// The actual and the expected value, as text.
-    pub(super) text: String,
+    pub text: String,
 }
 
 impl Expectation {
-    /// Looks at an instant.
-    pub(super) fn look(&self, look: &Look<'_>) -> Seen {
+    /// Examines the facts of an instant.
+    pub fn look(&self, facts: &impl Facts) -> Seen {
         let is_wanted = self.sense == Sense::Is;
         let (holds, was) = match &self.predicate {
-            Predicate::Value { subject, relation, number, tolerance } => match subject.value(&look.view) {
+            Predicate::Value { subject, relation, number, tolerance } => match facts.value(subject) {
                 Some(value) => (relation.holds(value, *number, *tolerance), format!("{subject} is {value}")),
                 // It is not met either way.
                 None => (!is_wanted, format!("{subject} has no value here")),
             },
             Predicate::Printed(text) => {
-                let who = if look.said { "a" } else { "no" };
-                (look.said, format!("{who} line contains \"{text}\""))
+                let has_printed = facts.has_printed(text);
+                let who = if has_printed { "a" } else { "no" };
+                (has_printed, format!("{who} line contains \"{text}\""))
             }
             Predicate::Enabled(axis, expected) => {
-                let is_enabled = look.view.memory.axis(*axis, Chan::ENABLE) != 0;
+                let is_enabled = facts.is_enabled(*axis);
                 let state = if is_enabled { "enabled" } else { "disabled" };
                 (is_enabled == *expected, format!("axis {axis} is {state}"))
             }
             Predicate::Active(thread, expected) => {
-                let is_active = look.threads.contains(*thread);
+                let is_active = facts.is_active(*thread);
                 let state = if is_active { "active" } else { "not active" };
                 (is_active == *expected, format!("thread {thread} is {state}"))
             }

@@ -14,6 +14,7 @@
 //! at end expect printed "done"
 //! within 0.5s of printed "start" expect axis 0 enabled
 //! never axis 0 dest > 501
+//! once printed "load a part" manual "load a part" pulse bit 138
 //! device spi select=16 clock=17 out=18 word=0x0190
 //! ```
 //!
@@ -36,7 +37,8 @@ mod trigger;
 mod wave;
 
 pub use action::{Action, usages};
-pub use expectation::{Expectation, Expression, Predicate, Sense, Stored, Subject};
+pub use acts::manual::ManualStep;
+pub use expectation::{Expectation, Expression, Facts, Predicate, Seen, Sense, Stored, Subject};
 pub use plans::MOST_PLANNED;
 pub use relation::Relation;
 pub use text::StimulusError;

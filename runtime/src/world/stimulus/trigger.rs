@@ -19,7 +19,8 @@ pub enum Edge {
 
 impl Edge {
     /// Returns whether a change to this level counts.
-    pub(crate) fn fits(self, level: bool) -> bool {
+    #[must_use]
+    pub const fn fits(self, level: bool) -> bool {
         match self {
             Self::Rises => level,
             Self::Falls => !level,

@@ -1,7 +1,10 @@
 //! Tests on a connected controller.
 //!
-//! It has no model of a machine, no stimulus, and a time of its own. So of what is expected only the console and the exit
-//! code are compared, without board times; tests that need the model are skipped, and the report says what was not checked.
+//! It has no model of a machine and a time of its own. So of what is expected only the console and the exit code are
+//! compared, without board times; a person does what `manual` statements ask for; tests that need the model are skipped,
+//! and the report says what was not checked.
+
+use cc67_controller::{BY_HAND, UNCHECKED};
 
 use super::case::Case;
 use super::golden::{self, Shown};
@@ -9,8 +12,13 @@ use super::near;
 use super::verdict::Verdict;
 use crate::cli::io::exit::Exit;
 
-/// The words with which `cc67 run` refuses an option.
-const REFUSED: [&str; 2] = ["is about a simulated board", "does not work with `--on`"];
+/// The words with which `cc67 run` refuses an option or a statement.
+const REFUSED: [&str; 4] = [
+    "is about a simulated board",
+    "does not work with `--on`",
+    "only the model of a machine does this",
+    "the PC does not hear the serial port",
+];
 /// Seconds after which a program that does not end is stopped.
 const LIMIT: &str = "--for=60";
 
@@ -57,6 +65,11 @@ impl Unchecked {
     }
 }
 
+/// Returns the text of a line of a run's messages that the person at the controller should see at once.
+pub(super) fn for_person(line: &str) -> Option<&str> {
+    line.strip_prefix("cc67: ").filter(|text| text.starts_with(BY_HAND) || text.starts_with(UNCHECKED))
+}
+
 /// A line of the console without its board time.
 fn without_time(line: &str) -> &str {
     match line.split_once(' ') {
@@ -66,7 +79,7 @@ fn without_time(line: &str) -> &str {
 }
 
 /// Returns the verdict on a run on the controller.
-pub(super) fn verdict(case: &Case, shown: Shown) -> Verdict {
+pub(super) fn verdict(case: &Case, mut shown: Shown) -> Verdict {
     let Some(expected) = &case.expected else { return Verdict::Unknown };
     let is_refusal = |line: &&str| REFUSED.iter().any(|words| line.contains(words));
     if let (Some(2), Some(line)) = (shown.code, shown.notes().lines().find(is_refusal)) {
@@ -80,7 +93,10 @@ pub(super) fn verdict(case: &Case, shown: Shown) -> Verdict {
             return Verdict::Skipped(reason.to_owned());
         }
     }
-    let shown = Shown { golden: golden::without_notes(&shown.golden), ..shown };
+    // The messages of an unmet expectation say more than the exit code.
+    if shown.code != Some(Exit::Unmet as i32) {
+        shown.golden = golden::without_notes(&shown.golden);
+    }
     if near::is_near(expected, &shown.golden) { Verdict::Passed } else { Verdict::Differs(shown) }
 }
 
@@ -110,9 +126,14 @@ mod tests {
     fn tests_that_need_a_model_are_skipped() {
         let mut cases = [case("a\n", &["--stim", "a.stim"]), case("a\n---- exit 4\n", &[])];
         Unchecked::reduce(&mut cases);
-        let refused = b"cc67: `--stim` is about a simulated board: it does not work with `--on`\n";
-        let stim = verdict(&cases[0], golden::shown(b"", refused, Some(2)));
-        assert!(matches!(stim, Verdict::Skipped(why) if why.starts_with("`--stim` is about")));
+        for refused in [
+            "`--machine` is about a simulated board: it does not work with `--on`",
+            "a.stim:1:1: only the model of a machine does this: a person does",
+        ] {
+            let message = format!("cc67: {refused}\n");
+            let verdict = verdict(&cases[0], golden::shown(b"", message.as_bytes(), Some(2)));
+            assert!(matches!(verdict, Verdict::Skipped(why) if why == refused));
+        }
         let endless = verdict(&cases[1], golden::shown(b"a\n", b"", Some(0)));
         assert!(matches!(endless, Verdict::Skipped(why) if why.contains("without end")));
     }

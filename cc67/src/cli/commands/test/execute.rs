@@ -15,8 +15,8 @@ use super::executor::Executor;
 use super::golden::{self, Shown};
 use super::this_command;
 use super::verdict::Verdict;
-use super::{connected, firmware};
-use crate::cli::io::output;
+use super::{connected, firmware, relay};
+use crate::cli::io::{output, terminal};
 
 /// Runs all cases on all engines, `jobs` runs at a time; the verdicts have the order of the cases.
 pub(super) fn all(
@@ -55,7 +55,7 @@ fn execute(runs: &[Run<'_>], jobs: usize) -> Result<Vec<Shown>> {
                 while let Some(index) = claim(&next, runs.len()) {
                     let (Some(run), Some(slot)) = (runs.get(index), slots.get(index)) else { return };
                     bar.set_message(run.case.name());
-                    let shown = run.execute();
+                    let shown = run.execute(&bar);
                     if let Ok(mut slot) = slot.lock() {
                         *slot = Some(shown);
                     }
@@ -130,7 +130,7 @@ struct Run<'a> {
 
 impl Run<'_> {
     /// Runs the program in its folder; files that it writes go to a temporary one.
-    fn execute(&self) -> Result<Shown> {
+    fn execute(&self, bar: &ProgressBar) -> Result<Shown> {
         let files = env::temp_dir().join(format!("cc67-test-{}-{}", process::id(), self.scratch));
         let name = self.case.source.file_name().unwrap_or_default();
         let mut command = Command::new(self.command);
@@ -141,7 +141,11 @@ impl Run<'_> {
         command.args(self.options).args(&self.case.options).arg(name).args(&self.case.also);
         command.current_dir(self.case.folder()).stdin(Stdio::null()).env("NO_COLOR", "1");
         let start = now();
-        let output = command.output().with_context(|| format!("cannot run {}", self.case.name()))?;
+        let output = match self.executor {
+            Executor::Controller(_) => relay::output(&mut command, |line| bar.suspend(|| self.relay(line))),
+            Executor::Engine(_) | Executor::AsBoard(_) | Executor::Boot(_) => command.output(),
+        };
+        let output = output.with_context(|| format!("cannot run {}", self.case.name()))?;
         let took = start.elapsed();
         // It exists only if the program wrote a file.
         let _ = fs::remove_dir_all(&files);
@@ -149,6 +153,13 @@ impl Run<'_> {
         let stderr = String::from_utf8_lossy(&output.stderr).replace(&*files.to_string_lossy(), "cc67-files");
         let shown = golden::shown(&output.stdout, stderr.as_bytes(), output.status.code());
         Ok(Shown { took, ..shown })
+    }
+
+    /// Shows a line of the run that is for the person at the controller.
+    fn relay(&self, line: &str) {
+        if let Some(text) = connected::for_person(line) {
+            terminal::note(&format!("{}: {text}", self.case.name()));
+        }
     }
 }
 

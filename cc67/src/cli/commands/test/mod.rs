@@ -14,6 +14,7 @@ mod golden;
 mod human;
 mod machine;
 mod near;
+mod relay;
 mod schedules;
 mod verdict;
 

@@ -2,5 +2,6 @@
 
 pub(super) mod computer;
 pub(super) mod lines;
+pub(super) mod manual;
 pub(super) mod mechanics;
 pub(super) mod options;
