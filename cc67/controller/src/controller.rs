@@ -3,6 +3,7 @@
 mod acting;
 mod attending;
 mod reading;
+mod sampling;
 
 use std::cell::RefCell;
 use std::fmt;
@@ -17,7 +18,7 @@ use kmotiondef::boards::TargetBoard;
 use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
 use runtime::stimulus::Stimulus;
-use runtime::trace::{Item, TraceRequest};
+use runtime::trace::{Item, Quantity, TraceRequest};
 use runtime::{Answers, Event, EventKind, HostFiles, OpenBox, RemoteBoard as _, RequestServer};
 use vm::scheduler::Turn;
 use vm::thread::ThreadState;
@@ -25,6 +26,7 @@ use vm::thread::ThreadState;
 use crate::bench::Bench;
 use crate::clock::{PassingTime, now};
 use crate::commands::Commands;
+use crate::controller::sampling::Sampling;
 use crate::files::{FileRemarks, Files};
 use crate::image;
 use crate::monitor::{self, Monitor};
@@ -67,6 +69,7 @@ pub struct Controller {
     pending: Vec<EventKind>,
     remarks: FileRemarks,
     recording: Option<BoardRecording>,
+    sampling: Option<Sampling>,
     /// What a person and the PC do meanwhile.
     bench: Bench,
     /// The status record has been read since the bench looked at it.
@@ -107,6 +110,7 @@ impl Controller {
             pending: Vec::new(),
             remarks: FileRemarks::default(),
             recording: None,
+            sampling: None,
             bench: Bench::default(),
             is_fresh: false,
             lost: None,
@@ -250,7 +254,10 @@ impl Target for Controller {
     }
 
     fn can(&self, capability: Capability) -> bool {
-        matches!(capability, Capability::Answers | Capability::Pauses | Capability::Recordings)
+        matches!(
+            capability,
+            Capability::Answers | Capability::Pauses | Capability::Recordings | Capability::FastSamples
+        )
     }
 
     fn open_box(&self) -> Option<OpenBox> {
@@ -297,6 +304,7 @@ impl Target for Controller {
         self.time.note();
         self.deliver(events);
         self.end_attending();
+        self.end_sampling();
         self.deliver(events);
         self.end_recording(events);
     }
@@ -305,6 +313,14 @@ impl Target for Controller {
         if let Err(error) = self.begin_recording(&request) {
             self.pending.push(EventKind::Host(format!("nothing is recorded: {error}")));
         }
+    }
+
+    fn sample(&mut self, quantities: Vec<Quantity>) -> Result<f64, HostError> {
+        self.begin_sampling(&quantities)
+    }
+
+    fn take_samples(&mut self) -> Option<Vec<(Ticks, Vec<f64>)>> {
+        self.sampling.as_mut().map(Sampling::take)
     }
 
     fn has_ended(&self) -> bool {
@@ -328,6 +344,7 @@ impl Target for Controller {
         let loaded = client.load(&image, is_forced, &mut |piece| progress(program.thread, piece));
         loaded.map_err(link)?;
         self.monitor.get_mut().forget(program.thread);
+        self.sampling = self.sampling.take().filter(|sampling| sampling.thread() != program.thread);
         self.monitor.get_mut().note_change();
         self.threads.note_loaded(program.thread, program.debug_info());
         if self.loading.terms.verifies {

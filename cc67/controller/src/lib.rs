@@ -15,6 +15,8 @@
 //! terms       the terms on which programs are loaded
 //! image       from a program to what is downloaded
 //! recording   variables in each servo tick, by the board's data recorder
+//! sampler     a program in a free thread that samples variables for a scope
+//! resident    loading programs of cc67
 //! threads     what is known of the board's threads
 //! seen        memory as the status record shows it
 //! clock       the time of a board, which passes by itself
@@ -47,6 +49,8 @@ mod files;
 mod image;
 mod monitor;
 mod recording;
+mod resident;
+mod sampler;
 mod saving;
 mod seen;
 mod terms;

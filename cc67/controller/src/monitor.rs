@@ -5,22 +5,20 @@
 //! the last 258 words of the gather buffer, which a recording reaches when it is nearly full.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::time::{Duration, Instant};
 
-use cc67_host::{HostError, UserProgram};
+use cc67_host::HostError;
 use cc67_wire::{Client, WireError};
 use compiler::Options;
-use compiler::inspect::Inspection;
 use kmotiondef::limits::MAX_GATHER_DATA;
 use kmotiondef::map::{IRAM, SDRAM};
 use kmotiondef::{GuestAddr, ThreadId};
 
 use crate::clock::now;
-use crate::image;
+use crate::resident::ResidentProgram;
 
-const SOURCE: &str = include_str!("monitor.c");
-const NAME: &str = "cc67-monitor.c";
+const PROGRAM: ResidentProgram =
+    ResidentProgram { name: "cc67-monitor.c", source: include_str!("monitor.c"), title: "cc67's monitor" };
 /// Words of memory for which one answer has room.
 const ROOM: u32 = 256;
 /// The answer in the gather buffer: the number of the request, a sum, the words.
@@ -98,6 +96,11 @@ impl Monitor {
     /// Allows it to be loaded.
     pub(crate) const fn allow(&mut self) {
         self.is_allowed = true;
+    }
+
+    /// The options of programs for this board, and the version of the firmware that they are linked for.
+    pub(crate) fn options(&self) -> (&Options, &str) {
+        (&self.options, &self.linked_for)
     }
 
     /// Returns whether it may be used.
@@ -200,15 +203,7 @@ impl Monitor {
                     .to_owned(),
             ));
         };
-        let program = UserProgram::compile_text(Path::new(NAME), SOURCE.into(), thread, &self.options)?;
-        let version = board.version().trim_end().to_owned();
-        let loaded = image::of_program(&program, &self.linked_for, &version)?;
-        let failed = |text: String| HostError::Link(format!("cc67's monitor: {text}"));
-        let inspected = Inspection::read(&program.image).map_err(|error| failed(error.to_string()))?;
-        let symbol = inspected.symbols.iter().find(|symbol| symbol.name == "cc67_request");
-        let request = symbol.map(|symbol| symbol.address);
-        let request = request.ok_or_else(|| failed("it has no request".to_owned()))?;
-        board.load(&loaded, false, &mut |_| {}).map_err(|error| failed(error.to_string()))?;
+        let request = PROGRAM.load(board, &self.options, &self.linked_for, thread)?;
         self.announced = Some(thread);
         Ok(Resident { thread, request, serial: 0 })
     }

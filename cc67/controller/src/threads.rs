@@ -98,6 +98,12 @@ impl BoardThreads {
         self.note(thread, true);
     }
 
+    /// Notes that a thread runs a program of cc67 itself, which is not waited for.
+    pub(crate) fn note_served(&mut self, thread: ThreadId) {
+        self.note_started(thread);
+        self.all[thread.index()].is_foreign = true;
+    }
+
     /// Notes that a thread was stopped.
     pub(crate) fn note_stopped(&mut self, thread: ThreadId) {
         self.all[thread.index()].is_paused = false;

@@ -23,6 +23,8 @@ pub enum Capability {
     Surroundings,
     /// Variables are recorded.
     Recordings,
+    /// Variables are sampled by the target itself, more often than they can be read one by one.
+    FastSamples,
     /// Threads are paused one by one while the others run.
     Pauses,
     /// Received lines are echoed to the client.
@@ -45,6 +47,7 @@ impl fmt::Display for Capability {
             Self::Echoes => "echo the lines that it receives",
             Self::Answers => "be given answers by a call: a statement of a stimulus does",
             Self::Recordings => "be recorded",
+            Self::FastSamples => "sample variables by itself",
             Self::Surroundings => "be connected to a stimulus, a machine file or a recorder",
         })
     }

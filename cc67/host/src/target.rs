@@ -27,7 +27,7 @@ use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
 use runtime::standing::{StandingAxis, StandingThread};
 use runtime::stimulus::Stimulus;
-use runtime::trace::{Item, TraceRequest};
+use runtime::trace::{Item, Quantity, TraceRequest};
 use runtime::{Event, OpenBox};
 use vm::engine::{AccessRange, CallEnd, ContextId, FrameView, Hold};
 use vm::scheduler::Turn;
@@ -296,6 +296,22 @@ pub trait Target {
     /// target at the end of the run.
     fn record(&mut self, request: TraceRequest) {
         let _ = request;
+    }
+
+    /// Samples variables by itself from now on, or no longer if there are none ([`Capability::FastSamples`]); returns how many
+    /// times a second.
+    ///
+    /// # Errors
+    /// [`Unsupported`], nothing of it is a variable, or a connected target does not take it.
+    fn sample(&mut self, quantities: Vec<Quantity>) -> Result<f64, HostError> {
+        let _ = quantities;
+        Err(Unsupported { target: self.name(), capability: Capability::FastSamples }.into())
+    }
+
+    /// Takes the samples since the last call, each with its tick; a value that is unknown there is not a number. `None` of a
+    /// target that does not sample by itself.
+    fn take_samples(&mut self) -> Option<Vec<(Ticks, Vec<f64>)>> {
+        None
     }
 
     /// The box that a program has opened on the PC and that waits for an answer.

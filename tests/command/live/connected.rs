@@ -30,6 +30,17 @@ main()
 }
 ";
 
+/// The rows of the scope.
+const SCOPE: &str = "document.querySelector('#scope').scope.history";
+
+/// Follows other signals.
+fn watch(list: &str) -> String {
+    format!(
+        "(() => {{ const list = document.querySelector('#scope [aria-label=Signals]'); list.value = '{list}'; \
+         list.dispatchEvent(new Event('change')); }})()"
+    )
+}
+
 /// A board at the other end of a link, and the page of it; nothing where there is no browser.
 fn page(name: &str) -> Option<(Server, Browser, Live, Scratch)> {
     let Some(browser) = Browser::start() else {
@@ -67,12 +78,22 @@ fn a_page_looks_at_a_controller_until_control_is_switched_on() {
     browser.until(&format!("{} === 500", axis("Dest")));
     browser.until(&shows("#threads", "running"));
 
+    // A program in a free thread samples the signals of the scope: about 1,000 times a second, not 20.
+    browser.until(&shows("#console", "samples a second, by a program in a free thread"));
+    browser.until(&format!("{SCOPE}.count > 1000"));
+    browser.until(&format!("{SCOPE}.tick({SCOPE}.count - 1) - {SCOPE}.tick({SCOPE}.count - 101) < 4000"));
+
     // A box waits for the person at the page.
     browser.until(&shows("#asks", "Tool in?"));
     press(&mut browser, "Yes");
     browser.until(&shows("#console", "the answer is 6"));
     browser.value("document.querySelector('#io details:has(.persist)').open = true");
     browser.until("Number(document.querySelector('[aria-label=\"persist 6\"]').value) > 20");
+
+    browser.value(&watch("dest0, out0, persist6, bit0"));
+    browser.until(&format!("{SCOPE}.names.length === 4 && {SCOPE}.count > 200"));
+    let last = format!("{SCOPE}.value({SCOPE}.count - 1");
+    browser.until(&format!("{last}, 0) === 500 && {last}, 2) > 0 && {last}, 3) === 0"));
 
     // The axis moves as long as the button is held.
     browser.mouse("mousePressed", "[aria-label='Jog + Axis 0']");
@@ -88,6 +109,8 @@ fn a_page_looks_at_a_controller_until_control_is_switched_on() {
 
     press(&mut browser, "STOP");
     browser.until(&shows("#threads", "not running"));
+    browser
+        .until(&shows("#console", "cc67's sampler in thread 7 was stopped: 20 samples a second from now on"));
     browser.until("document.querySelector('#axes tbody tr').classList.contains('off')");
 
     // A link that is lost is told at once, and nothing acts any more.

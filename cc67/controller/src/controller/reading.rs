@@ -41,6 +41,7 @@ impl Controller {
                 if self.seen.take_look() {
                     self.read_elements();
                 }
+                self.read_samples();
             }
             Err(error) => self.note_error(&error),
         }

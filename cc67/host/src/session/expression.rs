@@ -95,7 +95,7 @@ impl Watch {
     }
 
     /// The same for what records the board as it runs.
-    fn into_quantity(self) -> Quantity {
+    pub(super) fn into_quantity(self) -> Quantity {
         match self.0 {
             Watched::Item(item) => item.into(),
             Watched::Compiled(text, compiled) => Quantity::Formula(text, compiled),

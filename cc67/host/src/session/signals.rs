@@ -9,6 +9,7 @@ use crate::target::Target;
 use kmotiondef::Ticks;
 
 use super::{Session, Watch};
+use crate::HostError;
 
 /// Names a subscription of a session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -32,6 +33,8 @@ pub(super) struct Signals {
     count: u64,
     /// The tick that was looked at last.
     last: Ticks,
+    /// The subscription that the target samples by itself.
+    on_target: Option<SubscriptionId>,
 }
 
 impl fmt::Debug for Signals {
@@ -88,8 +91,34 @@ impl<T: Target> Session<T> {
         id
     }
 
+    /// Has the target sample a subscription by itself, more often than values can be read
+    /// ([`Capability::FastSamples`](crate::Capability::FastSamples)); returns how many times a second. Values that it does
+    /// not know there are those of its last status record.
+    ///
+    /// # Errors
+    /// The target cannot, or takes nothing of it now.
+    pub fn sample_on_target(&mut self, id: SubscriptionId) -> Result<f64, HostError> {
+        let subscription = self.signals.subscriptions.iter().find(|subscription| subscription.id == id);
+        let watched = subscription.map(|subscription| subscription.watched.clone()).unwrap_or_default();
+        self.signals.on_target = None;
+        let rate = self.target.sample(watched.into_iter().map(Watch::into_quantity).collect())?;
+        self.signals.on_target = Some(id);
+        Ok(rate)
+    }
+
+    /// Ends what [`sample_on_target`](Self::sample_on_target) has begun: the session reads the values again.
+    pub fn end_sampling_on_target(&mut self) {
+        if self.signals.on_target.take().is_some() {
+            // A target that is lost has nothing to end.
+            let _ = self.target.sample(Vec::new());
+        }
+    }
+
     /// Ends a subscription.
     pub fn unsubscribe(&mut self, id: SubscriptionId) {
+        if self.signals.on_target == Some(id) {
+            self.end_sampling_on_target();
+        }
         self.signals.subscriptions.retain(|subscription| subscription.id != id);
     }
 
@@ -99,8 +128,12 @@ impl<T: Target> Session<T> {
         if self.signals.subscriptions.is_empty() || self.signals.last == tick {
             return;
         }
+        let on_target = self.take_from_target();
         let last = std::mem::replace(&mut self.signals.last, tick);
         for subscription in &mut self.signals.subscriptions {
+            if on_target == Some(subscription.id) {
+                continue;
+            }
             // A simulated board stops at each multiple; the time of a connected one may be past it.
             if last.get() / subscription.every < tick.get() / subscription.every {
                 let values: Vec<f64> =
@@ -108,5 +141,25 @@ impl<T: Target> Session<T> {
                 (subscription.receiver)(tick, &values);
             }
         }
+    }
+
+    /// Hands over what the target has sampled by itself; returns the subscription, or nothing once it has ended.
+    fn take_from_target(&mut self) -> Option<SubscriptionId> {
+        let id = self.signals.on_target?;
+        let Some(rows) = self.target.take_samples() else {
+            self.signals.on_target = None;
+            return None;
+        };
+        let subscription =
+            self.signals.subscriptions.iter_mut().find(|subscription| subscription.id == id)?;
+        for (tick, mut values) in rows {
+            for (value, watch) in values.iter_mut().zip(&subscription.watched) {
+                if value.is_nan() {
+                    *value = watch.value(&self.target);
+                }
+            }
+            (subscription.receiver)(tick, &values);
+        }
+        Some(id)
     }
 }

@@ -6,7 +6,7 @@ use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
 use runtime::standing::{StandingAxis, StandingThread};
 use runtime::stimulus::Stimulus;
-use runtime::trace::{Item, TraceRequest};
+use runtime::trace::{Item, Quantity, TraceRequest};
 use runtime::{Board, OpenBox};
 use vm::engine::{AccessRange, CallEnd, ContextId, FrameView, Hold};
 use vm::scheduler::Turn;
@@ -173,6 +173,8 @@ impl Target for AnyTarget {
         fn drive_input(&mut self, bit: Bit, level: bool);
         fn send_to_uart(&mut self, bytes: &[u8]);
         fn record(&mut self, request: TraceRequest);
+        fn sample(&mut self, quantities: Vec<Quantity>) -> Result<f64, HostError>;
+        fn take_samples(&mut self) -> Option<Vec<(Ticks, Vec<f64>)>>;
         fn prepare_to_hold(&mut self);
         fn set_breakpoints(&mut self, addresses: &[CodeAddr]);
         fn set_stepping(&mut self, context: Option<ContextId>);

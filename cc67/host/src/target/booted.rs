@@ -350,9 +350,11 @@ impl Target for BootedTarget {
             | Capability::Echoes
             | Capability::ProcessorCode => true,
             Capability::Surroundings | Capability::Recordings => self.board.external().is_some(),
-            Capability::AccessWatchpoints | Capability::Answers | Capability::Calls | Capability::Pauses => {
-                false
-            }
+            Capability::AccessWatchpoints
+            | Capability::Answers
+            | Capability::Calls
+            | Capability::FastSamples
+            | Capability::Pauses => false,
         }
     }
 

@@ -67,7 +67,10 @@ impl<E: Engine> Target for Board<E> {
             | Capability::Calls
             | Capability::Watchpoints
             | Capability::AccessWatchpoints => E::HOLDS,
-            Capability::ProcessorCode | Capability::Answers | Capability::Pauses => false,
+            Capability::ProcessorCode
+            | Capability::Answers
+            | Capability::Pauses
+            | Capability::FastSamples => false,
         }
     }
 

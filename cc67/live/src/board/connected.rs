@@ -58,11 +58,27 @@ impl<T: Target> ViewState<T> {
     }
 
     /// Somebody switches control on or off.
-    pub(super) fn control(&mut self, session: &Session<T>, is_on: bool) {
+    pub(super) fn control(&mut self, session: &mut Session<T>, is_on: bool) {
         self.access.is_controlled = is_on;
         let said = if is_on { "control is on: pages can move the machine" } else { "control is off" };
         self.log.say(session.tick(), Voice::Remark, said.to_owned());
         self.broadcast(&self.access.message());
+        self.sample_on_controller(session);
+    }
+
+    /// Has the controller sample the scope's signals by itself while control is on: it takes a free thread.
+    pub(super) fn sample_on_controller(&mut self, session: &mut Session<T>) {
+        if !self.is_real() || self.access.lost.is_some() {
+            return;
+        }
+        let said = match self.samples.on_target(session, self.access.is_controlled) {
+            Ok(Some(rate)) => {
+                format!("the scope has {rate:.0} samples a second, by a program in a free thread")
+            }
+            Ok(None) => return,
+            Err(error) => format!("the scope has 20 samples a second: {error}"),
+        };
+        self.log.say(session.tick(), Voice::Remark, said);
     }
 
     /// Stops all threads and disables all axes.

@@ -322,6 +322,9 @@ impl<T: Target> ViewState<T> {
             PageRequest::Watch { list } => {
                 self.samples.follow(session, &list, self.clock.speed());
                 self.broadcast(&self.signals());
+                if self.may_load() {
+                    self.sample_on_controller(session);
+                }
                 if let Some(wrong) = self.samples.wrong().first() {
                     return Err(format!("{}: {}", wrong.name, wrong.text));
                 }

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex};
 
 use cc67_host::session::{SubscriptionId, expressions};
-use cc67_host::{Session, Target, Watch};
+use cc67_host::{HostError, Session, Target, Watch};
 use kmotiondef::Ticks;
 use serde::Serialize;
 
@@ -128,6 +128,21 @@ impl Samples {
             let watched = self.names.iter().filter_map(|name| session.watch(name).ok()).collect::<Vec<_>>();
             if watched.len() == self.names.len() {
                 self.subscribe(session, watched, speed);
+            }
+        }
+    }
+
+    /// Has a controller sample the signals by itself, if it should and there are any; returns how many times a second.
+    pub(super) fn on_target<T: Target>(
+        &mut self,
+        session: &mut Session<T>,
+        is_wanted: bool,
+    ) -> Result<Option<f64>, HostError> {
+        match self.subscription.filter(|_| is_wanted) {
+            Some(subscription) => session.sample_on_target(subscription).map(Some),
+            None => {
+                session.end_sampling_on_target();
+                Ok(None)
             }
         }
     }
