@@ -27,8 +27,8 @@ const ROOM: u32 = 1 << 16;
 const CELLS: usize = 32;
 /// The shortest interval in ticks: threads have the processor every second tick at best.
 const SHORTEST: f64 = 10.0;
-/// Bytes a second that the rows may take on the link: a fifth of 300 KB/s.
-const BYTES_A_SECOND: f64 = 60_000.0;
+/// Bytes a second that the rows may take on the link: a sixth of 300 KB/s.
+const BYTES_A_SECOND: f64 = 50_000.0;
 /// Bytes of a double as it is sent: two words of eight digits and a blank.
 const BYTES: f64 = 18.0;
 /// Words that are read at once.
