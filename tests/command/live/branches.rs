@@ -3,7 +3,7 @@
 use harness::Scratch;
 
 use super::Live;
-use super::browser::Browser;
+use super::browser::{Browser, Mouse};
 use super::page::{PROGRAM, axis, press, shows};
 use super::panels::assert_accessible;
 
@@ -18,10 +18,7 @@ fn slider(browser: &mut Browser) -> [f64; 3] {
 
 #[test]
 fn a_drag_lands_where_it_ends_and_the_run_that_is_left_is_kept() {
-    let Some(mut browser) = Browser::start() else {
-        println!("no Chromium here: the page is not opened");
-        return;
-    };
+    let Some(mut browser) = Browser::start() else { return };
     let folder = Scratch::new("live-branches");
     folder.write("home.c", PROGRAM);
     let live = Live::start(&folder, &["home.c", "--watch", "dest0,bit136"]);
@@ -37,11 +34,11 @@ fn a_drag_lands_where_it_ends_and_the_run_that_is_left_is_kept() {
 
     // With a real pointer, from the end to two fifths.
     let [left, width, y] = slider(&mut browser);
-    browser.mouse_at("mousePressed", left + width * 0.9, y);
+    browser.mouse_at(Mouse::Press, left + width * 0.9, y);
     for part in [0.8, 0.6, 0.5, 0.4] {
-        browser.mouse_at("mouseMoved", left + width * part, y);
+        browser.mouse_at(Mouse::Move, left + width * part, y);
     }
-    browser.mouse_at("mouseReleased", left + width * 0.4, y);
+    browser.mouse_at(Mouse::Release, left + width * 0.4, y);
     browser.until(&shows("#timeline", "in the past"));
     assert_eq!(slider(&mut browser)[..2], [left, width], "the timeline keeps its size");
     let at = "document.querySelector('[aria-label=Timeline]').valueAsNumber";
@@ -67,6 +64,6 @@ fn a_drag_lands_where_it_ends_and_the_run_that_is_left_is_kept() {
         "document.querySelectorAll('#timeline .branch button:last-child').forEach((one) => one.click())",
     );
     browser.until("document.querySelectorAll('#timeline .branch').length === 0");
-    assert_eq!(browser.complaints, [""; 0]);
+    assert_eq!(browser.complaints(), [""; 0]);
     assert_eq!(live.end(), "");
 }

@@ -3,7 +3,7 @@
 use harness::Scratch;
 
 use super::Live;
-use super::browser::Browser;
+use super::browser::{Browser, Mouse};
 use super::page::{axis, press, shows};
 use super::panels::assert_accessible;
 use crate::serve::Server;
@@ -43,10 +43,7 @@ fn watch(list: &str) -> String {
 
 /// A board at the other end of a link, and the page of it; nothing where there is no browser.
 fn page(name: &str) -> Option<(Server, Browser, Live, Scratch)> {
-    let Some(browser) = Browser::start() else {
-        println!("no Chromium here: the page is not opened");
-        return None;
-    };
+    let Some(browser) = Browser::start() else { return None };
     let listen = if cfg!(unix) { ["serve", "--listen", "pty"] } else { ["serve", "--listen", "tcp-raw:0"] };
     let server = Server::start(&format!("{name}-board"), &listen, PROGRAM, 1);
     let folder = Scratch::new(name);
@@ -96,16 +93,16 @@ fn a_page_looks_at_a_controller_until_control_is_switched_on() {
     browser.until(&format!("{last}, 0) === 500 && {last}, 2) > 0 && {last}, 3) === 0"));
 
     // The axis moves as long as the button is held.
-    browser.mouse("mousePressed", "[aria-label='Jog + Axis 0']");
+    browser.mouse(Mouse::Press, "[aria-label='Jog + Axis 0']");
     browser.until(&format!("{} > 600", axis("Dest")));
-    browser.mouse("mouseReleased", "[aria-label='Jog + Axis 0']");
+    browser.mouse(Mouse::Release, "[aria-label='Jog + Axis 0']");
     rests(&mut browser);
     // A page that is silent while it holds the button stops it as well.
     browser.value("window.setInterval = () => 1");
-    browser.mouse("mousePressed", "[aria-label='Jog − Axis 0']");
+    browser.mouse(Mouse::Press, "[aria-label='Jog − Axis 0']");
     browser.until(&shows("#console", "Jog0=-"));
     rests(&mut browser);
-    browser.mouse("mouseReleased", "[aria-label='Jog − Axis 0']");
+    browser.mouse(Mouse::Release, "[aria-label='Jog − Axis 0']");
 
     press(&mut browser, "STOP");
     browser.until(&shows("#threads", "not running"));
@@ -118,7 +115,7 @@ fn a_page_looks_at_a_controller_until_control_is_switched_on() {
     browser.until(&shows("#notice", "The controller cannot be reached, and what this page shows is old"));
     browser.until("document.body.classList.contains('lost') && document.querySelector('#axes .keys').inert");
     browser.until("document.querySelector('#axes tbody td[data-label=Dest]').textContent === '–'");
-    assert_eq!(browser.complaints, [""; 0]);
+    assert_eq!(browser.complaints(), [""; 0]);
 }
 
 /// Waits until the first axis rests.

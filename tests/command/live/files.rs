@@ -22,10 +22,7 @@ main()
 
 #[test]
 fn errors_are_shown_as_in_the_terminal_and_reload_says_that_nothing_is_loaded() {
-    let Some(mut browser) = Browser::start() else {
-        println!("no Chromium here: the page is not opened");
-        return;
-    };
+    let Some(mut browser) = Browser::start() else { return };
     let folder = Scratch::new("live-files");
     folder.write("home.c", PROGRAM);
     let live = Live::start(&folder, &["home.c"]);
@@ -46,16 +43,13 @@ fn errors_are_shown_as_in_the_terminal_and_reload_says_that_nothing_is_loaded() 
     fs::remove_file(folder.path().join("home.c")).expect("it is there");
     browser.until(&shows("#source .head", "cannot read home.c"));
     browser.until(&format!("!{}", shows("#source", "Reload loads it")));
-    assert_eq!(browser.complaints, [""; 0]);
+    assert_eq!(browser.complaints(), [""; 0]);
     assert_eq!(live.end(), "");
 }
 
 #[test]
 fn the_machine_file_is_applied_when_it_is_saved_and_the_board_begins_again() {
-    let Some(mut browser) = Browser::start() else {
-        println!("no Chromium here: the page is not opened");
-        return;
-    };
+    let Some(mut browser) = Browser::start() else { return };
     let folder = Scratch::new("live-machine");
     folder.write("home.c", PROGRAM);
     folder.write("x.toml", "[axis.0]\nname = \"X\"\n");
@@ -77,16 +71,13 @@ fn the_machine_file_is_applied_when_it_is_saved_and_the_board_begins_again() {
     browser.until(&shows("#console", "homing"));
     let once = "document.querySelector('#console').textContent.split('homing').length === 2";
     browser.until(once);
-    assert_eq!(browser.complaints, [""; 0]);
+    assert_eq!(browser.complaints(), [""; 0]);
     assert_eq!(live.end(), "");
 }
 
 #[test]
 fn a_trap_is_a_red_line_with_its_reason() {
-    let Some(mut browser) = Browser::start() else {
-        println!("no Chromium here: the page is not opened");
-        return;
-    };
+    let Some(mut browser) = Browser::start() else { return };
     let folder = Scratch::new("live-trap");
     folder.write("wild.c", TRAP);
     let live = Live::start(&folder, &["wild.c"]);
@@ -96,6 +87,6 @@ fn a_trap_is_a_red_line_with_its_reason() {
     browser.until(&shows(".thread.trap .badge", "trap"));
     browser.until("document.querySelector('.thread.trap .reason').textContent.length > 10");
     browser.until("document.querySelector('.thread.trap .where').title.startsWith('wild.c:7 in main')");
-    assert_eq!(browser.complaints, [""; 0]);
+    assert_eq!(browser.complaints(), [""; 0]);
     assert_eq!(live.end(), "");
 }

@@ -10,7 +10,6 @@ use std::time::{Duration, Instant};
 
 use harness::usage::Usage;
 use harness::{Scratch, is_long};
-use serde_json::json;
 
 use super::Live;
 use super::browser::Browser;
@@ -82,7 +81,7 @@ struct Reading {
     at: Instant,
     painted: f64,
     server: Usage,
-    /// The heap of the page after garbage collection, in MiB.
+    /// The heap of the page after garbage collection, in MiB; 0 of a browser that does not tell.
     heap: f64,
 }
 
@@ -91,10 +90,7 @@ impl Reading {
     fn take(browser: &mut Browser, live: &Live) -> Self {
         let painted = browser.value("painted").as_f64().expect("a number");
         let (at, server) = (Instant::now(), Usage::of(live.child.id()));
-        browser.call("HeapProfiler.collectGarbage", json!({}));
-        let heap = browser.call("Runtime.getHeapUsage", json!({}));
-        let bytes = |name: &str| heap[name].as_f64().unwrap_or_default();
-        let heap = (bytes("usedSize") + bytes("backingStorageSize")) / f64::from(1 << 20);
+        let heap = browser.heap().unwrap_or_default() / f64::from(1 << 20);
         Self { at, painted, server, heap }
     }
 
@@ -113,16 +109,12 @@ impl Reading {
 
 #[test]
 fn a_page_left_open_does_not_paint_or_hold_more_over_time() {
-    let Some(mut browser) = Browser::start() else {
-        println!("no Chromium here: the page is not opened");
-        return;
-    };
+    let Some(mut browser) = Browser::start() else { return };
     let trial = if is_long() { HOUR } else { MOMENT };
     let folder = Scratch::new("live-lasting");
     fs::write(folder.path().join("eight.c"), PROGRAM).expect("files can be written");
     let live = Live::start(&folder, &["eight.c", "--watch", SIGNALS]);
-    let counter = format!("{{ {COUNTER} }}");
-    browser.call("Page.addScriptToEvaluateOnNewDocument", json!({ "source": counter }));
+    browser.preload(&format!("{{ {COUNTER} }}"));
     browser.open(&live.url);
     browser.until(&shows("#console", "1"));
     browser.until(&format!("{} !== 0 && painted > 0", axis("Dest")));
@@ -138,7 +130,7 @@ fn a_page_left_open_does_not_paint_or_hold_more_over_time() {
         readings.push(next);
     }
     check(&trial, &readings);
-    assert_eq!(browser.complaints, [""; 0]);
+    assert_eq!(browser.complaints(), [""; 0]);
     assert_eq!(live.end(), "");
 }
 

@@ -30,10 +30,7 @@ fn out_of_reach(selector: &str) -> String {
 
 #[test]
 fn what_acts_is_in_reach_at_each_size() {
-    let Some(mut browser) = Browser::start() else {
-        println!("no Chromium here: the page is not opened");
-        return;
-    };
+    let Some(mut browser) = Browser::start() else { return };
     let folder = Scratch::new("live-layout");
     folder.write("first.c", PROGRAM);
     let others: Vec<String> = (2..=7).map(|number| format!("{number}:other{number}.c")).collect();
@@ -57,7 +54,7 @@ fn what_acts_is_in_reach_at_each_size() {
     for (width, height) in [(1440, 900), (1024, 768), (900, 500), (390, 760)] {
         browser.resize(width, height);
         browser.until(&format!("innerWidth === {width}"));
-        browser.value("document.querySelector('#panels').scrollTop = 1e6; scrollTo(0, 1e6)");
+        browser.value("document.querySelector('#panels').scrollTop = 1e6, scrollTo(0, 1e6)");
         let top = browser.value("document.querySelector('.stop').getBoundingClientRect().top");
         let top = top.as_f64().expect("a number");
         assert!((0.0..120.0).contains(&top), "STOP is at {top} of {height}");
@@ -81,6 +78,6 @@ fn what_acts_is_in_reach_at_each_size() {
     browser.until(&format!("{width} > 1400 && !document.querySelector('#axes').clientWidth"));
     browser.value("dispatchEvent(new KeyboardEvent('keydown', { key: 'Escape' }))");
     browser.until(&format!("{width} < 900 && document.querySelector('#axes').clientWidth > 0"));
-    assert_eq!(browser.complaints, [""; 0]);
+    assert_eq!(browser.complaints(), [""; 0]);
     assert_eq!(live.end(), "");
 }

@@ -7,7 +7,7 @@ use harness::{Scratch, cc67};
 use serde_json::json;
 
 use super::Live;
-use super::browser::Browser;
+use super::browser::{Browser, Mouse};
 
 /// Runs to a switch that somebody has to close, and from there to 250.
 pub(super) const PROGRAM: &str = "\
@@ -54,10 +54,7 @@ pub(super) fn press(browser: &mut Browser, text: &str) {
 
 #[test]
 fn a_session_works_on_the_page() {
-    let Some(mut browser) = Browser::start() else {
-        eprintln!("no Chromium here: the page is not opened");
-        return;
-    };
+    let Some(mut browser) = Browser::start() else { return };
     let folder = Scratch::new("live-page");
     fs::write(folder.path().join("home.c"), PROGRAM).expect("files can be written");
     fs::write(folder.path().join("x.toml"), "[axis.0]\nname = \"X\"\nunits = \"steps\"\n").expect("the same");
@@ -73,9 +70,9 @@ fn a_session_works_on_the_page() {
     browser.until(&format!("{} === 250", axis("Dest")));
 
     // Jog as long as the button is held.
-    browser.mouse("mousePressed", "[aria-label='Jog + X']");
+    browser.mouse(Mouse::Press, "[aria-label='Jog + X']");
     browser.until(&format!("{} > 400", axis("Dest")));
-    browser.mouse("mouseReleased", "[aria-label='Jog + X']");
+    browser.mouse(Mouse::Release, "[aria-label='Jog + X']");
     browser.until(&format!("{} === 0", axis("Velocity")));
     // A command in the console.
     browser.value("(() => { const field = document.querySelector('[aria-label=Console]'); field.value = 'Dest0=700'; field.form.requestSubmit(); })()");
@@ -88,9 +85,9 @@ fn a_session_works_on_the_page() {
     drag_back(&mut browser);
     edit(&mut browser, folder.path());
 
-    assert_eq!(browser.complaints, [""; 0]);
+    assert_eq!(browser.complaints(), [""; 0]);
     let outside: Vec<_> = browser
-        .requests
+        .requests()
         .iter()
         .filter(|url| !url.contains(live.host()) && !url.starts_with("data:") && !url.starts_with("blob:"))
         .collect();

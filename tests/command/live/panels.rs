@@ -21,10 +21,7 @@ main()
 
 #[test]
 fn encoders_turn_and_persist_is_set_and_every_control_has_a_name() {
-    let Some(mut browser) = Browser::start() else {
-        println!("no Chromium here: the page is not opened");
-        return;
-    };
+    let Some(mut browser) = Browser::start() else { return };
     let folder = Scratch::new("live-panels");
     fs::write(folder.path().join("wheel.c"), PROGRAM).expect("files can be written");
     let live = Live::start(&folder, &["wheel.c"]);
@@ -48,7 +45,7 @@ fn encoders_turn_and_persist_is_set_and_every_control_has_a_name() {
     browser.until("document.querySelector('.persist').innerText.includes('0x3fc00000')");
 
     assert_accessible(&mut browser);
-    assert_eq!(browser.complaints, [""; 0]);
+    assert_eq!(browser.complaints(), [""; 0]);
     assert_eq!(live.end(), "");
 }
 

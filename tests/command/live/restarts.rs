@@ -8,10 +8,7 @@ use super::page::{PROGRAM, axis, shows};
 
 #[test]
 fn an_open_page_finds_the_server_that_was_started_again() {
-    let Some(mut browser) = Browser::start() else {
-        println!("no Chromium here: the page is not opened");
-        return;
-    };
+    let Some(mut browser) = Browser::start() else { return };
     let folder = Scratch::new("live-restarts");
     folder.write("home.c", PROGRAM);
     let first = Live::start(&folder, &["home.c"]);
@@ -37,7 +34,7 @@ fn an_open_page_finds_the_server_that_was_started_again() {
     let third = Live::start_at(&other, &port, &["home.c"]);
     assert_ne!(third.url, url);
     browser.until(&shows("#notice", "open the address that it printed"));
-    browser.call("Page.reload", serde_json::json!({}));
+    browser.reload();
     browser.until("document.body.textContent.includes('Open the address that cc67 printed')");
 }
 

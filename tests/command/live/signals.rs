@@ -32,10 +32,7 @@ fn enter(browser: &mut Browser, list: &str) {
 
 #[test]
 fn a_wrong_signal_is_named_and_leaves_the_others() {
-    let Some(mut browser) = Browser::start() else {
-        println!("no Chromium here: the page is not opened");
-        return;
-    };
+    let Some(mut browser) = Browser::start() else { return };
     let folder = Scratch::new("live-signals");
     let source = PROGRAM.replace("VORSCHUB", "Vorschub f\u{fc}r \u{d8} 8");
     let latin1: Vec<u8> = source.chars().map(|one| u8::try_from(one).expect("Latin-1")).collect();
@@ -67,6 +64,6 @@ fn a_wrong_signal_is_named_and_leaves_the_others() {
         .until("document.querySelector('[aria-label=\"Z is axis\"]').selectedOptions[0].textContent === '2'");
     let cut = "[...document.querySelectorAll('#path select')].filter((one) => one.scrollWidth > one.clientWidth).length";
     assert_eq!(browser.value(cut), 0);
-    assert_eq!(browser.complaints, [""; 0]);
+    assert_eq!(browser.complaints(), [""; 0]);
     assert_eq!(live.end(), "");
 }
