@@ -43,7 +43,7 @@ fn watch(list: &str) -> String {
 
 /// A board at the other end of a link, and the page of it; nothing where there is no browser.
 fn page(name: &str) -> Option<(Server, Browser, Live, Scratch)> {
-    let Some(browser) = Browser::start() else { return None };
+    let browser = Browser::start()?;
     let listen = if cfg!(unix) { ["serve", "--listen", "pty"] } else { ["serve", "--listen", "tcp-raw:0"] };
     let server = Server::start(&format!("{name}-board"), &listen, PROGRAM, 1);
     let folder = Scratch::new(name);
