@@ -1,4 +1,4 @@
-//! Each promise of the README and the book about installing, editors and packages has a test that keeps it.
+//! Each promise of the READMEs and the book about installing, editors and packages has a test that keeps it.
 //!
 //! `promises.tsv` has a row for each: the page, the words, and what keeps it. That is a test (`FILE::FUNCTION`), or a script with the
 //! words in it that do the work (`SCRIPT: WORDS`), which `.ci/run` or a workflow runs.
@@ -39,6 +39,7 @@ const WORDS: &[&str] = &[
 const OTHER: &[(&str, &str)] = &[
     ("debugging.md", "gdb's commands, with completion and history"),
     ("editors.md", "clangd provides completion"),
+    ("project/README.md", "clangd: completion and help"),
     ("editors.md", "completion = [{ name"),
     ("from-arduino.md", "pio"),
 ];
@@ -62,14 +63,23 @@ fn promises() -> Vec<Promise> {
     rows.collect()
 }
 
-/// The pages for users: the README and the chapters that are neither made from tables nor for contributors.
+/// The READMEs that users read: of the repository, the extension, the Python package and a new project.
+const READMES: &[&str] = &[
+    "README.md",
+    "cc67/editors/README.md",
+    "cc67/editors/vscode/README.md",
+    "cc67/python/README.md",
+    "cc67/src/cli/commands/init/project/README.md",
+];
+
+/// The pages for users: READMEs, and the chapters that are neither made from tables nor for contributors.
 fn pages() -> Vec<(String, String)> {
     const OTHERS: &[&str] =
         &["contributing.md", "architecture.md", "messages.md", "warnings.md", "SUMMARY.md"];
     let folder = root().join("cc67/book/src");
     let chapters = files(&folder, "md").into_iter().filter(|path| path.parent() == Some(&folder));
     let chapters = chapters.filter(|path| !OTHERS.iter().any(|name| path.ends_with(name)));
-    let paths = chapters.chain([root().join("README.md")]);
+    let paths = chapters.chain(READMES.iter().map(|name| root().join(name)));
     paths.map(|path| (relative(&path), fs::read_to_string(&path).expect("pages are UTF-8"))).collect()
 }
 
