@@ -201,6 +201,18 @@ static const char *read_file(const char *name)
     return text;
 }
 
+/* A new file for the output of a process; the console of the process before may hold it for a moment. */
+static HANDLE create_file(const char *name, SECURITY_ATTRIBUTES *inherited)
+{
+    for (int attempt = 0; attempt < 100; attempt++) {
+        HANDLE file = CreateFileA(name, GENERIC_WRITE, FILE_SHARE_READ, inherited, CREATE_ALWAYS, 0, NULL);
+        if (file != INVALID_HANDLE_VALUE) return file;
+        Sleep(50);
+    }
+    stop(name);
+    return NULL;
+}
+
 /* Starts a process with its output in a file, or in a pipe that nobody reads if there is no name of one. */
 static PROCESS_INFORMATION start(char *line, const char *file)
 {
@@ -209,8 +221,7 @@ static PROCESS_INFORMATION start(char *line, const char *file)
     if (file == NULL) {
         CreatePipe(&unread, &output, &inherited, 4096);
     } else {
-        output = CreateFileA(file, GENERIC_WRITE, FILE_SHARE_READ, &inherited, CREATE_ALWAYS, 0, NULL);
-        if (output == INVALID_HANDLE_VALUE) stop(file);
+        output = create_file(file, &inherited);
     }
     STARTUPINFOA how;
     memset(&how, 0, sizeof how);
