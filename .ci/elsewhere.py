@@ -82,7 +82,7 @@ def main(system, target, runner, chosen):
             skipped = [word for test in sorted(built & named) for word in ("--skip", test)]
             output = execute(runner, there[name], ["--exact", *skipped]).replace("\r", "")
             # Wine may write before a line.
-            passed = len(run & set(re.findall(r"\btest (\S+)(?: - should panic)? +\.\.\. ok$", output, re.M)))
+            passed = len(run & set(re.findall(r"\btest (.+?)(?: - should panic)? +\.\.\. ok$", output, re.M)))
             if passed < len(run) or "test result: ok" not in output:
                 problems.append(f"{name}: {len(run) - passed} of {len(run)} tests did not pass")
                 log = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / f"{system}-{name.replace('/', '-')}.txt"
