@@ -6,7 +6,7 @@
 
 use c67x::Inst;
 
-use super::graph::{self, Graph};
+use super::graph::{self, BRANCH, Graph};
 use super::packets::{FETCH, Issued, LONGEST, Scheduled};
 use super::resources::Resources;
 use super::step::{Access, Step};
@@ -71,8 +71,11 @@ pub(super) fn run(items: &mut [Item<'_>], graph: &Graph, cycles: u32, at: u32) {
         resources.take(&item.issued.inst, item.issued.cycle);
         cells[item.issued.cycle as usize].push(index);
     }
+    // Where two branches do not share a cycle, what the first one leaves behind is not executed.
+    let leaves = items.iter().filter(|item| item.issued.inst.branch().is_some());
+    let landed = leaves.map(|item| item.issued.cycle + BRANCH).min().unwrap_or(cycles);
     let mut refiner =
-        Refiner { items, graph, nodes, cycles, last_access, resources, cells, before: Vec::new() };
+        Refiner { items, graph, nodes, cycles, landed, last_access, resources, cells, before: Vec::new() };
     refiner.fill();
     refiner.shorten(at);
 }
@@ -83,6 +86,8 @@ struct Refiner<'a, 'b> {
     /// The item of each node.
     nodes: Vec<usize>,
     cycles: u32,
+    /// The cycle by which all results have landed: the first branch leaves then.
+    landed: u32,
     /// The last cycle for loads and stores, if the stack pointer moves after it.
     last_access: Option<u32>,
     /// Everything that the items take.
@@ -103,7 +108,7 @@ impl Refiner<'_, '_> {
         let item = &self.items[index];
         let own = item.issued.cycle;
         let Some(node) = item.node.filter(|_| item.issued.inst.branch().is_none()) else { return own };
-        let mut latest = self.cycles - graph::landing(&item.issued.inst);
+        let mut latest = self.landed.saturating_sub(graph::landing(&item.issued.inst));
         for edge in &self.graph.after[node] {
             let to = self.items[self.nodes[edge.to as usize]].issued.cycle;
             latest = latest.min(to.saturating_sub(edge.cycles.into()));
