@@ -3,6 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
+use cranelift_entity::SecondaryMap;
 use cranelift_entity::packed_option::PackedOption;
 
 use super::legalize::FrameLayout;
@@ -87,7 +88,8 @@ impl PlacedWords {
         words: &Range<u32>,
     ) -> (Vec<VariablePlaces>, Vec<InlinedPlaces>) {
         let head = 1 + (registers.classes.len() as u32).div_ceil(super::head::CLASSES as u32);
-        let finder = Finder { placed: self, function, frame, registers, words, start: words.start + head };
+        let (writes, start) = (function.writes(), words.start + head);
+        let finder = Finder { placed: self, frame, registers, words, writes, start };
         let variables = finder.variables(&function.source.variables);
         let inlined = function.source.inlined.iter().map(|(id, call)| InlinedPlaces {
             callee: call.callee,
@@ -103,10 +105,11 @@ impl PlacedWords {
 /// Finds where locals are.
 struct Finder<'a> {
     placed: &'a PlacedWords,
-    function: &'a Function,
     frame: &'a FrameLayout,
     registers: &'a Registers,
     words: &'a Range<u32>,
+    /// Number of writes of each value.
+    writes: SecondaryMap<ValueId, u32>,
     /// The first word after those that enter the function.
     start: u32,
 }
@@ -136,7 +139,7 @@ impl Finder<'_> {
                 Some((self.range(value)?, Location::Pointer(self.registers.of(value))))
             }
             // Where a write is gone, the register may hold an older value.
-            VariableHome::Value(value, writes) if self.function.writes(value) == writes => {
+            VariableHome::Value(value, writes) if self.writes[value] == writes => {
                 Some((self.range(value)?, Location::Register(self.registers.of(value))))
             }
             VariableHome::Value(..) => None,

@@ -5,6 +5,8 @@
 //! results of one register land in order. Memory: accesses that others may see keep their order; loads may share a
 //! cycle.
 
+use std::collections::BTreeMap;
+
 use c67x::{Inst, Pred, Reg};
 
 use super::abi;
@@ -45,7 +47,7 @@ pub(super) fn build(steps: &[Step], branches: &[Step]) -> Graph {
         shared_store: None,
         is_joined: false,
         shared_loads: Vec::new(),
-        own: Vec::new(),
+        own: BTreeMap::new(),
         versions: [0; Reg::COUNT],
         accesses: Vec::new(),
     };
@@ -72,6 +74,9 @@ pub(super) fn build(steps: &[Step], branches: &[Step]) -> Graph {
     }
     graph
 }
+
+/// Bytes of a word of the frame.
+const WORD: i32 = 4;
 
 /// Cycles from a branch to its target.
 pub(super) const BRANCH: u32 = 6;
@@ -106,7 +111,8 @@ struct Builder {
     /// True if the last such store may share the cycle of the one before.
     is_joined: bool,
     shared_loads: Vec<u32>,
-    own: Vec<u32>,
+    /// The accesses of each word of the frame since the last store of it.
+    own: BTreeMap<i32, Vec<(u32, Access)>>,
     /// Number of writes of each register so far.
     versions: [u32; Reg::COUNT],
     /// The accesses so far: step, what it does, the version of its base.
@@ -125,7 +131,8 @@ impl Builder {
         }
         let cycles = sheltered.max(0).cast_unsigned();
         let edges = &mut self.graph.after[from as usize];
-        if let Some(known) = edges.iter_mut().find(|edge| edge.to == to) {
+        // Steps come in their order: an edge to this one is the last that was added.
+        if let Some(known) = edges.last_mut().filter(|edge| edge.to == to) {
             known.cycles = known.cycles.max(cycles);
             known.sheltered = known.sheltered.max(sheltered);
             return;
@@ -179,22 +186,32 @@ impl Builder {
         match what.access {
             Access::None => {}
             Access::Own { is_store, .. } => {
-                for index in 0..self.own.len() {
-                    let before = self.own[index];
-                    let (_, access, _) = self.accesses[before as usize];
-                    if overlaps(access, what.access) {
-                        let was_store = matches!(access, Access::Own { is_store: true, .. });
-                        let from = self.accesses[before as usize].0;
-                        if was_store || is_store {
-                            self.edge(from, step, 1);
-                        }
-                    }
+                for word in words(what.access) {
+                    self.own_word(step, what.access, word, is_store);
                 }
-                self.own.push(self.accesses.len() as u32);
             }
             Access::Shared { is_store, .. } => self.shared(step, what.access, version, is_store),
         }
         self.accesses.push((step, what.access, version));
+    }
+
+    /// Adds edges from the accesses of a word of the frame, and enters this one.
+    fn own_word(&mut self, step: u32, access: Access, word: i32, is_store: bool) {
+        let mut before = self.own.remove(&word).unwrap_or_default();
+        for (from, other) in &before {
+            let was_store = matches!(other, Access::Own { is_store: true, .. });
+            if overlaps(*other, access) && (was_store || is_store) {
+                self.edge(*from, step, 1);
+            }
+        }
+        // What comes after a store of the whole word comes after all before it.
+        let is_whole = matches!(access, Access::Own { at, size, .. }
+            if at <= WORD * word && at + size.cast_signed() >= WORD * (word + 1));
+        if is_store && is_whole {
+            before.clear();
+        }
+        before.push((step, access));
+        self.own.insert(word, before);
     }
 
     fn shared(&mut self, step: u32, access: Access, version: u32, is_store: bool) {
@@ -229,6 +246,16 @@ impl Builder {
                 self.edge(from, step, 0);
             }
         }
+    }
+}
+
+/// The words of the frame that an access touches.
+fn words(access: Access) -> std::ops::Range<i32> {
+    match access {
+        Access::Own { at, size, .. } => {
+            at.div_euclid(WORD)..(at + size.cast_signed() - 1).div_euclid(WORD) + 1
+        }
+        Access::None | Access::Shared { .. } => 0..0,
     }
 }
 

@@ -1,5 +1,7 @@
 //! The resources of each cycle of a region (`c67x.md` 2.3, 2.4).
 
+use std::collections::BTreeMap;
+
 use c67x::{Inst, Mnemonic, Reg, Side, UnitKind};
 
 /// One cycle.
@@ -23,8 +25,8 @@ struct Cycle {
 #[derive(Debug, Default)]
 pub(super) struct Resources {
     cycles: Vec<Cycle>,
-    /// The long products: unit, name, cycle.
-    products: Vec<(u8, Mnemonic, u32)>,
+    /// The long products of each cycle: unit and name.
+    products: BTreeMap<u32, Vec<(u8, Mnemonic)>>,
     /// The operands that are read in each cycle.
     reads: Vec<Vec<Reg>>,
     /// The period in cycles after which everything repeats; 0 for never.
@@ -88,7 +90,7 @@ impl Resources {
         }
         let Some(unit) = inst.unit() else { return true };
         // The firmware has a single product seven cycles after one of doubles, and the other way after one.
-        let near = |(on, other, at): &(u8, Mnemonic, u32)| {
+        let near = |at: &u32, (on, other): &(u8, Mnemonic)| {
             if self.period > 0 {
                 let after = (cycle + self.period - at % self.period) % self.period;
                 let before = (self.period - after) % self.period;
@@ -99,7 +101,10 @@ impl Resources {
             let (first, apart) = if *at <= cycle { (*other, cycle - at) } else { (name, at - cycle) };
             *on == unit.index() as u8 && *other != name && first != Mnemonic::Mpysp && apart < PRODUCTS
         };
-        !self.products.iter().any(near)
+        // Where nothing repeats, only what is near can be too near.
+        let around =
+            if self.period > 0 { 0..=u32::MAX } else { cycle.saturating_sub(PRODUCTS)..=cycle + PRODUCTS };
+        !self.products.range(around).any(|(at, all)| all.iter().any(|product| near(at, product)))
     }
 
     fn reads_fit(&self, inst: &Inst, cycle: u32) -> bool {
@@ -131,7 +136,7 @@ impl Resources {
             }
         }
         if is_product(inst.mnemonic()) {
-            self.products.push((unit.index() as u8, inst.mnemonic(), cycle));
+            self.products.entry(cycle).or_default().push((unit.index() as u8, inst.mnemonic()));
         }
         let index = self.counted(cycle) as usize;
         if index >= self.reads.len() {
@@ -158,9 +163,10 @@ impl Resources {
             }
         }
         if is_product(inst.mnemonic()) {
-            let own = (unit.index() as u8, inst.mnemonic(), cycle);
-            if let Some(index) = self.products.iter().position(|product| *product == own) {
-                self.products.swap_remove(index);
+            let own = (unit.index() as u8, inst.mnemonic());
+            let here = self.products.entry(cycle).or_default();
+            if let Some(index) = here.iter().position(|product| *product == own) {
+                here.swap_remove(index);
             }
         }
         let index = self.counted(cycle) as usize;

@@ -4,6 +4,9 @@
 //! so that its five slots end where the last result lands; what is left of them is `NOP`. At the end of a region
 //! nothing is in flight.
 
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
 use c67x::Inst;
 
 use super::expand::Region;
@@ -12,6 +15,11 @@ use super::packets::{Issued, Scheduled};
 use super::refine::{self, Item};
 use super::resources::Resources;
 use super::step::{Access, Step};
+
+/// The most steps that are looked at in a cycle: more are ready only in very long blocks.
+const MOST_READY: usize = 64;
+/// Those of them that are kept for the next cycle before the best of the others join them.
+const KEPT_READY: usize = 48;
 
 /// The order in which a region is scheduled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,13 +109,15 @@ impl<'a> List<'a> {
     fn steps(&mut self, steps: &'a [Step]) -> u32 {
         let mut ready: Vec<u32> =
             (self.first.0..steps.len() as u32).filter(|step| self.waiting[*step as usize] == 0).collect();
+        let mut crowd = BinaryHeap::new();
         let (mut cycle, mut end, mut left) = (self.first.1, 0, steps.len() - self.first.0 as usize);
         while left > 0 {
+            self.limit(&mut ready, &mut crowd);
             match self.order {
                 Order::Source => ready.sort_unstable(),
-                Order::Early => ready.sort_unstable_by_key(|step| {
-                    (std::cmp::Reverse(self.graph.height[*step as usize]), *step)
-                }),
+                Order::Early => {
+                    ready.sort_unstable_by_key(|step| (Reverse(self.graph.height[*step as usize]), *step));
+                }
             }
             let mut index = 0;
             let mut taken = false;
@@ -133,6 +143,21 @@ impl<'a> List<'a> {
             cycle += 1;
         }
         end
+    }
+
+    /// Keeps the number of steps that are looked at in a cycle within limits: the others wait in the crowd.
+    fn limit(&self, ready: &mut Vec<u32>, crowd: &mut BinaryHeap<(u32, Reverse<u32>)>) {
+        let priority = |step: u32| match self.order {
+            Order::Source => (0, Reverse(step)),
+            Order::Early => (self.graph.height[step as usize], Reverse(step)),
+        };
+        if ready.len() > MOST_READY || !crowd.is_empty() {
+            ready.sort_unstable_by_key(|step| Reverse(priority(*step)));
+            let kept = KEPT_READY.min(ready.len());
+            crowd.extend(ready.drain(kept..).map(priority));
+            let room = MOST_READY - kept;
+            ready.extend((0..room).map_while(|_| crowd.pop()).map(|(_, Reverse(step))| step));
+        }
     }
 
     /// The form that can issue in a cycle.

@@ -175,11 +175,13 @@ impl Function {
         }
     }
 
-    /// Number of writes of a value.
+    /// Number of writes of each value by instructions.
     #[must_use]
-    pub fn writes(&self, value: ValueId) -> u32 {
+    pub fn writes(&self) -> SecondaryMap<ValueId, u32> {
+        let mut writes = table(self.values.len());
         let insts = self.layout.iter().flat_map(|id| &self.blocks[*id].insts);
-        insts.filter(|inst| inst.kind.dst() == Some(value)).count() as u32
+        insts.filter_map(|inst| inst.kind.dst()).for_each(|dst| writes[dst] += 1);
+        writes
     }
 
     /// The class of an operand.

@@ -22,9 +22,9 @@ impl Selector<'_> {
 
     /// A register that holds a word that is known, shared with who else needs it.
     pub(super) fn known(&mut self, value: Value) -> VReg {
-        let known = self.constants.iter().chain(&self.early.constants).find(|(known, _)| *known == value);
-        if let Some((_, reg)) = known {
-            return *reg;
+        let early = || self.early.constants.iter().find(|(known, _)| *known == value).map(|(_, reg)| *reg);
+        if let Some(reg) = self.constants.get(&value).copied().or_else(early) {
+            return reg;
         }
         let reg = self.code.reg(Info { constant: Some(value), ..Info::default() });
         let insts = make(reg.into(), value, self.span);
@@ -33,7 +33,7 @@ impl Selector<'_> {
             self.early.constants.push((value, reg));
         } else {
             self.out.extend(insts);
-            self.constants.push((value, reg));
+            self.constants.insert(value, reg);
         }
         reg
     }

@@ -18,6 +18,8 @@ mod wide;
 
 pub(super) use constants::make;
 
+use std::collections::BTreeMap;
+
 use cranelift_entity::{PrimaryMap, SecondaryMap};
 
 use super::abi;
@@ -60,7 +62,7 @@ pub(super) fn select(context: Context<'_>) -> Code {
             has_variable_calls: false,
         },
         early: Early::default(),
-        constants: Vec::new(),
+        constants: BTreeMap::new(),
         out: Vec::new(),
         span: function.span,
         depth: 0,
@@ -118,7 +120,7 @@ pub(super) struct Selector<'a> {
     code: Code,
     early: Early,
     /// Constants that are in registers in this block.
-    constants: Vec<(Value, VReg)>,
+    constants: BTreeMap<Value, VReg>,
     out: Vec<Inst>,
     span: Span,
     depth: u32,
