@@ -4,6 +4,7 @@ pub mod choices;
 pub mod csv;
 pub mod filetest;
 pub mod generate;
+pub mod kinds;
 mod measure;
 pub mod motions;
 pub mod oracles;

@@ -25,7 +25,7 @@ use vm::interp::BytecodeEngine;
 use vm::machine::Config as MachineConfig;
 
 use crate::choices::Choices;
-use crate::{generate, vendor};
+use crate::{kinds, vendor};
 
 /// A kind of input.
 #[derive(Clone, Copy, Debug)]
@@ -436,7 +436,7 @@ pub fn program(bytes: &[u8]) {
     let mut seed = [0; 8];
     let len = bytes.len().min(8);
     seed[..len].copy_from_slice(&bytes[..len]);
-    let text = generate::program(u64::from_le_bytes(seed), "", "");
+    let text = kinds::of_any_kind(u64::from_le_bytes(seed), "", "");
     let lines = |level| {
         let image = build(text.as_bytes(), level).expect("generated programs have no errors");
         let seen = execute_everywhere(&image, Ticks::new(100_000)).expect("it loads");
