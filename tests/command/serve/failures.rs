@@ -52,6 +52,41 @@ fn flash_that_cannot_be_saved_is_not_acknowledged_and_the_old_is_kept() {
 }
 
 #[test]
+fn flash_that_clients_were_told_of_survives_a_kill_at_any_moment() {
+    let mut folder = Scratch::new("serve-kill-flash");
+    folder.write("a.c", HELLO);
+    let rounds: u64 = if harness::is_long() { 100 } else { 6 };
+    let (mut least, mut told) = (0, 0);
+    for round in 1..=rounds {
+        let mut server = with_flash(folder, false);
+        let mut client = server.client();
+        let process = server.child.id().to_string();
+        let killer = std::thread::spawn(move || {
+            std::thread::sleep(std::time::Duration::from_millis(2 + round * 37 % 150));
+            Command::new("kill").args(["-KILL", &process]).status().expect("a shell has it")
+        });
+        // The server ends in the middle of an exchange, which the client calls a failure.
+        let saved = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+            for number in 1000 * round.. {
+                client.write_line(&format!("SetPersistDec 7 {number}"));
+                if client.ask("Flash") == "Program Flash Image Complete" {
+                    (least, told) = (number, told + 1);
+                }
+            }
+        }));
+        assert!(saved.is_err() && killer.join().expect("it does not panic").success());
+        server.ends();
+        folder = server.take_folder();
+        let output =
+            harness::cc67_with_input(&folder, ["console", "--flash", "board.flash"], "GetPersistDec 7\n");
+        let found: u64 = output.stdout.trim().parse().unwrap_or_else(|_| panic!("{output:?}"));
+        assert!(found == least || found == least + 1 || found == 1000 * round, "{found} instead of {least}");
+    }
+    println!("{rounds} kills, {told} acknowledged");
+    assert!(told > 0, "every kill came too early");
+}
+
+#[test]
 fn a_home_folder_on_a_full_disk_is_completed_by_the_next_start() {
     let scratch = Scratch::new("serve-full-home");
     scratch.write("a.c", HELLO);

@@ -3,7 +3,7 @@
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use harness::{Scratch, cc67};
 
@@ -91,13 +91,29 @@ main()
 fn one_client_over_tcp_has_the_link_of_the_board() {
     let arguments = ["serve", "--listen", "tcp-raw:0", "--once", "--load", "a.c"];
     let mut server = Server::start("wire-tcp", &arguments, PROGRAM, 1);
+    // One that has sent nothing gives the link to the next.
+    let mut silent = Wire::over_tcp(&server);
     let mut wire = Wire::over_tcp(&server);
+    server.says("client 2: has the link of client 1, which has sent nothing");
+    assert_eq!(silent.stream.read(&mut [0; 1]).expect("it is closed"), 0);
     wire.sees_the_board();
     let mut second = Wire::over_tcp(&server);
-    server.says("client 2: refused, another one has the link");
+    server.says("client 3: refused, another one has the link");
     assert_eq!(second.stream.read(&mut [0; 1]).expect("it is closed"), 0);
     drop(wire);
     assert_eq!(server.ends().code(), Some(0), "the client is gone");
+}
+
+#[test]
+#[expect(clippy::disallowed_methods, reason = "the limit is one of the host's time")]
+fn a_thousand_silent_clients_do_not_have_the_link() {
+    let server = Server::start("wire-idle", &["serve", "--listen", "tcp-raw:0", "--load", "a.c"], PROGRAM, 1);
+    let idle: Vec<_> = (0..1000).map(|_| Wire::over_tcp(&server)).collect();
+    let started = Instant::now();
+    let mut wire = Wire::over_tcp(&server);
+    wire.asks("Version", &format!("{VERSION}\r\n"));
+    assert!(started.elapsed() < Duration::from_secs(1), "a new client waited");
+    drop(idle);
 }
 
 #[cfg(unix)]

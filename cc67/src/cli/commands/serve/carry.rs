@@ -15,38 +15,53 @@ const UNTAKEN: usize = 4096;
 /// The pause after which a client that is ahead of the board looks whether the board has taken something.
 const PAUSE: Duration = Duration::from_millis(1);
 
-/// Carries bytes between a client and the desk until the client disconnects.
-pub(super) fn carry(
+/// A client whose bytes are carried; the desk is told when it is dropped.
+#[derive(Debug)]
+pub(super) struct PluggedClient {
     number: u64,
-    desk: &Sender<Note>,
-    mut reader: impl Read,
-    writer: impl Write + Send + 'static,
-) {
+    desk: Sender<Note>,
+    untaken: Arc<AtomicUsize>,
+}
+
+/// Tells the desk that a client has the link from now on.
+pub(super) fn plug(number: u64, desk: &Sender<Note>, writer: impl Write + Send + 'static) -> PluggedClient {
     let (outgoing, inbox) = channel();
     let (unread, untaken) = (Arc::<AtomicUsize>::default(), Arc::<AtomicUsize>::default());
     let client = WireClient { number, outgoing, unread: Arc::clone(&unread), untaken: Arc::clone(&untaken) };
     thread::spawn(move || send(writer, &inbox, &unread));
     // A desk that is closed takes nothing below.
     let _ = desk.send(Note::Plugged(client));
-    let mut buffer = [0; UNTAKEN];
-    loop {
-        while untaken.load(Ordering::Relaxed) >= UNTAKEN {
-            thread::sleep(PAUSE);
-        }
-        let count = match reader.read(&mut buffer) {
-            Ok(0) => break,
-            Ok(count) => count,
-            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
-            Err(_) => break,
-        };
-        untaken.fetch_add(count, Ordering::Relaxed);
-        let bytes = buffer.get(..count).unwrap_or_default().to_vec();
-        if desk.send(Note::Bytes(number, bytes)).is_err() {
-            break;
+    PluggedClient { number, desk: desk.clone(), untaken }
+}
+
+impl PluggedClient {
+    /// Carries bytes between the client and the desk until the client disconnects.
+    pub(super) fn carry(self, mut reader: impl Read) {
+        let mut buffer = [0; UNTAKEN];
+        loop {
+            while self.untaken.load(Ordering::Relaxed) >= UNTAKEN {
+                thread::sleep(PAUSE);
+            }
+            let count = match reader.read(&mut buffer) {
+                Ok(0) => break,
+                Ok(count) => count,
+                Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+                Err(_) => break,
+            };
+            self.untaken.fetch_add(count, Ordering::Relaxed);
+            let bytes = buffer.get(..count).unwrap_or_default().to_vec();
+            if self.desk.send(Note::Bytes(self.number, bytes)).is_err() {
+                break;
+            }
         }
     }
-    // The desk may have closed before.
-    let _ = desk.send(Note::Unplugged(number));
+}
+
+impl Drop for PluggedClient {
+    fn drop(&mut self) {
+        // The desk may have closed before.
+        let _ = self.desk.send(Note::Unplugged(self.number));
+    }
 }
 
 fn send(mut writer: impl Write, inbox: &Receiver<Vec<u8>>, unread: &AtomicUsize) {

@@ -4,20 +4,20 @@
 //! client: one that sends half a message, or reads no reply, keeps nobody else from the board. At a pseudo-terminal and
 //! a raw port the board's own bytes are [carried](super::carry).
 
-use std::io;
+use std::io::{self, Read};
 use std::iter;
-use std::net::{Ipv4Addr, TcpListener, TcpStream};
+use std::net::{Ipv4Addr, Shutdown, TcpListener, TcpStream};
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Sender, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 use cc67_host::seats::{FIRST_WORDS, Seat, Seats};
 
-use super::carry::carry;
+use super::carry::plug;
 use super::connection::{self, ClientConnection, Received};
 use super::desk::Note;
 use super::message::Request;
@@ -107,7 +107,7 @@ fn carry_on_terminal(door: &Door) -> Result<()> {
     let door = door.clone();
     in_background(move || {
         let number = door.numbers.fetch_add(1, Ordering::Relaxed) + 1;
-        carry(number, &door.desk, terminal, writer);
+        plug(number, &door.desk, writer).carry(terminal);
     })
 }
 
@@ -115,32 +115,94 @@ fn carry_on_terminal(door: &Door) -> Result<()> {
 fn carry_on_port(port: &str, door: &Door) -> Result<()> {
     let listener = bind(port)?;
     terminal::note(&format!("a board is served on tcp:localhost:{}", listener.local_addr()?.port()));
-    let door = door.clone();
-    let is_taken = Arc::new(AtomicBool::new(false));
-    let admit = move |stream: TcpStream| {
-        let number = door.numbers.fetch_add(1, Ordering::Relaxed) + 1;
-        if is_taken.swap(true, Ordering::Relaxed) {
-            terminal::note(&format!("client {number}: refused, another one has the link"));
-            return;
-        }
-        let (door, taken) = (door.clone(), Arc::clone(&is_taken));
-        let spawned = in_background(move || {
-            // A connection that cannot be read and written at once ends here.
-            if let Ok(writer) = stream.try_clone() {
-                carry(number, &door.desk, stream, writer);
-            }
-            taken.store(false, Ordering::Relaxed);
-        });
-        if let Err(error) = spawned {
-            is_taken.store(false, Ordering::Relaxed);
-            terminal::note(&format!("client {number}: refused, {error}"));
-        }
-    };
+    let (door, link) = (door.clone(), RawLink::default());
     in_background(move || {
         // Small messages go out at once; where that cannot be set, they are only later.
         let streams = connections(listener.incoming()).inspect(|stream| drop(stream.set_nodelay(true)));
-        streams.for_each(admit);
+        streams.for_each(|stream| link.admit(stream, &door));
     })
+}
+
+/// The board's link at a raw port, which one client has at a time: one that has sent nothing gives it to the next.
+#[derive(Clone, Debug, Default)]
+struct RawLink(Arc<Mutex<Option<Holder>>>);
+
+/// The client that has the link.
+#[derive(Debug)]
+struct Holder {
+    number: u64,
+    stream: TcpStream,
+    has_spoken: Arc<AtomicBool>,
+}
+
+impl RawLink {
+    fn holder(&self) -> MutexGuard<'_, Option<Holder>> {
+        // It is whole at any time.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Carries the bytes of a client in a thread of its own, or refuses it.
+    fn admit(&self, stream: TcpStream, door: &Door) {
+        let number = door.numbers.fetch_add(1, Ordering::Relaxed) + 1;
+        if let Err(why) = self.carry(number, stream, door) {
+            terminal::note(&format!("client {number}: refused, {why}"));
+        }
+    }
+
+    fn carry(&self, number: u64, stream: TcpStream, door: &Door) -> Result<()> {
+        let writer = stream.try_clone()?;
+        let (has_spoken, before) = self.take(number, &stream)?;
+        // The desk knows the new client before the end of the one before.
+        let plugged = plug(number, &door.desk, writer);
+        if let Some(before) = before {
+            // One that is gone is closed.
+            let _ = before.shutdown(Shutdown::Both);
+        }
+        let link = self.clone();
+        let spawned = in_background(move || {
+            plugged.carry(FirstWords { stream, has_spoken });
+            link.leave(number);
+        });
+        spawned.inspect_err(|_| self.leave(number))
+    }
+
+    /// Gives the link to a client; returns where it notes its first words, and the stream of the client before it.
+    fn take(&self, number: u64, stream: &TcpStream) -> Result<(Arc<AtomicBool>, Option<TcpStream>)> {
+        let stream = stream.try_clone()?;
+        let mut holder = self.holder();
+        if holder.as_ref().is_some_and(|holder| holder.has_spoken.load(Ordering::Relaxed)) {
+            bail!("another one has the link");
+        }
+        let has_spoken = Arc::new(AtomicBool::new(false));
+        let before = holder.replace(Holder { number, stream, has_spoken: Arc::clone(&has_spoken) });
+        if let Some(before) = &before {
+            let silent = before.number;
+            terminal::note(&format!(
+                "client {number}: has the link of client {silent}, which has sent nothing"
+            ));
+        }
+        Ok((has_spoken, before.map(|before| before.stream)))
+    }
+
+    /// A client is gone.
+    fn leave(&self, number: u64) {
+        self.holder().take_if(|holder| holder.number == number);
+    }
+}
+
+/// The bytes of a client, of which the first are noted.
+#[derive(Debug)]
+struct FirstWords {
+    stream: TcpStream,
+    has_spoken: Arc<AtomicBool>,
+}
+
+impl Read for FirstWords {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.stream.read(buffer)?;
+        self.has_spoken.fetch_or(count > 0, Ordering::Relaxed);
+        Ok(count)
+    }
 }
 
 fn bind(port: &str) -> Result<TcpListener> {
