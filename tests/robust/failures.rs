@@ -189,6 +189,39 @@ fn limits_of_the_system_are_messages() {
     assert!(!output.stderr.contains("panicked"), "{output:?}");
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn a_system_without_descriptors_threads_or_a_terminal_is_a_message() {
+    let scratch = with_program("host-few");
+    scratch.write("b.c", "#include \"KMotionDef.h\"\nmain() { printf(\"here\\n\"); }\n");
+    let cases: &[(&str, &[&str])] = &[
+        ("ulimit -n 4; exec \"$@\"", &["run", "b.c"]),
+        ("ulimit -n 4; exec \"$@\"", &["build", "b.c"]),
+        ("ulimit -n 4; exec \"$@\"", &["serve", "--listen", "tcp:0", "--for", "0", "b.c"]),
+        ("ulimit -n 4; exec \"$@\"", &["live", "--no-browser", "--for", "0", "b.c"]),
+        ("ulimit -v 400000; exec \"$@\"", &["serve", "--listen", "tcp:0", "--for", "0", "b.c"]),
+        ("ulimit -v 400000; exec \"$@\"", &["live", "--for", "0", "b.c"]),
+        ("ulimit -v 400000; exec \"$@\"", &["test", "b.c"]),
+        ("ulimit -v 400000; exec \"$@\"", &["debug", "b.c"]),
+        ("ulimit -s 64; exec \"$@\"", &["check", "b.c"]),
+        ("exec \"$@\" <&-", &["console"]),
+        ("exec \"$@\" <&-", &["debug", "b.c"]),
+        ("exec \"$@\" <&- >&-", &["run", "b.c"]),
+        ("unset TERM; exec \"$@\"", &["console"]),
+        ("TERM=nosuch exec \"$@\"", &["debug", "b.c"]),
+    ];
+    for (script, arguments) in cases {
+        let output = run_shell(scratch.path(), script, arguments);
+        let is_known = (0..=2).contains(&output.code);
+        assert!(is_known, "{script} {arguments:?}: {output:?}");
+        let is_told = output.code == 0 || !output.stderr.is_empty() || !output.stdout.is_empty();
+        assert!(is_told, "{script} {arguments:?}: {output:?}");
+        for trace in ["panicked", "RUST_BACKTRACE", ".rs:"] {
+            assert!(!output.stderr.contains(trace), "{script} {arguments:?}: {}", output.stderr);
+        }
+    }
+}
+
 /// Starts the command, kills it after `delay` and reaps it.
 fn kill_after(folder: &Path, arguments: &[&str], delay: Duration) {
     let mut child = Command::new(harness::command())
@@ -283,6 +316,100 @@ fn a_run_killed_while_saving_flash_leaves_the_old_file_or_the_new_one() {
 fn a_trace_that_is_killed_leaves_the_old_file_or_the_new() {
     assert_whole("kill-vcd", &["run", "--trace", "a.vcd", "a.c"], "a.vcd", b"old");
     assert_whole("kill-json", &["run", "--trace", "a.json", "a.c"], "a.json", b"old");
+}
+
+#[test]
+fn pictures_tables_and_maps_that_are_killed_are_the_old_or_the_new() {
+    let outputs: &[(&str, &[&str], &str)] = &[
+        ("kill-csv", &["run", "--trace", "a.csv", "a.c"], "a.csv"),
+        ("kill-bits", &["run", "--trace-bits", "bits.csv", "a.c"], "bits.csv"),
+        (
+            "kill-packets",
+            &["run", "--engine", "dsp", "--trace-packets", "packets.txt", "flash.c"],
+            "packets.txt",
+        ),
+        ("kill-svg", &["run", "--plot", "a.svg", "a.c"], "a.svg"),
+        ("kill-html", &["run", "--plot", "a.html", "a.c"], "a.html"),
+        ("kill-profile", &["run", "--profile=profile.svg", "a.c"], "profile.svg"),
+        ("kill-export", &["firmware", "export", "names.fw"], "names.fw"),
+        ("kill-map", &["build", "--map", "-o", "a.out", "a.c"], "a.map"),
+        ("kill-asm", &["build", "--asm", "-o", "a.out", "a.c"], "a.asm"),
+        ("kill-download", &["build", "--emit", "download", "a.c"], "a(1).kmd"),
+        ("kill-object", &["build", "-c", "a.c"], "a.o"),
+    ];
+    for (name, arguments, file) in outputs {
+        assert_whole(name, arguments, file, b"old");
+    }
+}
+
+/// What a console has said that is on the disk, and what it was given to save.
+struct Flashing {
+    acknowledged: usize,
+    /// The number that is saved first; each further one is one more.
+    first: usize,
+}
+
+/// Starts a console that saves one number after another, and kills it after `delay`.
+fn kill_flashing_console(scratch: &Scratch, first: usize, delay: Duration) -> Flashing {
+    use std::io::{Read, Write};
+
+    let mut child = Command::new(harness::command())
+        .args(["console", "--flash", "board.flash"])
+        .current_dir(scratch.path())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the command under test starts");
+    let commands: String =
+        (0..SAVES).map(|index| format!("SetPersistDec 7 {}\nFlash\n", first + index)).collect();
+    let mut input = child.stdin.take().expect("it is piped");
+    let mut output = child.stdout.take().expect("it is piped");
+    let reader = thread::spawn(move || {
+        let mut text = String::new();
+        output.read_to_string(&mut text).expect("it is text");
+        text
+    });
+    // A console that is killed early reads nothing.
+    let _ = input.write_all(commands.as_bytes());
+    thread::sleep(delay);
+    // It may have ended already.
+    let _ = child.kill();
+    child.wait().expect("it ends");
+    let text = reader.join().expect("it does not panic");
+    Flashing {
+        acknowledged: text.lines().filter(|line| *line == "Program Flash Image Complete").count(),
+        first,
+    }
+}
+
+/// The numbers that each console saves.
+const SAVES: usize = 20;
+
+#[test]
+fn flash_that_was_acknowledged_survives_a_kill_at_any_moment() {
+    let scratch = Scratch::new("kill-console-flash");
+    let (mut least, mut acknowledged) = (0, 0);
+    let mut random = 54_321_u32;
+    for round in 1..=kills() as usize {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        let delay = Duration::from_micros(u64::from(random >> 16) * 8);
+        let saved = kill_flashing_console(&scratch, 1000 * round, delay);
+        acknowledged += saved.acknowledged;
+        if saved.acknowledged > 0 {
+            least = saved.first + saved.acknowledged - 1;
+        }
+        let output =
+            harness::cc67_with_input(&scratch, ["console", "--flash", "board.flash"], "GetPersistDec 7\n");
+        assert_eq!(output.code, 0, "round {round}: {output:?}");
+        let found: usize = output.stdout.trim().parse().expect("a number");
+        assert!(
+            least <= found && found < saved.first + SAVES,
+            "round {round}: {found}, acknowledged {least}"
+        );
+    }
+    println!("{} kills, {acknowledged} acknowledged", kills());
+    assert!(acknowledged > 0, "every kill came too early");
 }
 
 #[test]
