@@ -14,6 +14,7 @@ pub mod stages;
 pub mod tokens;
 pub mod usage;
 pub mod vendor;
+pub mod views;
 
 use std::ffi::OsStr;
 use std::fs;

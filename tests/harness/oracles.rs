@@ -25,7 +25,7 @@ use vm::interp::BytecodeEngine;
 use vm::machine::Config as MachineConfig;
 
 use crate::choices::Choices;
-use crate::{kinds, vendor};
+use crate::{kinds, vendor, views};
 
 /// A kind of input.
 #[derive(Clone, Copy, Debug)]
@@ -49,6 +49,10 @@ pub const TARGETS: &[Target] = &[
     Target { name: "stimulus", run: stimulus },
     Target { name: "commands", run: commands },
     Target { name: "format", run: format },
+    Target { name: "world", run: world },
+    Target { name: "debug_adapter", run: views::debug_adapter },
+    Target { name: "page", run: views::page },
+    Target { name: "wire", run: views::wire },
 ];
 
 /// The board time that a program of unknown intentions gets.
@@ -543,6 +547,50 @@ pub fn stimulus(bytes: &[u8]) {
         }
         Err(error) => assert!(!error.to_string().is_empty()),
     }
+}
+
+/// A machine file and a stimulus together, of the example programs and with some words changed: refused with words, or
+/// a board runs with both.
+pub fn world(bytes: &[u8]) {
+    static MACHINES: LazyLock<Vec<String>> = LazyLock::new(|| examples("toml"));
+    static STIMULI: LazyLock<Vec<String>> = LazyLock::new(|| examples("stim"));
+    let mut choices = Choices::new(bytes);
+    let (machine, inputs) = (choices.below(MACHINES.len()), choices.below(STIMULI.len()));
+    let (mut machine, mut inputs) = (MACHINES[machine].clone(), STIMULI[inputs].clone());
+    while !choices.is_empty() {
+        if choices.byte().is_multiple_of(2) {
+            machine = with_changed_word(&machine, MACHINE_PIECES, &mut choices);
+        } else {
+            inputs = with_changed_word(&inputs, STIMULUS_PIECES, &mut choices);
+        }
+    }
+    let (file, stimulus) = (MachineFile::parse(&machine), Stimulus::parse(&inputs, "input.stim"));
+    let reasons =
+        [file.as_ref().err().map(ToString::to_string), stimulus.as_ref().err().map(ToString::to_string)];
+    assert!(reasons.iter().flatten().all(|reason| !reason.is_empty()));
+    let mut board =
+        Board::<BytecodeEngine>::new(Config { machine_file: file.unwrap_or_default(), ..Config::default() });
+    board.load(thread_1(), &MOVER).expect("it is a program");
+    if let Ok(stimulus) = stimulus {
+        board.play(stimulus);
+    }
+    board.start(thread_1()).expect("it was loaded");
+    board.run(SHORT, &mut |_| {});
+}
+
+/// The texts of the example programs' files with an extension.
+fn examples(extension: &str) -> Vec<String> {
+    let files = crate::files(&crate::root().join("c-programs"), extension);
+    files.iter().map(|path| std::fs::read_to_string(path).expect("it is text")).collect()
+}
+
+/// A text in which a piece stands for a word.
+fn with_changed_word(text: &str, pieces: &[&str], choices: &mut Choices<'_>) -> String {
+    let words: Vec<&str> = text.split_inclusive([' ', '\n', '=', ',']).collect();
+    let at = choices.below(words.len().clamp(1, 65_536));
+    let piece = choices.pick(pieces);
+    let changed = words.iter().enumerate().map(|(index, word)| if index == at { piece } else { word });
+    changed.collect()
 }
 
 const STIMULUS_PIECES: &[&str] = &[

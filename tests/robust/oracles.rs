@@ -32,7 +32,10 @@ macro_rules! oracles {
     };
 }
 
-oracles! { source tokens image execution processor translated program machine_file stimulus commands format }
+oracles! {
+    source tokens image execution processor translated program machine_file stimulus commands format world debug_adapter
+    page wire
+}
 
 fn named(name: &str) -> &'static Target {
     TARGETS.iter().find(|target| target.name == name).expect("every oracle here is one of the harness")

@@ -106,3 +106,9 @@ pub struct Show {
     /// Seconds of board time after which the board is closed; `None` for never.
     pub limit: Option<f64>,
 }
+
+/// Does what pages ask for in messages, one after another, without a connection: for tests of them. Returns the reason
+/// for each that was refused.
+pub fn obey<T: Target>(session: &mut Session<T>, show: Show, messages: &[&str]) -> Vec<Option<String>> {
+    board::obey(session, show, messages)
+}

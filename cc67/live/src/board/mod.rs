@@ -117,6 +117,25 @@ pub(crate) fn view<T: Target>(
     LiveView::new(ViewState::new(session, show, hub), requests)
 }
 
+/// Does what a page asks for in messages, and tells it what comes of that.
+pub(crate) fn obey<T: Target>(
+    session: &mut Session<T>,
+    show: Show,
+    messages: &[&str],
+) -> Vec<Option<String>> {
+    let (hub, _requests) = Hub::new();
+    let mut state = ViewState::new(session, show, &hub);
+    let id = hub.number();
+    state.join(session, id, Arc::default());
+    let obeyed = messages.iter().map(|text| {
+        let request = PageRequest::parse(text).map_err(|error| error.to_string());
+        let refused = request.and_then(|request| state.obey(session, id, request)).err();
+        state.tell(session);
+        refused
+    });
+    obeyed.collect()
+}
+
 /// A page that looks.
 #[derive(Debug)]
 struct Page {
