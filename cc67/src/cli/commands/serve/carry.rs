@@ -15,7 +15,7 @@ const UNTAKEN: usize = 4096;
 /// The pause after which a client that is ahead of the board looks whether the board has taken something.
 const PAUSE: Duration = Duration::from_millis(1);
 
-/// A client whose bytes are carried; the desk is told when it is dropped.
+/// A client whose bytes are carried; dropping it reports its end to the desk.
 #[derive(Debug)]
 pub(super) struct PluggedClient {
     number: u64,
