@@ -24,7 +24,7 @@ use runtime::{Board, Config, EventKind, RunEnd};
 use vm::interp::BytecodeEngine;
 
 /// Programs of an ordinary run.
-const PROGRAMS: u64 = 24;
+const PROGRAMS: u64 = 14;
 
 /// Programs that `gcc` compiles in one go.
 const BATCH: usize = 42;
