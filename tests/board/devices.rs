@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use harness::{Output, Scratch, cc67, root};
+use harness::{Output, Scratch, cc67, no_such_file, root};
 
 /// Runs a program with options in a folder of its own, which holds further files.
 fn run(name: &str, program: &str, files: &[(&str, &str)], options: &[&str]) -> (Output, Scratch) {
@@ -553,10 +553,7 @@ fn a_stimulus_loads_programs_and_runs_them() {
     assert_eq!((output.code, output.stdout.as_str()), (3, "121\n"), "{}", output.stderr);
     assert!(output.stderr.contains("thread 2 stopped at three.c:6:5 in `main`"), "{}", output.stderr);
     let (output, _) = run("loads-wrong", program, &[], &["--stim", "run thread 2 \"gone.c\""]);
-    assert_eq!(
-        (output.code, output.stderr.as_str()),
-        (2, "cc67: cannot read gone.c: No such file or directory\n")
-    );
+    assert_eq!((output.code, output.stderr), (2, format!("cc67: cannot read gone.c: {}\n", no_such_file())));
     let files = [("two.c", "main() { x = 1; }")];
     let (output, _) = run("loads-bad", program, &files, &["--stim", "run thread 2 \"two.c\""]);
     assert_eq!(output.code, 1, "{}", output.stderr);
@@ -602,14 +599,14 @@ fn an_error_in_a_machine_file_gives_one_message_with_its_place() {
     let options = ["--machine", "gone.toml"];
     let (output, _) = run("gone", "main() { }", &[], &options);
     assert_eq!(
-        (output.code, output.stderr.as_str()),
-        (2, "cc67: cannot read gone.toml: No such file or directory\n")
+        (output.code, output.stderr),
+        (2, format!("cc67: cannot read gone.toml: {}\n", no_such_file()))
     );
     let options = ["--set", "uart.input=gone.txt"];
     let (output, _) = run("gone-input", "main() { }", &[], &options);
     assert_eq!(
-        (output.code, output.stderr.as_str()),
-        (2, "cc67: cannot read gone.txt: No such file or directory\n")
+        (output.code, output.stderr),
+        (2, format!("cc67: cannot read gone.txt: {}\n", no_such_file()))
     );
 }
 

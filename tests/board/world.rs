@@ -5,7 +5,7 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::process::{Command, Stdio};
 
-use harness::{Output, Scratch, cc67, root};
+use harness::{Output, Scratch, cc67, no_such_file, root};
 
 /// A program that sends back what it receives, with a mark after, up to a full stop.
 const ECHO: &str = "#include \"KMotionDef.h\"
@@ -167,7 +167,7 @@ fn an_error_in_a_stimulus_or_machine_gives_one_message_with_its_place() {
             "cc67: b.toml: a stimulus has only [[event]] and [[device]]; the rest belongs to `--machine`\n",
         ),
         (vec!["--stim", "b.stim"], "cc67: b.stim is not text\n"),
-        (vec!["--stim", "c.stim"], "cc67: cannot read c.stim: No such file or directory\n"),
+        (vec!["--stim", "c.stim"], &format!("cc67: cannot read c.stim: {}\n", no_such_file())),
         (
             vec!["--stim", "t=0.5 bit 46=1"],
             "cc67: --stim:1:11: bit 46 (LED) is an output, only the board drives it in `t=0.5 bit 46=1`\n",
@@ -181,7 +181,7 @@ fn an_error_in_a_stimulus_or_machine_gives_one_message_with_its_place() {
             vec!["--uart", "tcp:99999"],
             "cc67: `--uart tcp:99999`: not a port number: number too large to fit in target type\n",
         ),
-        (vec!["--uart-input", "gone.txt"], "cc67: cannot read gone.txt: No such file or directory\n"),
+        (vec!["--uart-input", "gone.txt"], &format!("cc67: cannot read gone.txt: {}\n", no_such_file())),
     ] {
         let (output, _) = run("wrong", "main() { }", files, &options);
         assert_eq!((output.code, output.stderr.as_str()), (2, expect), "{options:?}");

@@ -122,6 +122,16 @@ pub fn place_command(at: &Path) {
     }
 }
 
+/// Returns the system's words for a file that is missing.
+///
+/// # Panics
+/// If there is a file with an impossible name.
+#[must_use]
+pub fn no_such_file() -> String {
+    let error = std::fs::read("a file that is missing").expect_err("there is none").to_string();
+    error.split(" (os error").next().unwrap_or(&error).to_owned()
+}
+
 /// Runs cc67 in a folder.
 ///
 /// # Panics
