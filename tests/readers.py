@@ -47,7 +47,7 @@ def comments():
 
 
 def names():
-    """Names of types and functions outside of tests."""
+    """Names of types and functions outside tests."""
     item = re.compile(r"\s*(?:pub(?:\([^)]*\))? )?(?:const |unsafe )*(?:struct|enum|trait|type|fn) (\w+).*")
     found = []
     for name, lines in sources():

@@ -24,7 +24,7 @@ int MoveChecked(double To)
 
     if (To < ch->SoftLimitNeg || To > ch->SoftLimitPos)
     {
-        printf("%.0f is outside of %.0f to %.0f\n", To, ch->SoftLimitNeg, ch->SoftLimitPos);
+        printf("%.0f is outside %.0f to %.0f\n", To, ch->SoftLimitNeg, ch->SoftLimitPos);
         return FALSE;
     }
     Move(AXIS, To);

@@ -163,7 +163,7 @@ pub struct Symbol {
 pub struct Aux(pub [u8; 18]);
 
 impl Aux {
-    /// Makes an entry of one of the structures of [`raw`] that describe one.
+    /// Creates an auxiliary entry from one of the structures of [`raw`].
     #[must_use]
     pub fn new<T: IntoBytes + Immutable>(entry: &T) -> Self {
         let mut bytes = [0; 18];

@@ -71,7 +71,7 @@ pub struct TargetBoard {
 /// The spaces of the programs of threads 1 to 7.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProgramSpaces {
-    /// The start of that of thread 1.
+    /// The base address of the space of thread 1.
     pub base: u32,
     /// The bytes of each; the next thread's follows.
     pub size: u32,

@@ -30,7 +30,7 @@ impl Timing {
     }
 }
 
-/// Cycles that the processor waits for memory outside of it.
+/// Cycles that the processor waits for memory outside it.
 ///
 /// The firmware programs the bus so that a register of the FPGA takes 44. What SDRAM takes is known from no board; 20
 /// is an example.

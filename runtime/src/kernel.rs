@@ -106,7 +106,7 @@ impl Kernel {
         (function.handler)(&mut self.parts, caller)
     }
 
-    /// Everything that the firmware keeps is as at power-up; what is outside of the board is left alone.
+    /// Everything that the firmware keeps is as at power-up; what is outside the board is left alone.
     pub(crate) fn restart(&mut self) {
         let Self { parts, scripts, signatures: _, callees: _ } = self;
         parts.calls.restart();

@@ -172,8 +172,8 @@ fn names_that_lead_outside_the_folder_are_refused_with_a_reason() {
     let (lines, remarks) = run(&scratch, source);
     assert_eq!(lines, ["0"]);
     let expect = [
-        "the PC refuses to read ..\\secret.txt: the name is outside the folder of the PC's files",
-        "the PC refuses to write ..\\secret.txt: the name is outside the folder of the PC's files",
+        "the PC cannot read ..\\secret.txt: the name is outside the folder of the PC's files",
+        "the PC cannot write ..\\secret.txt: the name is outside the folder of the PC's files",
         "a line is written, but no file is open for writing on the PC",
     ];
     assert_eq!(remarks, expect);

@@ -381,7 +381,7 @@ fn the_chapter_of_console_commands_lists_every_command() {
 /// Folders that a path in the book begins with.
 const FOLDERS: [&str; 7] = ["kmotiondef/", "coff/", "vm/", "runtime/", "cc67/", "tests/", "c-programs/"];
 
-/// The paths of the repository that a page names between backquotes, outside of blocks.
+/// The paths of the repository that a page names between backquotes, outside blocks.
 fn paths(page: &str) -> Vec<&str> {
     let mut is_code = false;
     let mut found = Vec::new();

@@ -11,7 +11,7 @@ use harness::{Output, Scratch, cc67_with_input, files, root};
 
 /// A page as blocks and the text between them.
 enum Part {
-    /// Lines outside of blocks.
+    /// Lines outside blocks.
     Prose(String),
     /// A fenced block: what follows the fence, and its lines.
     Block(String, String),

@@ -190,7 +190,7 @@ fn packages_read_nothing_outside_of_themselves() {
             let here = file.parent().unwrap_or(&package);
             for path in included(text) {
                 let target = plain(&here.join(path));
-                assert!(target.starts_with(&package), "{name} reads {path}, outside of its package");
+                assert!(target.starts_with(&package), "{name} reads {path}, outside its package");
             }
             let climbs = text
                 .split("CARGO_MANIFEST_DIR")

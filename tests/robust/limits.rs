@@ -141,7 +141,7 @@ fn a_program_cannot_read_a_file_of_the_pc_that_is_too_large() {
     write_large(&scratch, "large.txt");
     let output = cc67(&scratch, ["run", "--files", ".", "a.c"]);
     assert_eq!(output.stdout, "refused\n", "{output:?}");
-    let expect = format!("the PC refuses to read large.txt: it is larger than {} bytes", runtime::FILE_BYTES);
+    let expect = format!("the PC cannot read large.txt: it is larger than {} bytes", runtime::FILE_BYTES);
     assert!(output.stderr.contains(&expect), "{output:?}");
 }
 

@@ -2,7 +2,7 @@
 //!
 //! An iteration of such a loop stores nothing and calls nothing but what yields a state of the board, and it begins with
 //! the same registers each time: no register that it reads before it assigns it is one that it assigns. So an iteration
-//! that comes back to its first word is followed by others like it, until something happens outside of the thread: at
+//! that comes back to its first word is followed by others like it, until something happens outside the thread: at
 //! the earliest when its slice is over. An engine that has executed one passes over those that follow
 //! ([`Slice::pass_iterations`](crate::engine::Slice::pass_iterations)).
 //!

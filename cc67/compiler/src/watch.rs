@@ -204,7 +204,7 @@ struct Check<'a> {
 
 /// The names in an expression.
 pub(crate) struct Named {
-    /// The meanings of its names outside of the function.
+    /// The meanings of its names outside the function.
     pub(crate) meanings: BTreeMap<SymbolId, Meaning>,
     /// True if it names locals of the function.
     pub(crate) has_locals: bool,
@@ -705,7 +705,7 @@ main() { int local; }
         check(
             "local",
             Err(
-                "`local` is not declared; declare the variable before the functions that use it, outside of them",
+                "`local` is not declared; declare the variable before the functions that use it, outside them",
             ),
         );
         check("count +", Err("expected an expression, found `)`"));

@@ -183,7 +183,7 @@ impl<T: Target> Shell<T> {
     fn execute(&mut self, name: &str, rest: &str, output: Output<'_>) -> Result<String, DebugError> {
         if !self.debugger.session().can(Capability::StopTime) {
             let Self { debugger, early, .. } = self;
-            let mut teller = Teller::new(debugger, early, output);
+            let mut teller = EventPrinter::new(debugger, early, output);
             debugger.catch_up(&mut |event| teller.tell(event));
         }
         match name {
@@ -343,7 +343,7 @@ impl<T: Target> Shell<T> {
     /// Moves once; what programs have printed until then is shown, also what the board has not sent yet.
     fn once(&mut self, name: &str, place: &str, output: Output<'_>) -> Result<Stop, DebugError> {
         let Self { debugger, early, .. } = self;
-        let mut teller = Teller::new(debugger, early, output);
+        let mut teller = EventPrinter::new(debugger, early, output);
         let stop = go(debugger, name, place, &mut |event| teller.tell(event));
         let scene = std::mem::take(&mut teller.scene);
         self.show_early(!name.starts_with("reverse"), output);
@@ -384,7 +384,7 @@ impl<T: Target> Shell<T> {
         let Self { debugger, early, .. } = self;
         let is_forward = tick > debugger.session().tick();
         let stop = if is_forward {
-            let mut teller = Teller::new(debugger, early, output);
+            let mut teller = EventPrinter::new(debugger, early, output);
             let stop = debugger.run_to(tick, &mut |event| teller.tell(event));
             let scene = std::mem::take(&mut teller.scene);
             output(&scene);
@@ -553,7 +553,7 @@ fn ids_of(reason: &Reason) -> Vec<u32> {
 }
 
 /// Hands events over as lines.
-struct Teller<'a, 'b> {
+struct EventPrinter<'a, 'b> {
     infos: Vec<runtime::debug::DebugInfo>,
     /// Lines that were shown already.
     early: &'a mut EarlyLines,
@@ -562,7 +562,7 @@ struct Teller<'a, 'b> {
     output: &'a mut (dyn FnMut(&str) + 'b),
 }
 
-impl<'a, 'b> Teller<'a, 'b> {
+impl<'a, 'b> EventPrinter<'a, 'b> {
     fn new<T: Target>(
         debugger: &Debugger<T>,
         early: &'a mut EarlyLines,

@@ -15,7 +15,7 @@ pub const FIRST_WORDS: Duration = Duration::from_secs(10);
 /// Closes a connection, so that its reader reaches the end.
 pub type Closer = Box<dyn FnOnce() + Send>;
 
-/// The connections of a server.
+/// The limited connection slots of a server.
 #[derive(Clone, Debug)]
 pub struct Seats {
     most: usize,

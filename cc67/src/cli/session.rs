@@ -42,7 +42,7 @@ use super::io::exit::Exit;
 use super::io::input::read;
 use super::io::pace::Pace;
 pub(crate) use boxes::run_with_boxes;
-use flash::{Flash, Unacknowledged};
+use flash::{Flash, HeldEvents};
 use line::SerialLine;
 
 /// Everything that the arguments ask for, read and compiled.
@@ -473,7 +473,7 @@ impl<T: Target> BoardSession<T> {
     }
 
     /// Writes flash to its file and hands on what waits for that.
-    fn acknowledge(&mut self, held: Unacknowledged, sink: &mut dyn FnMut(Event)) {
+    fn acknowledge(&mut self, held: HeldEvents, sink: &mut dyn FnMut(Event)) {
         self.flash.acknowledge(held, || self.session.target().flash().unwrap_or_default(), sink);
     }
 

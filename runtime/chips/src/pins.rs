@@ -214,7 +214,7 @@ impl Pins {
         }
     }
 
-    /// Returns whether something outside of the board drives a bit or is going to.
+    /// Returns whether something outside the board drives a bit or is going to.
     pub fn is_declared(&self, bit: Bit) -> bool {
         self.driven.contains(bit)
     }

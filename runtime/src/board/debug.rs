@@ -117,7 +117,7 @@ impl DebugInfo {
     /// Describes a data address by the object at or just before it: "4 bytes past the end of `table`".
     #[must_use]
     pub fn describe(&self, address: GuestAddr) -> Option<String> {
-        /// Farther than this from an object, naming it would mislead.
+        /// The greatest distance in bytes at which an address is described by an object.
         const NEAR: u32 = 256;
         let address = address.get();
         let after = self.objects.partition_point(|object| object.start <= address);

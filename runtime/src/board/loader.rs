@@ -23,14 +23,14 @@ pub struct Prepared {
     /// The address at which a thread begins to execute.
     pub entry: GuestAddr,
     /// The sections to be written to memory.
-    pub sections: Vec<Placed>,
+    pub sections: Vec<PlacedSection>,
     /// Names and lines.
     pub debug: DebugInfo,
 }
 
 /// A section and its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Placed {
+pub struct PlacedSection {
     /// The first address.
     pub address: GuestAddr,
     /// The bytes to be written.
@@ -46,7 +46,7 @@ pub enum Fill {
     Uninitialised(u32),
 }
 
-impl Placed {
+impl PlacedSection {
     /// Bytes that it takes.
     #[must_use]
     pub fn size(&self) -> u32 {
@@ -313,12 +313,12 @@ fn functions(image: &Image) -> Vec<u32> {
     functions.map(|symbol| symbol.value).collect()
 }
 
-fn place(section: &Section) -> Placed {
+fn place(section: &Section) -> PlacedSection {
     let contents = match &section.contents {
         Contents::Data(bytes) => Fill::Bytes(bytes.clone()),
         Contents::Uninitialised(size) => Fill::Uninitialised(*size),
     };
-    Placed { address: GuestAddr::new(section.address), contents }
+    PlacedSection { address: GuestAddr::new(section.address), contents }
 }
 
 /// Collects functions, lines and objects from the symbol table.

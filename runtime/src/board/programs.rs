@@ -15,7 +15,7 @@ use vm::verify::VerifyError;
 use super::{Board, Loaded, Programs};
 use crate::board::code;
 use crate::board::debug::{CodeDetail, DebugInfo, ObjectInfo, SourcePlace};
-use crate::board::loader::{Fill, LoadError, Placed, prepare};
+use crate::board::loader::{Fill, LoadError, PlacedSection, prepare};
 use crate::firmware::calls::Named;
 use crate::firmware::level::ModelledBoard;
 use crate::out::{EventKind, Message};
@@ -89,7 +89,7 @@ impl<E: Engine> Board<E> {
     }
 
     /// Puts a section into memory; the loader has checked that it fits.
-    pub(super) fn place(&mut self, thread: ThreadId, section: &Placed, code: &Code) {
+    pub(super) fn place(&mut self, thread: ThreadId, section: &PlacedSection, code: &Code) {
         let bytes = match &section.contents {
             Fill::Bytes(bytes) => bytes.clone(),
             Fill::Uninitialised(size) => vec![self.bss_fill; *size as usize],

@@ -103,7 +103,7 @@ pub(super) fn arc(session: &mut Session<'_, '_>, values: &Values, plane: Plane) 
     noted(session, result)
 }
 
-/// The letters outside of an arc's plane: the one left of X, Y and Z comes first, then A and on.
+/// The letters outside an arc's plane: the one left of X, Y and Z comes first, then A and on.
 fn outside(plane: Plane, numbers: &[f32]) -> Point {
     let mut letters = point(2, numbers);
     let rest = match plane {

@@ -45,7 +45,7 @@ pub(super) fn set_startup(session: &mut Session<'_, '_>, values: &Values) -> Ans
     Answer::Nothing
 }
 
-/// Takes data lines, unless the bytes would lie outside of memory: the released firmware does not check that.
+/// Takes data lines, unless the bytes would lie outside memory: the released firmware does not check that.
 pub(super) fn load_data(_: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (start, count) = (values.word(0), values.word(1));
     let end = u64::from(start) + u64::from(count);

@@ -30,7 +30,7 @@ pub(crate) struct Out {
     requests: Vec<Request>,
     /// Console lines that a stimulus has not seen; `None` if there is none.
     lines: Option<VecDeque<(Cycles, Vec<u8>)>>,
-    /// Bytes on the wire that a PC elsewhere has not been sent; `None` if there is none.
+    /// Bytes not yet sent to the remote PC; `None` without one.
     wire: Option<Vec<u8>>,
     /// True if hints are reported: remarks about steps that a program may have forgotten.
     pub(crate) hints: bool,

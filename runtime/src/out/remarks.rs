@@ -316,7 +316,7 @@ messages! {
         "takes the lock {lock} while it holds {held}, and {other} takes them in the opposite order: both can wait forever. Take locks in the same order everywhere";
     /// A thread has ended with a lock.
     LockKept { lock: String } = "lock-kept", Warning, [always],
-        "took the lock {lock} and has ended without MutexUnlock: whoever needs the lock next waits forever";
+        "took the lock {lock} and has ended without MutexUnlock: the next thread that needs it waits forever";
     /// A call starts a thread that is active.
     ThreadRestarted { thread: ThreadId } = "thread-restarted", Warning, [always],
         "StartThread({thread}): thread {thread} is active, so it begins again, and what it had half done stays half done";
@@ -343,7 +343,7 @@ messages! {
         "{function}({bit}): nothing is connected to bit {bit}: it reads 0 and cannot be written";
     /// A stimulus takes an input from the switch that drives it.
     SwitchOverridden { bit: Bit, axis: AxisId } = "switch-overridden", Hint, [per bit],
-        "the stimulus takes bit {bit} from the switch of axis {axis}, until `release bit {bit}`";
+        "the stimulus overrides the switch of axis {axis} on bit {bit}, until `release bit {bit}`";
     /// A program makes a pin an output although a switch, a probe or a wire drives it.
     OutputAgainstInput { bit: Bit } = "output-against-input", Warning, [per bit],
         "SetBitDirection({bit}, 1): the machine drives bit {bit}, so two outputs drive the same pin, and the program can no longer read the input";
@@ -406,10 +406,10 @@ messages! {
         "{function}: axis {axis} has {field} = 0, so {effect}";
     /// An axis is to drive an output that no board has.
     NoSuchOutput { function: Function, axis: AxisId, channel: i32, kind: &'static str, most: usize } = "no-such-output", Warning, [per axis],
-        "{function}: axis {axis} has OutputChan0 = {channel}: {kind} have the numbers 0 to {most}";
+        "{function}: axis {axis} has OutputChan0 = {channel}: {kind} are numbered 0 to {most}";
     /// An axis is to read an encoder input that no board has.
     NoSuchInput { function: Function, axis: AxisId, input: i32 } = "no-such-input", Warning, [per axis],
-        "{function}: axis {axis} has InputChan0 = {input}: encoder inputs have the numbers 0 to 7, and 8 to 15 on SnapAmps";
+        "{function}: axis {axis} has InputChan0 = {input}: encoder inputs are numbered 0 to 7, and 8 to 15 on SnapAmps";
     /// The mode or a channel of an axis was set after it was enabled.
     SetWhileEnabled { function: Function, axis: AxisId, field: &'static str } = "set-while-enabled", Warning, [per axis],
         "{function}: {field} of axis {axis} has changed since the axis was enabled: set it before EnableAxis, which prepares the output and takes over the position";
@@ -544,7 +544,7 @@ messages! {
         "UserCallBack of thread {thread} is replaced by a function of thread {by}: the board has only one call-back, so that of thread {thread} is not called any more";
     /// A program has stored values after the end of `persist.UserData`.
     UserDataOverrun { index: u32 } = "user-data-overrun", Warning, [once],
-        "a value is stored in persist.UserData[{index}], but its elements have the numbers 0 to 199: other data of the board are overwritten";
+        "a value is stored in persist.UserData[{index}], but valid indices are 0 to 199: other data of the board are overwritten";
     /// A path was aborted while a thread waited for its end.
     PathEndedWhileWaiting { } = "path-ended-while-waiting", Warning, [once],
         "CheckDoneXYZABC or CheckDoneBuf is -1: an axis was disabled before the path ended, which `while (!CheckDoneXYZABC())` takes for its end";
@@ -625,7 +625,7 @@ messages! {
         "axis {axis}: pcoeff does not point to a list of states; its motion has ended";
     /// A step generator is commanded to go faster than its pulses allow.
     StepsTooFast { axis: AxisId, fastest: f64, length: f64 } = "steps-too-fast", Warning, [per axis],
-        "axis {axis} needs more than {fastest:.0} steps per second, the most that pulses of {length:.2} µs allow: it falls behind and catches up later (STEP_PULSE_LENGTH_ADD)";
+        "axis {axis} needs more than {fastest:.0} steps per second, the most that pulses of {length:.2} µs allow: it falls behind and catches up later: lower Vel, or shorten the pulses (STEP_PULSE_LENGTH_ADD)";
     /// A real brushless motor would not turn as the simulated one does.
     WouldNotTurn { axis: AxisId } = "would-not-turn", Warning, [always],
         "axis {axis}: with this CommutationOffset a real brushless motor would not turn as commanded; the simulated one follows (model \"follow\")";
@@ -697,10 +697,10 @@ messages! {
         "fprintf: the text contains a %, which the board reads as a conversion again. Write %%%% for it";
     /// The PC refuses to write a file.
     FileNotMade { name: String, error: String } = "file-not-made", Warning, [always],
-        "the PC refuses to write {name}: {error}";
+        "the PC cannot write {name}: {error}";
     /// The PC refuses to read a file.
     FileNotRead { name: String, error: String } = "file-not-read", Warning, [always],
-        "the PC refuses to read {name}: {error}";
+        "the PC cannot read {name}: {error}";
     /// A file is opened while an answer about the last one is on its way.
     OldFileAnswer { name: String } = "old-file-answer", Warning, [always],
         "fopen {name}: an answer about the file before is still on its way, and the board takes it for the answer to this fopen: read that file to its end, or wait 0.1 s before the next fopen";

@@ -3,7 +3,7 @@
 //! The folder is a capability. Each part of a name is opened below the handle of the folder before it, and a link is
 //! not followed by the system call itself. No path is checked first and opened later, so another process that exchanges
 //! folders and links while a program runs gains nothing. What was opened is then judged by its handle: it is a regular
-//! file, and one with a second name (a hard link), which may be outside of the folder, is not written.
+//! file, and one with a second name (a hard link), which may be outside the folder, is not written.
 
 use std::ffi::{OsStr, OsString};
 use std::fs;
@@ -31,14 +31,14 @@ pub struct Directory {
 
 /// The purpose for which a file is opened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Purpose {
+enum OpenMode {
     Read,
     /// Made with its folders where it is missing.
     Create,
     Append,
 }
 
-impl Purpose {
+impl OpenMode {
     /// Options with which nothing is followed, waited for, or emptied before it is judged.
     fn options(self) -> OpenOptions {
         let mut options = OpenOptions::new();
@@ -87,10 +87,10 @@ impl Directory {
     }
 
     /// Opens a file.
-    fn open(&self, name: &str, purpose: Purpose) -> Result<File, FileError> {
+    fn open(&self, name: &str, purpose: OpenMode) -> Result<File, FileError> {
         let parts = self.parts(name)?;
         let Some((last, folders)) = parts.split_last() else { return Err(FileError::Outside) };
-        if purpose == Purpose::Create {
+        if purpose == OpenMode::Create {
             fs::create_dir_all(&self.root)?;
         }
         let mut folder = self.open_root()?;
@@ -105,7 +105,7 @@ impl Directory {
         if !known.is_file() {
             return Err(FileError::NotAFile);
         }
-        if purpose != Purpose::Read && known.nlink() > 1 {
+        if purpose != OpenMode::Read && known.nlink() > 1 {
             return Err(FileError::HardLink(last.clone()));
         }
         Ok(file)
@@ -116,7 +116,7 @@ impl Directory {
     /// # Errors
     /// The name leads nowhere, through a link, or to what is not a file.
     pub(crate) fn check(&self, name: &str) -> Result<(), FileError> {
-        match self.open(name, Purpose::Read) {
+        match self.open(name, OpenMode::Read) {
             Ok(_) | Err(FileError::Missing) => Ok(()),
             Err(error) => Err(error),
         }
@@ -131,9 +131,9 @@ enum Wanted {
 }
 
 /// Opens a folder of a folder, which is made first where a file is created.
-fn open_folder(folder: &Dir, part: &str, purpose: Purpose) -> Result<Dir, FileError> {
+fn open_folder(folder: &Dir, part: &str, purpose: OpenMode) -> Result<Dir, FileError> {
     let name = spelling(folder, part);
-    if purpose == Purpose::Create
+    if purpose == OpenMode::Create
         && let Err(error) = folder.create_dir(&name)
         && error.kind() != io::ErrorKind::AlreadyExists
     {
@@ -174,12 +174,12 @@ fn is_name(part: &str) -> bool {
 impl HostFiles for Directory {
     fn read(&mut self, name: &str) -> Result<Vec<u8>, FileError> {
         let mut bytes = Vec::new();
-        self.open(name, Purpose::Read)?.take(FILE_BYTES + 1).read_to_end(&mut bytes)?;
+        self.open(name, OpenMode::Read)?.take(FILE_BYTES + 1).read_to_end(&mut bytes)?;
         if bytes.len() as u64 > FILE_BYTES { Err(FileError::TooLarge) } else { Ok(bytes) }
     }
 
     fn create(&mut self, name: &str, keep: bool) -> Result<(), FileError> {
-        let file = self.open(name, Purpose::Create)?;
+        let file = self.open(name, OpenMode::Create)?;
         if !keep {
             file.set_len(0)?;
         }
@@ -187,7 +187,7 @@ impl HostFiles for Directory {
     }
 
     fn append(&mut self, name: &str, bytes: &[u8]) -> Result<(), FileError> {
-        Ok(self.open(name, Purpose::Append)?.write_all(bytes)?)
+        Ok(self.open(name, OpenMode::Append)?.write_all(bytes)?)
     }
 
     fn place_of(&self, name: &str) -> Option<String> {

@@ -88,7 +88,7 @@ impl<'a> GcodeReader<'a> {
         if letter.is_ascii_alphabetic() && !self.rest.is_empty() { self.value().map(drop) } else { Ok(()) }
     }
 
-    /// A value as a word or an assignment has it: no operator outside of brackets.
+    /// A value as a word or an assignment has it: no operator outside brackets.
     fn value(&mut self) -> Result<f64, Unknown> {
         if self.take("-") {
             return Ok(-self.value()?);

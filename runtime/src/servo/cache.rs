@@ -19,7 +19,7 @@ use crate::machine::wiring::Wiring;
 /// The kind of change that invalidates derived values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Change {
-    /// Anything may have: code outside of the tick has had the board.
+    /// Anything may have: code outside the tick has had the board.
     Anything,
     /// Memory may have been written, by programs or by what goes in at the beginning of a tick.
     Memory,

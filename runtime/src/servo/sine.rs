@@ -193,7 +193,7 @@ static TABLE: LazyLock<[Secant; LINES]> = LazyLock::new(|| {
     })
 });
 
-/// The angle of a number of lines, in turns.
+/// The angle of a position in table entries, in turns.
 fn along(lines: usize) -> f32 {
     const LINE: f32 = 1.0 / TURN as f32;
     lines as f32 * LINE
@@ -205,7 +205,7 @@ pub(crate) fn sine(cycles: f64, ahead: usize) -> f32 {
     value(if fraction < 0.0 { fraction + 1.0 } else { fraction }, ahead)
 }
 
-/// The value a number of lines after an angle. The board looks beyond its table for angles outside of a turn, where it
+/// The value a number of lines after an angle. The board looks beyond its table for angles outside a turn, where it
 /// found zeros.
 fn value(angle: f32, ahead: usize) -> f32 {
     let index = (angle * TURN as f32) as i64 + ahead as i64;

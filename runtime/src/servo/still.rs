@@ -64,7 +64,7 @@ impl Stillness {
         self.is_watching = false;
     }
 
-    /// Something moves, or has been changed outside of memory.
+    /// Something moves, or has been changed outside memory.
     pub(super) const fn interrupt(&mut self) {
         self.is_known = false;
         self.is_still = false;

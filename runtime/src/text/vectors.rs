@@ -33,7 +33,7 @@ pub(crate) fn call(text: &str) -> (Vec<u8>, Vec<Argument>) {
     (unquote(&first), parts.map(|part| argument(&part)).collect())
 }
 
-/// Splits at commas outside of string literals.
+/// Splits at commas outside string literals.
 pub(crate) fn split(text: &str) -> Vec<String> {
     let (mut parts, mut quoted, mut escaped) = (vec![String::new()], false, false);
     for letter in text.chars() {

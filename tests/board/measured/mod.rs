@@ -60,7 +60,7 @@ const DIFFERENT: &[Exception] = &[
     rows_of("the program prints a tick later", &[29]),
     rows_of("the memory after the axes is overwritten", &[34, 36]),
     rows_of("arguments come from divisions by cc67's compiler", &[44]),
-    rows_of("the firmware reads outside of the memory for the axis of an unused letter", &[54, 100, 101]),
+    rows_of("the firmware reads outside the memory for the axis of an unused letter", &[54, 100, 101]),
 ];
 
 /// A board on which rows are tried.

@@ -19,7 +19,7 @@ main()
 /// Another thread, which waits.
 const OTHER: &str = "#include \"KMotionDef.h\"\nmain() { for (;;) Delay_sec(0.5); }\n";
 
-/// Elements of which some part lies outside of the page, or of the panel that shows them.
+/// Elements of which some part lies outside the page, or of the panel that shows them.
 fn out_of_reach(selector: &str) -> String {
     format!(
         "[...document.querySelectorAll({selector:?})].filter((one) => {{ const r = one.getBoundingClientRect(); \

@@ -2,7 +2,7 @@
 //@ prints: 1 at 0.1 s
 //@ prints: 0 at 0.3 s
 //@ prints: 5 changes, 1 at the end
-//@ says: the stimulus takes bit 136 from the switch of axis 0, until `release bit 136`
+//@ says: the stimulus overrides the switch of axis 0 on bit 136, until `release bit 136`
 #include "KMotionDef.h"
 
 main()

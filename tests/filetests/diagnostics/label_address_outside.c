@@ -1,5 +1,5 @@
 //@ exit: 1
-//@ says: the address of a label outside of a function
+//@ says: the address of a label cannot be taken outside a function
 //@ says: `goto *` needs the address of a label, not `int`
 //@ says: label `nowhere` is used but not defined
 void *p = &&here;

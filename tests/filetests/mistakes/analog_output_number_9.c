@@ -1,4 +1,4 @@
-//@ says: thread 1 at analog_output_number_9.c:13:5 in `main`: EnableAxis: axis 0 has OutputChan0 = 9: analog outputs have the numbers 0 to 7
+//@ says: thread 1 at analog_output_number_9.c:13:5 in `main`: EnableAxis: axis 0 has OutputChan0 = 9: analog outputs are numbered 0 to 7
 #include "KMotionDef.h"
 
 main()

@@ -10,7 +10,7 @@
 //@ says:    │         ------- 3200 bytes
 //@ says:    │
 //@ says:    = nothing guards the end of the stack: an overflow overwrites the next thread's stack
-//@ says:    = help: make large arrays `static`, or declare them outside of the function
+//@ says:    = help: make large arrays `static`, or declare them outside the function
 //@ says: thread 1 at big_array_on_the_stack.c:21:31 in `main`: 3224 bytes of stack used; the board has about 1900
 #include "KMotionDef.h"
 

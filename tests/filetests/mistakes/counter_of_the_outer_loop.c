@@ -1,5 +1,5 @@
 //@ args: check
-//@ says: warning[loop-condition]: this loop changes `i`, which the loop around it counts with
+//@ says: warning[loop-condition]: this loop changes `i`, the counter of the enclosing loop
 //@ says: counter_of_the_outer_loop.c:11:28
 #include "KMotionDef.h"
 

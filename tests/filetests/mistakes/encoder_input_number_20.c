@@ -1,4 +1,4 @@
-//@ says: thread 1 at encoder_input_number_20.c:13:5 in `main`: EnableAxis: axis 0 has InputChan0 = 20: encoder inputs have the numbers 0 to 7, and 8 to 15 on SnapAmps
+//@ says: thread 1 at encoder_input_number_20.c:13:5 in `main`: EnableAxis: axis 0 has InputChan0 = 20: encoder inputs are numbered 0 to 7, and 8 to 15 on SnapAmps
 #include "KMotionDef.h"
 
 main()

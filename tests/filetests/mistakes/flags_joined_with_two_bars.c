@@ -1,5 +1,5 @@
 //@ args: check
-//@ says: warning[logical-constant]: `||` only asks whether 4 is 0
+//@ says: warning[logical-constant]: `||` only tests whether 4 is nonzero
 //@ says: flags_joined_with_two_bars.c:11:29
 #include "KMotionDef.h"
 

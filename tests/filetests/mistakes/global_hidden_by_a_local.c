@@ -1,5 +1,5 @@
 //@ args: check
-//@ says: warning[shadow]: this `state` is another variable than the global `state`
+//@ says: warning[shadow]: this `state` shadows the global `state`
 //@ says: global_hidden_by_a_local.c:10:9
 #include "KMotionDef.h"
 

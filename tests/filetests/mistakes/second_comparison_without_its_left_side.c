@@ -1,5 +1,5 @@
 //@ args: check
-//@ says: warning[logical-constant]: `||` only asks whether 4 is 0
+//@ says: warning[logical-constant]: `||` only tests whether 4 is nonzero
 //@ says: second_comparison_without_its_left_side.c:9:22
 #include "KMotionDef.h"
 

@@ -1,4 +1,4 @@
-//@ says: a value is stored in persist.UserData[200], but its elements have the numbers 0 to 199: other data of the board are overwritten
+//@ says: a value is stored in persist.UserData[200], but valid indices are 0 to 199: other data of the board are overwritten
 #include "KMotionDef.h"
 
 main()

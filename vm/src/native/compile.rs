@@ -94,7 +94,7 @@ pub(super) struct Functions {
 pub(super) struct StackUse {
     /// The most bytes that a call takes for each byte of guest stack.
     pub(super) native_per_guest: u32,
-    /// The most bytes that a call takes at all.
+    /// The largest native frame of a call, in bytes.
     pub(super) largest_frame: u32,
 }
 

@@ -182,7 +182,7 @@ fn argument(op: &Op) -> Option<(Class, Count)> {
     Some((class, op.operand(Name::Index)?))
 }
 
-/// Class of a result taken.
+/// Returns the class of the call result that the instruction takes.
 const fn result(op: &Op) -> Option<Class> {
     if let OpKind::Result(class) = op.kind() { Some(class) } else { None }
 }

@@ -28,7 +28,7 @@ pub(crate) fn reference(program: &Program, word: usize) -> Reference {
     let Some(op) = program.ops().get(word) else { return Reference::Nothing };
     #[expect(
         clippy::wildcard_enum_match_arm,
-        reason = "other instructions name nothing outside of their operands"
+        reason = "other instructions name nothing outside their operands"
     )]
     match op {
         Op::Call { func } => Reference::Call(program.base().get() + func.0 * WORD as u32),

@@ -97,7 +97,7 @@ impl<'a> Scan<'a> {
     fn run(&mut self, order: &[VReg]) -> Option<()> {
         for reg in order {
             let interval = self.liveness.intervals[*reg];
-            let allowed = sides::file(&self.code.regs[*reg]) & !self.changed(interval);
+            let allowed = sides::allowed_registers(&self.code.regs[*reg]) & !self.changed(interval);
             match self.free(*reg, allowed, interval.start) {
                 Some(found) => self.take(*reg, found, interval.end),
                 None => self.evict(*reg, interval, allowed)?,

@@ -76,7 +76,7 @@ impl Readers {
         Self { blocks, is_argument }
     }
 
-    /// Reports whether the count is read outside of the block, or its copy anywhere but by the branch.
+    /// Reports whether the count is read outside the block, or its copy anywhere but by the branch.
     fn is_read_elsewhere(
         &self,
         code: &Code,

@@ -246,7 +246,7 @@ impl Slots {
 }
 
 impl Finder<'_> {
-    /// The places of all steps, if there are some with few enough tries.
+    /// Returns a cycle for every step, or `None` if none is found within the search budget.
     fn run(&self, work: &mut Work) -> Result<Option<Vec<(u32, Inst)>>, Exceeded> {
         let branch = self.steps.len() - 1;
         let is_before = self.before_branch();

@@ -75,7 +75,7 @@ impl Mentioned {
     }
 }
 
-/// The blocks that use each register; a parameter is used outside of all.
+/// The blocks that use each register; a parameter is used outside all.
 pub(super) fn homes(code: &Code) -> SecondaryMap<VReg, Mentioned> {
     let mut homes = SecondaryMap::with_capacity(code.regs.len());
     homes.resize(code.regs.len());

@@ -316,8 +316,8 @@ impl Copier<'_> {
     }
 }
 
-/// The file that a register may be in.
-pub(super) fn file(info: &Info) -> u64 {
+/// Returns the set of registers that a value may be in.
+pub(super) fn allowed_registers(info: &Info) -> u64 {
     let side = info.side.unwrap_or(Side::A);
     let file = abi::file(side) & abi::USABLE;
     if info.is_condition { file & abi::CONDITIONS } else { file }

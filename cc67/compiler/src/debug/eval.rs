@@ -132,7 +132,7 @@ const BEFORE: &str = "\n;{ ";
 const BEHIND: &str = "\n; }\n";
 
 impl Model {
-    /// Compiles an expression at a line of a function; without one, outside of all functions. `items` are further names
+    /// Compiles an expression at a line of a function; without one, outside all functions. `items` are further names
     /// in it, of type `double`; `calls` lists the functions that it may call.
     ///
     /// # Errors
@@ -300,7 +300,7 @@ impl Model {
         Some((DebugValue { ty: function.result, data: Data::Slot(slot) }, shown))
     }
 
-    /// The value of a variable outside of functions.
+    /// The value of a variable outside functions.
     #[must_use]
     pub fn global<'a>(
         &'a self,
@@ -512,7 +512,7 @@ impl Probe {
         });
         unknown.map_or_else(
             || "Division by zero".to_owned(),
-            |name| format!("where the local `{name}` is in this code is not noted; variables outside of functions have values"),
+            |name| format!("where the local `{name}` is in this code is not noted; variables outside functions have values"),
         )
     }
 

@@ -173,7 +173,7 @@ impl Model {
     }
 
     /// Collects the information about code for the controller's processor: functions and their lines as the image has
-    /// them, types, and variables outside of functions. The locations of locals are not known.
+    /// them, types, and variables outside functions. The locations of locals are not known.
     ///
     /// # Errors
     /// As [`of`](Self::of).
@@ -426,7 +426,7 @@ impl Model {
         &self.text
     }
 
-    /// Variables of the program outside of functions, as the source names them: name, type, address.
+    /// Variables of the program outside functions, as the source names them: name, type, address.
     #[must_use]
     pub fn globals(&self) -> Vec<(String, String, u32)> {
         let mut globals = Vec::new();

@@ -221,7 +221,7 @@ fn compile_text(request: CompileRequest<'_>, text: &Arc<Vec<u8>>, headers: Heade
     if is_final {
         lints::check(&unit, &names, &sources, &options.firmware, &mut sink);
         if !sink.has_errors() {
-            advise_alone(&unit, &sources, &mut sink);
+            report_call_back_sharing(&unit, &sources, &mut sink);
         }
     }
     let object = (is_final && !sink.has_errors()).then(|| object_of(&unit, &sources, options, &mut sink));
@@ -237,7 +237,7 @@ fn compile_text(request: CompileRequest<'_>, text: &Arc<Vec<u8>>, headers: Heade
 const USER_CALL_BACK: &str = "UserCallBack";
 
 /// Adds advice about what a program shares with its call-back, if it has one.
-fn advise_alone(unit: &Unit, sources: &SourceMap, sink: &mut Sink) {
+fn report_call_back_sharing(unit: &Unit, sources: &SourceMap, sink: &mut Sink) {
     // The header of the board declares it, too.
     let names_it =
         |text: &[u8]| text.windows(USER_CALL_BACK.len()).any(|word| word == USER_CALL_BACK.as_bytes());
@@ -245,7 +245,7 @@ fn advise_alone(unit: &Unit, sources: &SourceMap, sink: &mut Sink) {
     // The thread makes no difference to what the program shares with its call-back.
     let thread = ThreadId::all().next().filter(|_| has_call_back);
     let program = thread.map(|thread| sharing::ThreadProgram::new(thread, unit, sources));
-    let advice = program.iter().flat_map(sharing::advise_alone).collect::<Vec<_>>();
+    let advice = program.iter().flat_map(sharing::report_call_back_sharing).collect::<Vec<_>>();
     advice.into_iter().for_each(|advice| sink.report(advice));
 }
 

@@ -13,7 +13,7 @@ use crate::typed::{
     ExprId, ExprKind, Function, LocalId, LoopTest, PlaceId, PlaceKind, Stmt, StmtKind, SymbolId,
 };
 
-/// Reports loads and stores outside of arrays, at constant indexes and in loops that count.
+/// Reports loads and stores outside arrays, at constant indexes and in loops that count.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.whole_functions() {
         let search = Search { program, function };
@@ -144,7 +144,7 @@ impl Search<'_> {
         found
     }
 
-    /// Reports accesses of every iteration that are outside of an array in the first or last one.
+    /// Reports accesses of every iteration that are outside an array in the first or last one.
     fn iterations(&self, body: &[Stmt], counter: Counter, sink: &mut Sink) {
         Walk { function: self.function, extent: Extent::Always }.stmts(body, &mut |expr| {
             for place in accesses(self.function, &self.function.exprs[expr].kind) {

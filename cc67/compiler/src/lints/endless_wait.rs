@@ -23,7 +23,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
                 sink.report(
                     Diagnostic::warning(Lint::EndlessWait, function.exprs[condition].span, message)
                         .at("the same in every iteration")
-                        .help("a variable belongs to its own program: threads share `persist.UserData` and virtual bits"),
+                        .help("no other thread can change it: use `persist.UserData` or a virtual bit, which threads share"),
                 );
             }
         });

@@ -8,16 +8,17 @@ pub(crate) fn finding(is_or: bool, value: i64, span: Span) -> Option<Diagnostic>
     if matches!(value, 0 | 1) {
         return None;
     }
-    let (operator, bits, comparison) = if is_or { ("||", "|", "==") } else { ("&&", "&", "!=") };
+    let (operator, bits, effect, comparison) =
+        if is_or { ("||", "|", "combines", "==") } else { ("&&", "&", "masks", "!=") };
     Some(
         Diagnostic::warning(
             Lint::LogicalConstant,
             span,
-            format!("`{operator}` only asks whether {value} is 0"),
+            format!("`{operator}` only tests whether {value} is nonzero"),
         )
         .at("always true")
         .help(format!(
-            "`a {bits} b` joins bits; two comparisons are `x {comparison} a {operator} x {comparison} b`"
+            "`a {bits} b` {effect} bits; two comparisons are `x {comparison} a {operator} x {comparison} b`"
         )),
     )
 }

@@ -176,7 +176,7 @@ fn reused(function: &Function, stmts: &[Stmt], counter: LocalId, sink: &mut Sink
         let ExprKind::Assign(place, _) = function.exprs[*start].kind else { continue };
         if local(function, place) == Some(counter) && counted(function, *step) == Some(counter) {
             let name = &function.locals[counter].name;
-            let message = format!("this loop changes `{name}`, which the loop around it counts with");
+            let message = format!("this loop changes `{name}`, the counter of the enclosing loop");
             sink.report(
                 Diagnostic::warning(Lint::LoopCondition, function.exprs[*step].span, message)
                     .help("use another variable here"),

@@ -34,7 +34,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
             else {
                 continue;
             };
-            let message = format!("this `{0}` is another variable than the global `{0}`", entry.name);
+            let message = format!("this `{0}` shadows the global `{0}`", entry.name);
             sink.report(
                 Diagnostic::warning(Lint::Shadow, entry.span, message)
                     .at("it is assigned, but never read")

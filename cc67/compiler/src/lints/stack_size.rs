@@ -61,7 +61,7 @@ fn large_frame(program: &AnalysedProgram<'_>, function: &Function, bytes: u32) -
     let message = format!("`{name}` needs {bytes} bytes of the board's stack, which has 2048");
     let diagnostic = Diagnostic::warning(Lint::StackSize, function.span, message)
         .note("nothing guards the end of the stack: an overflow overwrites the next thread's stack")
-        .help("make large arrays `static`, or declare them outside of the function");
+        .help("make large arrays `static`, or declare them outside the function");
     let size = |local: &Local| program.unit.types.size_of(local.ty).unwrap_or(0);
     match variables(function).max_by_key(|local| size(local)) {
         Some(largest) => diagnostic.label(largest.span, format!("{} bytes", size(largest))),
@@ -124,6 +124,6 @@ fn deep_chain(depths: &Depths<'_>, main: SymbolId) -> Option<Diagnostic> {
             .at("the deepest chain begins here")
             .note(format!("bytes: {}", chain.join(" → ")))
             .note("nothing guards the end of the stack: an overflow overwrites the next thread's stack")
-            .help("make large arrays `static`, or declare them outside of the functions"),
+            .help("make large arrays `static`, or declare them outside the functions"),
     )
 }

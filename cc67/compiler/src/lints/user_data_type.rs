@@ -171,7 +171,7 @@ fn mailbox(element: i32, span: Span) -> Diagnostic {
     Diagnostic::warning(Lint::UserDataType, span, message)
         .at(format!("elements {element} and {}", element + 1))
         .note("elements 100 to 107 hold requests to the PC: it takes what it finds in element 100 as the code of one")
-        .help("use elements outside of 100 to 107: `double` index 50 is element 100")
+        .help("use elements outside 100 to 107: `double` index 50 is element 100")
 }
 
 /// The element that is read as an integer.

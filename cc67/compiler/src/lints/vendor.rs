@@ -33,9 +33,9 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
 
 /// The message for a local array or structure that its initialiser does not fill.
 pub(crate) fn partly_initialised(span: Span) -> Diagnostic {
-    warning(span, "clears the wrong memory for a local that its initialiser fills in part")
+    warning(span, "clears the wrong memory for a partially initialised local")
         .at("some elements have no value here")
-        .note("the call that clears the rest has its arguments in reverse")
+        .note("the call that clears the rest passes its arguments in the wrong order")
         .help("give every element a value, or make the local `static`")
 }
 

@@ -24,7 +24,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
                         span,
                         "this loop ends when the first axis has arrived",
                     )
-                    .at("false as soon as one of them has")
+                    .at("false once one of them has arrived")
                     .help("write `||` in place of `&&` to wait for all of them"),
                 );
             }

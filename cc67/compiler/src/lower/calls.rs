@@ -23,7 +23,7 @@ impl Lowering<'_> {
             (typed::Callee::Pointer(_), Some(held)) => Callee::Pointer(self.release(held)),
             (typed::Callee::Pointer(_), None) => return Operand::int(0),
         };
-        self.price_call(call);
+        self.charge_call(call);
         let wanted = types::class(&self.unit.types, expr.ty);
         let declared = Signature {
             params: arguments.iter().map(|argument| self.builder.function.class(*argument)).collect(),
@@ -45,7 +45,7 @@ impl Lowering<'_> {
         self.builder.set_span(expr.span);
         self.builder.call(callee, signature, arguments, dst);
         self.builder.set_span(statement);
-        self.price_result(wanted);
+        self.charge_result(wanted);
         match (dst, wanted) {
             (Some(dst), Some(wanted)) if result != Some(wanted) => {
                 let adapted = self.adapt(dst.into(), wanted);
@@ -149,7 +149,7 @@ impl Lowering<'_> {
         let width = types::width(&self.unit.types, ty).unwrap_or(Width::I32);
         let size = width.bytes().max(4).cast_signed();
         let storage = self.place(list);
-        self.price_load(list);
+        self.charge_load(list);
         self.cost(20);
         let mut at = self.read(storage, None);
         if size == 8 {

@@ -59,11 +59,11 @@ impl Lowering<'_> {
                 self.branch(second, sense, then, otherwise);
             }
             ExprKind::Compare(operators::CompareOp::Equal, a, b) if self.is_word_zero(b) => {
-                self.price_zero_test();
+                self.charge_zero_test();
                 self.branch(a, sense, otherwise, then);
             }
             ExprKind::Compare(operators::CompareOp::NotEqual, a, b) if self.is_word_zero(b) => {
-                self.price_zero_test();
+                self.charge_zero_test();
                 self.branch(a, sense, then, otherwise);
             }
             ExprKind::Convert(inner) if self.keeps_truth(inner, condition) => {
@@ -71,7 +71,7 @@ impl Lowering<'_> {
             }
             _ => {
                 let value = self.value(condition);
-                self.price_test(condition);
+                self.charge_test(condition);
                 let value = self.word_truth(value);
                 self.builder.branch(value, then, otherwise);
             }

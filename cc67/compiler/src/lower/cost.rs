@@ -148,7 +148,7 @@ impl Lowering<'_> {
     }
 
     /// Charges a constant.
-    pub(super) fn price_constant(&mut self, class: Class) {
+    pub(super) fn charge_constant(&mut self, class: Class) {
         self.cost(cost_table::constant(class));
         self.wait(cost_table::constant_words(class));
     }
@@ -241,7 +241,7 @@ impl Lowering<'_> {
     }
 
     /// Charges a load of a place, besides the expressions in its address.
-    pub(super) fn price_load(&mut self, place: PlaceId) {
+    pub(super) fn charge_load(&mut self, place: PlaceId) {
         if self.cost_model.is_none() {
             return;
         }
@@ -267,14 +267,14 @@ impl Lowering<'_> {
     }
 
     /// Charges the address of a place that is read or written more than once, besides the expressions in it.
-    fn price_reach(&mut self, place: PlaceId) {
+    fn charge_reach(&mut self, place: PlaceId) {
         if let Reach::Through { fixed, .. } = self.reach(place) {
             self.cost(fixed);
         }
     }
 
     /// Charges the address of a place as a value.
-    pub(super) fn price_address(&mut self, place: PlaceId) {
+    pub(super) fn charge_address(&mut self, place: PlaceId) {
         if self.cost_model.is_none() {
             return;
         }
@@ -286,7 +286,7 @@ impl Lowering<'_> {
     }
 
     /// Charges the store of a place whose address has been charged.
-    fn price_store(&mut self, place: PlaceId) {
+    fn charge_store(&mut self, place: PlaceId) {
         let class = self.class_or_int(self.function.places[place].ty);
         let waits = match self.reach(place) {
             Reach::Local => {
@@ -313,12 +313,12 @@ impl Lowering<'_> {
     }
 
     /// Charges an assignment, its value apart.
-    pub(super) fn price_assignment(&mut self, place: PlaceId, value: ExprId) {
+    pub(super) fn charge_assignment(&mut self, place: PlaceId, value: ExprId) {
         if self.cost_model.is_none() {
             return;
         }
         if self.is_through(place) {
-            self.price_reach(place);
+            self.charge_reach(place);
             let class = self.class_of(value);
             if self.calls(value) {
                 self.cost(cost_table::SAVE_ADDRESS);
@@ -330,18 +330,18 @@ impl Lowering<'_> {
                 ExprKind::Convert(inner) if class == Class::F64 && self.nature(inner) == Nature::Computed);
             self.cost(i32::from(is_converted) * cost_table::MOVE);
         }
-        self.price_store(place);
+        self.charge_store(place);
     }
 
     /// Charges `place = place op operand`, its operand apart.
-    pub(super) fn price_update(&mut self, update: &typed::Update) {
+    pub(super) fn charge_update(&mut self, update: &typed::Update) {
         if self.cost_model.is_none() {
             return;
         }
         let place = update.place;
         let ty = self.function.places[place].ty;
         let (stored, computed) = (self.class_or_int(ty), self.class_or_int(update.computed));
-        self.price_load(place);
+        self.charge_load(place);
         if self.is_through(place) && self.calls(update.operand) {
             self.cost(cost_table::SAVE_ADDRESS);
         }
@@ -355,12 +355,12 @@ impl Lowering<'_> {
             Class::F32 if is_element => cost_table::CROWDED_SINGLE,
             Class::I32 | Class::I64 | Class::F32 | Class::F64 => 0,
         });
-        self.price_operator(update.op, computed, update.operand);
-        self.price_store(place);
+        self.charge_operator(update.op, computed, update.operand);
+        self.charge_store(place);
     }
 
     /// Charges an operator with this right side, and takes back what a constant cost that leaves nothing to do.
-    fn price_operator(&mut self, op: BinaryOp, class: Class, b: ExprId) {
+    fn charge_operator(&mut self, op: BinaryOp, class: Class, b: ExprId) {
         let constant = match self.function.exprs[b].kind {
             ExprKind::Int(value) if class == Class::I32 => Some(value),
             _ => None,
@@ -389,7 +389,7 @@ impl Lowering<'_> {
     }
 
     /// Charges what keeping the left side costs while the right one is evaluated.
-    pub(super) fn price_kept(&mut self, a: ExprId, b: ExprId) {
+    pub(super) fn charge_kept(&mut self, a: ExprId, b: ExprId) {
         if !self.calls(b) {
             return;
         }
@@ -403,7 +403,7 @@ impl Lowering<'_> {
     }
 
     /// Charges a binary operator, its operands apart.
-    pub(super) fn price_binary(&mut self, id: ExprId) {
+    pub(super) fn charge_binary(&mut self, id: ExprId) {
         if self.cost_model.is_none() {
             return;
         }
@@ -423,7 +423,7 @@ impl Lowering<'_> {
         let is_index = self.unit.types.is_pointer(ty) && self.is_shifted_sum(b);
         let is_moved = class == Class::I32 && if divides { left == Nature::Computed } else { is_index };
         self.cost(i32::from(is_moved) * cost_table::MOVE);
-        self.price_operator(op, class, b);
+        self.charge_operator(op, class, b);
     }
 
     /// Reports whether an index is computed and scaled by a shift.
@@ -436,13 +436,13 @@ impl Lowering<'_> {
     }
 
     /// Charges a unary operator but `!`, its operand apart.
-    pub(super) fn price_unary(&mut self, operand: ExprId, op: UnaryOp) {
+    pub(super) fn charge_unary(&mut self, operand: ExprId, op: UnaryOp) {
         let class = self.class_of(operand);
         match (op, class) {
             (UnaryOp::Negate | UnaryOp::Complement, Class::I32 | Class::I64) => self.cost(cost_table::STEP),
             // 0 minus the value.
             (UnaryOp::Negate | UnaryOp::Complement, Class::F32 | Class::F64) => {
-                self.price_constant(class);
+                self.charge_constant(class);
                 self.cost(cost_table::binary(BinaryOp::Subtract, class));
             }
             (UnaryOp::Not, _) => {
@@ -453,7 +453,7 @@ impl Lowering<'_> {
     }
 
     /// Charges a comparison, its operands apart.
-    pub(super) fn price_compare(&mut self, a: ExprId, b: ExprId) {
+    pub(super) fn charge_compare(&mut self, a: ExprId, b: ExprId) {
         if self.cost_model.is_none() {
             return;
         }
@@ -471,7 +471,7 @@ impl Lowering<'_> {
     }
 
     /// Charges the test of a value that decides a branch.
-    pub(super) fn price_test(&mut self, condition: ExprId) {
+    pub(super) fn charge_test(&mut self, condition: ExprId) {
         if self.cost_model.is_none() {
             return;
         }
@@ -486,19 +486,19 @@ impl Lowering<'_> {
             _ => {}
         }
         if class != Class::I32 {
-            self.price_constant(class);
+            self.charge_constant(class);
             self.cost(cost_table::compare(class));
         }
         self.cost(cost_table::BRANCH);
     }
 
     /// Charges the comparison with 0 in front of a test, which is made without one.
-    pub(super) fn price_zero_test(&mut self) {
+    pub(super) fn charge_zero_test(&mut self) {
         self.cost(cost_table::constant(Class::I32) + cost_table::compare(Class::I32));
     }
 
     /// Charges a conversion.
-    pub(super) fn price_conversion(&mut self, operand: ExprId, to: Class) {
+    pub(super) fn charge_conversion(&mut self, operand: ExprId, to: Class) {
         if self.cost_model.is_none() {
             return;
         }
@@ -506,14 +506,14 @@ impl Lowering<'_> {
         if self.is_int(operand) && from == Class::I32 {
             // The constant is converted, not the value.
             self.cost(-cost_table::constant(from));
-            self.price_constant(to);
+            self.charge_constant(to);
             return;
         }
         self.cost(cost_table::convert(from, to));
     }
 
     /// Charges the passing of the arguments of a call, their values apart, and the branch of the call.
-    pub(super) fn price_call(&mut self, call: &typed::Call) {
+    pub(super) fn charge_call(&mut self, call: &typed::Call) {
         if self.cost_model.is_none() {
             return;
         }
@@ -537,7 +537,7 @@ impl Lowering<'_> {
             let is_kept = matches!(self.nature(argument), Nature::Computed | Nature::Result);
             self.cost(if is_kept && position < last { cost_table::save(class) } else { 0 });
             self.cost(cost_table::argument(class, is_firmware));
-            self.price_moved(argument);
+            self.charge_moved(argument);
         }
         if call.variable.is_some() {
             self.cost(cost_table::VARIABLE_ARGUMENTS + variable.len() as i32);
@@ -545,7 +545,7 @@ impl Lowering<'_> {
     }
 
     /// Charges the way of a value to where an argument or result is expected.
-    fn price_moved(&mut self, value: ExprId) {
+    fn charge_moved(&mut self, value: ExprId) {
         let class = self.class_of(value);
         let is_comparison = matches!(self.function.exprs[value].kind, ExprKind::Compare(..));
         self.cost(match self.nature(value) {
@@ -557,25 +557,25 @@ impl Lowering<'_> {
     }
 
     /// Charges taking the result of a call.
-    pub(super) fn price_result(&mut self, class: Option<Class>) {
+    pub(super) fn charge_result(&mut self, class: Option<Class>) {
         if let Some(class) = class {
             self.cost(cost_table::result(class));
         }
     }
 
     /// Charges a `return`, its value apart.
-    pub(super) fn price_return(&mut self, value: Option<ExprId>) {
+    pub(super) fn charge_return(&mut self, value: Option<ExprId>) {
         if self.cost_model.is_none() {
             return;
         }
         if let Some(value) = value {
-            self.price_moved(value);
+            self.charge_moved(value);
         }
         self.cost(cost_table::BRANCH);
     }
 
     /// Charges the copy or the clearing of an object, its addresses apart.
-    pub(super) fn price_block(&mut self, bytes: u32, is_copy: bool) {
+    pub(super) fn charge_block(&mut self, bytes: u32, is_copy: bool) {
         self.cost(if is_copy { cost_table::copy(bytes) } else { cost_table::clear(bytes) });
         let words = (bytes / 4).cast_signed();
         self.wait(if is_copy { 2 * words } else { words });

@@ -25,12 +25,12 @@ impl Lowering<'_> {
         let expr = &self.function.exprs[id];
         match expr.kind {
             ExprKind::Int(value) => {
-                self.price_constant(self.class_or_int(expr.ty));
+                self.charge_constant(self.class_or_int(expr.ty));
                 let constant = Constant::number(self.class_or_int(expr.ty), value);
                 self.place_in(constant.into(), into)
             }
             ExprKind::Float(value) => {
-                self.price_constant(self.class_or_int(expr.ty));
+                self.charge_constant(self.class_or_int(expr.ty));
                 let constant = match self.class_or_int(expr.ty) {
                     Class::F32 => Constant::F32((value as f32).to_bits()),
                     Class::F64 | Class::I32 | Class::I64 => Constant::F64(value.to_bits()),
@@ -39,12 +39,12 @@ impl Lowering<'_> {
             }
             ExprKind::Load(place) => {
                 let storage = self.place(place);
-                self.price_load(place);
+                self.charge_load(place);
                 self.read(storage, into)
             }
             ExprKind::Address(place) => {
                 let address = self.address(place);
-                self.price_address(place);
+                self.charge_address(place);
                 self.address_value(address, into)
             }
             ExprKind::Assign(place, value) => self.assign(place, value, into),
@@ -67,7 +67,7 @@ impl Lowering<'_> {
                 }
                 let from = self.function.exprs[operand].ty;
                 let value = self.value(operand);
-                self.price_conversion(operand, self.class_or_int(expr.ty));
+                self.charge_conversion(operand, self.class_or_int(expr.ty));
                 self.convert(value, from, expr.ty, into)
             }
             ExprKind::Call(ref call) => self.call(call, expr, into),
@@ -142,14 +142,14 @@ impl Lowering<'_> {
         let storage = self.place(place);
         if let Storage::Value(dst) = storage {
             self.value_in(value, Some(dst));
-            self.price_assignment(place, value);
+            self.charge_assignment(place, value);
             self.written(dst);
             return self.place_in(dst.into(), into);
         }
         let held = self.hold_storage(storage);
         let source = value;
         let value = self.value(source);
-        self.price_assignment(place, source);
+        self.charge_assignment(place, source);
         let storage = self.release_storage(held);
         let stored = self.write(storage, value);
         self.place_in(stored, into)
@@ -168,7 +168,7 @@ impl Lowering<'_> {
         let storage = self.place(update.place);
         let held = self.hold_storage(storage);
         let operand = self.value(update.operand);
-        self.price_update(update);
+        self.charge_update(update);
         let storage = self.release_storage(held);
         let old = self.read(storage, None);
         let into = match storage {
@@ -184,7 +184,7 @@ impl Lowering<'_> {
         let storage = self.place(update.place);
         let held = self.hold_storage(storage);
         let operand = self.value(update.operand);
-        self.price_update(update);
+        self.charge_update(update);
         let storage = self.release_storage(held);
         let mut old = self.read(storage, None);
         if let Storage::Value(value) = storage {
@@ -219,9 +219,9 @@ impl Lowering<'_> {
         let to = self.address(to);
         let held = self.hold_storage(Storage::Memory(to, Width::I32));
         let from = self.address(from);
-        self.price_address(to_place);
-        self.price_address(from_place);
-        self.price_block(len, true);
+        self.charge_address(to_place);
+        self.charge_address(from_place);
+        self.charge_block(len, true);
         if let Storage::Memory(to, _) = self.release_storage(held) {
             self.builder.push(InstKind::CopyMemory { to, from, len });
         }
@@ -231,15 +231,15 @@ impl Lowering<'_> {
     fn clear(&mut self, place: PlaceId) -> Operand {
         let (len, _) = types::layout(&self.unit.types, self.function.places[place].ty);
         let to: Address = self.address(place);
-        self.price_address(place);
-        self.price_block(len, false);
+        self.charge_address(place);
+        self.charge_block(len, false);
         self.builder.push(InstKind::ClearMemory { to, len });
         Operand::int(0)
     }
 
     fn unary(&mut self, op: typed::UnaryOp, operand: ExprId, into: Option<ValueId>) -> Operand {
         let value = self.value(operand);
-        self.price_unary(operand, op);
+        self.charge_unary(operand, op);
         let class = self.builder.function.class(value);
         match op {
             typed::UnaryOp::Negate | typed::UnaryOp::Complement => {
@@ -271,8 +271,8 @@ impl Lowering<'_> {
             let ExprKind::Binary(op, a_expr, b) = expr.kind else { break };
             let held = self.hold(left);
             let right = self.value(b);
-            self.price_kept(a_expr, b);
-            self.price_binary(node);
+            self.charge_kept(a_expr, b);
+            self.charge_binary(node);
             let a = self.release(held);
             let dst = self.destination(self.class_or_int(expr.ty), if node == id { into } else { None });
             let op = self.binary_op(op, expr.ty);
@@ -287,8 +287,8 @@ impl Lowering<'_> {
         let first = self.value(a);
         let held = self.hold(first);
         let second = self.value(b);
-        self.price_kept(a, b);
-        self.price_compare(a, b);
+        self.charge_kept(a, b);
+        self.charge_compare(a, b);
         // A comparison as a value; a test takes it back.
         self.cost(cost_table::MOVE);
         let first = self.release(held);

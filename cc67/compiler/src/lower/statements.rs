@@ -160,7 +160,7 @@ impl Lowering<'_> {
             (Some(value), Some(class)) => {
                 let source = value;
                 let value = self.value(source);
-                self.price_return(Some(source));
+                self.charge_return(Some(source));
                 let value = if self.builder.function.class(value) == class {
                     value
                 } else {
@@ -170,11 +170,11 @@ impl Lowering<'_> {
             }
             (Some(value), None) => {
                 self.effect(value);
-                self.price_return(None);
+                self.charge_return(None);
                 self.builder.terminate(Terminator::Return(None));
             }
             (None, _) => {
-                self.price_return(None);
+                self.charge_return(None);
                 self.return_zero();
             }
         }

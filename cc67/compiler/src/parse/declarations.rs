@@ -53,7 +53,7 @@ impl Parser<'_> {
             }
             (TokenKind::RightBrace, _) => {
                 self.at += 1;
-                // Behind statements outside of a function it ends what should be one.
+                // Behind statements outside a function it ends what should be one.
                 if self.recovery.has_loose_statement {
                     return Ok(None);
                 }
@@ -409,8 +409,7 @@ impl Parser<'_> {
         let before = self.at.checked_sub(1).and_then(|at| self.tokens.get(at)).copied();
         let token = self.next();
         let text = self.text(token.span);
-        let diagnostic =
-            Diagnostic::error(token.span, format!("statement outside of a function, at `{text}`"));
+        let diagnostic = Diagnostic::error(token.span, format!("statement outside a function, at `{text}`"));
         self.fail(match before {
             Some(brace) if brace.kind == TokenKind::RightBrace && self.has_function => {
                 diagnostic.label(brace.span, "this `}` ends the function before").help("remove the extra `}`")

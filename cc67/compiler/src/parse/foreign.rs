@@ -121,7 +121,7 @@ impl Parser<'_> {
     pub(super) fn skip_foreign_declaration(&mut self) -> bool {
         let Some(written) = self.unknown_word() else { return false };
         let help = match written {
-            "class" => "C has `struct` for data, and functions outside of it",
+            "class" => "C has `struct` for data, and functions outside it",
             "using" | "namespace" => "leave it out: C has no namespaces",
             "template" => "C has no templates",
             _ => return false,

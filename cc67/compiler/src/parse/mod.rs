@@ -129,7 +129,7 @@ struct Recovery {
     is_stopped: bool,
     /// A function begins where the `}` of the one before is missing: its blocks end here.
     is_unwinding: bool,
-    /// A statement outside of all functions was reported.
+    /// A statement outside all functions was reported.
     has_loose_statement: bool,
     /// Other languages whose words were reported.
     foreign: foreign::Reported,

@@ -376,7 +376,7 @@ fn missing_semicolons_are_shown_where_they_belong() {
     errors("main() { return 1\n}", &["1:18: expected `;` after `return 1`"]);
     errors("struct s { int a; }\nint b;", &["1:20: expected `;` after `struct s { int a; }`"]);
     errors("#define A x = 1\nmain() { A\n A; }", &["2:11: expected `;` after `A`"]);
-    errors("do x(); while (1)", &["1:1: statement outside of a function, at `do`"]);
+    errors("do x(); while (1)", &["1:1: statement outside a function, at `do`"]);
 }
 
 #[test]
@@ -450,7 +450,7 @@ fn misplaced_constructs_are_reported() {
     errors("main() { a = @; }", &["1:14: expected an expression, found the character `@`"]);
     errors(
         "persist.x = 1;\nfor(;;);\nch0->a = 2;\nint x;",
-        &["1:1: statement outside of a function, at `persist`"],
+        &["1:1: statement outside a function, at `persist`"],
     );
     errors(
         "main() { switch (a) { case 1; b; case 2\n c; } }",

@@ -177,13 +177,13 @@ impl Machine<'_> {
                 let InstKind::Copy { src: Operand::Constant(constant), .. } = inst.kind else { return None };
                 return (!matches!(constant, Constant::Symbol(..))).then_some(constant);
             }
-            id = self.only_before(id)?;
+            id = self.single_predecessor(id)?;
         }
         None
     }
 
     /// The only block that leads to another.
-    fn only_before(&self, id: BlockId) -> Option<BlockId> {
+    fn single_predecessor(&self, id: BlockId) -> Option<BlockId> {
         if self.function.layout.first() == Some(&id) {
             return None;
         }

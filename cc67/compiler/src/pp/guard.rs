@@ -17,14 +17,14 @@ pub(super) enum Guard {
 }
 
 impl Guard {
-    /// Text, or a directive outside of all `#if`s, is met.
+    /// Text, or a directive outside all `#if`s, is met.
     pub(super) fn meet_text(&mut self) {
         if matches!(self, Self::Unseen | Self::Closed(_)) {
             *self = Self::Absent;
         }
     }
 
-    /// An `#ifndef` outside of all `#if`s is met.
+    /// An `#ifndef` outside all `#if`s is met.
     pub(super) fn meet_ifndef(&mut self, name: Name) {
         *self = if matches!(self, Self::Unseen) { Self::Open(name) } else { Self::Absent };
     }

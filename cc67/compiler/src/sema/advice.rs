@@ -52,7 +52,7 @@ impl Sema<'_> {
         if let Some((function, span)) = self.noted.locals_elsewhere.get(&name).cloned() {
             return say(move |it| {
                 it.label(span, format!("this one exists only in `{function}`"))
-                    .help("declare the variable before the functions that use it, outside of them")
+                    .help("declare the variable before the functions that use it, outside them")
             });
         }
         match near {

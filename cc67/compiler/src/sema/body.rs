@@ -55,7 +55,7 @@ pub(super) struct Jumps {
     pub(super) loops: u32,
     /// The switches that are open, the innermost last.
     pub(super) switches: Vec<super::switches::Switch>,
-    /// A `case` outside of a `switch` was reported.
+    /// A `case` outside a `switch` was reported.
     pub(super) has_lost_case: bool,
 }
 

@@ -143,7 +143,7 @@ impl Sema<'_> {
     /// `({ … })`: the value is that of the last statement, if it is an expression.
     pub(super) fn statement_expression(&mut self, statements: &[Statement], span: Span) -> Option<Operand> {
         if self.body.name.is_empty() {
-            self.report(Diagnostic::error(span, "a statement expression outside of a function"));
+            self.report(Diagnostic::error(span, "a statement expression outside a function"));
             return None;
         }
         let mut out = Vec::new();

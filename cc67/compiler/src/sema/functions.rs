@@ -150,7 +150,7 @@ impl Sema<'_> {
         if storage == Some(Storage::Static) {
             self.report(
                 Diagnostic::warning(Lint::Extension, span, "`main` is declared `static`")
-                    .note("the vendor's compiler does not find it then")
+                    .note("the vendor's linker then does not find it")
                     .help("remove `static`"),
             );
             return None;

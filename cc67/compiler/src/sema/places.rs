@@ -99,7 +99,7 @@ impl Sema<'_> {
         }
     }
 
-    /// Reports whether `size` bytes at a place are still inside its local; true for places outside of locals.
+    /// Reports whether `size` bytes at a place are still inside its local; true for places outside locals.
     fn holds(&self, place: PlaceId, size: u32) -> bool {
         match self.body.places[place].kind {
             PlaceKind::Local(local, offset) => offset.saturating_add(size) <= self.local_size(local),

@@ -223,13 +223,13 @@ impl Sema<'_> {
             out.push(Stmt { kind, span });
             return;
         }
-        // A `case` outside of its `switch` has said all that there is to say.
+        // A `case` outside its `switch` has said all that there is to say.
         if is_break && self.body.jumps.has_lost_case {
             return;
         }
         let message = match is_break {
-            true => "`break` outside of a loop or `switch`",
-            false => "`continue` outside of a loop",
+            true => "`break` outside a loop or `switch`",
+            false => "`continue` outside a loop",
         };
         self.report(Diagnostic::error(span, message));
     }
@@ -259,7 +259,7 @@ impl Sema<'_> {
     /// `&&name`: a number of its own, of type `void *`, which only `goto *` understands.
     pub(super) fn label_address(&mut self, name: Name, name_span: Span, span: Span) -> Option<ExprId> {
         if self.body.name.is_empty() {
-            self.report(Diagnostic::error(span, "the address of a label outside of a function"));
+            self.report(Diagnostic::error(span, "the address of a label cannot be taken outside a function"));
             return None;
         }
         let label = self.label(name, name_span, |state| &mut state.used);

@@ -76,8 +76,7 @@ impl Sema<'_> {
         let Some(ty) = self.body.jumps.switches.last().map(|switch| switch.ty) else {
             self.body.jumps.has_lost_case = true;
             self.report(
-                Diagnostic::error(span, "`case` outside of a `switch`")
-                    .help("is there an extra `}` before it?"),
+                Diagnostic::error(span, "`case` outside a `switch`").help("is there an extra `}` before it?"),
             );
             return;
         };
@@ -106,7 +105,7 @@ impl Sema<'_> {
     /// `default:`
     pub(super) fn default_label(&mut self, span: Span, out: &mut Vec<Stmt>) {
         let Some(switch) = self.body.jumps.switches.last_mut() else {
-            self.report(Diagnostic::error(span, "`default` outside of a `switch`"));
+            self.report(Diagnostic::error(span, "`default` outside a `switch`"));
             return;
         };
         match switch.default {

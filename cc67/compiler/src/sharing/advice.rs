@@ -23,7 +23,7 @@ struct SharingContext<'a> {
 }
 
 /// The advice about a program and its call-back.
-pub(crate) fn advise_alone(program: &ThreadProgram<'_>) -> Vec<Diagnostic> {
+pub(crate) fn report_call_back_sharing(program: &ThreadProgram<'_>) -> Vec<Diagnostic> {
     let [main, call_back] = contexts(program);
     lost_updates(main, call_back).chain(torn_doubles(main, call_back)).collect()
 }

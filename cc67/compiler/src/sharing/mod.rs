@@ -2,7 +2,7 @@
 //!
 //! [`ThreadProgram::new`] lists the accesses of a program to cells of known address in the order of the text, with the locks
 //! that are held there and the flags that were tested before. [`advise`] compares the lists of the programs of all
-//! threads, [`advise_alone`] those of a program and of its call-back: a load and a store of one statement that another program can come between, a `double` that another program
+//! threads, [`report_call_back_sharing`] those of a program and of its call-back: a load and a store of one statement that another program can come between, a `double` that another program
 //! can read half old. It is advice, so a pair of accesses that a lock, a flag or the start of a thread may put in order
 //! is not reported.
 
@@ -12,7 +12,7 @@ mod flow;
 mod values;
 
 pub(crate) use accesses::ThreadProgram;
-pub(crate) use advice::{advise, advise_alone};
+pub(crate) use advice::{advise, report_call_back_sharing};
 
 /// Memory that has a name in the source or an address of the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

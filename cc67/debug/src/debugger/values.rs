@@ -124,7 +124,7 @@ fn items_in(expression: &str) -> Vec<&str> {
     items
 }
 
-/// Compiles an expression for an instruction, in one of the functions that it is in, or outside of functions for a
+/// Compiles an expression for an instruction, in one of the functions that it is in, or outside functions for a
 /// thread's program.
 fn compile(
     programs: &Programs,
@@ -358,7 +358,7 @@ impl<T: Target> Debugger<T> {
         scope.locals.iter().take(model.parameters(scope.function)).map(text).collect()
     }
 
-    /// The variables of the program outside of functions.
+    /// The variables of the program outside functions.
     #[must_use]
     pub fn globals(&self) -> Vec<ShownVariable> {
         let Ok(model) = self.programs.of(self.thread) else { return Vec::new() };
@@ -422,7 +422,7 @@ impl<T: Target> Debugger<T> {
         Ok(())
     }
 
-    /// Bytes of memory; 0 outside of it.
+    /// Bytes of memory; 0 outside it.
     #[must_use]
     pub fn bytes(&self, address: u32, count: u32) -> Vec<u8> {
         let mut bytes = vec![0; count as usize];

@@ -33,7 +33,7 @@ impl Assignment {
     }
 }
 
-/// The position of the `=` of an assignment outside of brackets and quotation marks.
+/// The position of the `=` of an assignment outside brackets and quotation marks.
 fn sign_of(text: &str) -> Option<usize> {
     let bytes = text.as_bytes();
     let (mut depth, mut quote) = (0_u32, None);

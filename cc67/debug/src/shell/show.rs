@@ -20,7 +20,7 @@ use crate::words::LineReader;
 const COLUMNS: usize = 8;
 /// The message that there are none.
 const NO_LOCALS: &str = "where locals are in code for the processor is not noted; `info registers` shows the \
-                         registers, and variables outside of functions have names";
+                         registers, and variables outside functions have names";
 
 impl<T: Target> Shell<T> {
     pub(super) fn values(&mut self, name: &str, rest: &str) -> Result<String, DebugError> {

@@ -85,7 +85,7 @@ impl Recording {
     }
 }
 
-/// A statement at the beginning of the tick after this one.
+/// Formats an action as a statement at the start of the next tick.
 fn statement(tick: Ticks, action: &str) -> String {
     let us = Cycles::PER_TICK.get() / (Cycles::PER_SECOND.get() / 1_000_000);
     format!("at {}us {action}", (tick.get() + 1).saturating_mul(us.unsigned_abs()))

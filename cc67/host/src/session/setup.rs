@@ -16,7 +16,7 @@ impl Setup {
     /// The board at power-up with its programs loaded and started, on the interpreter.
     ///
     /// # Errors
-    /// A program is refused, or an address is outside of the board's memory.
+    /// A program is refused, or an address is outside the board's memory.
     pub fn session(self) -> Result<Session, HostError> {
         self.session_on(BytecodeEngine::default())
     }
@@ -24,7 +24,7 @@ impl Setup {
     /// The same on an engine of the caller's choice; what happens is the same on all.
     ///
     /// # Errors
-    /// A program is refused, or an address is outside of the board's memory.
+    /// A program is refused, or an address is outside the board's memory.
     pub fn session_on<E: Engine>(mut self, engine: E) -> Result<Session<Board<E>>, HostError> {
         self.resolve_stimuli()?;
         let Self {

@@ -9,7 +9,7 @@ use crate::cli::io::terminal;
 /// Options for attaching an editor's debugger.
 #[derive(Debug, Args)]
 pub(crate) struct AttachArguments {
-    /// Let an editor attach its debugger at this port (0: a free one); programs are then interpreted
+    /// Let an editor attach its debugger on this port (0: a free one); programs are then interpreted
     #[arg(long, value_name = "PORT")]
     pub(crate) debug: Option<u16>,
 }

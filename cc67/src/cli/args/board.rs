@@ -43,7 +43,7 @@ impl RunForm {
 #[command(next_help_heading = heading::BOARD)]
 pub(crate) struct BoardArguments {
     /// Simulate the board this closely; `--as firmware FILE` executes your own firmware file
-    #[arg(long = "as", value_name = "HOW", value_enum, default_value_t, overrides_with = "form")]
+    #[arg(long = "as", value_name = "FIDELITY", value_enum, default_value_t, overrides_with = "form")]
     pub(crate) form: RunForm,
     /// Describe what is connected to the board, such as motors, switches, probes, encoders: a machine file (TOML)
     #[arg(long, value_name = "FILE")]
@@ -125,7 +125,7 @@ pub(crate) fn canonical_words(words: impl IntoIterator<Item = OsString>) -> Vec<
     all
 }
 
-/// The option for a board that is served beside others.
+/// The internal spelling of `--board NAME=FILE` of `serve`.
 pub(crate) const SERVES: &str = "--serves";
 
 impl BoardArguments {

@@ -43,7 +43,7 @@ pub(crate) struct SourceArguments {
     /// Show no warnings
     #[arg(short = 'w')]
     silent: bool,
-    /// Type of constants: as in a C standard (c90, c99, c11, c17) or as in the vendor's compiler
+    /// C standard that decides the types of constants (c90, c99, c11, c17), or the vendor's rules; the dialect stays
     #[arg(long, value_name = "STANDARD", default_value = "vendor", value_parser = standard)]
     std: Standard,
     /// Format of errors and warnings

@@ -17,7 +17,7 @@ pub(crate) struct ControllerArguments {
     /// kogna[:SERIAL], tcp:HOST:PORT; `cc67 boards` lists what is connected
     #[arg(long, value_name = "BOARD")]
     pub(crate) on: Option<Address>,
-    /// With --on, load programs also if they were linked for another firmware than the controller runs; their calls may
+    /// With --on, load programs even if they were linked for a different firmware; their calls may
     /// then jump anywhere
     #[arg(long, requires = "on")]
     pub(crate) force: bool,

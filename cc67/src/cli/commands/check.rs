@@ -28,7 +28,7 @@ use compiler::target::Target;
 /// Arguments of `cc67 check`.
 #[derive(Debug, Args)]
 pub(super) struct CheckArguments {
-    /// Programs to check, with `N:` in front as programs of threads that run together [default: the programs of
+    /// Programs to check; `N:FILE` is the program of thread N, and all of these are checked as running together [default: the programs of
     /// cc67.toml]
     #[arg(value_name = "[N:]FILE")]
     files: Vec<OsString>,

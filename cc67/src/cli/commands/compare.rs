@@ -41,7 +41,7 @@ pub(super) struct CompareArguments {
     /// Ignore differences of board times up to SECONDS; larger ones are reported, but do not fail
     #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "0.001")]
     tolerance: f64,
-    /// Allow printed numbers to differ by N, and those before a unit of time by --tolerance
+    /// Allow printed numbers to differ by N; times, which have a unit, by --tolerance
     #[arg(long, value_name = "N", default_value = "0.001")]
     numbers: f64,
     /// Allow no difference in printed numbers

@@ -35,7 +35,7 @@ enum FirmwareCommand {
         #[arg(long, value_name = "NAME", default_value = TargetBoard::default_board().name, value_parser = board)]
         board: &'static TargetBoard,
     },
-    /// Print the facts of a firmware file that cc67 does not know, for its folder `kmotiondef/boards`
+    /// Describe an unknown firmware file, for `kmotiondef/boards` of cc67's sources
     Facts {
         /// A firmware file
         #[arg(value_name = "FILE")]

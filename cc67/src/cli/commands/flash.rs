@@ -22,21 +22,21 @@ use crate::cli::session::controller;
 /// Arguments of `cc67 flash`.
 #[derive(Debug, Args)]
 pub(super) struct FlashArguments {
-    /// Sources or images that are loaded before, and not started: FILE goes to the lowest free thread, N:FILE to thread N
+    /// Sources or images that are loaded, but not started, before saving: FILE goes to the lowest free thread, N:FILE to thread N
     #[arg(value_name = "[N:]FILE")]
     programs: Vec<OsString>,
-    /// Threads that start by themselves at power-up, such as 1,3, or `none`; without it as the controller has it
+    /// Threads that start by themselves at power-up, such as 1,3, or `none` [default: unchanged]
     #[arg(long, value_name = "THREADS", value_parser = Startup::parse)]
     startup: Option<Startup>,
     /// The controller: usb[:LOCATION], serial:PATH, server[:PATH|:HOST:PORT], kogna[:SERIAL], tcp:HOST:PORT; `cc67 boards` lists what is
     /// connected
     #[arg(long, value_name = "BOARD", required = true, help_heading = heading::CONTROLLER)]
     on: Option<Address>,
-    /// Load programs also if they were linked for another firmware than the controller runs; their calls may then jump
+    /// Load programs even if they were linked for a different firmware; their calls may then jump
     /// anywhere
     #[arg(long, help_heading = heading::CONTROLLER)]
     force: bool,
-    /// Connect and write without a question; for scripts
+    /// Connect and write without asking; for scripts
     #[arg(long, help_heading = heading::CONTROLLER)]
     yes: bool,
     #[command(flatten)]

@@ -25,7 +25,7 @@ const VERIFIED: &[u8] = b"Verify Complete";
 
 /// Events that wait until the file has what the first of them acknowledges.
 #[derive(Debug, Default)]
-pub(super) struct Unacknowledged {
+pub(super) struct HeldEvents {
     events: Vec<Event>,
     /// True if there is a file to wait for.
     is_kept: bool,
@@ -33,7 +33,7 @@ pub(super) struct Unacknowledged {
     is_lost: bool,
 }
 
-impl Unacknowledged {
+impl HeldEvents {
     /// Hands an event on, or holds it, and all after it, if it acknowledges that flash is written.
     pub(super) fn pass(&mut self, event: Event, sink: &mut dyn FnMut(Event)) {
         let is_complete = matches!(&event.kind, EventKind::Reply(line) if line == COMPLETE);
@@ -74,14 +74,14 @@ impl Flash {
     }
 
     /// Creates the queue for the next events.
-    pub(super) fn held(&self) -> Unacknowledged {
-        Unacknowledged { events: Vec::new(), is_kept: self.path.is_some(), is_lost: self.is_lost }
+    pub(super) fn held(&self) -> HeldEvents {
+        HeldEvents { events: Vec::new(), is_kept: self.path.is_some(), is_lost: self.is_lost }
     }
 
     /// Writes the flash to its file if events are held for that, and hands them on.
     pub(super) fn acknowledge<'m>(
         &mut self,
-        held: Unacknowledged,
+        held: HeldEvents,
         now: impl FnOnce() -> &'m [u8],
         sink: &mut dyn FnMut(Event),
     ) {

@@ -260,7 +260,7 @@ impl OpenChip {
         self.handle as Handle
     }
 
-    /// Sets what the vendor's library sets.
+    /// Sets latency timer, event character and time limits as the vendor's library does.
     fn prepare(&self) -> Result<(), DriverError> {
         let Functions { set_latency, set_characters, set_timeouts, purge, .. } = &*self.driver.0;
         // SAFETY: the handle is open.

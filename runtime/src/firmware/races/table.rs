@@ -25,7 +25,7 @@ pub(super) struct Cells {
     cells: Vec<(u32, Cell)>,
 }
 
-/// The page of an address, and the offset there; `None` outside of the regions.
+/// The page of an address, and the offset there; `None` outside the regions.
 fn place_of(address: u32) -> Option<(usize, usize)> {
     let mut first = 0;
     for region in REGIONS {

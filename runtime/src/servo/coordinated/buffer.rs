@@ -36,7 +36,7 @@ pub(crate) fn after(memory: &GuestMemory, entry: Entry) -> Entry {
     Entry::at(if next == memory.get(PARAMETRIC_COEFFS_END) { memory.get(PARAMETRIC_COEFFS) } else { next })
 }
 
-/// The entry before another; `None` at the beginning of the buffer and outside of it.
+/// The entry before another; `None` at the beginning of the buffer and outside it.
 pub(crate) fn before(memory: &GuestMemory, entry: Entry) -> Option<Entry> {
     let (start, end) = (memory.get(PARAMETRIC_COEFFS), memory.get(PARAMETRIC_COEFFS_END));
     let address = entry.address();

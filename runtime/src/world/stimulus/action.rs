@@ -163,7 +163,7 @@ actions! {
     /// Lets an analog input take a course.
     Adc(channel: usize, wave: Wave) {
         does lines::adc;
-        announces lines::announce_adc;
+        announces lines::connect_adc;
         written { "adc N = VALUE" => lines::read_adc }
         keys { "adc" => Form::Each("adc {key} = {value}") }
     }

@@ -77,7 +77,7 @@ impl StatementReader<'_> {
         is_next
     }
 
-    /// A sign between two numbers.
+    /// Reads a comparison operator.
     pub(crate) fn relation(&mut self) -> Result<Relation, Mistake> {
         let relations = [
             ("=", Relation::Equal),
@@ -89,7 +89,7 @@ impl StatementReader<'_> {
         ];
         match relations.into_iter().find(|(sign, _)| self.accept_sign(sign)) {
             Some((_, relation)) => Ok(relation),
-            None => self.expected("`=`, `<` or `>`"),
+            None => self.expected("`=`, `!=`, `<`, `<=`, `>` or `>=`"),
         }
     }
 

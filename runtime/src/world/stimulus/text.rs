@@ -328,7 +328,10 @@ mod tests {
                 "expect axis 0 place = 1",
                 "x.stim:1:15: expected `position`, `dest`, `velocity`, `output`, `load`, `enabled` or `disabled`, found `place`",
             ),
-            ("expect axis 0 position 1", "x.stim:1:24: expected `=`, `<` or `>`, found `1`"),
+            (
+                "expect axis 0 position 1",
+                "x.stim:1:24: expected `=`, `!=`, `<`, `<=`, `>` or `>=`, found `1`",
+            ),
             ("expect Parts = 3 ± -1", "x.stim:1:20: expected a distance of 0 or more, found `-1`"),
             (
                 "expect persist 199 = d:1",

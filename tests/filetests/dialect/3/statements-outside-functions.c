@@ -1,5 +1,5 @@
 //@ exit: 1
 #include "KMotionDef.h"
 
-ch0->Vel = 1000; //~ error: statement outside of a function
+ch0->Vel = 1000; //~ error: statement outside a function
 main() { }

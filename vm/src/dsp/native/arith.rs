@@ -54,7 +54,7 @@ impl Translator<'_, '_> {
             }
             Work::AddLong | Work::SubLong | Work::ShlLong | Work::ShrLong | Work::ShruLong => {
                 let value = self.long(packet_state, m, s1)?;
-                self.give_long(packet_state, m, value)
+                self.write_long(packet_state, m, value)
             }
             Work::CmpeqLong | Work::CmpgtLong | Work::CmpltLong | Work::CmpgtuLong | Work::CmpltuLong => {
                 let value = self.compare_long(packet_state, m);
@@ -380,8 +380,8 @@ impl Translator<'_, '_> {
         self.test(condition, one, two)
     }
 
-    /// A 40-bit result of the first stage.
-    fn give_long(&mut self, packet_state: &mut PacketState, m: &Micro, value: Value) -> Result<(), Stopped> {
+    /// Writes a 40-bit result in E1.
+    fn write_long(&mut self, packet_state: &mut PacketState, m: &Micro, value: Value) -> Result<(), Stopped> {
         let (low, high) = self.split(value);
         let high = self.builder.ins().band_imm_u(high, 0xFF);
         self.give(packet_state, m, m.dst, low)?;

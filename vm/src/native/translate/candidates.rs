@@ -53,7 +53,7 @@ impl Entries {
         Self(entries)
     }
 
-    /// Reports whether a branch to `at` comes from outside of the words from `first` on, or from after.
+    /// Reports whether a branch to `at` comes from outside the words from `first` on, or from after.
     fn is_entered(&self, at: usize, first: usize) -> bool {
         self.0.get(&at).is_some_and(|from| *from.start() < first || *from.end() >= at)
     }

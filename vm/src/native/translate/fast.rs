@@ -131,7 +131,7 @@ impl Translator<'_, '_> {
         self.word(at);
     }
 
-    /// Defers a charge to the end of the fast iterations; `false` outside of them, where it must be taken at once.
+    /// Defers a charge to the end of the fast iterations; `false` outside them, where it must be taken at once.
     pub(super) fn defer(&mut self, cycles: u32) -> bool {
         self.unroll.fast.as_mut().map(|fast| fast.spent += cycles).is_some()
     }
@@ -169,7 +169,7 @@ impl Translator<'_, '_> {
         self.budget_edge(block, cycles, is_rare)
     }
 
-    /// The block to branch to if the ordinary loop must execute the instruction; `None` outside of fast iterations.
+    /// The block to branch to if the ordinary loop must execute the instruction; `None` outside fast iterations.
     ///
     /// [`finish_edges`](Self::finish_edges) must follow.
     pub(super) fn bail(&mut self) -> Option<Block> {
@@ -209,7 +209,7 @@ impl Translator<'_, '_> {
         self.enter(go_on);
     }
 
-    /// The host address of the current access, as a pointer and a distance; `None` outside of fast iterations.
+    /// The host address of the current access, as a pointer and a distance; `None` outside fast iterations.
     pub(super) fn checked_place(
         &mut self,
         base: RegI32,

@@ -240,7 +240,7 @@ impl Body {
                     *signature = signatures.intern(&Signature { params, result });
                 }
             }
-            // Numbers that the text does not use are blocks outside of the layout.
+            // Numbers that the text does not use are blocks outside the layout.
             while function.blocks.len() <= id.index() {
                 let (insts, terminator) = (Vec::new(), Terminator::Unreachable);
                 function.blocks.push(Block { insts, terminator, origin: CodeOrigin::of(NOWHERE) });

@@ -43,7 +43,7 @@ pub(super) struct BuildArguments {
     /// Also write a map of all addresses and the largest items
     #[arg(long)]
     map: bool,
-    /// Also write the instructions with packets, units and cycles, FILE(N).asm; only for the controller's code
+    /// Also write the instructions with packets, units and cycles, FILE(N).asm; only with --target c67x
     #[arg(long)]
     asm: bool,
     /// Also write the commands that download the program to a controller's thread
@@ -67,7 +67,7 @@ enum ImageForm {
     /// As the vendor's compiler writes it, with line numbers
     #[default]
     Coff,
-    /// As TI's compiler writes it, without line numbers; for Kogna alone
+    /// As TI's compiler writes it, without line numbers; Kogna only
     Elf,
 }
 

@@ -35,7 +35,7 @@ pub(super) struct RandomArguments {
     /// Draw N scenarios of each area
     #[arg(long, value_name = "N", default_value = "20", requires = "random")]
     count: u64,
-    /// Draw from seed N on
+    /// First seed
     #[arg(long, value_name = "N", default_value = "1", requires = "random")]
     seed: u64,
     /// Append reduced scenarios to FILE, each with what the firmware did, as a line of JSON

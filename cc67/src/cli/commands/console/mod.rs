@@ -59,7 +59,7 @@ pub(super) struct ConsoleArguments {
     /// Serve PC programs instead of a person, like `cc67 serve --listen ADDRESS`
     #[arg(long, value_name = "ADDRESS", conflicts_with = "time")]
     serve: Option<String>,
-    /// With --serve, let an editor attach its debugger at this port (0: a free one)
+    /// With --serve, let an editor attach its debugger on this port (0: a free one)
     #[arg(long, value_name = "PORT", requires = "serve")]
     debug: Option<u16>,
     /// After the last line, run at most SECONDS more of board time

@@ -47,7 +47,7 @@ pub(super) struct LiveArguments {
     #[arg(long)]
     no_open: bool,
     /// Signals of the scope: items such as dest0,bit46, and C expressions with the programs' names
-    #[arg(long, value_name = "LIST", default_value = "")]
+    #[arg(long, value_name = "LIST", default_value = "", hide_default_value = true)]
     watch: String,
     /// Speed relative to real time, 0.01 to 100
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = speed)]

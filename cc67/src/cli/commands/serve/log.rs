@@ -64,7 +64,7 @@ impl ExchangeLog {
         self.write(text.as_bytes());
     }
 
-    /// Logs a remark; between data lines there is no room for it.
+    /// Logs a remark as a comment, or drops it inside a command, whose data lines must be contiguous.
     pub(super) fn remark(&mut self, tick: Ticks, text: &str, is_in_command: bool) {
         if !is_in_command {
             let seconds = tick.get() as f64 * TIMEBASE;

@@ -276,7 +276,7 @@ struct BoardWork<'a> {
     opening: &'a Opening<'a>,
     inbox: Receiver<Note>,
     index: usize,
-    /// Its name among several.
+    /// The board's name, if several are served.
     name: Option<&'a str>,
 }
 

@@ -59,7 +59,7 @@ pub(super) struct TestArguments {
     #[arg(long, value_enum)]
     engine: Option<EngineName>,
     /// `board`: run each program also with threads switched inside statements, as on the board; the results must agree
-    #[arg(long = "as", value_name = "FORM", value_enum, default_value_t)]
+    #[arg(long = "as", value_name = "FIDELITY", value_enum, default_value_t)]
     form: RunForm,
     /// Run on your own firmware file; skip tests that need the modelled firmware
     #[arg(long, value_name = "FILE", conflicts_with_all = ["engine", "bless", "form"])]

@@ -107,8 +107,8 @@ pub(crate) fn announce(bit: &Bit, access: &mut WorldAccess<'_>, memory: &mut Gue
     }
 }
 
-/// An analog input is one of a Kanalog.
-pub(crate) fn announce_adc(channel: &usize, access: &mut WorldAccess<'_>, memory: &mut GuestMemory) {
+/// Connects an analog input, and marks Kanalog as present.
+pub(crate) fn connect_adc(channel: &usize, access: &mut WorldAccess<'_>, memory: &mut GuestMemory) {
     access.io.kanalog.connect(*channel);
     memory.set(KANALOG_PRESENT, 1);
 }

@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 pub(super) enum PartKind {
     /// A line that the PC sends; `(run S)`: S seconds pass.
     Line,
-    /// A declaration outside of the functions of the program in thread 1.
+    /// A declaration outside the functions of the program in thread 1.
     Head,
     /// A statement before anything is observed.
     Start,
