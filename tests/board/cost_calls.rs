@@ -250,8 +250,12 @@ fn calls_of(session: &Session<Board<ProfilingEngine>>, name: &str) -> Vec<f64> {
 }
 
 /// Returns the code that a case needs before it. The limits are those with which a move of 20,000 reaches its full
-/// speed and one of 1000 does not, as recorded.
+/// speed and one of 1000 does not, as recorded. The functions of the coordinate system were recorded with five axes.
 fn before(case: &Case) -> &'static str {
+    let of_axes = ["CheckDone", "GetNominal", "SetFRO", "SetRapidFRO"];
+    if of_axes.iter().any(|name| case.call.starts_with(name)) {
+        return "DefineCoordSystem6(0, 1, 2, 3, 4, -1); for (i1 = 0; i1 < 5; i1++) chan[i1].Enable = 1;\n";
+    }
     match case.words.ends_with("at rest") {
         true => "ch0->Vel = 40000; ch0->Accel = 4e5; ch0->Jerk = 4e6; EnableAxisDest(0, 0);\n",
         false => "",

@@ -27,7 +27,6 @@ const OTHERS: &[(&str, &str)] = &[
     ("vi=ReadBit(3)", BUS),
     ("SetBit(3)", BUS),
     ("x=Time_sec()", BUS),
-    ("printf(\"\")", "no line goes to the console, for which a call is charged"),
     ("sprintf(buf,\"a\")", STRINGS),
     ("sprintf(buf,\"%d\",lj)", STRINGS),
     ("sprintf(buf,\"%d %d %d\",lj,lj,lk)", STRINGS),

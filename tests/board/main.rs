@@ -3,6 +3,7 @@
 mod c_interface;
 mod cost;
 mod cost_calls;
+mod cost_firmware;
 mod cost_statements;
 mod cost_threads;
 mod devices;

@@ -10,6 +10,7 @@ use vm::memory::GuestMemory;
 use vm::trap::TrapKind;
 
 use super::calls::Continuation;
+use super::costs;
 pub(crate) use super::files::{fclose, feof, fgets, fopen, fprintf, fscanf};
 use super::parts::Parts;
 use super::string::text;
@@ -170,6 +171,9 @@ pub(crate) fn printf(
         return Ok(outcome);
     }
     let text = formatted(parts, caller, pattern, arguments)?;
+    if text.is_empty() {
+        costs::spend(caller, costs::NOTHING_PRINTED);
+    }
     spend_queueing(caller, cut(&text));
     Ok(put(parts, caller, cut(&text), text.len() as i32))
 }

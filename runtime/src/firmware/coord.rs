@@ -12,8 +12,8 @@ use super::motion::{PlanningStage, schedule};
 use super::parts::Parts;
 use crate::out::Message;
 use crate::servo::coordinated::feedhold::HoldState;
-use crate::servo::coordinated::system::{assign, members, nominal_change_time};
-use crate::servo::coordinated::{buffer, feedhold, rate};
+use crate::servo::coordinated::system::{assign, first_disabled, members};
+use crate::servo::coordinated::{buffer, feedhold, rate, system};
 use crate::servo::{hold, moves, planning};
 use crate::views::Typed;
 
@@ -76,6 +76,10 @@ pub(crate) fn define_coord_system8(
 /// −1 if an axis of the system is disabled, 0 while a buffer is executed, else 1.
 pub(crate) fn check_done_buf(parts: &mut Parts, caller: &mut Caller<'_>) -> i32 {
     let done = buffer::check_done(caller.memory);
+    if let Some(letter) = first_disabled(caller.memory) {
+        let cycles = costs::CHECK_BUF_DISABLED + costs::CHECK_BUF_LETTER * letter as i64;
+        costs::spend(caller, cycles - Function::CheckDoneBuf.row().cost.get());
+    }
     if let Some(thread) = caller.thread {
         parts.calls.motions.asked_path(thread, done, caller.at);
     }
@@ -184,8 +188,14 @@ pub(crate) fn clear_stop_immediately(parts: &mut Parts, caller: &mut Caller<'_>)
     hold::clear(&mut parts.servo, caller.memory);
 }
 
+/// The nominal time of a change of the override, which the board computes axis by axis.
+fn change_time(caller: &mut Caller<'_>) -> f32 {
+    costs::spend_axes(caller, members(caller.memory).count(), costs::CHANGE_TIME);
+    system::nominal_change_time(caller.memory)
+}
+
 pub(crate) fn get_nominal_fro_change_time(_: &mut Parts, caller: &mut Caller<'_>) -> f32 {
-    nominal_change_time(caller.memory)
+    change_time(caller)
 }
 
 pub(crate) fn open_buf(_: &mut Parts, caller: &mut Caller<'_>) {
@@ -207,19 +217,19 @@ fn check_override(parts: &mut Parts, caller: &Caller<'_>, function: Function, va
 
 pub(crate) fn set_fro(parts: &mut Parts, caller: &mut Caller<'_>, value: f32) {
     check_override(parts, caller, Function::SetFRO, value);
-    let time = nominal_change_time(caller.memory);
+    let time = change_time(caller);
     rate::set_feed(caller.memory, value, time);
 }
 
 pub(crate) fn set_rapid_fro(parts: &mut Parts, caller: &mut Caller<'_>, value: f32) {
     check_override(parts, caller, Function::SetRapidFRO, value);
-    let time = nominal_change_time(caller.memory);
+    let time = change_time(caller);
     rate::set_rapid(caller.memory, value, time);
 }
 
 pub(crate) fn set_fro_temp(parts: &mut Parts, caller: &mut Caller<'_>, value: f32) {
     check_override(parts, caller, Function::SetFROTemp, value);
-    let time = nominal_change_time(caller.memory);
+    let time = change_time(caller);
     rate::aim(caller.memory, value, time);
 }
 

@@ -62,6 +62,75 @@ pub(super) const RESUME: i64 = 230;
 /// A jog of 0 of an axis at rest.
 pub(super) const NOTHING_TO_STOP: i64 = 136;
 
+/// An arc sine or cosine, by the size of its argument.
+pub(super) struct Arc {
+    /// Up to a half.
+    inner: i64,
+    /// From there to 1: it takes a square root.
+    outer: i64,
+    /// From 1 on.
+    edge: i64,
+}
+
+pub(super) const ASIN: Arc = Arc { inner: 0, outer: 432, edge: 90 };
+pub(super) const ACOS: Arc = Arc { inner: 0, outer: 407, edge: 65 };
+pub(super) const ASINF: Arc = Arc { inner: -50, outer: 30, edge: 0 };
+pub(super) const ACOSF: Arc = Arc { inner: -35, outer: 30, edge: 0 };
+
+impl Arc {
+    pub(super) fn of(&self, x: f64) -> i64 {
+        match x.abs() {
+            size if size <= 0.5 => self.inner,
+            size if size < 1.0 => self.outer,
+            _ => self.edge,
+        }
+    }
+}
+
+/// The tangents of 15° and 75°, between which the arc tangent reduces its argument.
+const TANGENTS: [f64; 2] = [0.267_949_192_431_122_7, 3.732_050_807_568_877];
+
+/// `atan`: its polynomial, its reduction and its reciprocal.
+pub(super) fn of_arc_tangent(x: f64) -> i64 {
+    match x.abs() {
+        size if size <= TANGENTS[0] => -122,
+        size if size <= 1.0 => 0,
+        size if size <= TANGENTS[1] => 93,
+        _ => -29,
+    }
+}
+
+/// `atan2`: the arc tangent of a quotient, if there is one.
+pub(super) fn of_direction(y: f64, x: f64) -> i64 {
+    match (y == 0.0, x == 0.0) {
+        (true, true) => -528,
+        (false, true) => -520,
+        _ => of_arc_tangent(y / x),
+    }
+}
+
+/// The axes of the coordinate system for which the rows of its functions were measured.
+const MEASURED_AXES: i64 = 5;
+
+/// The nominal time of a change of the override, for each axis.
+pub(super) const CHANGE_TIME: i64 = 124;
+
+/// `CheckDoneXYZABC`, for each axis, and less if one is disabled.
+pub(super) const CHECK_DONE: i64 = 27;
+pub(super) const CHECK_DONE_DISABLED: i64 = -15;
+
+/// `CheckDoneBuf` that finds a disabled axis: at the first letter, and for each letter before it.
+pub(super) const CHECK_BUF_DISABLED: i64 = 30;
+pub(super) const CHECK_BUF_LETTER: i64 = 24;
+
+/// `printf` of no character.
+pub(super) const NOTHING_PRINTED: i64 = -129;
+
+/// Spends what a function of the coordinate system takes for each of its axes.
+pub(super) fn spend_axes(caller: &mut Caller<'_>, axes: usize, cycles: i64) {
+    spend(caller, cycles * (axes as i64 - MEASURED_AXES));
+}
+
 /// Spends what a call with this bit costs.
 pub(super) fn spend_bit(caller: &mut Caller<'_>, ranges: Ranges, bit: i32) {
     let range = ranges.iter().find(|(last, _)| bit <= *last);

@@ -5,6 +5,7 @@ use vm::arith::{self, WordDivision, canonical_f32, canonical_f64};
 use vm::firmware::{Caller, PureFunction};
 use vm::trap::TrapKind;
 
+use super::costs;
 use super::parts::Parts;
 use crate::arithmetic::division::{divide, divide_singles};
 use crate::arithmetic::{doubles, powers, singles};
@@ -49,6 +50,32 @@ macro_rules! functions {
     };
 }
 
+/// Functions whose cost depends on their arguments: an engine cannot call them without a caller who pays.
+macro_rules! varying {
+    ($($(#[$doc:meta])+ $name:ident($($x:ident),+) -> $ty:ty = $value:expr, costs $cycles:expr;)*) => {
+        $($(#[$doc])+
+        pub(crate) fn $name(_: &mut Parts, caller: &mut Caller<'_>, $($x: $ty),+) -> $ty {
+            costs::spend(caller, $cycles);
+            Number::canonical($value)
+        })*
+    };
+}
+
+varying! {
+    /// Arc sine.
+    asin(x) -> f64 = doubles::asin(x), costs costs::ASIN.of(x);
+    /// Arc sine.
+    asinf(x) -> f32 = singles::asin(x), costs costs::ASINF.of(x.into());
+    /// Arc cosine.
+    acos(x) -> f64 = doubles::acos(x), costs costs::ACOS.of(x);
+    /// Arc cosine.
+    acosf(x) -> f32 = singles::acos(x), costs costs::ACOSF.of(x.into());
+    /// Arc tangent.
+    atan(x) -> f64 = doubles::atan(x), costs costs::of_arc_tangent(x);
+    /// Arc tangent of y/x in all four quadrants.
+    atan2(y, x) -> f64 = doubles::atan2(y, x), costs costs::of_direction(y, x);
+}
+
 functions! {
     /// Square root.
     sqrt(x) -> f64 = doubles::sqrt(x);
@@ -84,20 +111,8 @@ functions! {
     tan(x) -> f64 = doubles::tan(x);
     /// Tangent.
     tanf(x) -> f32 = singles::tan(x);
-    /// Arc sine.
-    asin(x) -> f64 = doubles::asin(x);
-    /// Arc sine.
-    asinf(x) -> f32 = singles::asin(x);
-    /// Arc cosine.
-    acos(x) -> f64 = doubles::acos(x);
-    /// Arc cosine.
-    acosf(x) -> f32 = singles::acos(x);
-    /// Arc tangent.
-    atan(x) -> f64 = doubles::atan(x);
     /// Arc tangent.
     atanf(x) -> f32 = singles::atan(x);
-    /// Arc tangent of y/x in all four quadrants.
-    atan2(y, x) -> f64 = doubles::atan2(y, x);
     /// Arc tangent of y/x in all four quadrants.
     atan2f(y, x) -> f32 = singles::atan2(y, x);
     /// Absolute value.

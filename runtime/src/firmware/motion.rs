@@ -652,8 +652,12 @@ pub(crate) fn check_done(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) 
 pub(crate) fn check_done_xyzabc(parts: &mut Parts, caller: &mut Caller<'_>) -> i32 {
     // Recorded: a feedhold is not done, not even when its axes have stopped or one of them is disabled.
     let is_held = caller.memory.get(CS0_STOPPING_STATE) != 0;
-    let members = system::members(caller.memory).map(|axis| done(caller.memory, axis));
-    let done = if is_held { 0 } else { members.min().unwrap_or(1) };
+    let members: Vec<_> = system::members(caller.memory).map(|axis| done(caller.memory, axis)).collect();
+    let done = if is_held { 0 } else { members.iter().copied().min().unwrap_or(1) };
+    costs::spend_axes(caller, members.len(), costs::CHECK_DONE);
+    if members.contains(&-1) {
+        costs::spend(caller, costs::CHECK_DONE_DISABLED);
+    }
     if let Some(thread) = caller.thread {
         parts.calls.motions.asked_path(thread, done, caller.at);
     }

@@ -42,6 +42,12 @@ pub(crate) fn assign(memory: &mut GuestMemory, axes: &[i32]) {
     }
 }
 
+/// Returns the number of the first letter whose axis is disabled, counted from 0.
+pub(crate) fn first_disabled(memory: &GuestMemory) -> Option<usize> {
+    let is_disabled = |axis| memory.axis(axis, Chan::ENABLE) == 0;
+    letters(memory).into_iter().position(|axis| axis.is_some_and(is_disabled))
+}
+
 /// Returns whether an axis of the system is disabled, so that no path can run.
 pub(crate) fn is_disabled(memory: &GuestMemory) -> bool {
     members(memory).any(|axis| memory.axis(axis, Chan::ENABLE) == 0)
