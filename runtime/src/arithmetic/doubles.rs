@@ -23,6 +23,11 @@ fn polynomial(coefficients: &[f64], x: f64) -> f64 {
     coefficients.iter().rev().copied().reduce(|sum, coefficient| sum * x + coefficient).unwrap_or(0.0)
 }
 
+/// A number as the processor's arithmetic takes it: one that is denormal is 0.
+pub(super) fn flushed(x: f64) -> f64 {
+    if x.is_subnormal() { 0.0 } else { x }
+}
+
 /// The sine of an angle that is not below 0, and its sign.
 fn sine(angle: f64, sign: f64) -> f64 {
     const EVEN: [f64; 4] = [
@@ -53,7 +58,7 @@ fn sine(angle: f64, sign: f64) -> f64 {
 }
 
 pub(crate) fn sin(x: f64) -> f64 {
-    sine(x.abs(), if x < 0.0 { -1.0 } else { 1.0 })
+    sine(x.abs(), if x.is_sign_negative() { -1.0 } else { 1.0 })
 }
 
 pub(crate) fn cos(x: f64) -> f64 {
@@ -118,17 +123,13 @@ pub(crate) fn log(x: f64) -> f64 {
     f64::from(power) * LN_2 + (z + z * (square * ratio))
 }
 
+/// The logarithm to base 2. Odd and kept: of what has none the product with the lowest number, which is infinite.
 pub(crate) fn log2(x: f64) -> f64 {
-    scaled(log(x), LOG2_E)
+    log(x) * LOG2_E
 }
 
 pub(crate) fn log10(x: f64) -> f64 {
-    scaled(log(x), LOG10_E)
-}
-
-/// A logarithm in another base.
-fn scaled(log: f64, factor: f64) -> f64 {
-    if log == -f64::MAX { log } else { log * factor }
+    log(x) * LOG10_E
 }
 
 /// The arc sine of a number up to one half, and twice of the arc sine of a root.
@@ -152,6 +153,7 @@ fn arc(x: f64, square: f64) -> f64 {
 
 /// The square root; 0 of what has none.
 pub(crate) fn sqrt(x: f64) -> f64 {
+    let x = flushed(x);
     if x.is_nan() || x <= 0.0 || x.is_infinite() {
         return if x > 0.0 { x } else { 0.0 };
     }
@@ -178,6 +180,7 @@ fn beyond_half(x: f64) -> f64 {
 
 /// The arc sine; of what has none that of the nearest number that has one.
 pub(crate) fn asin(x: f64) -> f64 {
+    let x = flushed(x);
     let magnitude = x.abs().min(1.0);
     let angle = if magnitude <= 0.5 {
         arc(magnitude, magnitude * magnitude)
@@ -220,6 +223,7 @@ pub(crate) fn atan(x: f64) -> f64 {
     /// The angles of the intervals: 0°, 30°, 90°, and 60° with the last bit of the board.
     #[expect(clippy::approx_constant, reason = "the last bit is another")]
     const ANGLES: [f64; 4] = [0.0, FRAC_PI_6, FRAC_PI_2, 1.047_197_551_196_597_9];
+    let x = flushed(x);
     let (mut rest, mut angle) = (x.abs(), 0);
     if rest > 1.0 {
         (rest, angle) = (divide(1.0, rest), 2);
@@ -236,6 +240,7 @@ pub(crate) fn atan(x: f64) -> f64 {
 
 /// The angle of a point in all four quadrants.
 pub(crate) fn atan2(y: f64, x: f64) -> f64 {
+    let [y, x] = [y, x].map(flushed);
     let quotient = if x == 0.0 { f64::INFINITY } else { divide(y, x).abs() };
     let angle = if x == 0.0 && y == 0.0 {
         0.0
@@ -259,6 +264,7 @@ pub(crate) fn tan(x: f64) -> f64 {
     ];
     /// The second part of π/2, which is not that of π.
     const HALF_PI_LOW: f64 = -4.454_455_103_380_769e-6;
+    let x = flushed(x);
     let product = std::f64::consts::FRAC_2_PI * x;
     let quarters = libm::trunc(if product < 0.0 { product - 0.5 } else { product + 0.5 });
     let whole = libm::trunc(x);

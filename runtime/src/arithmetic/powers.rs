@@ -3,6 +3,7 @@
 #![expect(clippy::approx_constant, reason = "constants of the board have digits of their own")]
 
 use super::division::{divide, divide_singles};
+use super::{doubles, singles};
 
 /// log₂ e − 1.
 const LOG2_E_LESS_1: f64 = 0.442_695_040_888_963_4;
@@ -30,10 +31,15 @@ const ROOTS: [f64; 17] = [
 /// The functions of powers of a type: the rests of its odd roots, and the coefficients of logarithm and power.
 macro_rules! powers {
     ($(#[$doc:meta])* $name:ident, $positive:ident, $reduced:ident of $float:ident:
-        $divide:ident, $rint:path, $trunc:path, $fmod:path, $frexp:path, $ldexp:path,
+        $flushed:path, $divide:ident, $rint:path, $trunc:path, $fmod:path, $frexp:path, $ldexp:path,
         $rests:expr, $logarithm:expr, $power:expr) => {
         $(#[$doc])*
         pub(crate) fn $name(base: $float, exponent: $float) -> $float {
+            let exponent = $flushed(exponent);
+            if exponent > 0.0 && $flushed(base) == 0.0 {
+                return base;
+            }
+            let base = $flushed(base);
             if base > 0.0 {
                 return $positive(base, exponent);
             }
@@ -43,13 +49,7 @@ macro_rules! powers {
                 let power = $positive(-base, exponent);
                 return if $fmod(exponent, 2.0) == 0.0 { power } else { -power };
             }
-            if exponent > 0.0 {
-                0.0
-            } else if exponent < 0.0 {
-                -$float::MAX
-            } else {
-                1.0
-            }
+            if exponent < 0.0 { -$float::MAX } else { 1.0 }
         }
 
         /// The part of a number in whole sixteenths.
@@ -109,7 +109,7 @@ macro_rules! powers {
 powers! {
     /// A power.
     pow, positive, reduced of f64:
-    divide, libm::rint, libm::trunc, libm::fmod, libm::frexp, libm::ldexp,
+    doubles::flushed, divide, libm::rint, libm::trunc, libm::fmod, libm::frexp, libm::ldexp,
     [
         -5.309_973_028_091_58e-17,
         1.480_070_347_718_688_8e-17,
@@ -140,7 +140,7 @@ powers! {
 powers! {
     /// A power of a single.
     powf, positive_single, reduced_single of f32:
-    divide_singles, libm::rintf, libm::truncf, libm::fmodf, libm::frexpf, libm::ldexpf,
+    singles::flushed, divide_singles, libm::rintf, libm::truncf, libm::fmodf, libm::frexpf, libm::ldexpf,
     [
         4.922_664e-9,
         -4.617_885e-9,

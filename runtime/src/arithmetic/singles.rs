@@ -20,6 +20,11 @@ fn polynomial(coefficients: &[f32], x: f32) -> f32 {
     coefficients.iter().rev().copied().reduce(|sum, coefficient| sum * x + coefficient).unwrap_or(0.0)
 }
 
+/// A number as the processor's arithmetic takes it: one that is denormal is 0.
+pub(super) fn flushed(x: f32) -> f32 {
+    if x.is_subnormal() { 0.0 } else { x }
+}
+
 /// The sine of an angle that is not below 0, and its sign.
 fn sine(angle: f32, sign: f32) -> f32 {
     const EVEN: [f32; 2] = [-0.166_666_57, -0.198_074_18e-3];
@@ -41,7 +46,7 @@ fn sine(angle: f32, sign: f32) -> f32 {
 }
 
 pub(crate) fn sin(x: f32) -> f32 {
-    sine(x.abs(), if x < 0.0 { -1.0 } else { 1.0 })
+    sine(flushed(x.abs()), if x.is_sign_negative() { -1.0 } else { 1.0 })
 }
 
 pub(crate) fn cos(x: f32) -> f32 {
@@ -53,6 +58,7 @@ pub(crate) fn tan(x: f32) -> f32 {
     const Q: [f32; 2] = [-0.429_135_77, 0.971_685_8e-2];
     const HALF_PI_HIGH: f32 = 1.570_312_5;
     const HALF_PI_LOW: f32 = 4.838_268e-4;
+    let x = flushed(x);
     let product = FRAC_2_PI * x;
     let quarters = libm::truncf(if product < 0.0 { product - 0.5 } else { product + 0.5 });
     let whole = libm::truncf(x);
@@ -84,6 +90,7 @@ fn beyond_half(x: f32) -> f32 {
 
 /// The arc sine; of what has none that of the nearest number that has one.
 pub(crate) fn asin(x: f32) -> f32 {
+    let x = flushed(x);
     let magnitude = x.abs().min(1.0);
     let angle = if magnitude <= 0.5 {
         arc(magnitude, magnitude * magnitude)
@@ -137,6 +144,7 @@ pub(crate) fn atan(x: f32) -> f32 {
 
 /// The angle of a point in all four quadrants.
 pub(crate) fn atan2(y: f32, x: f32) -> f32 {
+    let [y, x] = [y, x].map(flushed);
     // Odd and kept: the board's angle of a point on the negative axis is 0.
     if y == 0.0 {
         return 0.0;
@@ -159,7 +167,7 @@ fn quotient(dividend: f32, divisor: f32) -> f32 {
 
 /// The square root, which is that of the processor; of a negative number that of its magnitude.
 pub(crate) fn sqrt(x: f32) -> f32 {
-    root(f64::from(x.abs())) as f32
+    root(f64::from(flushed(x.abs()))) as f32
 }
 
 /// The numbers of an exponential function.

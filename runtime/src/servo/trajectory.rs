@@ -87,7 +87,8 @@ pub(crate) fn point(cursor: Cursor, dest: f64, velocity: f64, state: impl Fn(usi
 /// The destination after one tick of an exponential approach.
 ///
 /// The acceleration limits how the axis slows down to the velocity of the approach; far away the velocity is also below a root
-/// that brakes by itself, which the board takes in singles.
+/// that brakes by itself, which the board takes in singles. An axis that moves away from its target is not faster than that
+/// root wherever there is one, near the target, too: it is slowed down to it at once.
 fn exponential(state: &MotionState, approach: &Approach) -> f64 {
     let Approach { dest, velocity, vc, xc, v, a } = *approach;
     let sign = if state.b >= dest { 1.0 } else { -1.0 };
@@ -95,14 +96,18 @@ fn exponential(state: &MotionState, approach: &Approach) -> f64 {
     let rest = (state.b as f32 - dest as f32).abs();
     let next = state.a * dest + (1.0 - state.a) * state.b;
     let approach = sign * divide(next - dest, TIMEBASE);
-    let braking = (f64::from(rest) > xc).then(|| {
+    let square = {
         let (vc, xc, a) = (vc as f32, xc as f32, a as f32);
-        root(f64::from(vc * vc + 2.0 * a * (rest - xc)))
-    });
+        f64::from(vc * vc + 2.0 * a * (rest - xc))
+    };
+    let braking = (f64::from(rest) > xc).then(|| root(square));
     let slowest = approach.max(present - step);
     let wanted = braking.map_or(slowest, |braking| braking.min(slowest));
     if wanted == approach && approach <= present + step && approach <= v {
         return next;
     }
-    dest + sign * wanted.min(present + step).clamp(-v, v) * TIMEBASE
+    let limited = wanted.min(present + step).clamp(-v, v);
+    let is_too_fast = limited < 0.0 && square > 0.0;
+    let reached = if is_too_fast { limited.max(-root(square)) } else { limited };
+    dest + sign * reached * TIMEBASE
 }
