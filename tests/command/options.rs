@@ -286,7 +286,7 @@ fn an_option_of_other_commands_is_refused_with_their_names() {
         (&["test", "--stim", "x", "a.c"], "`cc67 test … -- --stim` passes it to the programs of the tests"),
         (&["debug", "--engine", "native", "a.c"], "invalid value 'native' for '--engine <ENGINE>'"),
         (&["debug", "a.c", "--dap"], "with `--dap` and `--listen` the editor names the programs"),
-        (&["run", "a.c", "--as", "firmware"], "invalid value 'firmware' for '--as <HOW>'"),
+        (&["run", "a.c", "--as", "firmware"], "invalid value 'firmware' for '--as <FIDELITY>'"),
         (&["run", "--as", "firmware", "none.out", "a.c"], "cannot read none.out"),
     ] {
         let output = cc67(&scratch, words);
