@@ -1,19 +1,30 @@
 //! `for (i = 0; i == 7; i++)`, which never begins, `for (i = 0; i < 7; i--)`, which counts away from its end, and
-//! `for (x = 0; x != 1; x += 0.1)`, which steps over it.
+//! `for (x = 0; x != 1; x += 0.1)`, which steps over it; `while (CheckDone(0));`, which waits while the axis rests.
+
+use kmotiondef::firmware::Function as FirmwareFunction;
 
 use super::program::AnalysedProgram;
+use super::wait_for_any::{called, is_check_done};
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::{BinaryOp, CompareOp};
 use crate::typed::{ExprId, ExprKind, Function, LocalId, LoopTest, PlaceId, PlaceKind, Stmt, StmtKind};
 
-/// Reports `for` loops whose first test fails, or whose step does not lead to the end.
+/// Functions that only let time pass.
+const PAUSES: [&str; 2] = [FirmwareFunction::WaitNextTimeSlice.name(), FirmwareFunction::Delay_sec.name()];
+
+/// Reports `for` loops whose first test fails, or whose step does not lead to the end, and loops that wait while an
+/// axis rests.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         loops(function, &function.body, sink);
         function.each_stmt(&mut |stmt| match &stmt.kind {
-            StmtKind::Block(body) | StmtKind::Loop { body, .. } | StmtKind::Switch { body, .. } => {
+            StmtKind::Loop { condition, body, .. } => {
+                sink.report_if(
+                    condition.and_then(|condition| waits_at_rest(program, function, condition, body)),
+                );
                 loops(function, body, sink);
             }
+            StmtKind::Block(body) | StmtKind::Switch { body, .. } => loops(function, body, sink),
             StmtKind::If { then, otherwise, .. } => {
                 loops(function, then, sink);
                 loops(function, otherwise, sink);
@@ -40,6 +51,32 @@ fn loops(function: &Function, stmts: &[Stmt], sink: &mut Sink) {
         {
             reused(function, body, counter, sink);
         }
+    }
+}
+
+/// A loop without work of its own that runs while an axis has arrived.
+fn waits_at_rest(
+    program: &AnalysedProgram<'_>,
+    function: &Function,
+    condition: ExprId,
+    body: &[Stmt],
+) -> Option<Diagnostic> {
+    let waits = is_check_done(program, function, condition)
+        && body.iter().all(|stmt| only_waits(program, function, stmt));
+    waits.then(|| {
+        let span = function.exprs[condition].span;
+        Diagnostic::warning(Lint::LoopCondition, span, "this loop ends as soon as the axis moves")
+            .at("1 when the axis has arrived, 0 while it moves")
+            .help("to wait until it has arrived, write `!` before `CheckDone`")
+    })
+}
+
+/// Returns whether a statement does nothing but let time pass.
+fn only_waits(program: &AnalysedProgram<'_>, function: &Function, stmt: &Stmt) -> bool {
+    match &stmt.kind {
+        StmtKind::Block(body) => body.iter().all(|stmt| only_waits(program, function, stmt)),
+        StmtKind::Expr(call) => called(program, function, *call).is_some_and(|name| PAUSES.contains(&name)),
+        _ => false,
     }
 }
 

@@ -51,8 +51,28 @@ fn moving(
 }
 
 fn asks(program: &AnalysedProgram<'_>, function: &typed::Function, call: ExprId, waits: &mut u32) -> bool {
-    let ExprKind::Call(call) = &function.exprs[call].kind else { return false };
-    let is_it = matches!(call.callee, Callee::Symbol(callee) if program.name(callee) == CHECK_DONE);
+    let is_it = is_check_done(program, function, call);
     *waits += u32::from(is_it);
     is_it
+}
+
+/// Returns whether an expression is a call of `CheckDone`.
+pub(super) fn is_check_done(program: &AnalysedProgram<'_>, function: &typed::Function, expr: ExprId) -> bool {
+    called(program, function, expr) == Some(CHECK_DONE)
+}
+
+/// The name of the function that an expression calls.
+pub(super) fn called<'a>(
+    program: &'a AnalysedProgram<'_>,
+    function: &typed::Function,
+    expr: ExprId,
+) -> Option<&'a str> {
+    match &function.exprs[expr].kind {
+        ExprKind::Call(call) => match call.callee {
+            Callee::Symbol(callee) => Some(program.name(callee)),
+            _ => None,
+        },
+        ExprKind::Convert(inner) => called(program, function, *inner),
+        _ => None,
+    }
 }
