@@ -629,6 +629,15 @@ fn a_stimulus_moves_a_load_and_starts_and_stops_threads() {
 }
 
 #[test]
+fn a_condition_whose_level_was_there_from_the_beginning_is_explained() {
+    let stimulus = "when bit 46 rises set bit 25; when bit 45 rises set bit 24";
+    let (output, _) = run("level", "main() { Delay_sec(0.1); }", &[], &["--stim", stimulus]);
+    let told = "cc67: never happened: --stim:1:1: when bit 46 rises (it was 1 all the time); \
+                --stim:1:31: when bit 45 rises\n";
+    assert_eq!((output.code, output.stderr.as_str()), (0, told));
+}
+
+#[test]
 fn a_stimulus_that_plans_without_end_is_limited() {
     let stimulus = "every 90us toggle bit 24; when bit 24 changes after 1000s set bit 25";
     let (output, _) = run("plans", "main() { Delay_sec(10); }", &[], &["--stim", stimulus]);

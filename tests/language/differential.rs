@@ -120,7 +120,7 @@ fn released() -> Option<(BootedBoard, Firmware)> {
     Some((snapshot.lock().expect("nothing panics with it").board(), symbols.clone()))
 }
 
-/// The same on the released firmware.
+/// Runs the images together on the released firmware.
 fn run_released(seeds: &[u64], mut board: BootedBoard, images: &[Vec<u8>]) -> String {
     let threads: Vec<_> = (1..=images.len()).map(thread).collect();
     for (thread, image) in threads.iter().zip(images) {
@@ -209,7 +209,7 @@ fn agree(seeds: &[u64], what: &str, found: &str, expected: &str) {
     panic!("seeds {wrong:?} of {seeds:?}, {what}: {found:?} instead of {expected:?}");
 }
 
-/// What a program prints alone, on every engine and at every level.
+/// Returns the text that a program prints alone, the same on every engine and at every level.
 fn compare_alone(seed: u64) -> String {
     let image = |level, target| compile(seed, &source(seed, ""), thread(1), &options(level, target));
     let plain = run(seed, &image(Level::None, Target::Sim));

@@ -342,7 +342,7 @@ fn pictures_tables_and_maps_that_are_killed_are_the_old_or_the_new() {
     }
 }
 
-/// What a console has said that is on the disk, and what it was given to save.
+/// The values that a console has acknowledged as saved, and those that it was given.
 struct Flashing {
     acknowledged: usize,
     /// The number that is saved first; each further one is one more.

@@ -70,7 +70,7 @@ pub struct Controller {
     remarks: FileRemarks,
     recording: Option<BoardRecording>,
     sampling: Option<Sampling>,
-    /// What a person and the PC do meanwhile.
+    /// The stimulus, of which a person and the PC do their parts.
     bench: Bench,
     /// The status record has been read since the bench looked at it.
     is_fresh: bool,

@@ -179,18 +179,14 @@ struct Process {
 }
 
 impl Process {
-    /// Starts the first of these programs that exists, with a profile of its own; it prints the address after `mark`, to which
-    /// `path` is added.
-    fn start(
-        programs: &[&str],
-        arguments: impl FnOnce(&Path) -> Vec<String>,
-        mark: &str,
-        path: &str,
-    ) -> Option<Self> {
+    /// Starts the first of these programs that exists, with a profile of its own, whose folder replaces `{profile}` in the
+    /// arguments; it prints the address after `mark`, to which `path` is added.
+    fn start(programs: &[&str], arguments: &[&str], mark: &str, path: &str) -> Option<Self> {
         let program = programs.iter().find(|program| Path::new(program).is_file())?;
         let profile = Scratch::new("browser");
+        let folder = profile.path().display().to_string();
         let mut child = Command::new(program)
-            .args(arguments(profile.path()))
+            .args(arguments.iter().map(|argument| argument.replace("{profile}", &folder)))
             .arg("about:blank")
             .stdout(Stdio::null())
             .stderr(Stdio::piped())

@@ -6,7 +6,7 @@ use super::Writer;
 const ARRAYS: &str = "static double $a[48], $b[48];\nstatic float $f[48], $g[48];\nstatic int $m[48], $n[48];\nstatic short $s[48], $t[48];\n\
                       static unsigned char $c[48];\n\n";
 
-/// What the arrays hold at first: of the call before, changed.
+/// Fills the arrays from the arguments and from their values of the call before.
 const FILL: &str = "    for (i = 0; i < 48; i++) {
         $a[i] = i * 0.375 - 7 + (x & 15);
         $b[i] = $b[i] * 0.5 + i;

@@ -41,7 +41,7 @@ pub const KINDS: &[Kind] = &[
 /// Functions of a program.
 const FUNCTIONS: usize = 4;
 
-/// What every program begins with; `@` is its prefix.
+/// The beginning of every program; `@` is its prefix.
 const HEAD: &str = "#include <stdarg.h>
 int printf(const char *format, ...);
 

@@ -11,11 +11,12 @@ use super::acts::lines::{drive, let_go};
 use super::monitor::Progress;
 use super::plans::{Due, MOST_PLANNED, Plans};
 use super::scene::Scene;
-use super::{Condition, Rule, Stimulus, Trigger};
+use super::{Condition, Edge, Rule, Stimulus, Trigger};
 use crate::io::changes;
 use crate::machine::SentByte;
 use crate::out::{Message, Out};
 use crate::world::WorldAccess;
+use crate::world::trace::{Item, View};
 use chips::changes::BitChange;
 
 /// A stimulus under way.
@@ -275,9 +276,14 @@ impl Player {
     }
 
     /// The statements that have done nothing.
-    fn never_happened(&self) -> Vec<String> {
+    fn never_happened(&self, view: &View<'_>) -> Vec<String> {
         let idle = self.rules.iter().zip(&self.progress).filter(|(_, progress)| !progress.happened);
-        idle.map(|(rule, _)| format!("{}: {}", rule.place, rule.trigger)).collect()
+        idle.map(|(rule, progress)| {
+            let constant = unchanged_level(rule, progress, view);
+            let reason = constant.map(|level| format!(" (it was {} all the time)", u8::from(level)));
+            format!("{}: {}{}", rule.place, rule.trigger, reason.unwrap_or_default())
+        })
+        .collect()
     }
 
     /// The run is over: checks what is expected then, or later than it lasted.
@@ -297,9 +303,21 @@ impl Player {
             self.check(access, context, index);
         }
         self.finish_watching(access, context);
-        let statements = self.never_happened();
+        let view = View::new(access.machine, access.io, context.now, context.memory);
+        let statements = self.never_happened(&view);
         if !statements.is_empty() {
             access.out.remark(context.now, Message::NeverHappened { statements: statements.join("; ") });
         }
+    }
+}
+
+/// The level of a bit whose edge a statement waits for, where the bit had the level after that edge all the time.
+fn unchanged_level(rule: &Rule, progress: &Progress, view: &View<'_>) -> Option<bool> {
+    match rule.trigger.condition()? {
+        Condition::Bit(bit, edge @ (Edge::Rises | Edge::Falls)) if progress.last_due.is_none() => {
+            let level = view.item(Item::of_bit(*bit)) != 0.0;
+            edge.fits(level).then_some(level)
+        }
+        _ => None,
     }
 }

@@ -17,22 +17,17 @@ impl Chromium {
     pub(super) fn start() -> Option<Self> {
         let process = Process::start(
             &PATHS,
-            |profile| {
-                let mut words: Vec<String> = [
-                    "--headless",
-                    "--no-sandbox",
-                    "--disable-gpu",
-                    "--disable-background-networking",
-                    "--no-first-run",
-                    "--hide-scrollbars",
-                    "--window-size=1400,900",
-                    "--remote-debugging-port=0",
-                ]
-                .map(str::to_owned)
-                .into();
-                words.push(format!("--user-data-dir={}", profile.display()));
-                words
-            },
+            &[
+                "--headless",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--disable-background-networking",
+                "--no-first-run",
+                "--hide-scrollbars",
+                "--window-size=1400,900",
+                "--remote-debugging-port=0",
+                "--user-data-dir={profile}",
+            ],
             "DevTools listening on ",
             "",
         )?;

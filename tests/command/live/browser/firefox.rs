@@ -17,20 +17,15 @@ impl Firefox {
     pub(super) fn start() -> Option<Self> {
         let process = Process::start(
             &PATHS,
-            |profile| {
-                let mut words: Vec<String> = [
-                    "--headless",
-                    "--no-remote",
-                    "--remote-debugging-port=0",
-                    "--width=1400",
-                    "--height=900",
-                    "--profile",
-                ]
-                .map(str::to_owned)
-                .into();
-                words.push(profile.display().to_string());
-                words
-            },
+            &[
+                "--headless",
+                "--no-remote",
+                "--remote-debugging-port=0",
+                "--width=1400",
+                "--height=900",
+                "--profile",
+                "{profile}",
+            ],
             "BiDi listening on ",
             "/session",
         )?;
