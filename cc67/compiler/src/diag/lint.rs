@@ -52,6 +52,8 @@ macro_rules! for_each_lint {
             AssignmentCondition = "assignment-condition", On;
             /// An operator in a condition applies to less than it seems to.
             Precedence = "precedence", On;
+            /// An operator takes a part of a macro or of its argument, because parentheses are missing.
+            MacroParentheses = "macro-parentheses", On;
             /// `=-` or `=+` is written where `-=` or `+=` is probably meant.
             ReversedOperator = "reversed-operator", On;
             /// The name of a function is used where its result is meant: the `()` is missing.
@@ -83,7 +85,7 @@ macro_rules! for_each_lint {
             /// A number begins with 0, which makes it octal.
             Octal = "octal", On;
             /// `^` between two numbers is exclusive or, not a power.
-            Power = "power", On;
+            Power = "power", On, pass power;
             /// A constant does not fit in the type that stores it.
             ConstantConversion = "constant-conversion", On;
             /// `sizeof` is applied to a pointer, where the size of an array is probably meant.
@@ -134,10 +136,10 @@ macro_rules! for_each_lint {
             VoidMain = "void-main", Extra, pass void_main;
             /// A number is converted to a type that may not be able to represent it.
             Conversion = "conversion", Extra;
-            /// A fraction is lost: in an integer that stores a constant, or in the argument of `abs`.
+            /// A fraction is lost: in an integer that stores a constant, in `persist.UserData`, or in the argument of `abs`.
             LostFraction = "lost-fraction", On, pass lost_fraction;
-            /// A division of integer constants loses its fraction before it is used as a floating-point number.
-            IntegerDivision = "integer-division", On;
+            /// A division of integers loses its fraction before it is used as a floating-point number.
+            IntegerDivision = "integer-division", On, pass integer_division;
             /// An element of `persist.UserData` is used as a pointer where its address is meant: the `&` is missing.
             UserDataPointer = "user-data-pointer", On, pass user_data_pointer;
             /// A `case` of a `switch` continues into the next one: its `break` is missing.
@@ -152,6 +154,8 @@ macro_rules! for_each_lint {
             LogicalConstant = "logical-constant", On;
             /// A loop that waits for several axes ends with the first one.
             WaitForAny = "wait-for-any", On, pass wait_for_any;
+            /// A line among the settings of one axis sets another: it was copied from there.
+            CopiedAxis = "copied-axis", On, pass copied_axis;
             /// The type of a value decides a comparison.
             ConstantComparison = "constant-comparison", On, pass constant_comparison;
             /// A loop never begins, or counts away from its end.
@@ -162,7 +166,7 @@ macro_rules! for_each_lint {
             Degrees = "degrees", On, pass degrees;
             /// A time is given in milliseconds where seconds are needed.
             Milliseconds = "milliseconds", On, pass milliseconds;
-            /// A loop runs until a time since power-up that has passed already.
+            /// A loop or a call waits until a time since power-up that has passed already.
             AbsoluteTime = "absolute-time", On, pass absolute_time;
             /// An analog input, which is read in counts, is compared with a number of volts.
             AdcCounts = "adc-counts", On, pass adc_counts;

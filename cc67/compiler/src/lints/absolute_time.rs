@@ -1,4 +1,4 @@
-//! `Delay_sec(3); while (Time_sec() < 2)`: the time counts from power-up, not from the loop.
+//! `Delay_sec(3); while (Time_sec() < 2)` and `SetBit(46); WaitUntil(0.5);`: the time counts from power-up, not from the loop or the call.
 
 use kmotiondef::firmware::Function;
 
@@ -11,16 +11,40 @@ use crate::typed::{ExprId, ExprKind, Function as TypedFunction, Stmt, StmtKind};
 /// The function that returns the time since power-up, and the one that waits.
 const TIME: &str = Function::Time_sec.name();
 const DELAY: &str = Function::Delay_sec.name();
+const WAIT_UNTIL: &str = Function::WaitUntil.name();
 
-/// Reports loops until a time that has passed already when they begin.
+/// Reports loops until a time that has passed already when they begin, and `WaitUntil` as a delay.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
+        delays(program, function, sink);
         let mut passed = 0.0;
         for stmt in &function.body {
             search(program, function, stmt, &mut passed, sink);
         }
     }
 }
+
+/// Reports calls of `WaitUntil` with a constant, unless the program begins with one, to let the machine power up.
+fn delays(program: &AnalysedProgram<'_>, function: &TypedFunction, sink: &mut Sink) {
+    let is_main = program.name(function.symbol) == MAIN;
+    for (at, (expr, call)) in function.calls().enumerate() {
+        let is_first = at == 0 && is_main;
+        if called_firmware(program.unit, call) != Some(WAIT_UNTIL) || is_first {
+            continue;
+        }
+        let Some(seconds) = call.arguments.first().and_then(|time| number(function, *time)) else { continue };
+        let message =
+            format!("`{WAIT_UNTIL}` takes a time since power-up, and {seconds} has passed soon after it");
+        sink.report(
+            Diagnostic::warning(Lint::AbsoluteTime, expr.span, message)
+                .at("does not wait once the board has been on for that long")
+                .help(format!("write `{DELAY}({seconds})` to wait for {seconds} s")),
+        );
+    }
+}
+
+/// The function in which a program begins.
+const MAIN: &str = "main";
 
 /// Adds what a statement waits at least; reports it if it is such a loop.
 fn search(

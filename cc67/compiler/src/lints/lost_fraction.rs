@@ -1,4 +1,4 @@
-//! `abs(error)` of a number with a fraction: `abs` takes an `int`.
+//! `abs(error)` and `persist.UserData[40] = length` of numbers with a fraction: `abs` takes an `int`, and the elements are of type `int`.
 //!
 //! Constants with a fraction are found where they are converted.
 
@@ -7,14 +7,20 @@ use kmotiondef::firmware::Function;
 use super::format::called_firmware;
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
-use crate::typed::ExprKind;
+use crate::operators::BinaryOp;
+use crate::ty::Types;
+use crate::typed::{ExprId, ExprKind, Function as TypedFunction, PlaceId, PlaceKind, UnaryOp};
 
 /// The function that takes an `int` and is used for every number.
 const ABS: &str = Function::abs.name();
 
-/// Reports floating-point numbers that are passed to `abs`.
+/// The structure with elements for the program and the PC.
+const PERSIST: &str = "persist";
+
+/// Reports floating-point numbers that are passed to `abs` or stored in elements of `persist.UserData`.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
+        user_data(program, function, sink);
         for (_, call) in function.calls() {
             if called_firmware(program.unit, call) != Some(ABS) {
                 continue;
@@ -36,5 +42,98 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
                 );
             }
         }
+    }
+}
+
+/// Reports numbers with a fraction that are stored in elements without a cast.
+fn user_data(program: &AnalysedProgram<'_>, function: &TypedFunction, sink: &mut Sink) {
+    for expr in function.exprs.values() {
+        let ExprKind::Assign(place, value) = expr.kind else { continue };
+        let ExprKind::Convert(number) = function.exprs[value].kind else { continue };
+        let from = function.exprs[number].ty;
+        let is_element = function.places[place].ty == Types::INT && is_persist(program, function, place);
+        if !is_element || !from.is_floating() || is_whole(program, function, number) {
+            continue;
+        }
+        let span = function.exprs[value].span;
+        if program.sources.text(span).starts_with(b"(") && function.exprs[number].span != span {
+            continue;
+        }
+        let name = program.spell(from);
+        let element = String::from_utf8_lossy(program.sources.text(function.places[place].span));
+        sink.report(
+            Diagnostic::warning(Lint::LostFraction, span, "the fraction is lost in an element of `persist.UserData`, an `int`")
+                .at(format!("this is `{name}`"))
+                .help(format!("store the number itself with `*(float *)&{element} = …`, or write `(int)` if whole numbers are meant")),
+        );
+    }
+}
+
+/// Reports whether a place is a part of `persist`.
+fn is_persist(program: &AnalysedProgram<'_>, function: &TypedFunction, place: PlaceId) -> bool {
+    match function.places[place].kind {
+        PlaceKind::Symbol(symbol, _) => program.name(symbol) == PERSIST,
+        PlaceKind::Pointer(mut pointer, _) => loop {
+            match function.exprs[pointer].kind {
+                ExprKind::Convert(inner) | ExprKind::Binary(BinaryOp::Add, inner, _) => pointer = inner,
+                ExprKind::Address(place) => break is_persist(program, function, place),
+                _ => break false,
+            }
+        },
+        PlaceKind::Local(..) | PlaceKind::Bits(..) => false,
+    }
+}
+
+/// Reports whether a number has no fraction, or loses it on purpose: it is scaled, rounded, or in counts.
+fn is_whole(program: &AnalysedProgram<'_>, function: &TypedFunction, number: ExprId) -> bool {
+    /// A factor that makes a whole number of a fraction, such as thousandths.
+    const SCALE: f64 = 10.0;
+    let is_whole = |expr| is_whole(program, function, expr);
+    let constant = |expr: ExprId| match function.exprs[expr].kind {
+        ExprKind::Float(number) => Some(number.abs()),
+        _ => None,
+    };
+    let is = |expr, test: fn(f64) -> bool| constant(expr).is_some_and(test);
+    match &function.exprs[number].kind {
+        ExprKind::Float(number) => number.fract() == 0.0,
+        ExprKind::Convert(inner) if function.exprs[*inner].ty.is_floating() => is_whole(*inner),
+        ExprKind::Convert(_) => true,
+        ExprKind::Unary(UnaryOp::Negate, inner) => is_whole(*inner),
+        ExprKind::Binary(BinaryOp::Multiply, a, b) => {
+            let is_scaled = |expr| is(expr, |factor| factor >= SCALE);
+            is_scaled(*a) || is_scaled(*b) || (is_whole(*a) && is_whole(*b))
+        }
+        ExprKind::Binary(BinaryOp::Divide, _, b) => is(*b, |divisor| divisor < 1.0),
+        ExprKind::Binary(BinaryOp::Add | BinaryOp::Subtract, a, b) => {
+            let is_rounding = |expr| is(expr, |half| half == 0.5);
+            is_rounding(*a) || is_rounding(*b) || (is_whole(*a) && is_whole(*b))
+        }
+        ExprKind::Conditional(_, a, b) => is_whole(*a) && is_whole(*b),
+        // Functions of the board that return a number give times, counts or whole numbers.
+        ExprKind::Call(call) => called_firmware(program.unit, call).is_some(),
+        // Fields of an axis are counts.
+        ExprKind::Load(place) => is_of_axis(program, function, *place),
+        _ => false,
+    }
+}
+
+/// Reports whether a place is a field of an axis.
+fn is_of_axis(program: &AnalysedProgram<'_>, function: &TypedFunction, place: PlaceId) -> bool {
+    let is_axis = |place: PlaceId| match function.places[place].kind {
+        PlaceKind::Symbol(symbol, _) => {
+            let name = program.name(symbol);
+            name == "chan" || name.strip_prefix("ch").is_some_and(|number| number.parse::<u32>().is_ok())
+        }
+        _ => false,
+    };
+    match function.places[place].kind {
+        PlaceKind::Pointer(mut pointer, _) => loop {
+            match function.exprs[pointer].kind {
+                ExprKind::Convert(inner) | ExprKind::Binary(BinaryOp::Add, inner, _) => pointer = inner,
+                ExprKind::Address(place) | ExprKind::Load(place) => break is_axis(place),
+                _ => break false,
+            }
+        },
+        _ => is_axis(place),
     }
 }

@@ -40,6 +40,11 @@ pub(crate) fn finding(expression: &Expression, is_function: bool) -> Option<Diag
     if has_effect(expression) {
         return None;
     }
+    if let ExpressionKind::Comma(first, last) = &expression.kind
+        && has_effect(first)
+    {
+        return Some(after_comma(first, last));
+    }
     let diagnostic = Diagnostic::warning(Lint::UnusedValue, expression.span, "this statement has no effect");
     Some(match &expression.kind {
         ExpressionKind::Binary(BinaryOperator::Equal, ..) => diagnostic.help("`=` assigns, `==` compares"),
@@ -48,6 +53,33 @@ pub(crate) fn finding(expression: &Expression, is_function: bool) -> Option<Diag
         }
         _ => diagnostic.at("the value is dropped"),
     })
+}
+
+/// The message for `first, last` where only `first` has an effect: `x = 0,25` stores 0.
+fn after_comma(first: &Expression, last: &Expression) -> Diagnostic {
+    let stored = match &first.kind {
+        ExpressionKind::Assign(_, value) | ExpressionKind::AssignWith(_, _, value) => whole(value),
+        _ => None,
+    };
+    match stored.zip(whole(last)) {
+        Some((stored, fraction)) => {
+            let message = format!("`,` ends the number: {stored} is stored, and {fraction} is dropped");
+            Diagnostic::warning(Lint::UnusedValue, last.span, message)
+                .at("no part of the number")
+                .help("the decimal point is `.`, as in `0.25`")
+        }
+        None => Diagnostic::warning(Lint::UnusedValue, last.span, "the value after `,` is not used")
+            .at("the value is dropped"),
+    }
+}
+
+/// The value of a decimal constant without a point.
+fn whole(expression: &Expression) -> Option<u64> {
+    match &expression.kind {
+        ExpressionKind::Integer(literal) if literal.is_decimal => Some(literal.value),
+        ExpressionKind::Unary(UnaryOperator::Minus, operand) => whole(operand),
+        _ => None,
+    }
 }
 
 /// Reports whether evaluating an expression has an effect, judged by its form.

@@ -1,5 +1,5 @@
 //! An element of `persist.UserData` that holds a floating-point number and is read as an integer, one that holds an
-//! integer and is read as a floating-point number, and a `double` in the elements through which a program and the PC exchange requests.
+//! integer and is read as a floating-point number, an element that is stored over half of a `double`, and a `double` in the elements through which a program and the PC exchange requests.
 //!
 //! The types of the PC's elements are those of `gather-persist-console.md` sections 5 and 8.
 
@@ -34,11 +34,16 @@ struct Stores {
     small: Option<(Span, i64)>,
     /// True if anything else is stored there, such as 0 or a value that is computed.
     has_more: bool,
+    /// The first store that begins there, of anything but 0, and its type.
+    begun: Option<(Span, TypeId)>,
+    /// The first store of a `double` whose second half is there.
+    second_half: Option<Span>,
 }
 
 /// Reports elements of one type that are used as another.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     let stores = stores(program, sink);
+    overlaps(program, &stores, sink);
     for function in program.functions() {
         let walk = Walk { function, extent: Extent::All };
         walk.stmts(&function.body, &mut |expr| {
@@ -69,6 +74,24 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
                 );
             }
         });
+    }
+}
+
+/// Reports stores in the second half of a `double`, unless the program uses its first half as an integer as well.
+fn overlaps(program: &AnalysedProgram<'_>, stores: &BTreeMap<i32, Stores>, sink: &mut Sink) {
+    for (element, stored) in stores {
+        let (Some((span, ty)), Some(double)) = (stored.begun, stored.second_half) else { continue };
+        let first = stores.get(&(element - 1)).copied().unwrap_or_default();
+        if first.has_others || ty == Types::DOUBLE && double == span {
+            continue;
+        }
+        let message = format!("`persist.UserData[{element}]` is the second half of a `double`");
+        sink.report(
+            Diagnostic::warning(Lint::UserDataType, span, message)
+                .at(format!("a `{}` overwrites it", program.spell(ty)))
+                .label(double, format!("elements {} and {element} hold this one", element - 1))
+                .help("a `double` takes two elements: use the next even index after it"),
+        );
     }
 }
 
@@ -138,6 +161,14 @@ fn stores(program: &AnalysedProgram<'_>, sink: &mut Sink) -> BTreeMap<i32, Store
             let is_double = ty == Types::DOUBLE;
             if is_double && MAILBOX.contains(&element) {
                 sink.report(mailbox(element, span));
+            }
+            let is_zero = matches!(function.exprs[expr].kind, ExprKind::Assign(_, value)
+                if matches!(function.exprs[value].kind, ExprKind::Int(0)));
+            if !is_zero {
+                stores.entry(element).or_default().begun.get_or_insert((span, ty));
+            }
+            if is_double {
+                stores.entry(element + 1).or_default().second_half.get_or_insert(span);
             }
             for index in element..=element + i32::from(is_double) {
                 let entry = stores.entry(index).or_default();

@@ -54,6 +54,7 @@ impl DacWord {
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         dac_variables(program, function, sink);
+        start_up(program, function, sink);
         for (_, call) in function.calls() {
             let Callee::Symbol(callee) = call.callee else { continue };
             let name = program.name(callee);
@@ -74,6 +75,41 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
         }
     }
 }
+
+/// Reports bits of `persist.RunOnStartUp` that belong to no thread: bit n is thread n, and there is no thread 0.
+fn start_up(program: &AnalysedProgram<'_>, function: &Function, sink: &mut Sink) {
+    /// Bits 1 to 7.
+    const THREADS: i64 = 0xFE;
+    for expr in function.exprs.values() {
+        let (place, value) = match &expr.kind {
+            ExprKind::Assign(place, value) => (*place, *value),
+            ExprKind::Update(update) if update.op == BinaryOp::Or => (update.place, update.operand),
+            _ => continue,
+        };
+        let PlaceKind::Symbol(symbol, 0) = function.places[place].kind else { continue };
+        let ExprKind::Int(bits) = *plain(function, value) else { continue };
+        if program.name(symbol) == PERSIST && bits & !THREADS != 0 {
+            let message =
+                format!("bit n of `{RUN_ON_START_UP}` starts thread n, from 1 to 7, but this is {bits}");
+            let finding = Diagnostic::warning(Lint::ValueRange, expr.span, message);
+            let finding = match bits & !THREADS {
+                1 => finding.at("bit 0 belongs to no thread"),
+                _ => finding.at("bits beyond 7 belong to no thread"),
+            };
+            let help = (1..=7)
+                .contains(&bits)
+                .then(|| format!("write `{RUN_ON_START_UP} |= 1 << {bits};` for thread {bits}"));
+            sink.report(match help {
+                Some(help) => finding.help(help),
+                None => finding,
+            });
+        }
+    }
+}
+
+/// The structure that is kept in flash, and its field with the threads to start.
+const PERSIST: &str = "persist";
+const RUN_ON_START_UP: &str = "persist.RunOnStartUp";
 
 /// Reports variables with a single value, a constant, that the macro `DAC` cuts.
 fn dac_variables(program: &AnalysedProgram<'_>, function: &Function, sink: &mut Sink) {

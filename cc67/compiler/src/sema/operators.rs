@@ -5,7 +5,9 @@ use super::constants::Constant;
 use super::operands::Operand;
 use crate::ast::{Expression, ExpressionKind};
 use crate::diag::{Diagnostic, Lint};
-use crate::lints::{assignment_condition, logical_constant, overflow, power, sign_compare};
+use crate::lints::{
+    assignment_condition, logical_constant, macro_parentheses, overflow, power, sign_compare,
+};
 use crate::operators::{BinaryOp, BinaryOperator, OperatorMeaning};
 use crate::source::Span;
 use crate::ty::{QualifiedType, TypeId, Types, convert};
@@ -20,6 +22,7 @@ impl Sema<'_> {
             if matches!(operator.meaning(), OperatorMeaning::Bitwise(BinaryOp::Xor)) {
                 self.report_finding(power::finding(left, right, leftmost.span));
             }
+            self.report_finding(macro_parentheses::finding(self.sources, *operator, left, right));
             spine.push((*operator, &**right, leftmost.span));
             leftmost = left;
         }

@@ -1,0 +1,112 @@
+//! `ch1->Vel = …; ch0->Accel = …; ch1->Jerk = …;`: one line of a copied block still names the axis that it was copied from.
+//!
+//! The block never sets that field of its own axis, so the line is not one of two that belong together.
+
+use kmotiondef::structs::Chan;
+
+use super::program::AnalysedProgram;
+use crate::diag::{Diagnostic, Lint, Sink};
+use crate::source::Span;
+use crate::typed::{ExprKind, Function, PlaceKind, Stmt, StmtKind};
+
+/// A field of an axis that a statement sets.
+#[derive(Clone, Copy)]
+struct Setting {
+    axis: u32,
+    field: u32,
+    /// The range of the assignment, and of what it assigns to.
+    span: Span,
+    place: Span,
+}
+
+/// Assignments to one axis that make a block of it.
+const BLOCK: usize = 3;
+
+/// Reports single assignments to another axis in blocks that set up one.
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
+    for function in program.functions() {
+        let mut all = Vec::new();
+        function.each_stmt(&mut |stmt| all.extend(setting(program, function, stmt)));
+        block(program, function, &function.body, &all, sink);
+        function.each_stmt(&mut |stmt| match &stmt.kind {
+            StmtKind::Block(body) | StmtKind::Loop { body, .. } | StmtKind::Switch { body, .. } => {
+                block(program, function, body, &all, sink);
+            }
+            StmtKind::If { then, otherwise, .. } => {
+                block(program, function, then, &all, sink);
+                block(program, function, otherwise, &all, sink);
+            }
+            _ => {}
+        });
+    }
+}
+
+fn block(
+    program: &AnalysedProgram<'_>,
+    function: &Function,
+    stmts: &[Stmt],
+    all: &[Setting],
+    sink: &mut Sink,
+) {
+    let settings: Vec<_> = stmts.iter().map(|stmt| setting(program, function, stmt)).collect();
+    for run in settings.split(Option::is_none) {
+        let run: Vec<_> = run.iter().flatten().copied().collect();
+        for (before, rest) in (1..run.len()).map(|at| run.split_at(at)) {
+            let (Some(previous), [odd, after @ ..]) = (before.last(), rest) else { continue };
+            let axis = previous.axis;
+            let own = [before, after].concat();
+            let next = after.first();
+            // At the end of a block the field is set a second time, or it is a block of its own that begins.
+            let is_inside = next.is_some_and(|next| next.axis == axis);
+            let is_repeated = || {
+                next.is_none()
+                    && all
+                        .iter()
+                        .any(|it| it.axis == odd.axis && it.field == odd.field && it.span.lo < odd.span.lo)
+            };
+            let is_odd = odd.axis != axis && (is_inside || is_repeated());
+            let is_missing = || !all.iter().any(|it| it.axis == axis && it.field == odd.field);
+            if is_odd && own.iter().filter(|it| it.axis == axis).count() >= BLOCK && is_missing() {
+                let written = String::from_utf8_lossy(program.sources.text(odd.place));
+                sink.report_if(finding(*odd, axis, previous.span, &written));
+            }
+        }
+    }
+}
+
+fn finding(odd: Setting, axis: u32, previous: Span, written: &str) -> Option<Diagnostic> {
+    let other = odd.axis.to_string();
+    let (head, field) = written.split_once("->").or_else(|| written.split_once('.'))?;
+    let mark = written.get(head.len()..written.len() - field.len())?;
+    let own = format!("{}{mark}{field}", head.replace(&other, &axis.to_string()));
+    let message = format!("`{written}` is set among the settings of axis {axis}");
+    Some(
+        Diagnostic::warning(Lint::CopiedAxis, odd.span, message)
+            .at(format!("`{own}` is never set"))
+            .label(previous, format!("axis {axis}"))
+            .help(format!("write `{own}` if the line was copied from axis {other}")),
+    )
+}
+
+/// The field of an axis that a statement assigns to.
+fn setting(program: &AnalysedProgram<'_>, function: &Function, stmt: &Stmt) -> Option<Setting> {
+    let StmtKind::Expr(expr) = stmt.kind else { return None };
+    let ExprKind::Assign(place, _) = function.exprs[expr].kind else { return None };
+    let span = function.exprs[expr].span;
+    let (axis, field) = match function.places[place].kind {
+        PlaceKind::Pointer(pointer, field) => {
+            let ExprKind::Load(pointer) = function.exprs[pointer].kind else { return None };
+            let PlaceKind::Symbol(symbol, 0) = function.places[pointer].kind else { return None };
+            (program.name(symbol).strip_prefix("ch")?.parse().ok()?, field)
+        }
+        PlaceKind::Symbol(symbol, offset) if program.name(symbol) == CHANNELS => {
+            let size = Chan::STRUCTURE.size.cast_signed();
+            (offset.div_euclid(size).try_into().ok()?, offset.rem_euclid(size))
+        }
+        _ => return None,
+    };
+    Some(Setting { axis, field: field.try_into().ok()?, span, place: function.places[place].span })
+}
+
+/// The array of the axes.
+const CHANNELS: &str = "chan";

@@ -1,0 +1,11 @@
+//@ args: check
+//@ says: warning[absolute-time]: `WaitUntil` takes a time since power-up, and 0.5 has passed soon after it
+//@ says: wait_until_used_as_a_delay.c:9:5
+#include "KMotionDef.h"
+
+main()
+{
+    SetBit(46);
+    WaitUntil(0.5);
+    ClearBit(46);
+}
