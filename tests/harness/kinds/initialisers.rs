@@ -135,7 +135,10 @@ fn designated(writer: &mut Writer, shape: &Shape, index: usize, is_static: bool)
     let of = part(shape, index);
     let place = designator(shape, index);
     match (shape, writer.below(4)) {
-        (Shape::Array(..), 0) => format!("[0 ... {index}] = {}", initialiser(writer, of, is_static)),
+        // gcc takes no range of aggregates that are not constant.
+        (Shape::Array(..), 0) if is_static || len(of) == 0 => {
+            format!("[0 ... {index}] = {}", initialiser(writer, of, is_static))
+        }
         (_, 1) if len(of) > 0 => {
             // The last part of the part: what follows is the part after it.
             let last = len(of) - 1;
