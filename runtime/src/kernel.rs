@@ -11,7 +11,7 @@ use kmotiondef::structs::Chan;
 use kmotiondef::variables::{
     CURRENT_THREAD, LAST_TIMER0, NEXT_AVAIL_IN, NEXT_AVAIL_OUT, SERVO_TICK, USER_CALL_BACK,
 };
-use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId};
+use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId};
 use vm::bus::Bus;
 use vm::firmware::{
     Caller, ExecutedPacket, Firmware, NextAccess, Outcome, Pure, ReadState, Repeats, SharedAccess, Signature,
@@ -505,10 +505,12 @@ impl Firmware for Kernel {
         self.store_queue_indices(context.memory);
     }
 
-    fn slice_ran(&mut self, thread: ThreadId, start: Cycles, end: Cycles) {
-        if self.parts.world.records_changes() {
-            self.parts.out.tell(start, EventKind::Trace(Record::Slice { thread, end }));
-        }
+    fn follows_slices(&self) -> bool {
+        self.parts.world.records_changes()
+    }
+
+    fn slice_ran(&mut self, thread: ThreadId, start: Cycles, end: Cycles, interrupted_at: Option<CodeAddr>) {
+        self.parts.out.tell(start, EventKind::Trace(Record::Slice { thread, end, interrupted_at }));
     }
 
     fn follows_packets(&self, thread: Option<ThreadId>) -> bool {

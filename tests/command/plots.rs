@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use harness::{Output, Scratch, cc67};
+use serde_json::{Value, json};
 
 /// Moves axis 0 by 500 and back while bit 46 is high.
 const PROGRAM: &str = "\
@@ -338,4 +339,57 @@ fn the_page_zooms_and_shows_values_in_a_browser() {
     let number = |text: &str| text.parse::<f64>().expect(result);
     assert!((number(value) - 500.0).abs() < 0.01 && (number(time) - 0.7).abs() < 0.005, "{result}");
     assert_eq!(rest, "zoomed 0.512|whole true|drawn true]");
+}
+
+#[test]
+fn a_race_links_the_slices_of_both_threads_and_marks_those_that_split_a_statement() {
+    let scratch = Scratch::new("plot-race");
+    for thread in 1..=2 {
+        let text = "#include \"KMotionDef.h\"\nmain()\n{\n    int i;\n    for (i = 0; i < 2000; i++)\n        \
+                    persist.UserData[40]++;\n}\n";
+        scratch.write(&format!("count{thread}.c"), text);
+    }
+    let arguments = ["--plot", "r.html", "--plot", "r.svg", "1:count1.c", "2:count2.c"];
+    let output = cc67(&scratch, [&["run", "--as", "board", "--races"][..], &arguments].concat());
+    assert_eq!(output.code, 0, "{}", output.stderr);
+    let data = page_data(&scratch, "r.html");
+    let links = data["links"].as_array().expect("a list");
+    let [link] = links.as_slice() else { panic!("{links:?}") };
+    let text = link["text"].as_str().expect("a text");
+    assert!(output.stderr.contains(text), "{text}");
+    assert!(text.contains("count1.c:6") && text.contains("count2.c:6"), "{text}");
+    let strips = data["strips"].as_array().expect("a list");
+    let names: Vec<_> = link["strips"]
+        .as_array()
+        .expect("two")
+        .iter()
+        .map(|index| &strips[index.as_u64().expect("an index") as usize]["name"])
+        .collect();
+    assert!(names.contains(&&json!("thread 1")) && names.contains(&&json!("thread 2")), "{names:?}");
+    // The thread whose old value is stored was interrupted between its load and its store, before the store was seen.
+    let at = link["at"].as_f64().expect("a number");
+    let splits = strips.iter().flat_map(|strip| strip["marks"].as_array().expect("a list"));
+    let before = splits.filter(|mark| mark[0].as_f64().is_some_and(|instant| instant < at));
+    let places: Vec<_> = before.filter_map(|mark| mark[1].as_str()).collect();
+    assert!(
+        places.iter().any(|place| place.starts_with("interrupted inside the statement at count")),
+        "{places:?}"
+    );
+    let svg = fs::read_to_string(scratch.path().join("r.svg")).expect("it was written");
+    assert_eq!(svg.matches("<circle").count(), 2);
+
+    // The fast form splits no statement.
+    let output = cc67(&scratch, [&["run", "--races"][..], &arguments].concat());
+    assert_eq!(output.code, 0, "{}", output.stderr);
+    let data = page_data(&scratch, "r.html");
+    let strips = data["strips"].as_array().expect("a list");
+    assert!(strips.iter().all(|strip| strip["marks"] == json!([])), "{strips:?}");
+}
+
+/// The data in a page.
+fn page_data(scratch: &Scratch, name: &str) -> Value {
+    let page = fs::read_to_string(scratch.path().join(name)).expect("it was written");
+    let (_, rest) = page.split_once("type=\"application/json\">").expect("it has data");
+    let (data, _) = rest.split_once("</script>").expect("they end");
+    serde_json::from_str(&data.replace("<\\/", "</")).expect("they are JSON")
 }

@@ -387,9 +387,15 @@ pub trait Firmware: Bus {
         let _ = (thread, context);
     }
 
-    /// A thread has run in its slice, from `start` to `end`.
-    fn slice_ran(&mut self, thread: ThreadId, start: Cycles, end: Cycles) {
-        let _ = (thread, start, end);
+    /// Reports whether somebody wants to know of slices ([`slice_ran`](Self::slice_ran)).
+    fn follows_slices(&self) -> bool {
+        false
+    }
+
+    /// A thread has run in its slice, from `start` to `end`; where slices can end at any instruction, with the one before
+    /// which the servo interrupt has stopped it.
+    fn slice_ran(&mut self, thread: ThreadId, start: Cycles, end: Cycles, interrupted_at: Option<CodeAddr>) {
+        let _ = (thread, start, end, interrupted_at);
     }
 
     /// Reports whether packets of real code of this thread, of the call-back for `None`, are reported one by one.

@@ -187,6 +187,24 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         self.loaded(thread).map(|loaded| self.engines.backtrace(id, loaded)).unwrap_or_default()
     }
 
+    /// The instruction before which the servo interrupt has stopped an active thread whose slices can end at any instruction.
+    #[must_use]
+    pub fn interrupted_at(&self, thread: ThreadId) -> Option<CodeAddr> {
+        let is_going = matches!(self.threads.state(thread), ThreadState::Active(Progress::Going));
+        let is_interrupted = is_going && self.splits_statements(thread);
+        if is_interrupted { self.backtrace(thread).first().copied() } else { None }
+    }
+
+    /// Returns whether slices of a thread can end at any instruction: in code of the processor, and in bytecode with
+    /// [`Preemption::Instructions`].
+    fn splits_statements(&self, thread: ThreadId) -> bool {
+        match self.loaded(thread) {
+            Some(Loaded::Program(_)) => self.config.preemption == Preemption::Instructions,
+            Some(Loaded::Image(_)) => true,
+            None => false,
+        }
+    }
+
     /// The engine of bytecode.
     #[must_use]
     pub const fn engine(&self) -> &E {
@@ -461,7 +479,11 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         if stop == Stop::Held {
             self.held = Some(Held::Slice { thread, window, left, woken });
         }
-        self.firmware.slice_ran(thread, window.end - budget, window.end - left);
+        if self.firmware.follows_slices() {
+            let is_interrupted = stop == Stop::Preempted && self.splits_statements(thread);
+            let at = if is_interrupted { self.backtrace(thread).first().copied() } else { None };
+            self.firmware.slice_ran(thread, window.end - budget, window.end - left, at);
+        }
         match (stop, woken) {
             // Its call goes on waiting until the instruction is executed.
             (Stop::Held, Some(wake)) => {

@@ -149,6 +149,13 @@ pub trait Target {
         Vec::new()
     }
 
+    /// The instruction before which the servo interrupt has stopped a thread, where slices can end at any instruction; `None`
+    /// of a thread that has ended its slice by a call, or whose statements are not split, and where unknown.
+    fn interrupted_at(&self, thread: ThreadId) -> Option<CodeAddr> {
+        let _ = thread;
+        None
+    }
+
     /// Bytes of its stack that a thread has used since its start; `None` where unknown.
     fn stack_used(&self, thread: ThreadId) -> Option<u32> {
         let _ = thread;

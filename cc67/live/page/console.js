@@ -59,9 +59,10 @@ export function mountConsole(section, link, openSource) {
   });
 }
 
-function line({ tick, voice, text, file, line }, openSource) {
+function line({ tick, voice, text, file, line, accesses }, openSource) {
   const row = el("p", { className: voice }, el("time", {}, (tick * 90e-6).toFixed(3)), voice === "command" ? `> ${text}` : text);
   row.dataset.tick = tick;
-  if (file && line) row.append(" ", el("button", { type: "button", className: "link", onclick: () => openSource(file, line) }, `${file.split("/").pop()}:${line}`));
+  const places = accesses ?? (file && line ? [{ file, line }] : []);
+  for (const place of places) row.append(" ", el("button", { type: "button", className: "link", onclick: () => openSource(place.file, place.line) }, `${place.file.split("/").pop()}:${place.line}`));
   return row;
 }

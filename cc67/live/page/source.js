@@ -68,14 +68,21 @@ export function mountSource(section, link, sources) {
     for (const row of rows) row.element.classList.remove("wrong");
     const mine = (where) => where.file && sources.find(where.file) === file;
     for (const error of errors.filter(mine)) at(error.line, error.report, "message report");
-    for (const remark of [...remarks.values()].filter(mine)) at(remark.line, remark.text, "message remark");
+    for (const remark of remarks.values()) {
+      if (mine(remark)) at(remark.line, remark.text, "message remark", remark.accesses?.[1]);
+      const [first, second] = remark.accesses ?? [];
+      if (second && mine(second)) at(second.line, remark.text, "message remark", first);
+    }
   }
 
-  function at(number, text, className) {
+  /** A message at a line, with a link to the other access that it is about. */
+  function at(number, text, className, other) {
     const row = rows[number - 1];
     if (!row) return;
     if (!className.endsWith("remark")) row.element.classList.add("wrong");
-    row.element.append(el("div", { className }, text));
+    const message = el("div", { className }, text);
+    if (other) message.append(" ", el("button", { type: "button", className: "link", onclick: () => open(other.file, other.line) }, `${other.file.split("/").pop()}:${other.line}`));
+    row.element.append(message);
   }
 
   /** The threads at their lines. */

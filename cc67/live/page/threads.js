@@ -3,24 +3,51 @@
 import { attribute, el } from "./dom.js";
 import { color } from "./plot.js";
 
+/** Races that are shown. */
+const RACES = 3;
+
 export function mountThreads(section, link, sources, openSource) {
   const body = el("div", { className: "body" });
   const strip = el("div", { className: "turns", role: "img", "aria-label": "Slices of the last ticks", hidden: true });
-  section.append(strip, body);
-  let programs = new Map(), rows = [], known = "";
+  const races = el("div", { className: "races", role: "log", "aria-label": "Accesses of two threads", hidden: true });
+  section.append(strip, races, body);
+  let programs = new Map(), rows = [], known = "", raced = [];
 
-  /** A mark for each of the last ticks, in the colour of its thread; the primary thread has none. */
-  function slices(turns) {
+  /**
+   * A mark for each of the last ticks, in the colour of its thread; the primary thread has none. A line follows a slice that
+   * ended inside a statement, and a tick of a race is framed.
+   */
+  function slices(turns, tick) {
     strip.hidden = turns.length === 0;
     while (strip.childElementCount < turns.length) strip.append(el("span"));
     while (strip.childElementCount > turns.length) strip.lastElementChild.remove();
-    turns.forEach((thread, index) => {
-      strip.children[index].style.background = thread ? color(thread - 1) : "";
+    const raceTicks = new Set(raced.map((entry) => entry.tick - tick + turns.length - 1));
+    turns.forEach(({ thread, split }, index) => {
+      const mark = strip.children[index];
+      mark.style.background = thread ? color(thread - 1) : "";
+      mark.classList.toggle("split", Boolean(split));
+      mark.classList.toggle("race", raceTicks.has(index));
     });
     const counts = new Map();
-    for (const thread of turns) counts.set(thread, (counts.get(thread) ?? 0) + 1);
+    for (const { thread } of turns) counts.set(thread, (counts.get(thread) ?? 0) + 1);
     const parts = [...counts].sort(([a], [b]) => a - b).map(([thread, count]) => `${thread ? `thread ${thread}` : "primary thread"}: ${count}`);
-    attribute(strip, "title", `The last ${turns.length} ticks. ${parts.join(", ")}`);
+    const splits = turns.filter(({ split }) => split), last = splits.at(-1);
+    const inside = last ? `. Switched inside a statement: ${splits.length}, last thread ${last.thread} at ${last.split}` : "";
+    attribute(strip, "title", `The last ${turns.length} ticks. ${parts.join(", ")}${inside}`);
+  }
+
+  /** The last accesses of two threads that do not wait for each other, with links to both. */
+  function showRaces() {
+    races.hidden = raced.length === 0;
+    races.replaceChildren(...raced.map(({ tick, text, accesses }) => el("p", { title: text },
+      el("time", {}, (tick * 90e-6).toFixed(3)), " ", place(accesses[0]), " ⇄ ", place(accesses[1]))));
+  }
+
+  function place({ thread, file, line }) {
+    const name = thread ? `thread ${thread}` : "call-back";
+    return el("span", {},
+      el("strong", thread ? { style: `color: ${color(thread - 1)}` } : {}, name), " ",
+      el("button", { type: "button", className: "link", onclick: () => openSource(file, line) }, `${file.split("/").pop()}:${line}`));
   }
 
   function show() {
@@ -65,9 +92,23 @@ export function mountThreads(section, link, sources, openSource) {
   });
   link.on("sources", show);
   addEventListener("themechange", show);
-  link.on("threads", ({ threads, turns }) => {
+  link.on("state", () => {
+    raced = [];
+    showRaces();
+  });
+  link.on("cut", ({ tick }) => {
+    raced = raced.filter((entry) => entry.tick <= tick);
+    showRaces();
+  });
+  link.on("log", ({ entries }) => {
+    const found = entries.filter((entry) => entry.accesses);
+    if (!found.length) return;
+    raced = [...raced, ...found].slice(-RACES);
+    showRaces();
+  });
+  link.on("threads", ({ threads, turns, tick }) => {
     // Without a word about them, those of a moment ago stay.
-    if (turns) slices(turns);
+    if (turns) slices(turns, tick);
     // What has not changed is left alone, so that a button keeps the focus.
     const text = JSON.stringify(threads);
     if (text === known) return;

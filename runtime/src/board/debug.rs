@@ -114,6 +114,13 @@ impl DebugInfo {
         Some(SourcePlace { function: name, file: &function.file, line, column, around })
     }
 
+    /// The statement that has begun before an address and is not over there; `None` where a line begins.
+    #[must_use]
+    pub fn statement_around(&self, address: CodeAddr) -> Option<SourcePlace<'_>> {
+        let is_start = self.lines.binary_search_by_key(&address.get(), |(start, _)| *start).is_ok();
+        self.place(address).filter(|place| place.line.is_some() && !is_start)
+    }
+
     /// Describes a data address by the object at or just before it: "4 bytes past the end of `table`".
     #[must_use]
     pub fn describe(&self, address: GuestAddr) -> Option<String> {

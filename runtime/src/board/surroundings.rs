@@ -289,7 +289,9 @@ impl Surroundings {
         };
         let Parts { world, out, .. } = &mut self.parts;
         if world.records_changes() && start >= Cycles::default() {
-            out.tell(start, EventKind::Trace(trace::Record::Slice { thread, end: instant.now }));
+            // The place where the firmware keeps the thread's registers is not looked for here.
+            let slice = trace::Record::Slice { thread, end: instant.now, interrupted_at: None };
+            out.tell(start, EventKind::Trace(slice));
         }
         Moment { turn: Turn::User(thread), slice_start: start + INTERRUPT }
     }

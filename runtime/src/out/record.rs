@@ -20,6 +20,8 @@ pub enum Record {
         thread: ThreadId,
         /// Until when.
         end: Cycles,
+        /// The instruction before which the servo interrupt has stopped it, where slices can end at any instruction.
+        interrupted_at: Option<CodeAddr>,
     },
     /// Real code has executed a packet.
     Packet {

@@ -49,6 +49,36 @@ fn encoders_turn_and_persist_is_set_and_every_control_has_a_name() {
     assert_eq!(live.end(), "");
 }
 
+#[test]
+fn a_race_is_shown_at_the_slices_with_links_to_both_lines() {
+    let Some(mut browser) = Browser::start() else { return };
+    let folder = Scratch::new("live-races");
+    for thread in 1..=2 {
+        let text = "#include \"KMotionDef.h\"\nmain()\n{\n    for (;;)\n        persist.UserData[40]++;\n}\n";
+        fs::write(folder.path().join(format!("count{thread}.c")), text).expect("files can be written");
+    }
+    let live = Live::start(&folder, &["--as", "board", "--races", "1:count1.c", "2:count2.c"]);
+    browser.open(&live.url);
+    browser.until("document.querySelectorAll('.races p').length > 0");
+    browser.until("document.querySelectorAll('.turns .split').length > 0");
+    let title = browser.value("document.querySelector('.turns').title");
+    assert!(title.as_str().is_some_and(|title| title.contains("Switched inside a statement: ")), "{title}");
+    let links = browser.value("[...document.querySelectorAll('.races p')[0].querySelectorAll('button')].map((one) => one.textContent).sort()");
+    assert_eq!(links, json!(["count1.c:5", "count2.c:5"]));
+
+    // Each line has the message with a link to the other one.
+    browser.value(
+        "[...document.querySelectorAll('.races button')].find((one) => one.textContent === 'count2.c:5').click()",
+    );
+    browser.until("document.querySelector('#source .message.remark button')?.textContent === 'count1.c:5'");
+    browser.value("document.querySelector('#source .message.remark button').click()");
+    browser.until("document.querySelector('#source .message.remark button')?.textContent === 'count2.c:5'");
+
+    assert_accessible(&mut browser);
+    assert_eq!(browser.complaints(), [""; 0]);
+    assert_eq!(live.end(), "");
+}
+
 /// axe-core finds no serious fault in what the page shows, where it is installed.
 pub(super) fn assert_accessible(browser: &mut Browser) {
     if let Some(modules) = node_modules("axe-core") {

@@ -291,6 +291,13 @@ impl<T: Target> Session<T> {
         ThreadId::all().find_map(|thread| self.target.debug(thread)?.place(address))
     }
 
+    /// The statement inside which the servo interrupt has stopped a thread.
+    #[must_use]
+    pub fn split_statement(&self, thread: ThreadId) -> Option<SourcePlace<'_>> {
+        let at = self.target.interrupted_at(thread)?;
+        self.target.debug(thread)?.statement_around(at)
+    }
+
     /// Sets how programs and expressions are compiled from now on.
     pub fn set_options(&mut self, options: Options) {
         self.options = options;

@@ -123,6 +123,7 @@ impl Target for AnyTarget {
         fn debug(&self, thread: ThreadId) -> Option<&DebugInfo>;
         fn thread(&self, thread: ThreadId) -> &ThreadState;
         fn backtrace(&self, thread: ThreadId) -> Vec<CodeAddr>;
+        fn interrupted_at(&self, thread: ThreadId) -> Option<CodeAddr>;
         fn stack_used(&self, thread: ThreadId) -> Option<u32>;
         fn firmware_function(&self, address: CodeAddr) -> Option<String>;
         fn runs_processor_code(&self, thread: ThreadId) -> Option<bool>;

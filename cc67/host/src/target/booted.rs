@@ -420,6 +420,11 @@ impl Target for BootedTarget {
         self.frames(ContextId::of(thread)).into_iter().map(|frame| frame.at).collect()
     }
 
+    /// A thread whose instruction is one of its program is not in a call that waits.
+    fn interrupted_at(&self, thread: ThreadId) -> Option<CodeAddr> {
+        self.backtrace(thread).first().copied().filter(|at| calls::is_of_program(at.get()))
+    }
+
     fn firmware_function(&self, address: CodeAddr) -> Option<String> {
         let is_program = calls::is_of_program(address.get());
         self.board.file().function_at(address.get()).filter(|_| !is_program).map(|(name, _)| name)

@@ -127,6 +127,10 @@ impl<E: Engine> Target for Board<E> {
         self.machine().backtrace(thread)
     }
 
+    fn interrupted_at(&self, thread: ThreadId) -> Option<CodeAddr> {
+        self.machine().interrupted_at(thread)
+    }
+
     fn stack_used(&self, thread: ThreadId) -> Option<u32> {
         Some(self.machine().stack_used(thread))
     }

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use cc67_host::{BranchId, Session, Target, remark};
-use kmotiondef::{CodeAddr, Cycles, Ticks};
-use runtime::{Event, EventKind};
+use kmotiondef::{CodeAddr, Cycles, ThreadId, Ticks};
+use runtime::{Event, EventKind, Remark, Speaker};
 use serde::Serialize;
 
 use crate::names::decoded;
@@ -28,6 +28,15 @@ pub(super) enum Voice {
     Trap,
 }
 
+/// An access of a thread to something that two of them use.
+#[derive(Clone, Debug, Serialize)]
+struct RaceAccess {
+    /// Its number; `None` for the call-back.
+    thread: Option<u8>,
+    file: String,
+    line: u32,
+}
+
 /// An entry.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct LogEntry {
@@ -42,6 +51,9 @@ pub(super) struct LogEntry {
     file: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     line: Option<u32>,
+    /// The accesses that a remark is about, if it is about two.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    accesses: Option<[RaceAccess; 2]>,
 }
 
 /// The messages.
@@ -58,7 +70,7 @@ impl Log {
     /// Adds what a person says.
     pub(super) fn say(&mut self, tick: Ticks, voice: Voice, text: String) {
         let seconds = tick.get() as f64 * kmotiondef::limits::TIMEBASE;
-        self.add(LogEntry { tick: tick.get(), seconds, voice, text, file: None, line: None });
+        self.add(LogEntry { tick: tick.get(), seconds, voice, text, file: None, line: None, accesses: None });
     }
 
     /// Adds an event that somebody may want to read.
@@ -86,7 +98,11 @@ impl Log {
         let file = place.map(|place| place.file.to_owned());
         let line = place.and_then(|place| place.line);
         let seconds = event.at.get() as f64 / Cycles::PER_SECOND.get() as f64;
-        self.add(LogEntry { tick, seconds, voice, text, file, line });
+        let accesses = match &event.kind {
+            EventKind::Remark(remark) => accesses(session, remark),
+            _ => None,
+        };
+        self.add(LogEntry { tick, seconds, voice, text, file, line, accesses });
     }
 
     fn add(&mut self, entry: LogEntry) {
@@ -142,6 +158,20 @@ impl Log {
         let fresh = std::mem::take(&mut self.fresh);
         self.entries.iter().skip(self.entries.len() - fresh).collect()
     }
+}
+
+/// The accesses of two threads that a remark is about.
+fn accesses<T: Target>(session: &Session<T>, remark: &Remark) -> Option<[RaceAccess; 2]> {
+    let access = |thread: Option<ThreadId>, at| {
+        let place = session.source(at)?;
+        Some(RaceAccess { thread: thread.map(ThreadId::get), file: place.file.to_owned(), line: place.line? })
+    };
+    let other = remark.message.other()?;
+    let thread = match remark.speaker {
+        Speaker::Thread(thread) => Some(thread),
+        Speaker::CallBack | Speaker::Board | Speaker::Command => None,
+    };
+    Some([access(thread, remark.place?)?, access(other.thread, other.at)?])
 }
 
 fn text(bytes: &[u8]) -> String {

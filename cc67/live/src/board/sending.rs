@@ -1,5 +1,6 @@
 //! Messages and frames for pages.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 use cc67_host::{Session, Target};
@@ -24,8 +25,10 @@ impl<T: Target> ViewState<T> {
             if rows != self.told.threads || self.clock.is_running() {
                 // Those of a moment ago do while the board runs.
                 let turns = self.turns.until(session.tick());
-                let turns = if self.clock.is_running() { turns } else { Some(turns.unwrap_or_default()) };
-                self.broadcast(&json!({ "kind": "threads", "threads": rows, "turns": turns }));
+                let none = VecDeque::new();
+                let turns = if self.clock.is_running() { turns } else { Some(turns.unwrap_or(&none)) };
+                let tick = session.tick().get();
+                self.broadcast(&json!({ "kind": "threads", "threads": rows, "tick": tick, "turns": turns }));
             }
             (self.told.threads, self.told.at) = (rows, now());
             let open_box = session.target().open_box();

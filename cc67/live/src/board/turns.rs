@@ -1,18 +1,40 @@
-//! The thread that had the processor in each of the last ticks: some rotations of all threads.
+//! The thread that had the processor in each of the last ticks, and the statements that were split: some rotations of all
+//! threads.
 
 use std::collections::VecDeque;
 
 use cc67_host::{Capability, Session, Target};
-use kmotiondef::Ticks;
+use kmotiondef::{ThreadId, Ticks};
 use runtime::Event;
+use serde::Serialize;
 
 /// Ticks that are shown.
 const SHOWN: u64 = 56;
 
-/// The threads of the last ticks, one after another without a gap.
+/// A tick as the bar of slices shows it.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct ShownSlice {
+    /// The number of the thread, 0 for the primary one.
+    thread: u8,
+    /// The file and line of the statement inside which the servo interrupt has stopped the thread.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    split: Option<String>,
+}
+
+impl ShownSlice {
+    /// The slice of a session's last tick.
+    fn last<T: Target>(session: &Session<T>) -> Self {
+        let thread = session.target().turn().number();
+        let place = ThreadId::new(thread.into()).and_then(|thread| session.split_statement(thread));
+        let split = place.and_then(|place| Some(format!("{}:{}", place.file, place.line?)));
+        Self { thread, split }
+    }
+}
+
+/// The slices of the last ticks, one after another without a gap.
 #[derive(Debug, Default)]
 pub(super) struct Turns {
-    threads: VecDeque<u8>,
+    slices: VecDeque<ShownSlice>,
     /// The tick of the last one.
     last: Ticks,
 }
@@ -34,20 +56,20 @@ impl Turns {
         let first = Ticks::new(tick.get().saturating_sub(SHOWN));
         session.advance(first, events);
         if session.tick() != self.last {
-            self.threads.clear();
+            self.slices.clear();
         }
         while session.tick() < tick {
             session.step_tick(events);
-            self.threads.push_back(session.target().turn().number());
+            self.slices.push_back(ShownSlice::last(session));
         }
-        while self.threads.len() as u64 > SHOWN {
-            self.threads.pop_front();
+        while self.slices.len() as u64 > SHOWN {
+            self.slices.pop_front();
         }
         self.last = session.tick();
     }
 
-    /// The numbers of the threads until a tick, 0 for the primary one; `None` if they are not known.
-    pub(super) fn until(&self, tick: Ticks) -> Option<Vec<u8>> {
-        (tick == self.last).then(|| self.threads.iter().copied().collect())
+    /// The slices until a tick; `None` if they are not known.
+    pub(super) fn until(&self, tick: Ticks) -> Option<&VecDeque<ShownSlice>> {
+        (tick == self.last).then_some(&self.slices)
     }
 }

@@ -189,7 +189,7 @@ impl RunArguments {
             return Ok(Exit::Success);
         }
         if let Some(mut trace) = trace {
-            trace.know_axes(session.target().standing_axes());
+            trace.know_board(session);
             let title = self.programs.join(OsStr::new(", "));
             trace.finish(&self.trace, session.tick(), &title.to_string_lossy())?;
         }

@@ -239,9 +239,8 @@ impl<'a, T: Target> Console<'a, T> {
     fn leave(&mut self) -> Result<Exit> {
         let shown = &mut self.shown;
         self.rig.finish(&mut |event| shown.note(&event))?;
-        let axes = self.rig.session.target().standing_axes();
         if let Some(trace) = &mut self.shown.trace {
-            trace.know_axes(axes);
+            trace.know_board(&self.rig.session);
         }
         self.shown.finish(self.rig.session.tick())?;
         if let Some(why) = self.rig.session.target().lost() {

@@ -27,6 +27,28 @@ pub(in crate::cli) struct Strip {
     pub(in crate::cli) name: String,
     /// Beginnings and ends in seconds, ascending.
     pub(in crate::cli) spans: Vec<(f64, f64)>,
+    /// Instants of note, ascending.
+    pub(in crate::cli) marks: Vec<Mark>,
+}
+
+/// An instant of note on a strip.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::cli) struct Mark {
+    /// The instant in seconds.
+    pub(in crate::cli) at: f64,
+    /// The event.
+    pub(in crate::cli) text: String,
+}
+
+/// Something between two strips.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::cli) struct Link {
+    /// The instant in seconds.
+    pub(in crate::cli) at: f64,
+    /// The indices of the strips.
+    pub(in crate::cli) strips: [usize; 2],
+    /// The event.
+    pub(in crate::cli) text: String,
 }
 
 /// A whole plot.
@@ -40,6 +62,8 @@ pub(in crate::cli) struct Chart {
     pub(in crate::cli) panels: Vec<Panel>,
     /// Strips below them.
     pub(in crate::cli) strips: Vec<Strip>,
+    /// Links between strips, ascending in time.
+    pub(in crate::cli) links: Vec<Link>,
     /// The first and the last instant.
     pub(in crate::cli) range: (f64, f64),
     /// The scale of the horizontal axis.

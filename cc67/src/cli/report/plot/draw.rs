@@ -17,6 +17,8 @@ const TITLE: u32 = 54;
 const PANEL: u32 = 190;
 const STRIP: u32 = 26;
 const FOOT: u32 = 48;
+/// Pixels from one mark of a strip to the next, at least.
+const MARK_GAP: i32 = 3;
 /// Room for the numbers to the left of the panels.
 const LEFT: u32 = 90;
 const RIGHT: u32 = 24;
@@ -143,6 +145,7 @@ fn draw<B: DrawingBackend>(chart: &Chart, area: &Area<B>, curves: Curves) -> Res
             draw_strip(chart, strip, index, &part)?;
             rest = below;
         }
+        draw_links(chart, area)?;
         draw_foot(chart, &rest)?;
         area.present().map_err(text_of)
     })();
@@ -294,6 +297,35 @@ fn draw_strip<B: DrawingBackend>(
     for (from, to) in bars(chart, strip) {
         let corners = [(from, top), (to, bottom)];
         area.draw(&Rectangle::new(corners, color(index).filled())).map_err(text_of)?;
+    }
+    for at in spaced_marks(chart, strip) {
+        area.draw(&PathElement::new([(at, top - 3), (at, bottom + 3)], BLACK)).map_err(text_of)?;
+    }
+    Ok(())
+}
+
+/// The marks of a strip in pixels, without those that would run together.
+fn spaced_marks(chart: &Chart, strip: &Strip) -> Vec<i32> {
+    let mut spaced: Vec<i32> = Vec::new();
+    for mark in &strip.marks {
+        let at = across(chart, mark.at);
+        if spaced.last().is_none_or(|last| at - last >= MARK_GAP) {
+            spaced.push(at);
+        }
+    }
+    spaced
+}
+
+/// Links from strip to strip, over the whole picture.
+fn draw_links<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Result<(), String> {
+    let first = TITLE + PANEL * chart.panels.len() as u32;
+    let middle = |strip: usize| (first + STRIP * strip as u32 + STRIP / 2) as i32;
+    for link in &chart.links {
+        let ends = link.strips.map(|strip| (across(chart, link.at), middle(strip)));
+        area.draw(&PathElement::new(ends, RED.stroke_width(2))).map_err(text_of)?;
+        for end in ends {
+            area.draw(&Circle::new(end, 4, RED.filled())).map_err(text_of)?;
+        }
     }
     Ok(())
 }

@@ -14,6 +14,8 @@ const MARK: &str = "@DATA@";
 /// shows, and is quick to open.
 const POINTS: usize = 60_000;
 const SPANS: usize = 20_000;
+/// Most marks of a strip.
+const MARKS: usize = 1_000;
 
 #[derive(Serialize)]
 struct PageData<'a> {
@@ -26,6 +28,7 @@ struct PageData<'a> {
     colors: Vec<String>,
     panels: Vec<PagePanel<'a>>,
     strips: Vec<PageStrip<'a>>,
+    links: Vec<PageLink<'a>>,
 }
 
 #[derive(Serialize)]
@@ -47,6 +50,14 @@ struct PageLine<'a> {
 struct PageStrip<'a> {
     name: &'a str,
     spans: Vec<(f64, f64)>,
+    marks: Vec<(f64, &'a str)>,
+}
+
+#[derive(Serialize)]
+struct PageLink<'a> {
+    at: f64,
+    strips: [usize; 2],
+    text: &'a str,
 }
 
 /// The page of a chart.
@@ -74,7 +85,18 @@ pub(super) fn html(chart: &Chart) -> Result<Vec<u8>> {
             .map(|strip| PageStrip {
                 name: &strip.name,
                 spans: bounded(joined(&strip.spans), chart.range, spans),
+                marks: strip
+                    .marks
+                    .iter()
+                    .take(MARKS)
+                    .map(|mark| (short(mark.at), mark.text.as_str()))
+                    .collect(),
             })
+            .collect(),
+        links: chart
+            .links
+            .iter()
+            .map(|link| PageLink { at: short(link.at), strips: link.strips, text: &link.text })
             .collect(),
     };
     // A `</script>` in a name must not end the data.
@@ -164,7 +186,7 @@ mod tests {
         let spans = (0..300_000).map(|at| (at as f64 * 120e-6, at as f64 * 120e-6 + 60e-6)).collect();
         let chart = Chart {
             panels: (1..12).map(panel).collect(),
-            strips: vec![super::super::chart::Strip { name: "bit 46".to_owned(), spans }],
+            strips: vec![super::super::chart::Strip { name: "bit 46".to_owned(), spans, marks: Vec::new() }],
             range: (0.0, 36.0),
             ..Chart::default()
         };

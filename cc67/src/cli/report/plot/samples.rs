@@ -80,8 +80,12 @@ impl Samples {
     pub(in crate::cli::report) fn strips(&self) -> Vec<Strip> {
         let bits = self.columns.iter().enumerate();
         let bits = bits.filter_map(|(index, column)| Some((index, is_numbered(&column.name, &["bit"])?)));
-        bits.map(|(index, bit)| Strip { name: format!("bit {bit}"), spans: spans(&self.points(index)) })
-            .collect()
+        bits.map(|(index, bit)| Strip {
+            name: format!("bit {bit}"),
+            spans: spans(&self.points(index)),
+            marks: Vec::new(),
+        })
+        .collect()
     }
 
     /// The values of a quantity.
@@ -230,6 +234,9 @@ mod tests {
         };
         let titles: Vec<_> = samples.panels().into_iter().map(|panel| panel.heading()).collect();
         assert_eq!(titles, ["axis 2 (Z): Dest (mm)", "axis 2 (Z): velocity (mm/s)", "speed", "bitter"]);
-        assert_eq!(samples.strips(), [Strip { name: "bit 7".to_owned(), spans: vec![(1.0, 2.0)] }]);
+        assert_eq!(
+            samples.strips(),
+            [Strip { name: "bit 7".to_owned(), spans: vec![(1.0, 2.0)], marks: Vec::new() }]
+        );
     }
 }

@@ -70,7 +70,7 @@ fn strip(variable: &Variable, end: f64) -> Strip {
         }
     }
     spans.extend(high_since.map(|since| (since, end)));
-    Strip { name: spaced(&variable.name), spans }
+    Strip { name: spaced(&variable.name), spans, marks: Vec::new() }
 }
 
 /// `bit46` as the pictures of a run write it.

@@ -181,7 +181,7 @@ impl Sink for Events {
                 }
                 self.write(&Event::level(*bit, *level, at))
             }
-            TraceEntry::Slice { thread, end } => {
+            TraceEntry::Slice { thread, end, .. } => {
                 let (track, name) = (thread.get().into(), format!("thread {thread}"));
                 if self.threads.insert(*thread) {
                     self.write(&Event::track(track, &name))?;
@@ -200,7 +200,7 @@ impl Sink for Events {
                 }
                 self.write(&Event::mark(byte.escape_ascii().to_string(), UART, at))
             }
-            TraceEntry::Packet { .. } => Ok(()),
+            TraceEntry::Packet { .. } | TraceEntry::Race(_) => Ok(()),
         }
     }
 

@@ -5,7 +5,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use kmotiondef::{Bit, Cycles, ThreadId};
+use kmotiondef::{Bit, CodeAddr, Cycles, ThreadId};
+use runtime::Remark;
 use runtime::trace::{Quantity, TraceRequest};
 
 use super::TraceEntry;
@@ -15,6 +16,10 @@ use super::columns::Columns;
 pub(crate) const SAMPLES: usize = 200_000;
 /// Most spans of bits, and as many of threads.
 const SPANS: usize = 500_000;
+/// Most interruptions of threads.
+const INTERRUPTIONS: usize = 200_000;
+/// Most remarks on accesses of two threads.
+const RACES: usize = 100;
 
 /// A recording in memory.
 #[derive(Debug)]
@@ -31,6 +36,19 @@ pub(super) struct Log {
     changed: BTreeSet<Bit>,
     /// When threads had the processor.
     pub(super) threads: Spans<ThreadId>,
+    /// The first interruptions of threads at instructions.
+    pub(super) interruptions: Vec<Interruption>,
+    /// The first remarks on accesses of two threads, and when they were made.
+    pub(super) races: Vec<(Cycles, Remark)>,
+}
+
+/// The end of a slice before some instruction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Interruption {
+    pub(super) thread: ThreadId,
+    pub(super) at: Cycles,
+    /// The instruction.
+    pub(super) before: CodeAddr,
 }
 
 impl Log {
@@ -45,6 +63,8 @@ impl Log {
             high: BTreeMap::new(),
             changed: BTreeSet::new(),
             threads: Spans::new(SPANS),
+            interruptions: Vec::new(),
+            races: Vec::new(),
         }
     }
 
@@ -52,7 +72,12 @@ impl Log {
     pub(super) fn note(&mut self, at: Cycles, entry: TraceEntry) {
         match entry {
             TraceEntry::Bit { bit, level, .. } => self.note_bit(bit, level, at),
-            TraceEntry::Slice { thread, end } => self.threads.add(thread, at, end),
+            TraceEntry::Slice { thread, end, interrupted_at } => {
+                self.threads.add(thread, at, end);
+                let interruption = interrupted_at.map(|before| Interruption { thread, at: end, before });
+                self.interruptions.extend(interruption.filter(|_| self.interruptions.len() < INTERRUPTIONS));
+            }
+            TraceEntry::Race(remark) if self.races.len() < RACES => self.races.push((at, remark)),
             TraceEntry::Sample { values, enabled } => {
                 self.columns.note(enabled);
                 keep(&mut self.samples, self.step, (at, values));
@@ -60,7 +85,7 @@ impl Log {
                     self.thin();
                 }
             }
-            TraceEntry::Line(_) | TraceEntry::Sent(_) | TraceEntry::Packet { .. } => {}
+            TraceEntry::Line(_) | TraceEntry::Sent(_) | TraceEntry::Packet { .. } | TraceEntry::Race(_) => {}
         }
     }
 

@@ -23,9 +23,10 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, anyhow, bail};
 use cc67_host::{Capability, Session, Target, WatchError};
 use kmotiondef::{Bit, CodeAddr, Cycles, ThreadId, Ticks};
+use runtime::debug::DebugInfo;
 use runtime::standing::StandingAxis;
 use runtime::trace::{Item, Packets, Quantity, Record, TraceRequest};
-use runtime::{Event, EventKind};
+use runtime::{Event, EventKind, Remark};
 
 use crate::cli::args::trace::TraceArguments;
 use crate::cli::io::{output, terminal};
@@ -133,8 +134,10 @@ fn suffix(path: &Path) -> String {
 enum TraceEntry {
     /// A bit has changed, and the thread that did it.
     Bit { bit: Bit, level: bool, thread: Option<ThreadId> },
-    /// A thread has the processor until then.
-    Slice { thread: ThreadId, end: Cycles },
+    /// A thread has the processor until then; the servo interrupt has stopped it before an instruction.
+    Slice { thread: ThreadId, end: Cycles, interrupted_at: Option<CodeAddr> },
+    /// A remark on accesses of two threads.
+    Race(Remark),
     /// Real code has executed a packet.
     Packet { thread: Option<ThreadId>, address: CodeAddr, cycles: Cycles, text: String },
     /// Items have these values; the axes that are enabled.
@@ -152,7 +155,10 @@ impl TraceEntry {
             EventKind::Trace(Record::Bit { bit, level, thread }) => {
                 Self::Bit { bit: *bit, level: *level, thread: *thread }
             }
-            EventKind::Trace(Record::Slice { thread, end }) => Self::Slice { thread: *thread, end: *end },
+            EventKind::Trace(Record::Slice { thread, end, interrupted_at }) => {
+                Self::Slice { thread: *thread, end: *end, interrupted_at: *interrupted_at }
+            }
+            EventKind::Remark(remark) if remark.message.other().is_some() => Self::Race(remark.clone()),
             EventKind::Trace(Record::Packet { thread, address, cycles, text }) => {
                 Self::Packet { thread: *thread, address: *address, cycles: *cycles, text: text.clone() }
             }
@@ -187,6 +193,8 @@ pub(crate) struct Trace {
     log: Option<Log>,
     /// The labels of axes in pictures.
     axes: BTreeMap<usize, PlottedAxis>,
+    /// The lines of programs, of which pictures name some.
+    programs: Vec<DebugInfo>,
     /// The first file that could not be written, and why.
     failed: Option<(PathBuf, io::Error)>,
 }
@@ -222,11 +230,18 @@ impl Trace {
             sinks.push(Box::new(packets::PacketTable::new(&file.path)?));
         }
         let log = (!arguments.plot.is_empty()).then(|| Log::new(request));
-        Ok(Self { is_late, order: Order::default(), sinks, log, axes: BTreeMap::new(), failed: None })
+        let (axes, programs) = Default::default();
+        Ok(Self { is_late, order: Order::default(), sinks, log, axes, programs, failed: None })
     }
 
-    /// Pictures call axes as the machine file does, and show the loads of those that are not measured.
-    pub(crate) fn know_axes(&mut self, axes: Vec<StandingAxis>) {
+    /// Pictures call axes as the machine file does, show the loads of those that are not measured, and name lines of the
+    /// programs.
+    pub(crate) fn know_board<T: Target>(&mut self, session: &Session<T>) {
+        self.programs = session.debug().into_iter().map(|(_, debug)| debug).collect();
+        self.know_axes(session.target().standing_axes());
+    }
+
+    fn know_axes(&mut self, axes: Vec<StandingAxis>) {
         let plotted = |axis: StandingAxis| {
             let StandingAxis { axis, name, units, is_measured, .. } = axis;
             (axis.index(), PlottedAxis { name, units, is_measured })
@@ -256,7 +271,7 @@ impl Trace {
         }
         for path in &arguments.plot {
             let Some(log) = &self.log else { continue };
-            let chart = picture::chart(log, title.to_owned(), end, &self.axes);
+            let chart = picture::chart(log, title.to_owned(), end, &self.axes, &self.programs);
             plot::write(&chart, Form::of(path)?, path)?;
         }
         Ok(())
@@ -316,7 +331,7 @@ mod testing {
         let kinds = [
             (180, EventKind::Trace(Record::Sample { values: vec![0.5, 1.0], enabled: 1 })),
             (215, EventKind::Trace(Record::Bit { bit, level: false, thread: Some(thread) })),
-            (205, EventKind::Trace(Record::Slice { thread, end: us(230) })),
+            (205, EventKind::Trace(Record::Slice { thread, end: us(230), interrupted_at: None })),
             (450, EventKind::ConsoleLine(b"a \"b\"".to_vec())),
             (540, EventKind::Trace(Record::Sample { values: vec![2.0, 0.0], enabled: 1 })),
             (560, EventKind::UartSent(b'x')),

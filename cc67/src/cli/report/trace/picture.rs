@@ -4,19 +4,28 @@
 
 use std::collections::BTreeMap;
 
-use kmotiondef::{Bit, Cycles, Ticks};
+use cc67_host::remark;
+use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
+use runtime::debug::DebugInfo;
 use runtime::trace::{Item, Quantity};
+use runtime::{Remark, Speaker};
 
-use super::log::Log;
+use super::log::{Interruption, Log};
 use super::unit;
-use crate::cli::report::plot::chart::{Chart, Strip};
+use crate::cli::report::plot::chart::{Chart, Link, Mark, Strip};
 use crate::cli::report::plot::samples::{Column, PlottedAxis, Samples};
 
 /// Strips in a picture; a program that moves more bits than that is looked at with `--trace`.
 const STRIPS: usize = 16;
 
-/// The chart of a run up to a tick; `axes` has the names and units of each.
-pub(super) fn chart(log: &Log, title: String, end: Ticks, axes: &BTreeMap<usize, PlottedAxis>) -> Chart {
+/// The chart of a run of these programs up to a tick; `axes` has the names and units of each.
+pub(super) fn chart(
+    log: &Log,
+    title: String,
+    end: Ticks,
+    axes: &BTreeMap<usize, PlottedAxis>,
+    programs: &[DebugInfo],
+) -> Chart {
     let end = Cycles::new((end.get() as i64).saturating_mul(Cycles::PER_TICK.get()));
     let columns = log.columns(|axis| axes.get(&axis).is_none_or(|known| known.is_measured));
     let column = |(_, quantity): &(usize, &Quantity)| Column {
@@ -38,14 +47,20 @@ pub(super) fn chart(log: &Log, title: String, end: Ticks, axes: &BTreeMap<usize,
     let mut strips = bits(log, end);
     strips.truncate(STRIPS);
     // When threads had the processor is beside what they did; alone it is no picture of a motion.
-    if !(panels.is_empty() && strips.is_empty()) {
-        strips.extend(threads(log));
+    let mut links = Vec::new();
+    if !(panels.is_empty() && strips.is_empty() && log.races.is_empty()) {
+        let first = strips.len();
+        let (ran, ran_strips): (Vec<_>, Vec<_>) = threads(log, programs).into_iter().unzip();
+        strips.extend(ran_strips);
+        let index = |thread: ThreadId| Some(first + ran.iter().position(|other| *other == thread)?);
+        links.extend(log.races.iter().filter_map(|(at, remark)| link(*at, remark, programs, index)));
     }
     let chart = Chart {
         title,
         abscissa: "time (s)".to_owned(),
         panels,
         strips,
+        links,
         range: (0.0, seconds(end)),
         ..Chart::default()
     };
@@ -65,6 +80,8 @@ fn in_readable_units(mut chart: Chart) -> Chart {
     lines.flat_map(|line| &mut line.points).for_each(|(time, _)| *time *= factor);
     let spans = chart.strips.iter_mut().flat_map(|strip| &mut strip.spans);
     spans.for_each(|(from, to)| (*from, *to) = (*from * factor, *to * factor));
+    chart.strips.iter_mut().flat_map(|strip| &mut strip.marks).for_each(|mark| mark.at *= factor);
+    chart.links.iter_mut().for_each(|link| link.at *= factor);
     chart
 }
 
@@ -95,13 +112,37 @@ fn bit(quantity: &Quantity) -> Option<Bit> {
 }
 
 fn strip(name: String, spans: impl IntoIterator<Item = (Cycles, Cycles)>) -> Strip {
-    Strip { name, spans: spans.into_iter().map(|(from, to)| (seconds(from), seconds(to))).collect() }
+    let spans = spans.into_iter().map(|(from, to)| (seconds(from), seconds(to))).collect();
+    Strip { name, spans, marks: Vec::new() }
 }
 
-/// When each thread had the processor.
-fn threads(log: &Log) -> Vec<Strip> {
-    let strip = |thread| strip(format!("thread {thread}"), log.threads.of(thread));
-    kmotiondef::ThreadId::all().map(strip).filter(|strip| !strip.spans.is_empty()).collect()
+/// When each thread had the processor, and where slices ended inside a statement.
+fn threads(log: &Log, programs: &[DebugInfo]) -> Vec<(ThreadId, Strip)> {
+    let strip = |thread| {
+        let interruptions = log.interruptions.iter().filter(|interruption| interruption.thread == thread);
+        let marks = interruptions.filter_map(|interruption| split(interruption, programs)).collect();
+        (thread, Strip { marks, ..strip(format!("thread {thread}"), log.threads.of(thread)) })
+    };
+    ThreadId::all().map(strip).filter(|(_, strip)| !strip.spans.is_empty()).collect()
+}
+
+/// The mark of a slice that ended inside a statement.
+fn split(interruption: &Interruption, programs: &[DebugInfo]) -> Option<Mark> {
+    let place = programs.iter().find_map(|debug| debug.statement_around(interruption.before))?;
+    let text = format!("interrupted inside the statement at {}:{}", place.file, place.line?);
+    Some(Mark { at: seconds(interruption.at), text })
+}
+
+/// The link between the strips of the two threads that a remark is about.
+fn link(
+    at: Cycles,
+    about: &Remark,
+    programs: &[DebugInfo],
+    strip: impl Fn(ThreadId) -> Option<usize>,
+) -> Option<Link> {
+    let Speaker::Thread(one) = about.speaker else { return None };
+    let other = about.message.other()?.thread?;
+    Some(Link { at: seconds(at), strips: [strip(one)?, strip(other)?], text: remark::words(about, programs) })
 }
 
 #[cfg(test)]
@@ -111,7 +152,7 @@ mod tests {
     #[test]
     fn a_value_holds_between_its_samples() {
         let log = super::super::testing::log();
-        let chart = chart(&log, String::new(), Ticks::new(7), &BTreeMap::new());
+        let chart = chart(&log, String::new(), Ticks::new(7), &BTreeMap::new(), &[]);
         let lines: Vec<_> = chart.panels.iter().flat_map(|panel| &panel.lines).collect();
         assert_eq!(lines[0].name, "Dest 0");
         assert_eq!(chart.abscissa, "time (µs)");

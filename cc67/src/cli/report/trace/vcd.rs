@@ -141,7 +141,7 @@ impl Sink for Dump {
                 let id = self.declare(Signal::Bit(*bit), if *level { "0" } else { "1" });
                 self.change(at, if *level { "1" } else { "0" }, &id)
             }
-            TraceEntry::Slice { thread, end } => {
+            TraceEntry::Slice { thread, end, .. } => {
                 let id = self.declare(Signal::Thread(*thread), "0");
                 self.change(at, "1", &id)?;
                 self.slice = Some((*thread, *end));
@@ -155,7 +155,7 @@ impl Sink for Dump {
                 let id = self.declare(Signal::Console, "");
                 self.change(at, &format!("s{} ", escape(line)), &id)
             }
-            TraceEntry::Sent(_) | TraceEntry::Packet { .. } => Ok(()),
+            TraceEntry::Sent(_) | TraceEntry::Packet { .. } | TraceEntry::Race(_) => Ok(()),
         }
     }
 
