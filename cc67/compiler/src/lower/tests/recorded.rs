@@ -5,7 +5,7 @@ use std::path::Path;
 use kmotiondef::AccessSize;
 use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_at};
 use kmotiondef::timing::{Timing, WaitStates};
-use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
+use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use serde_json::Value as Json;
 use vm::bus::Bus;
 use vm::firmware::{Caller, Firmware, Outcome, Signature, TickContext, Value};
@@ -86,7 +86,11 @@ impl Firmware for Stopwatch {
 
     fn tick(&mut self, _: &mut TickContext<'_>) {}
 
-    fn slice_ran(&mut self, _: ThreadId, start: Cycles, end: Cycles) {
+    fn follows_slices(&self) -> bool {
+        true
+    }
+
+    fn slice_ran(&mut self, _: ThreadId, start: Cycles, end: Cycles, _: Option<CodeAddr>) {
         self.spent += (end - start).get();
     }
 
