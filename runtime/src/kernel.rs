@@ -41,7 +41,7 @@ use crate::pc::Pc;
 use crate::pc::files::HostFiles;
 use crate::pc::host;
 use crate::servo::cache::Change;
-use crate::servo::{Servo, limits};
+use crate::servo::{CallPlace, Servo, limits};
 use crate::views::Typed;
 use crate::world::Moment;
 use crate::world::trace::{Record, View};
@@ -142,6 +142,11 @@ impl Kernel {
             self.settle_notices(caller.now());
         }
         let Attributes { polls, drives_axis, is_pure, .. } = &FIRMWARE_FUNCTIONS[number].attributes;
+        let place = Some(CallPlace { thread: caller.thread, at: caller.at });
+        self.parts.servo.last_call = place;
+        if *drives_axis && let Some(axis) = AxisId::new(caller.arguments.get(0)) {
+            self.parts.servo.commands[axis.index()] = place;
+        }
         let calls = &mut self.parts.calls.waits;
         match (caller.thread, *polls) {
             (Some(thread), Some(state)) => calls.look(thread, state, caller),
@@ -160,7 +165,8 @@ impl Kernel {
     /// Tells what only the end of a run makes certain.
     pub(crate) fn sum_up(&mut self, context: &TickContext<'_>) {
         self.settle_notices(context.now);
-        let Parts { out, machine, io, calls, races, pc, level, .. } = &mut self.parts;
+        note_overruns(&mut self.parts, context, AFTER_USER_DATA);
+        let Parts { out, machine, io, calls, races, pc, .. } = &mut self.parts;
         let held = String::from_utf8_lossy(out.console.held()).into_owned();
         if !held.is_empty() {
             let (thread, at) = calls.notices.last_print;
@@ -173,14 +179,6 @@ impl Kernel {
         }
         if let Some(races) = races {
             races.finish(context.threads, context.now, out);
-        }
-        if context.memory.peek::<f64>(GATHER_END).to_bits() != 0 {
-            out.remark(context.now, Message::GatherOverrun { most: MAX_GATHER_DATA });
-        }
-        let is_known = level.board().is_default();
-        let beyond = |word: &u32| context.memory.peek::<u32>(GuestAddr::new(USER_DATA_END + 4 * word)) != 0;
-        if let Some(word) = (0..AFTER_USER_DATA).find(beyond).filter(|_| is_known) {
-            out.remark(context.now, Message::UserDataOverrun { index: USER_DATA_ELEMENTS + word });
         }
         for (axis, SmallMove { thread, at, function, way }) in calls.motions.small_moves() {
             let message = Message::TinyMove { function, axis, way };
@@ -246,6 +244,18 @@ impl Kernel {
             memory.set(NEXT_AVAIL_IN, write);
             memory.set(NEXT_AVAIL_OUT, read);
         });
+    }
+}
+
+/// Values that a program has stored after the end of an array of the board: in the first `words` after
+/// `persist.UserData`.
+fn note_overruns(parts: &mut Parts, context: &TickContext<'_>, words: u32) {
+    if context.memory.peek::<f64>(GATHER_END).to_bits() != 0 {
+        parts.servo_tick().remark_near(Message::GatherOverrun { most: MAX_GATHER_DATA });
+    }
+    let beyond = |word: &u32| context.memory.peek::<u32>(GuestAddr::new(USER_DATA_END + 4 * word)) != 0;
+    if let Some(word) = (0..words).find(beyond).filter(|_| parts.level.board().is_default()) {
+        parts.servo_tick().remark_near(Message::UserDataOverrun { index: USER_DATA_ELEMENTS + word });
     }
 }
 
@@ -452,8 +462,10 @@ impl Firmware for Kernel {
         if let Turn::User(thread) = moment.turn
             && let Some(message) = parts.pc.host.watch(context.memory, thread)
         {
-            parts.out.remark_of(context.now, Speaker::Thread(thread), None, message);
+            let last = parts.servo.last_call.filter(|last| last.thread == Some(thread));
+            parts.out.remark_of(context.now, Speaker::Thread(thread), last.and_then(|last| last.at), message);
         }
+        note_overruns(parts, context, 1);
         let changed = crate::servo::tick(&mut parts.servo_tick(), context.memory, is_touched);
         self.sample(context, 1);
         let call_back = context.memory.get(USER_CALL_BACK);

@@ -10,6 +10,7 @@ use crate::io::konnect::Port;
 use crate::machine::description::{Axis, Connection, Encoder, Model};
 use crate::machine::wiring::Wiring;
 use crate::machine::{Mechanics, Plant, connect_snapamp};
+use crate::out::Message;
 use crate::views::Typed;
 use crate::world::outside::wire::Wire;
 
@@ -27,6 +28,13 @@ pub(crate) fn install(parts: &mut Parts, machine: &MachineFile) {
         connected.loads[spindle.axis] = Plant::new(&load);
     }
     connected.mechanics = Mechanics::new(&machine.axes, &machine.connected);
+    for (bit, axis, place) in connected.mechanics.places() {
+        let travel = machine.axes[axis.index()].travel;
+        if let Some((side, end)) = place.beyond(&travel) {
+            let place = place.to_string();
+            out.remark(Cycles::default(), Message::SwitchUnreachable { bit, axis, place, side, end });
+        }
+    }
     connected.needs_enable = machine.boards.has_kstep && machine.boards.respect_enable;
     (0..machine.boards.snapamps).for_each(|board| connect_snapamp(&mut io.snapamps, &mut io.pins, board));
     for (port, present) in

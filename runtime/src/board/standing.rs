@@ -96,8 +96,9 @@ pub enum Source {
     Nothing,
     /// A switch, a probe or an index of an axis: where it is closed, its level there, where the axis is.
     Contact(AxisId, String, bool, f64),
-    /// Something else drives the input: a wire, a device, the stimulus.
-    Outside,
+    /// Something else drives the input: a wire, a device, the stimulus; with the beginning and end of its last pulse, if that
+    /// came before the wait.
+    Outside(Option<(Cycles, Cycles)>),
     /// The program: it is an output.
     Output,
     /// Any program: the bit is memory.
@@ -194,7 +195,7 @@ impl<E: Engine> Board<E> {
         match call.polls {
             Polled::Bit => {
                 let bit = Bit::new(call.argument)?;
-                Some(Awaited::Bit(bit, self.bit(bit), self.source_of(bit)))
+                Some(Awaited::Bit(bit, self.bit(bit), self.source_of(bit, call.since)))
             }
             Polled::Motion => {
                 let axis = AxisId::new(call.argument)?;
@@ -221,8 +222,8 @@ impl<E: Engine> Board<E> {
         Some(Owner { thread, state })
     }
 
-    /// Returns the origin of a bit's level.
-    fn source_of(&self, bit: Bit) -> Source {
+    /// Returns the origin of a bit's level, for which a thread has waited since an instant.
+    fn source_of(&self, bit: Bit, since: Cycles) -> Source {
         let parts = &self.machine.firmware().parts;
         if let Some((axis, condition, active)) = parts.machine.mechanics.contact(bit) {
             let load = parts.machine.table(axis);
@@ -239,7 +240,9 @@ impl<E: Engine> Board<E> {
             Some(BitDirection::Memory) => Source::Memory,
             _ if range.is_some_and(|range| range.kind == BitKind::KstepInput) && !is_input => Source::NoKstep,
             _ if !is_input => Source::Output,
-            _ if parts.io.pins.is_driven(bit) || parts.io.pins.is_described(bit) => Source::Outside,
+            _ if parts.io.pins.is_driven(bit) || parts.io.pins.is_described(bit) => {
+                Source::Outside(parts.machine.pulses.last_before(bit, since))
+            }
             _ => Source::Nothing,
         }
     }

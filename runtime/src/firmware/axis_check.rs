@@ -19,6 +19,7 @@ use super::calls::{EndedWait, Jogged, SmallMove};
 use super::parts::Parts;
 use crate::machine::description::Condition;
 use crate::out::{Message, Speaker};
+use crate::servo::CallPlace;
 use crate::servo::coordinated::system::is_member;
 use crate::servo::independent::{has_motion, is_exponential};
 use crate::servo::limits::{WatchedLimit, watched_limits};
@@ -160,6 +161,7 @@ const MOVES: &[Function] = &[Function::Move, Function::MoveRel, Function::MoveAt
 
 /// A program moves an enabled axis.
 pub(crate) fn moved(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId) {
+    parts.servo.commands[axis.index()] = Some(CallPlace { thread: caller.thread, at: caller.at });
     let memory = &*caller.memory;
     let messages = [
         swapped_limits(memory, function, axis),

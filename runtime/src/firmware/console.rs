@@ -12,6 +12,7 @@ use vm::trap::TrapKind;
 use super::calls::Continuation;
 use super::costs;
 pub(crate) use super::files::{fclose, feof, fgets, fopen, fprintf, fscanf};
+use super::float_bits;
 use super::parts::Parts;
 use super::string::text;
 use crate::firmware::dispatch::Varargs;
@@ -171,6 +172,7 @@ pub(crate) fn printf(
         return Ok(outcome);
     }
     let text = formatted(parts, caller, pattern, arguments)?;
+    float_bits::notice_text(parts, caller, Function::printf, &text);
     if text.is_empty() {
         costs::spend(caller, costs::NOTHING_PRINTED);
     }

@@ -12,7 +12,7 @@ use super::parts::Parts;
 use crate::io::amplifiers::{antiphase, current, recirculate, store_pwm};
 use crate::io::remark_on;
 use crate::io::{bits, kanalog};
-use crate::machine::{Channel, LateRead};
+use crate::machine::{Channel, LateRead, MissedPulse};
 use crate::out::Message;
 use crate::servo::wired::driver;
 use crate::views::Typed;
@@ -132,6 +132,10 @@ pub(crate) fn read_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) -> 
     if let Some(late) = parts.machine.read_late(bit, level, caller.now(), since) {
         let LateRead { axis, ms, step } = late;
         parts.out.diagnose(caller, Message::ReadLate { bit, axis, ms, step });
+    }
+    if let Some(missed) = parts.machine.pulses.read(bit, caller.at, level, caller.now()) {
+        let MissedPulse { width_ms, gap_ms } = missed;
+        parts.out.diagnose(caller, Message::PulseMissed { bit, width_ms, gap_ms });
     }
     if let Some(assist) = &mut parts.world.assist {
         assist.polled(bit, Asker { thread: caller.thread, at: caller.at });

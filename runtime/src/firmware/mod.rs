@@ -7,6 +7,7 @@ pub(crate) mod coord;
 mod costs;
 pub(crate) mod dispatch;
 pub(crate) mod files;
+mod float_bits;
 pub(crate) mod gather;
 pub(crate) mod io;
 pub(crate) mod konnect;

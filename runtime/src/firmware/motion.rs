@@ -20,13 +20,13 @@ use kmotiondef::variables::{COORD_SYSTEM0, CS0_STOPPING_STATE};
 use vm::firmware::{Caller, Outcome};
 use vm::memory::GuestMemory;
 
-use super::calls::Continuation;
+use super::calls::{Called, Continuation, Wait};
 use super::parts::Parts;
-use super::{axis_check, costs};
+use super::{axis_check, costs, float_bits};
 use crate::arithmetic::division::divide;
 use crate::arithmetic::doubles::exp;
 use crate::io::bits;
-use crate::out::Message;
+use crate::out::{Message, OtherPlace};
 use crate::servo::coordinated::system;
 use crate::servo::independent::{has_motion, is_planned, present, run, start, state};
 use crate::servo::moves::{Accelerations, Planner, limits_with, start_jog, start_move_to};
@@ -214,13 +214,30 @@ fn notice_hurry(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: 
     }
 }
 
-/// Tells a program that calls a move of an axis right after another that the earlier one never happens.
+/// Tells a program that calls a move of an axis right after another that the earlier one never happens, and one that
+/// calls it after a delay that is too short that the earlier one does not arrive.
 fn notice_replaced(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Function, target: f64) {
+    /// A thread that has looked at the time more often waits for something.
+    const DELAYS: u32 = 3;
+    /// A part of the way that may be left.
+    const REST: f64 = 0.01;
     let Some(thread) = caller.thread else { return };
-    let looked = parts.calls.waits.of(thread).looked;
-    let earlier = parts.calls.notices.replaced(axis, thread, looked, target);
-    if let Some(earlier) = earlier.filter(|_| has_motion(caller.memory, axis)) {
-        parts.out.diagnose(caller, Message::MoveReplaced { function, axis, earlier, target });
+    let Wait { looked, looks, .. } = *parts.calls.waits.of(thread);
+    let called = Called { thread, at: caller.at, target, looked, looks };
+    let before = parts.calls.notices.moves(axis, called);
+    let is_own = |before: &Called| before.thread == thread && before.target != target;
+    let Some(before) = before.filter(is_own).filter(|_| has_motion(caller.memory, axis)) else { return };
+    let earlier = before.target;
+    if before.looked == looked {
+        return parts.out.diagnose(caller, Message::MoveReplaced { function, axis, earlier, target });
+    }
+    let is_delay = (1..=DELAYS).contains(&looks.wrapping_sub(before.looks));
+    let dest = caller.memory.axis(axis, Chan::DEST);
+    let is_far = (earlier - dest).abs() > REST * parts.calls.motions.way(axis);
+    let is_move = caller.memory.axis(axis, Chan::LAST_MOTION_TYPE) == LastMotion::Move.get();
+    if let (Some(at), true) = (before.at, is_delay && is_far && is_move && before.at != caller.at) {
+        let other = OtherPlace { thread: Some(thread), at };
+        parts.out.diagnose(caller, Message::MoveCut { function, axis, dest, earlier, target, other });
     }
 }
 
@@ -308,6 +325,7 @@ fn begins(
         return false;
     }
     notice_replaced(parts, caller, axis, function, target);
+    float_bits::notice(parts, caller, function, request.target);
     let way = target - caller.memory.axis(axis, Chan::DEST);
     axis_check::moved(parts, caller, function, axis);
     if request.target.is_finite() {
@@ -534,6 +552,7 @@ fn begin_jog(
     };
     if progress == PlanningStage::Called {
         axis_check::jogs(parts, caller, axis, velocity);
+        float_bits::notice(parts, caller, Function::Jog, velocity);
         if is_beyond(parts, caller, Function::Jog, axis, velocity) {
             costs::refused(caller, Function::Jog);
             return Outcome::Done(());

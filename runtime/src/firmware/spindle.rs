@@ -25,7 +25,22 @@ pub(crate) fn configure_spindle(
     if counts == 0.0 || !counts.is_finite() {
         parts.out.diagnose(caller, Message::NoSpindleCounts { counts });
     }
+    if let Some(real) = parts.machine.mechanics.spindle_counts(axis).filter(|_| kind == 1) {
+        check_counts(parts, caller, counts, real);
+    }
     spindle::configure(caller.memory, &Setup { has_encoder: kind == 1, axis, update_time, tau, counts });
+}
+
+/// Compares the counts of a revolution with those that the machine has.
+fn check_counts(parts: &mut Parts, caller: &Caller<'_>, counts: f32, real: f64) {
+    const TOLERANCE: f64 = 0.01;
+    let is = |number: f64, wanted: f64| (number.abs() / wanted - 1.0).abs() < TOLERANCE;
+    let configured = f64::from(counts);
+    if configured == 0.0 || is(configured, real.abs()) {
+        return;
+    }
+    let hint = if is(configured, real.abs() / 4.0) { " (four for each line)" } else { "" };
+    parts.out.diagnose(caller, Message::SpindleCounts { counts, real, hint });
 }
 
 pub(crate) fn trig_threading(parts: &mut Parts, caller: &mut Caller<'_>, base_speed: f32) {

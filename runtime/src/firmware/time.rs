@@ -7,6 +7,7 @@ use kmotiondef::variables::{LAST_TIMER0, SERVO_TICK};
 use vm::firmware::{Caller, Outcome, Wake};
 use vm::memory::GuestMemory;
 
+use super::float_bits;
 use super::parts::Parts;
 use crate::io::timer;
 use crate::out::Message;
@@ -43,6 +44,7 @@ pub(crate) fn delay_sec(parts: &mut Parts, caller: &mut Caller<'_>, seconds: f64
     if seconds >= LONG && seconds.is_finite() && caller.woken.is_none() {
         parts.out.diagnose(caller, Message::LongDelay { function: Function::Delay_sec, seconds });
     }
+    float_bits::notice(parts, caller, Function::Delay_sec, seconds);
     delay(parts, caller, seconds)
 }
 

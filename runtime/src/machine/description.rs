@@ -256,6 +256,17 @@ impl fmt::Display for Condition {
 }
 
 impl Condition {
+    /// The end of a travel that a load must pass to get there: its key in the machine file, and its place.
+    pub(crate) fn beyond(self, travel: &Travel) -> Option<(&'static str, f64)> {
+        let Travel { min, max, .. } = *travel;
+        let (from, to) = match self {
+            Self::AtMost(to) => (f64::NEG_INFINITY, to),
+            Self::AtLeast(from) => (from, f64::INFINITY),
+            Self::Between(from, to) => (from, to),
+        };
+        if to < min { Some(("min", min)) } else { (from > max).then_some(("max", max)) }
+    }
+
     /// Returns whether the condition holds at a machine coordinate.
     #[must_use]
     pub fn holds(self, coordinate: f64) -> bool {

@@ -31,6 +31,7 @@ impl Lines<'_> {
 
     /// The world drives an input.
     pub(crate) fn drive(&mut self, bit: Bit, level: bool) {
+        self.machine.pulses.drive(bit, level, self.now);
         self.io.pins.drive(bit, level, self.now);
         self.settle();
     }

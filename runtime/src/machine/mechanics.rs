@@ -190,6 +190,20 @@ impl Mechanics {
         self.contacts(bit).map(|(axis, ..)| axis)
     }
 
+    /// The counts of a revolution of the spindle whose encoder is that of an axis.
+    pub(crate) fn spindle_counts(&self, axis: AxisId) -> Option<f64> {
+        let mut spindles = self.spindles.iter().map(|turning| turning.spindle);
+        spindles.find(|spindle| spindle.axis == axis).map(|spindle| spindle.counts_per_rev)
+    }
+
+    /// The ranges of switches and probes, with their bits and axes.
+    pub(crate) fn places(&self) -> impl Iterator<Item = (Bit, AxisId, Condition)> + '_ {
+        self.contacts.iter().filter_map(|contact| match contact.closes {
+            Closes::Where(condition) => Some((contact.bit, contact.axis, condition)),
+            Closes::Every(..) => None,
+        })
+    }
+
     /// Reports whether a spindle is connected to an analog output, another one than an axis drives as its spindle.
     pub(crate) fn has_spindle_on(&self, dac: usize, axis: AxisId) -> bool {
         let mut spindles = self.spindles.iter().map(|turning| turning.spindle);

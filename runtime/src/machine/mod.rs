@@ -9,6 +9,7 @@ mod lines;
 mod mechanics;
 mod motor;
 pub(crate) mod plant;
+mod pulses;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -27,6 +28,7 @@ pub(crate) use lines::Lines;
 pub(crate) use mechanics::{LateRead, Mechanics, Racked};
 pub(crate) use motor::Applied;
 pub(crate) use plant::{COUNTS_PER_TICK, Drive, Plant};
+pub(crate) use pulses::{MissedPulse, Pulses};
 
 use crate::io::Io;
 use crate::io::bits::bit_state;
@@ -104,6 +106,8 @@ pub(crate) struct Machine {
     /// The connections of encoders and motors.
     pub(crate) wiring: Wiring,
     pub(crate) mechanics: Mechanics,
+    /// The pulses at inputs.
+    pub(crate) pulses: Pulses,
     /// Devices on the board's lines.
     attached: Vec<Box<dyn Attached>>,
     /// True if motors on the first four step generators need the enable signal of a KStep.

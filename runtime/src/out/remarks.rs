@@ -118,6 +118,12 @@ impl Key for i32 {
     }
 }
 
+impl Key for usize {
+    fn key(&self) -> u64 {
+        *self as u64
+    }
+}
+
 impl Key for u32 {
     fn key(&self) -> u64 {
         (*self).into()
@@ -259,6 +265,7 @@ impl Message {
             | Self::RaceRequest { other, .. }
             | Self::RaceRelays { other }
             | Self::OrderEarly { other, .. }
+            | Self::MoveCut { other, .. }
             | Self::LockOrder { other, .. } => Some(*other),
             _ => None,
         }
@@ -472,10 +479,10 @@ messages! {
         "request {code} of another thread is overwritten with {by} before the PC has answered it: threads share persist.UserData[100], so use a mutex";
     /// A program has stored values after the end of the gather buffer.
     GatherOverrun { most: usize } = "gather-overrun", Warning, [once],
-        "values are stored after the end of gather_buffer, which has {most} doubles: they overwrite other data of the board";
+        "values are stored after the end of gather_buffer, which has {most} doubles: they overwrite other data of the board (noticed at this call)";
     /// The position of an enabled axis is written, and its motor leaps.
     PositionWritten { axis: AxisId, from: f64, to: f64 } = "position-written", Warning, [per axis],
-        "Position of axis {axis} is changed from {from:.0} to {to:.0} while the axis is enabled, so its motor leaps: disable it first, or use Zero({axis})";
+        "Position of axis {axis} is changed from {from:.0} to {to:.0} while the axis is enabled, so its motor leaps: disable it first, or use Zero({axis}) (noticed at this call)";
     /// A loop with a sign that is right overshoots until its following error disables the axis.
     Overshoots { axis: AxisId, cause: &'static str } = "overshoots", Warning, [per axis],
         "axis {axis} overshoots until its following error disables it: {cause}";
@@ -487,7 +494,7 @@ messages! {
         "axis {axis} falls behind its Dest by more than MaxFollowingError = {most}, in the right direction: raise P or FFVel, or lower Vel or Accel, or allow more with MaxFollowingError";
     /// A program changes the destination of an enabled axis at once.
     DestLeaps { axis: AxisId, from: f64, to: f64 } = "dest-leaps", Warning, [per axis],
-        "Dest of axis {axis} is changed from {from:.0} to {to:.0} at once, which no motor follows: use Move, which accelerates and decelerates";
+        "Dest of axis {axis} is changed from {from:.0} to {to:.0} at once, which no motor follows: use Move, which accelerates and decelerates (noticed at this call)";
     /// All moves of an axis are shorter than a few counts.
     TinyMove { function: Function, axis: AxisId, way: f64 } = "tiny-move", Hint, [per axis],
         "{function}: axis {axis} moves by {way} units, and never further: units are counts of an encoder or steps, so multiply a length by the counts of an inch or a millimetre";
@@ -509,6 +516,33 @@ messages! {
     /// A switch has changed long before a program reads it.
     ReadLate { bit: Bit, axis: AxisId, ms: f64, step: f64 } = "read-late", Hint, [per bit],
         "ReadBit({bit}): axis {axis} has moved {step:.0} units in the {ms:.0} ms since the read before, and its switch has changed in between: read more often, or move more slowly";
+    /// A pulse at an input has come and gone between two reads of a program that polls it.
+    PulseMissed { bit: Bit, width_ms: f64, gap_ms: f64 } = "pulse-missed", Hint, [per bit],
+        "ReadBit({bit}): a pulse of {width_ms:.1} ms at this input has come and gone in the {gap_ms:.0} ms since the read before, and nobody saw it: read more often, or make the pulse longer";
+    /// A move begins while an earlier one, which the thread has given some time, is under way.
+    MoveCut { function: Function, axis: AxisId, dest: f64, earlier: f64, target: f64, other: OtherPlace } = "move-cut", Warning, [per axis],
+        "calls {function} for axis {axis}, which is at {dest:.0} on its way to {earlier:.0} (by {other}): it goes to {target:.0} from here and never arrives there. Wait with `while (!CheckDone({axis}));` in place of a delay";
+    /// A number that a program uses is the bits of a floating-point number in `persist.UserData`.
+    FloatBits { function: Function, value: i32, index: usize, float: f32 } = "float-bits", Warning, [per index],
+        "{function}: {value} is the bits of the float {float}, which is in persist.UserData[{index}]: read it as *(float *)&persist.UserData[{index}]";
+    /// A spindle is configured with other counts than its encoder has.
+    SpindleCounts { counts: f32, real: f64, hint: &'static str } = "spindle-counts", Warning, [once],
+        "ConfigureSpindle: {counts} counts per revolution, but the encoder of the spindle has {real}{hint}, so speeds and threads are wrong by that factor";
+    /// A switch or probe of the machine file is beyond the end of the travel.
+    SwitchUnreachable { bit: Bit, axis: AxisId, place: String, side: &'static str, end: f64 } = "switch-unreachable", Warning, [per bit],
+        "the machine file has a switch on bit {bit} that is active {place}, but the travel of axis {axis} ends at {side} = {end}: it is never reached";
+    /// An analog input of a stimulus has a few counts, where volts are probably meant.
+    FewCounts { channel: usize, value: f64, volts: f64 } = "few-counts", Warning, [per channel],
+        "adc {channel} = {value} is a number of counts, {volts:.3} V: write {value}V for volts";
+    /// The PC finds no text where a request says, but at the same number of bytes or of doubles.
+    TextElsewhere { code: i32, offset: i32, unit: &'static str, words: i32 } = "text-elsewhere", Warning, [per code],
+        "request {code}: no text is at word {offset} of the gather buffer, but there is one at {offset} {unit}: the offset counts words of 4 bytes, so store {words} in persist.UserData[101]";
+    /// A request to the PC is replaced by another one of the same thread before the PC has seen it.
+    RequestReplaced { code: i32, by: i32 } = "request-replaced", Warning, [once],
+        "request {code} is replaced by {by} before the PC has answered it, and is lost: wait until persist.UserData[100] is no longer positive (noticed at this call)";
+    /// The profile that the firmware plans for a move leaps.
+    ProfileLeaps { axis: AxisId, most: f64, way: f64 } = "profile-leaps", Warning, [per axis],
+        "axis {axis}: the profile of this move leaps faster than {most:.0} steps per second, although Vel is lower. The firmware plans such a leap for moves a little longer than 2 Accel\u{b3}/Jerk\u{b2}, which is {way:.0} units: use another distance, or change Jerk";
     /// Two outputs that drive a motor in opposite directions are both on.
     BothDirections { function: Function, bit: Bit, other: Bit } = "both-directions", Warning, [per bit],
         "{function}({bit}): output {other} is on as well, so the motor is switched to both directions at once: clear one before the other is set";
@@ -544,7 +578,7 @@ messages! {
         "UserCallBack of thread {thread} is replaced by a function of thread {by}: the board has only one call-back, so that of thread {thread} is not called any more";
     /// A program has stored values after the end of `persist.UserData`.
     UserDataOverrun { index: u32 } = "user-data-overrun", Warning, [once],
-        "a value is stored in persist.UserData[{index}], but valid indices are 0 to 199: other data of the board are overwritten";
+        "a value is stored in persist.UserData[{index}], but valid indices are 0 to 199: other data of the board are overwritten (noticed at this call)";
     /// A path was aborted while a thread waited for its end.
     PathEndedWhileWaiting { } = "path-ended-while-waiting", Warning, [once],
         "CheckDoneXYZABC or CheckDoneBuf is -1: an axis was disabled before the path ended, which `while (!CheckDoneXYZABC())` takes for its end";

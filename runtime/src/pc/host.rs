@@ -171,9 +171,13 @@ impl Host {
         } else if before.is_none_or(|(pending, _)| pending != code) {
             self.pending = Some((code, thread));
         }
-        let (lost, by) = before?;
-        (code > 0 && code != lost && by != thread)
-            .then_some(Message::RequestOverwritten { code: lost, by: code })
+        let (lost, by) = before.filter(|(lost, _)| code > 0 && code != *lost)?;
+        if by != thread {
+            return Some(Message::RequestOverwritten { code: lost, by: code });
+        }
+        // A stop need not wait for what comes before it.
+        let stops = matches!(requests::action(code), Some(PcAction::EmergencyStop | PcAction::EndJob));
+        (!stops).then_some(Message::RequestReplaced { code: lost, by: code })
     }
 }
 
@@ -260,6 +264,9 @@ pub(super) fn answer(host: &mut Host, out: &mut Out, context: &mut TickContext<'
         say(out, context, format!("request {code} is answered {result}"));
         return result;
     }
+    if matches!(requests::action(code), Some(PcAction::MessageBox | PcAction::Mdi | PcAction::InputBox)) {
+        find_text(out, context, code, parameters[0]);
+    }
     let number = f32::from_bits(parameters[0] as u32);
     let memory = &mut *context.memory;
     match requests::action(code) {
@@ -329,6 +336,25 @@ fn set_override(out: &mut Out, context: &mut TickContext<'_>, (rate, change): (R
 fn set_job(memory: &mut GuestMemory, runs: bool) {
     let status = memory.get(HOST_STATUS);
     memory.set(HOST_STATUS, status & !1 | i32::from(runs));
+}
+
+/// Says of a request without a text that there is one where its offset would count bytes, or doubles.
+fn find_text(out: &mut Out, context: &TickContext<'_>, code: i32, offset: i32) {
+    const LEAST: usize = 2;
+    let memory = &*context.memory;
+    let buffer = memory.get(GATHER_BUFFER);
+    let is_text = |unit: u32| {
+        let address = buffer.offset(offset.cast_unsigned().wrapping_mul(unit));
+        let bytes = memory.read_c_string(address, 4 * STRING_WORDS).unwrap_or_default();
+        bytes.len() >= LEAST && bytes.iter().all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace())
+    };
+    if offset <= 0 || is_text(4) {
+        return;
+    }
+    let found = [("bytes", 1, offset / 4), ("doubles", 8, offset.saturating_mul(2))];
+    if let Some((unit, _, words)) = found.into_iter().find(|(_, size, _)| is_text(*size)) {
+        out.remark(context.now, Message::TextElsewhere { code, offset, unit, words });
+    }
 }
 
 /// A string in the gather buffer at a word offset.

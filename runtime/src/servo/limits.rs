@@ -92,7 +92,7 @@ pub(crate) fn check(
     if command.is_some_and(|command| follows_badly(&mut AxisView::of(memory, axis), plan, command)) {
         let response = tick.servo.axes[axis.index()].response;
         if let Some(message) = cause(memory, axis, response) {
-            tick.out.remark(tick.now, message);
+            tick.remark_on_axis(memory, axis, message);
         }
         tell(tick, &format!("Following Error Disabled Axis:{axis}"));
         switch_off(tick.servo, tick.machine, memory, axis);

@@ -42,7 +42,7 @@ pub(crate) mod trajectory;
 pub(crate) mod wired;
 
 use kmotiondef::limits::TIMEBASE;
-use kmotiondef::modes::OutputMode;
+use kmotiondef::modes::{LastMotion, OutputMode};
 use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, Bit};
 use vm::memory::GuestMemory;
@@ -57,7 +57,7 @@ use crate::views::{AxisView, Typed};
 use chips::stepgen::{StepLimit, generator_of};
 
 pub(crate) use output::{driven, four_phase, three_phase};
-pub(crate) use state::{Servo, Tick};
+pub(crate) use state::{CallPlace, Servo, Tick};
 
 /// Step generators of a KStep, from 0 on, and the bit that enables its amplifiers.
 const ON_KSTEP: usize = 4;
@@ -200,7 +200,7 @@ fn advance(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId) -> bool 
         step(tick, memory, axis);
     }
     if let Some(place) = stopped_at {
-        note_stopped(tick, axis, place);
+        note_stopped(tick, memory, axis, place);
     }
     if let Some((from, to)) = rewritten {
         note_rewritten(tick, memory, axis, from, to);
@@ -224,18 +224,18 @@ fn note_rewritten(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, from:
     let dest = memory.axis(axis, Chan::DEST);
     let is_loop = matches!(plan.input, Input::Encoder(_)) && !plan.is_open_loop && plan.mode.is_some();
     if is_loop && plan.mode != Some(OutputMode::None) && (dest - to).abs() > (dest - from).abs() + FAR {
-        tick.out.remark(tick.now, Message::PositionWritten { axis, from, to });
+        tick.remark_near(Message::PositionWritten { axis, from, to });
     }
 }
 
 /// The load of an axis in motion has run into a hard stop.
-fn note_stopped(tick: &mut Tick<'_>, axis: AxisId, place: f64) {
+fn note_stopped(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, place: f64) {
     let effect = if tick.servo.cache.plan(axis).is_open_loop {
         "a stepper loses its steps there"
     } else {
         "its motor pushes against the stop"
     };
-    tick.out.remark(tick.now, Message::HardStop { axis, place, effect });
+    tick.remark_on_axis(memory, axis, Message::HardStop { axis, place, effect });
 }
 
 /// The destination of an enabled axis was written: whether a motor could follow that.
@@ -249,7 +249,7 @@ fn note_leap(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, from: f64)
     let is_stepper = plan.is_open_loop && OutputMode::has_generator(plan.mode);
     let reach = SECONDS * f64::from(memory.axis(axis, Chan::VEL));
     if is_stepper && (to - from).abs() > FAR.max(reach) {
-        tick.out.remark(tick.now, Message::DestLeaps { axis, from, to });
+        tick.remark_near(Message::DestLeaps { axis, from, to });
     }
 }
 
@@ -260,12 +260,27 @@ fn step(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId) {
     if plant.take_behind()
         && let Some(StepLimit { fastest, length }) = tick.io.stepgens.limit(axis)
     {
-        tick.out.remark(tick.now, Message::StepsTooFast { axis, fastest, length });
+        let message = leap(memory, axis, fastest).unwrap_or(Message::StepsTooFast { axis, fastest, length });
+        tick.remark_on_axis(memory, axis, message);
     }
     tick.io.stepgens.step(axis, steps, &mut tick.io.pins, tick.now);
     if tick.machine.wiring.has_drives() {
         wired::step_other(tick.machine, memory, axis, steps);
     }
+}
+
+/// Steps that are too fast although the speed of the axis is not come of the profile that the firmware has planned.
+fn leap(memory: &GuestMemory, axis: AxisId, most: f64) -> Option<Message> {
+    let limit = |field| f64::from(memory.axis(axis, field));
+    let (vel, accel, jerk) = (limit(Chan::VEL), limit(Chan::ACCEL), limit(Chan::JERK));
+    let is_move = memory.axis(axis, Chan::LAST_MOTION_TYPE) == LastMotion::Move.get()
+        && !memory.axis(axis, Chan::PCOEFF).is_null();
+    let is_slow = vel * limit(Chan::OUTPUT_GAIN).abs() < most;
+    (is_move && is_slow).then(|| Message::ProfileLeaps {
+        axis,
+        most,
+        way: 2.0 * accel * accel * accel / (jerk * jerk),
+    })
 }
 
 /// Position, protection, compensation and output of one axis; returns whether it moves or has a command.

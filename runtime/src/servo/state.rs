@@ -2,17 +2,19 @@
 
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::modes::LastMotion;
-use kmotiondef::{AxisId, Cycles};
+use kmotiondef::variables::COORD_SYSTEM0;
+use kmotiondef::{AxisId, CodeAddr, Cycles, ThreadId};
 use vm::memory::GuestMemory;
 
 use super::cache::Cache;
-use super::coordinated::{Coordinated, path};
+use super::coordinated::{Coordinated, path, system};
 use super::moves::Planner;
 use super::stop::StopRequest;
 use super::{independent, recorder};
 use crate::io::Io;
 use crate::machine::Machine;
-use crate::out::Out;
+use crate::out::{Message, Out};
+use crate::views::Typed;
 
 /// The servo's state of an axis besides its structure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -45,9 +47,19 @@ impl AxisMemory {
     }
 }
 
+/// The place of a call: its thread, `None` for the call-back, and its instruction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct CallPlace {
+    pub(crate) thread: Option<ThreadId>,
+    pub(crate) at: Option<CodeAddr>,
+}
+
 /// The servo's state besides guest memory.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Servo {
+    /// The last call of a program, and the last that commanded each axis: what happens to an axis later comes of it.
+    pub(crate) last_call: Option<CallPlace>,
+    pub(crate) commands: [Option<CallPlace>; N_CHANNELS],
     pub(crate) axes: [AxisMemory; N_CHANNELS],
     /// The values derived from guest memory.
     pub(crate) cache: Cache,
@@ -80,4 +92,25 @@ pub(crate) struct Tick<'a> {
     pub(crate) out: &'a mut Out,
     /// When the tick began.
     pub(crate) now: Cycles,
+}
+
+impl Tick<'_> {
+    /// A remark about an axis, with the call that has commanded it; a path has come about by many calls.
+    pub(crate) fn remark_on_axis(&mut self, memory: &GuestMemory, axis: AxisId, message: Message) {
+        let is_on_path = system::is_member(memory, axis) && !memory.get(COORD_SYSTEM0).is_null();
+        let command = self.servo.commands[axis.index()].filter(|_| !is_on_path);
+        self.remark_at(command, message);
+    }
+
+    /// A remark about what a program has stored, with the call that it has made last.
+    pub(crate) fn remark_near(&mut self, message: Message) {
+        self.remark_at(self.servo.last_call, message);
+    }
+
+    fn remark_at(&mut self, place: Option<CallPlace>, message: Message) {
+        match place {
+            Some(CallPlace { thread, at }) => self.out.remark_of(self.now, thread.into(), at, message),
+            None => self.out.remark(self.now, message),
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //@ args: --machine parts/motor.toml --for 1
 //@ prints: Following Error Disabled Axis:0
-//@ says: axis 0 runs away: its output drives it further from Dest; change the sign of OutputGain or of InputGain0
+//@ says: thread 1 at axis_that_runs_away.c:14:5 in `main`: axis 0 runs away: its output drives it further from Dest; change the sign of OutputGain or of InputGain0
 #include "KMotionDef.h"
 
 main()

@@ -1,4 +1,4 @@
-//@ says: Dest of axis 0 is changed from 0 to 5000 at once, which no motor follows: use Move, which accelerates and decelerates
+//@ says: thread 1 at dest_written_instead_of_a_move.c:13:5 in `main`: Dest of axis 0 is changed from 0 to 5000 at once, which no motor follows: use Move, which accelerates and decelerates (noticed at this call)
 #include "KMotionDef.h"
 
 main()

@@ -1,6 +1,6 @@
 //@ args: --machine parts/heavy.toml
 //@ prints: Following Error Disabled Axis:0
-//@ says: axis 0 overshoots until its following error disables it: its integrator collects too much on the way, so lower I or MaxI, or raise D
+//@ says: thread 1 at integrator_that_overshoots.c:21:5 in `main`: axis 0 overshoots until its following error disables it: its integrator collects too much on the way, so lower I or MaxI, or raise D
 #include "KMotionDef.h"
 
 main()

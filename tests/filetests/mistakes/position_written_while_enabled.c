@@ -1,5 +1,5 @@
 //@ args: --machine parts/motor.toml
-//@ says: Position of axis 0 is changed from 1999 to 0 while the axis is enabled, so its motor leaps: disable it first, or use Zero(0)
+//@ says: thread 1 at position_written_while_enabled.c:21:5 in `main`: Position of axis 0 is changed from 1999 to 0 while the axis is enabled, so its motor leaps: disable it first, or use Zero(0) (noticed at this call)
 #include "KMotionDef.h"
 
 main()

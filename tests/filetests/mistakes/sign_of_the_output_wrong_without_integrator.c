@@ -1,6 +1,6 @@
 //@ args: --machine parts/heavy.toml
 //@ prints: Following Error Disabled Axis:0
-//@ says: axis 0 runs away: its output drives it further from Dest; change the sign of OutputGain or of InputGain0
+//@ says: thread 1 at sign_of_the_output_wrong_without_integrator.c:19:5 in `main`: axis 0 runs away: its output drives it further from Dest; change the sign of OutputGain or of InputGain0
 #include "KMotionDef.h"
 
 main()

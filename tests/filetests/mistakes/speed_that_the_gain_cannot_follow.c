@@ -1,6 +1,6 @@
 //@ args: --machine parts/ends.toml
 //@ prints: Following Error Disabled Axis:0
-//@ says: axis 0 falls behind its Dest by more than MaxFollowingError = 200, in the right direction: raise P or FFVel, or lower Vel or Accel, or allow more with MaxFollowingError
+//@ says: thread 1 at speed_that_the_gain_cannot_follow.c:17:5 in `main`: axis 0 falls behind its Dest by more than MaxFollowingError = 200, in the right direction: raise P or FFVel, or lower Vel or Accel, or allow more with MaxFollowingError
 #include "KMotionDef.h"
 
 main()

@@ -30,6 +30,25 @@ impl WaitCondition {
         })
     }
 
+    /// Reports whether the loop that begins at a line, counted from 1, or shortly before it has no end.
+    pub(super) fn is_endless_at(text: &str, line: u32) -> bool {
+        let lines: Vec<&str> = text.lines().collect();
+        let Some(last) = usize::try_from(line).ok().and_then(|line| line.checked_sub(1)) else {
+            return false;
+        };
+        let first = last.saturating_sub(LINES);
+        let head = |at: usize, word: &str| {
+            let begin = find_word(lines.get(at)?, word)? + word.len();
+            let rest = lines.get(at..)?.join(" ").get(begin..)?.trim_start().to_owned();
+            balanced(&rest).map(|inside| inside.split_whitespace().collect::<String>())
+        };
+        let endless = (first..=last).rev().find_map(|at| {
+            let of_while = head(at, "while").map(|condition| is_endless(&condition));
+            of_while.or_else(|| head(at, "for").map(|parts| parts.split(';').nth(1) == Some("")))
+        });
+        endless == Some(true)
+    }
+
     /// Returns the text between the parentheses.
     pub(super) fn text(&self) -> &str {
         &self.0

@@ -137,7 +137,10 @@ impl<T: Target> Session<T> {
     fn ending_thread(&self, standing: StandingThread) -> EndingThread {
         let StandingThread { thread, state, calls, since, awaited } = standing;
         let calls: Vec<_> = calls.into_iter().flat_map(|at| self.source_calls(at)).collect();
-        let mut waits_for: Vec<_> = awaited.iter().map(awaited_words).collect();
+        // An endless loop that looks at its own output does not wait for it.
+        let is_endless = calls.first().is_some_and(|call| self.is_in_endless_loop(thread, call));
+        let is_awaited = |one: &&Awaited| !(is_endless && matches!(one, Awaited::Bit(_, _, Source::Output)));
+        let mut waits_for: Vec<_> = awaited.iter().filter(is_awaited).map(awaited_words).collect();
         if waits_for.is_empty() && matches!(state, Standing::Slice | Standing::Computing) {
             waits_for.extend(calls.first().and_then(|call| self.condition(thread, call)));
         }
@@ -166,6 +169,13 @@ impl<T: Target> Session<T> {
     /// Reports whether a program has configured a spindle.
     fn measures_spindle(&self, thread: ThreadId) -> bool {
         self.read(&format!("{thread}:Spindle.Type")).is_ok_and(|kind| kind != 0.0)
+    }
+
+    /// Reports whether the innermost loop at a place is one without an end, as far as the sources show it.
+    fn is_in_endless_loop(&self, thread: ThreadId, call: &SourceCall) -> bool {
+        let program = self.programs.iter().find(|program| program.thread == thread);
+        let text = program.and_then(|program| source_text(&program.path, &call.file));
+        text.zip(call.line).is_some_and(|(text, line)| WaitCondition::is_endless_at(&text, line))
     }
 
     /// The condition of the loop at a place, as far as the sources show one.
@@ -239,7 +249,13 @@ fn bit_words(bit: Bit, level: u8, source: &Source) -> String {
             let (load, active) = (number(*load), u8::from(*active));
             format!("bit {bit} (now {level}): its switch is {active} {place}, and axis {axis} is at {load}")
         }
-        Source::Outside => format!("bit {bit} (now {level})"),
+        Source::Outside(None) => format!("bit {bit} (now {level})"),
+        Source::Outside(Some((begin, end))) => {
+            let (begin, end) = (seconds(*begin), seconds(*end));
+            format!(
+                "bit {bit} (now {level}), which had a pulse from {begin:.3} s to {end:.3} s, before the wait"
+            )
+        }
         Source::Output => format!("bit {bit}, an output of the board (now {level})"),
         Source::Memory => format!("bit {bit}, which only programs set (now {level})"),
         Source::NoKstep => format!("bit {bit} of a KStep, which reads 0 until KStepPresent is set"),

@@ -17,10 +17,10 @@ use super::motion::PlanningStage;
 pub(crate) use globals::Globals;
 pub(crate) use heap::Heap;
 pub(crate) use motions::{EndedWait, Jogged, Motions, SmallMove, WrongWait, WrongZero};
-pub(crate) use notices::{Named, Notices};
+pub(crate) use notices::{Called, Named, Notices};
 pub(crate) use reading::Reading;
 pub(crate) use serial::SerialService;
-pub(crate) use waits::{Repeated, Waits};
+pub(crate) use waits::{Repeated, Wait, Waits};
 
 /// The state of a waiting call until it is made again.
 #[derive(Clone, Debug, PartialEq)]

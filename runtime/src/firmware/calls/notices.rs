@@ -41,11 +41,13 @@ struct Latch {
 
 /// The last move of an axis.
 #[derive(Clone, Copy, Debug)]
-struct Called {
-    thread: ThreadId,
-    target: f64,
-    /// When the thread had last waited or looked at anything.
-    looked: Cycles,
+pub(crate) struct Called {
+    pub(crate) thread: ThreadId,
+    pub(crate) at: Option<CodeAddr>,
+    pub(crate) target: f64,
+    /// When the thread had last waited or looked at anything, and how often it had.
+    pub(crate) looked: Cycles,
+    pub(crate) looks: u32,
 }
 
 /// The observations in progress.
@@ -113,18 +115,9 @@ impl Notices {
         }
     }
 
-    /// A thread that last looked at something at `looked` calls a move; the target of the one it replaces before that has moved.
-    pub(crate) fn replaced(
-        &mut self,
-        axis: AxisId,
-        thread: ThreadId,
-        looked: Cycles,
-        target: f64,
-    ) -> Option<f64> {
-        let called = Called { thread, target, looked };
-        let before = self.moves[axis.index()].replace(called)?;
-        let is_at_once = before.thread == thread && before.looked == looked && before.target != target;
-        is_at_once.then_some(before.target)
+    /// A move of an axis is called; the one before.
+    pub(crate) fn moves(&mut self, axis: AxisId, called: Called) -> Option<Called> {
+        self.moves[axis.index()].replace(called)
     }
 
     /// A program with these named objects is loaded.

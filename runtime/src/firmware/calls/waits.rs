@@ -9,6 +9,9 @@ use vm::firmware::Caller;
 /// Calls of a wait that are remembered.
 const MOST: usize = 16;
 
+/// A look at anything but the time, as a number of looks.
+const MANY_LOOKS: u32 = 100;
+
 /// A call that a thread repeats while it waits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Repeated {
@@ -18,6 +21,14 @@ pub(crate) struct Repeated {
     pub(crate) argument: i32,
     /// The code address of the call.
     at: Option<CodeAddr>,
+    /// When the thread called it first in this wait.
+    pub(crate) since: Cycles,
+}
+
+impl Repeated {
+    fn is_as(&self, other: &Self) -> bool {
+        (self.polls, self.argument, self.at) == (other.polls, other.argument, other.at)
+    }
 }
 
 /// The wait of one thread.
@@ -27,6 +38,8 @@ pub(crate) struct Wait {
     pub(crate) since: Cycles,
     /// When it last looked at anything.
     pub(crate) looked: Cycles,
+    /// A measure of how often it has looked at anything; a look at the time counts least.
+    pub(crate) looks: u32,
     /// True if it has read a bit again since it last did anything else; and if it had before that.
     repeats: bool,
     pub(crate) has_repeated: bool,
@@ -49,12 +62,14 @@ impl Waits {
     pub(crate) fn look(&mut self, thread: ThreadId, polls: Polled, caller: &Caller<'_>) {
         let wait = &mut self.threads[thread.index()];
         wait.looked = caller.now();
-        let call = Repeated { polls, argument: caller.arguments.get(0), at: caller.at };
+        wait.looks = wait.looks.wrapping_add(if polls == Polled::Time { 1 } else { MANY_LOOKS });
+        let call = Repeated { polls, argument: caller.arguments.get(0), at: caller.at, since: caller.now() };
+        let is_known = wait.calls.iter().any(|known| known.is_as(&call));
         if polls == Polled::Bit {
             wait.last_bit = Bit::new(call.argument);
-            wait.repeats |= wait.calls.contains(&call);
+            wait.repeats |= is_known;
         }
-        if wait.calls.len() < MOST && !wait.calls.contains(&call) {
+        if wait.calls.len() < MOST && !is_known {
             wait.calls.push(call);
         }
     }

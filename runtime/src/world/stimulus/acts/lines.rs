@@ -120,7 +120,20 @@ pub(crate) fn read_adc(reader: &mut StatementReader<'_>) -> Result<(usize, Wave)
 }
 
 pub(crate) fn adc(scene: &mut Scene<'_, '_, '_>, channel: usize, wave: Wave) {
+    if let Wave::Constant(value) = wave
+        && is_volts(value)
+    {
+        let (now, volts) = (scene.context.now, value / COUNTS_PER_VOLT);
+        scene.access.out.remark(now, Message::FewCounts { channel, value, volts });
+    }
     scene.plans.begin_wave(channel, wave, scene.context.now);
+}
+
+/// Reports whether a number of counts looks like one of volts: at most 10, with one digit after the point.
+fn is_volts(value: f64) -> bool {
+    const MOST: f64 = 10.0;
+    const TENTHS: f64 = 10.0;
+    value != 0.0 && value.abs() <= MOST && (value * TENTHS).fract() == 0.0
 }
 
 fn wave(reader: &mut StatementReader<'_>) -> Result<Wave, Mistake> {

@@ -1,0 +1,125 @@
+//! Pulses at inputs that the world drives: programs that poll too rarely miss them, or begin to wait after them.
+
+use std::collections::BTreeMap;
+
+use kmotiondef::{Bit, CodeAddr, Cycles};
+
+/// A pulse between two reads of a program.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MissedPulse {
+    /// Its length, and the time between the reads.
+    pub(crate) width_ms: f64,
+    pub(crate) gap_ms: f64,
+}
+
+/// The latest changes of the inputs that the world drives.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Pulses(BTreeMap<Bit, Driven>);
+
+#[derive(Clone, Debug, Default)]
+struct Driven {
+    level: bool,
+    /// The times of the last changes, the latest first.
+    changes: [Cycles; 3],
+    count: u32,
+    read: Option<Read>,
+}
+
+/// The last read of a bit.
+#[derive(Clone, Copy, Debug)]
+struct Read {
+    site: Option<CodeAddr>,
+    at: Cycles,
+    level: bool,
+    /// Changes until then.
+    count: u32,
+    /// Reads in a row from that place.
+    reads: u32,
+}
+
+impl Pulses {
+    /// The world drives an input to a level.
+    pub(crate) fn drive(&mut self, bit: Bit, level: bool, now: Cycles) {
+        let driven = self.0.entry(bit).or_default();
+        if driven.level != level {
+            driven.level = level;
+            driven.changes = [now, driven.changes[0], driven.changes[1]];
+            driven.count = driven.count.saturating_add(1);
+        }
+    }
+
+    /// A program reads a bit; the pulse that has come and gone since it did so before, from the same place.
+    pub(crate) fn read(
+        &mut self,
+        bit: Bit,
+        site: Option<CodeAddr>,
+        level: bool,
+        now: Cycles,
+    ) -> Option<MissedPulse> {
+        /// Shorter ones are bounces, or meant for other hardware.
+        const SHORTEST: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 1000);
+        /// A program that reads less often does not poll.
+        const RAREST: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 2);
+        const POLLS: u32 = 3;
+        /// A pulse stands apart from others by this many times its length: contacts that bounce do not.
+        const APART: i64 = 5;
+        let driven = self.0.get_mut(&bit)?;
+        let before = driven.read.filter(|before| before.site == site);
+        let reads = before.map_or(1, |before| before.reads.saturating_add(1));
+        driven.read = Some(Read { site, at: now, level, count: driven.count, reads });
+        let before = before?;
+        let [end, begin, earlier] = driven.changes;
+        let (width, gap) = (end - begin, now - before.at);
+        let is_pulse = driven.count - before.count == 2 && before.level == level && width >= SHORTEST;
+        let is_alone = driven.count == 2 || (begin - earlier).get() >= APART * width.get();
+        let is_polled = reads > POLLS && gap <= RAREST;
+        (is_pulse && is_alone && is_polled)
+            .then(|| MissedPulse { width_ms: milliseconds(width), gap_ms: milliseconds(gap) })
+    }
+
+    /// The last pulse at an input, which ended before an instant: its beginning and its end.
+    pub(crate) fn last_before(&self, bit: Bit, instant: Cycles) -> Option<(Cycles, Cycles)> {
+        let driven = self.0.get(&bit)?;
+        let [end, begin, _] = driven.changes;
+        (driven.count >= 2 && end <= instant).then_some((begin, end))
+    }
+}
+
+fn milliseconds(time: Cycles) -> f64 {
+    1e3 * time.get() as f64 / Cycles::PER_SECOND.get() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A millisecond.
+    const MS: i64 = Cycles::PER_SECOND.get() / 1000;
+
+    fn polled(changes: &[i64], every: i64) -> Option<MissedPulse> {
+        let bit = Bit::new(136).expect("it is one");
+        let mut pulses = Pulses::default();
+        let (mut level, mut changes) = (false, changes.iter().peekable());
+        (1..=10).find_map(|read| {
+            let now = read * every;
+            while let Some(change) = changes.next_if(|change| **change <= now) {
+                level = !level;
+                pulses.drive(bit, level, Cycles::new(change * MS));
+            }
+            pulses.read(bit, None, level, Cycles::new(now * MS))
+        })
+    }
+
+    #[test]
+    fn a_pulse_between_two_reads_is_missed_and_a_longer_one_is_not() {
+        let missed = MissedPulse { width_ms: 5.0, gap_ms: 50.0 };
+        assert_eq!(polled(&[320, 325], 50), Some(missed));
+        assert_eq!(polled(&[320, 380], 50), None);
+    }
+
+    #[test]
+    fn bounces_and_rare_reads_are_not_pulses() {
+        assert_eq!(polled(&[301, 303, 306, 310, 320], 50), None);
+        assert_eq!(polled(&[4320, 4325], 1000), None);
+    }
+}
