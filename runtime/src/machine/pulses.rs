@@ -61,7 +61,7 @@ impl Pulses {
         /// A program that reads less often does not poll.
         const RAREST: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 2);
         const POLLS: u32 = 3;
-        /// A pulse stands apart from others by this many times its length: contacts that bounce do not.
+        /// Between two pulses is this many times their length: contacts that bounce have less.
         const APART: i64 = 5;
         let driven = self.0.get_mut(&bit)?;
         let before = driven.read.filter(|before| before.site == site);

@@ -4,10 +4,14 @@
 //! something makes a [`Message`] with the arguments and hands it to `Out`; whether it is new, and whether anybody wants
 //! it, is decided there and nowhere else.
 
+mod key;
+
 use std::fmt;
 
 use kmotiondef::firmware::Function;
 use kmotiondef::{AxisId, Bit, CodeAddr, GuestAddr, ThreadId};
+
+use key::Key;
 
 /// The weight of a remark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -85,48 +89,6 @@ pub struct Remark {
 impl fmt::Display for Remark {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{}{}", self.speaker, self.message)
-    }
-}
-
-/// An argument that distinguishes remarks of one kind.
-trait Key {
-    /// As a number.
-    fn key(&self) -> u64;
-}
-
-impl Key for AxisId {
-    fn key(&self) -> u64 {
-        self.get().into()
-    }
-}
-
-impl Key for Bit {
-    fn key(&self) -> u64 {
-        self.get().into()
-    }
-}
-
-impl Key for ThreadId {
-    fn key(&self) -> u64 {
-        self.get().into()
-    }
-}
-
-impl Key for i32 {
-    fn key(&self) -> u64 {
-        u64::from(self.cast_unsigned())
-    }
-}
-
-impl Key for usize {
-    fn key(&self) -> u64 {
-        *self as u64
-    }
-}
-
-impl Key for u32 {
-    fn key(&self) -> u64 {
-        (*self).into()
     }
 }
 
@@ -530,7 +492,7 @@ messages! {
         "ConfigureSpindle: {counts} counts per revolution, but the encoder of the spindle has {real}{hint}, so speeds and threads are wrong by that factor";
     /// A switch or probe of the machine file is beyond the end of the travel.
     SwitchUnreachable { bit: Bit, axis: AxisId, place: String, side: &'static str, end: f64 } = "switch-unreachable", Warning, [per bit],
-        "the machine file has a switch on bit {bit} that is active {place}, but the travel of axis {axis} ends at {side} = {end}: it is never reached";
+        "the machine file has a switch or probe on bit {bit} that is active {place}, but the travel of axis {axis} ends at {side} = {end}: it is never reached";
     /// An analog input of a stimulus has a few counts, where volts are probably meant.
     FewCounts { channel: usize, value: f64, volts: f64 } = "few-counts", Warning, [per channel],
         "adc {channel} = {value} is a number of counts, {volts:.3} V: write {value}V for volts";
