@@ -188,7 +188,7 @@ fn approach(memory: &GuestMemory, axis: AxisId) -> Approach {
         velocity: f64::from(memory.axis(axis, Chan::LAST_VEL)),
         vc: f64::from(memory.axis(axis, Chan::EXP_MOTION_VC)),
         xc: f64::from(memory.axis(axis, Chan::EXP_MOTION_XC)),
-        v: f64::from(memory.axis(axis, Chan::VEL).max(0.0)),
-        a: f64::from(memory.axis(axis, Chan::ACCEL).max(0.0)),
+        v: f64::from(memory.axis(axis, Chan::VEL)),
+        a: f64::from(memory.axis(axis, Chan::ACCEL)),
     }
 }

@@ -6,7 +6,7 @@
 use kmotiondef::limits::TIMEBASE;
 
 use super::profile::{Mode, MotionState, Point};
-use crate::arithmetic::division::{divide, root};
+use crate::arithmetic::division::root;
 
 /// The position of a motion in its list.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,30 +84,41 @@ pub(crate) fn point(cursor: Cursor, dest: f64, velocity: f64, state: impl Fn(usi
     }
 }
 
+/// Ticks a second, by which the board multiplies where it could divide by [`TIMEBASE`].
+const TICKS_PER_SECOND: f64 = 11_111.111_111_111_111;
+
 /// The destination after one tick of an exponential approach.
 ///
-/// The acceleration limits how the axis slows down to the velocity of the approach; far away the velocity is also below a root
-/// that brakes by itself, which the board takes in singles. An axis that moves away from its target is not faster than that
-/// root wherever there is one, near the target, too: it is slowed down to it at once.
+/// The velocity of the approach is brought within what the acceleration allows from the last tick on, then within the limit of the
+/// velocity. While it is above that at which the approach begins, it is also below a root that brakes by itself. The board takes
+/// that in singles, and from the size of the square: near its target an axis that is still too fast is slowed down to it at once.
 fn exponential(state: &MotionState, approach: &Approach) -> f64 {
     let Approach { dest, velocity, vc, xc, v, a } = *approach;
-    let sign = if state.b >= dest { 1.0 } else { -1.0 };
-    let (present, step) = (sign * velocity, a * TIMEBASE);
-    let rest = (state.b as f32 - dest as f32).abs();
-    let next = state.a * dest + (1.0 - state.a) * state.b;
-    let approach = sign * divide(next - dest, TIMEBASE);
-    let square = {
-        let (vc, xc, a) = (vc as f32, xc as f32, a as f32);
-        f64::from(vc * vc + 2.0 * a * (rest - xc))
+    let next = (1.0 - state.a) * state.b + state.a * dest;
+    let wanted = (next - dest) * TICKS_PER_SECOND;
+    let step = a * TIMEBASE;
+    let mut reached = if wanted > velocity + step {
+        velocity + step
+    } else if velocity - step > wanted {
+        velocity - step
+    } else {
+        wanted
     };
-    let braking = (f64::from(rest) > xc).then(|| root(square));
-    let slowest = approach.max(present - step);
-    let wanted = braking.map_or(slowest, |braking| braking.min(slowest));
-    if wanted == approach && approach <= present + step && approach <= v {
-        return next;
+    reached = bounded(reached, v);
+    let (vc, xc, a) = (vc as f32, xc as f32, a as f32);
+    if (reached as f32).abs() > vc {
+        let rest = (dest as f32 - state.b as f32).abs();
+        let square = (rest - xc) * (a + a) + vc * vc;
+        reached = bounded(reached, root(f64::from(square.abs())));
     }
-    let limited = wanted.min(present + step).clamp(-v, v);
-    let is_too_fast = limited < 0.0 && square > 0.0;
-    let reached = if is_too_fast { limited.max(-root(square)) } else { limited };
-    dest + sign * reached * TIMEBASE
+    dest + reached * TIMEBASE
+}
+
+/// A velocity within a limit of both directions.
+fn bounded(velocity: f64, limit: f64) -> f64 {
+    match velocity {
+        velocity if velocity > limit => limit,
+        velocity if velocity < -limit => -limit,
+        velocity => velocity,
+    }
 }
