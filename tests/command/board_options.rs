@@ -88,6 +88,39 @@ fn board_faults_makes_divisions_by_zero_yield_what_the_board_yields() {
     }
 }
 
+/// Divides floating numbers.
+const QUOTIENTS: &str = "\
+#include \"KMotionDef.h\"
+double zero, ten = 10, a; float three = 3;
+main()
+{
+  printf(\"%d %d %d %d\\n\", 1 / zero > 0, 1 / zero < 0, 1 / zero == 1 / zero, (int)(1 / zero));
+  a = 3; a /= ten;
+  printf(\"%d %d %.9g\\n\", a > 0.3, 3.0 / 10 > 0.3, 1 / three);
+}
+";
+
+#[test]
+fn board_faults_divides_floating_numbers_by_the_functions_of_the_firmware() {
+    let scratch = Scratch::new("board-options-quotients");
+    scratch.write("a.c", QUOTIENTS).write("a.machine", "[cpu]\nboard_faults = true\n");
+    for engine in ["bytecode", "native", "dsp"] {
+        for level in ["-O0", "-O2"] {
+            let run = |options: &[&str]| {
+                let output = cc67(&scratch, [&["run", "a.c", "--engine", engine, level], options].concat());
+                assert_eq!(output.code, 0, "{engine}: {}", output.stderr);
+                output.stdout
+            };
+            assert_eq!(run(&[]), "1 0 1 2147483647\n0 0 0.333333343\n", "{engine} {level}");
+            // 3/10 is 0x3FD3333333333334 there, a bit too much.
+            let board = "0 0 0 2147483647\n1 0 0.333333343\n";
+            for option in [&["--board-faults"][..], &["--machine", "a.machine"]] {
+                assert_eq!(run(option), board, "{engine} {level} {option:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn cc67_timing_is_that_of_the_controller_code_on_every_engine() {
     let scratch = Scratch::new("board-options-timing");

@@ -77,4 +77,4 @@ pub mod typed;
 pub mod watch;
 pub mod words;
 
-pub use driver::{Compilation, Options, compile, link_units};
+pub use driver::{Compilation, Division, Options, compile, link_units};

@@ -11,11 +11,12 @@
 //! Left to right is the order of evaluation everywhere.
 
 use cranelift_entity::PrimaryMap;
+use kmotiondef::firmware::Function as FirmwareCall;
 
 use crate::index::index;
 use crate::operators::{BinaryOp, CompareOp};
 use crate::source::Span;
-use crate::ty::{BitRange, FunctionType, TypeId, Types};
+use crate::ty::{BitRange, FunctionType, ParameterTypes, QualifiedType, Type, TypeId, Types};
 
 index! {
     /// A name with linkage, or an anonymous static object.
@@ -39,9 +40,50 @@ pub struct Unit {
     pub symbols: PrimaryMap<SymbolId, Symbol>,
     /// The functions defined here, in the order of their definitions.
     pub functions: Vec<Function>,
+    /// The functions that divide, if the firmware's do and not the operators of the machine.
+    pub divisions: Option<Divisions>,
+}
+
+/// The functions of the firmware that divide floating numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Divisions {
+    /// That of `float`.
+    pub single: SymbolId,
+    /// That of `double`.
+    pub double: SymbolId,
 }
 
 impl Unit {
+    /// Divides floating numbers by the firmware's functions from now on.
+    pub fn divide_by_firmware(&mut self) {
+        let Some(span) = self.functions.first().map(|function| function.span) else { return };
+        let single = self.division(FirmwareCall::_divf, Types::FLOAT, span);
+        let double = self.division(FirmwareCall::_divd, Types::DOUBLE, span);
+        self.divisions = Some(Divisions { single, double });
+    }
+
+    /// The symbol of a function that divides numbers of a type, new if the program does not declare it.
+    fn division(&mut self, function: FirmwareCall, number: TypeId, span: Span) -> SymbolId {
+        let name = function.name();
+        let mut symbols = self.symbols.iter();
+        let declared = symbols.find(|(_, symbol)| symbol.name == name && symbol.linkage == Linkage::External);
+        if let Some((declared, _)) = declared {
+            return declared;
+        }
+        let types = vec![QualifiedType::plain(number); 2];
+        let parameters = ParameterTypes::Prototype { types, is_variadic: false };
+        let ty = self.types.intern(Type::Function(FunctionType { result: number, parameters }));
+        self.symbols.push(Symbol {
+            name: name.to_owned(),
+            linkage: Linkage::External,
+            ty,
+            align: 1,
+            definition: Definition::None,
+            span,
+            used_at: None,
+        })
+    }
+
     /// Reports whether a function of this name is defined here.
     #[must_use]
     pub fn defines(&self, name: &str) -> bool {

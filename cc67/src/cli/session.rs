@@ -19,9 +19,9 @@ use cc67_host::{
     AnyTarget, Attendant, BootedFirmware, BootedTarget, End, HostError, Idle, Schedule, Session, Target,
     UserProgram,
 };
-use compiler::Options;
 use compiler::firmware::Firmware;
 use compiler::target::Target as CodeTarget;
+use compiler::{Division, Options};
 use kmotiondef::Ticks;
 use kmotiondef::boards::BOARDS;
 use runtime::stimulus::Stimulus;
@@ -238,6 +238,7 @@ impl Setup {
         make: impl FnOnce(cc67_host::Setup, &CodeFor) -> Result<Session<T>, HostError>,
     ) -> Result<BoardSession<T>> {
         let Self { session, code, uart, mut flash, controller: _ } = self;
+        let division = session.options.division;
         let session = make(session, &code).map_err(|error| match (&error, flash.file()) {
             (HostError::Flash(why), Some((path, _))) => {
                 anyhow::anyhow!("the flash {} does not work with `--boot`: {why}", path.display())
@@ -247,7 +248,8 @@ impl Setup {
         if let (CodeFor::Firmware(_), Some(now)) = (&code, session.target().flash()) {
             flash.begins_with(now);
         }
-        Ok(BoardSession { session, code, uart, line: SerialLine::default(), flash, attendant: None })
+        let line = SerialLine::default();
+        Ok(BoardSession { session, code, division, uart, line, flash, attendant: None })
     }
 
     /// The board for a debugger, on the engine that it can hold; on a connected controller the programs are loaded and
@@ -290,13 +292,17 @@ impl PreparedBoard {
         started: impl Into<Started<'a>>,
         board: &BoardArguments,
         compiler: &CompilerArguments,
-        options: Options,
+        mut options: Options,
     ) -> Result<Option<Self>> {
         let Started { programs, first: before } = started.into();
         let files = assign(&[programs, before, &board.load].concat())?;
         let before = files.get(programs.len()..programs.len() + before.len()).unwrap_or_default();
         let mut machine_file = board.machine_file()?;
         let settings = [setting::all(&board.set, &mut machine_file)?, board.pc.mcode()?].concat();
+        machine_file.cpu.board_faults |= board.board_faults;
+        if machine_file.cpu.board_faults {
+            options.division = Division::Firmware;
+        }
         let answers = board.pc.answers(&machine_file)?;
         // What a run that is compared changes stays in memory.
         let is_kept = !(board.keeps_files && options.target == CodeTarget::C67x);
@@ -312,7 +318,6 @@ impl PreparedBoard {
         let starting = if before.is_empty() { 0..programs.len() } else { programs.len()..programs.len() + 1 };
         loaded.iter_mut().enumerate().for_each(|(index, program)| program.starts = starting.contains(&index));
 
-        machine_file.cpu.board_faults |= board.board_faults;
         let machine = board.machine_config();
         let disk = board.files(&machine_file);
         let flashed = flash.contents();
@@ -411,6 +416,7 @@ pub(crate) struct BoardSession<T: Target> {
     /// The board under control.
     pub(crate) session: Session<T>,
     code: CodeFor,
+    division: Division,
     uart: UartArguments,
     line: SerialLine,
     flash: Flash,
@@ -432,7 +438,8 @@ impl<T: Target> BoardSession<T> {
         starts: usize,
         compiler: &CompilerArguments,
     ) -> Result<bool> {
-        let Some(programs) = images::programs(files, compiler, &self.code.options(compiler)?)? else {
+        let options = Options { division: self.division, ..self.code.options(compiler)? };
+        let Some(programs) = images::programs(files, compiler, &options)? else {
             return Ok(false);
         };
         let load = |(index, program): (usize, UserProgram)| {

@@ -52,10 +52,23 @@ pub struct Options {
     pub target: Target,
     /// The firmware that programs are for.
     pub firmware: Firmware,
+    /// The quotients of floating numbers.
+    pub division: Division,
     /// Drop sections that `main` cannot reach, when linking.
     pub gc_sections: bool,
     /// The addresses of sections outside the space of the thread.
     pub addresses: SectionAddresses,
+}
+
+/// The quotients of floating numbers that are computed while a program runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Division {
+    /// Rounded to nearest, infinite or not a number where the divisor is 0, as IEEE 754 says.
+    #[default]
+    Nearest,
+    /// Those of the firmware's functions, which the vendor's code calls: the last bits may differ, and what is divided by 0
+    /// is no number.
+    Firmware,
 }
 
 impl Default for Options {
@@ -68,6 +81,7 @@ impl Default for Options {
             timing: Timing::default(),
             target: Target::default(),
             firmware: Firmware::default(),
+            division: Division::default(),
             gc_sections: true,
             addresses: SectionAddresses::default(),
         }
@@ -360,7 +374,10 @@ impl CompileRequest<'_> {
         let tree = parse::parse(&tokens, sources, names, sink);
         drop(tokens);
         let firmware = &self.options.firmware;
-        let unit = sema::analyze_as(preprocessor.standard, &tree, names, sources, firmware, sink);
+        let mut unit = sema::analyze_as(preprocessor.standard, &tree, names, sources, firmware, sink);
+        if self.options.division == Division::Firmware {
+            unit.divide_by_firmware();
+        }
         (Front { main, unit }, read)
     }
 }

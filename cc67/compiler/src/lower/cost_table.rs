@@ -85,14 +85,19 @@ pub(super) const fn argument(class: Class, is_firmware: bool) -> i32 {
     if is_firmware { either(class, 2, 3) } else { either(class, 3, 5) }
 }
 
+/// The function of the firmware that divides floating numbers.
+pub(super) const fn division(class: Class) -> i32 {
+    either(class, 30, 84)
+}
+
 /// An operator, with the function that divides where there is one.
 pub(super) const fn binary(op: BinaryOp, class: Class) -> i32 {
     match (op, class) {
         (BinaryOp::Divide, Class::I32) => 13 + 20,
         (BinaryOp::Remainder, Class::I32) => 13 + 18,
         (BinaryOp::Divide | BinaryOp::Remainder, Class::I64) => 150,
-        (BinaryOp::Divide | BinaryOp::Remainder, Class::F32) => 15 + 30,
-        (BinaryOp::Divide | BinaryOp::Remainder, Class::F64) => 20 + 84,
+        (BinaryOp::Divide | BinaryOp::Remainder, Class::F32) => 15 + division(Class::F32),
+        (BinaryOp::Divide | BinaryOp::Remainder, Class::F64) => 20 + division(Class::F64),
         (BinaryOp::Multiply, Class::I32) => 9,
         (BinaryOp::Multiply, Class::I64) => 30,
         (_, Class::F32) => 4,

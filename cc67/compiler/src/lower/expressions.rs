@@ -7,7 +7,8 @@
 use super::conditions::Sense;
 use super::places::Storage;
 use super::{Lowering, cost_table, types};
-use crate::ir::inst::{Address, Class, Constant, InstKind, Operand, ValueId};
+use crate::ir::function::Signature;
+use crate::ir::inst::{Address, Callee, Class, Constant, InstKind, Operand, ValueId};
 use crate::ir::operators::{BinaryOp, CompareOp, UnaryOp, Width};
 use crate::operators;
 use crate::ty::TypeId;
@@ -209,7 +210,7 @@ impl Lowering<'_> {
         let op = self.binary_op(update.op, update.computed);
         let same = ty == update.computed;
         let dst = self.destination(class, if same { into } else { None });
-        self.builder.binary(op, dst, old, operand);
+        self.operate(op, dst, old, operand);
         self.convert(dst.into(), update.computed, ty, if same { None } else { into })
     }
 
@@ -276,10 +277,28 @@ impl Lowering<'_> {
             let a = self.release(held);
             let dst = self.destination(self.class_or_int(expr.ty), if node == id { into } else { None });
             let op = self.binary_op(op, expr.ty);
-            self.builder.binary(op, dst, a, right);
+            self.operate(op, dst, a, right);
             left = dst.into();
         }
         left
+    }
+
+    /// `dst = a op b`, where the firmware may divide. Quotients of constants are computed before.
+    fn operate(&mut self, op: BinaryOp, dst: ValueId, a: Operand, b: Operand) {
+        let are_constant = a.as_value().is_none() && b.as_value().is_none();
+        let class = self.builder.function.class(dst.into());
+        let function = match (op, class, self.unit.divisions) {
+            (BinaryOp::Divide, Class::F32, Some(divisions)) => divisions.single,
+            (BinaryOp::Divide, Class::F64, Some(divisions)) => divisions.double,
+            _ => return self.builder.binary(op, dst, a, b),
+        };
+        if are_constant {
+            return self.builder.binary(op, dst, a, b);
+        }
+        // The call is charged for itself.
+        self.cost(-cost_table::division(class));
+        let signature = self.signatures.intern(&Signature { params: vec![class; 2], result: Some(class) });
+        self.builder.call(Callee::Symbol(function), signature, [a, b], Some(dst));
     }
 
     fn compare(&mut self, op: operators::CompareOp, a: ExprId, b: ExprId, into: Option<ValueId>) -> Operand {

@@ -102,7 +102,7 @@ pub fn analyze_as(
     let pending = sema.declare_items(unit);
     let functions: Vec<_> = pending.into_iter().filter_map(|pending| sema.define_function(pending)).collect();
     sema.finish_symbols();
-    Unit { types: sema.types, symbols: sema.symbols.finish(), functions }
+    Unit { types: sema.types, symbols: sema.symbols.finish(), functions, divisions: None }
 }
 
 /// The state of an analysis.

@@ -81,7 +81,8 @@ pub(crate) struct BoardArguments {
     #[arg(long, value_enum, help_heading = heading::EXPERTS)]
     engine: Option<EngineName>,
     /// Do what the board does on accesses to ROM, control registers and misaligned addresses, and on integer division
-    /// by zero; without this they stop the thread
+    /// by zero, which stop the thread otherwise; floating numbers are divided by the firmware's functions, as in the
+    /// vendor's code
     #[arg(long, help_heading = heading::EXPERTS)]
     pub(crate) board_faults: bool,
     /// Simulate every tick and every wait in full; slower, with the same results

@@ -13,7 +13,7 @@ use compiler::passes::Level;
 use compiler::pp::Standard;
 use compiler::render::Format;
 use compiler::target::Target;
-use compiler::{Options, pp};
+use compiler::{Division, Options, pp};
 use kmotiondef::boards::{BOARDS, TargetBoard};
 use kmotiondef::timing::{Timing, WaitStates};
 
@@ -149,6 +149,7 @@ impl SourceArguments {
             level: self.optimization,
             timing,
             firmware: self.firmware()?,
+            division: Division::default(),
             gc_sections: self.gc_sections || (self.optimization != Level::None && !self.no_gc_sections),
             addresses: SectionAddresses::default(),
         })
