@@ -47,12 +47,30 @@ impl TestBench {
         self.now = now;
     }
 
-    fn outcome(&mut self, name: &str, arguments: &[u64], woken: Option<Wake>) -> Outcome<Value> {
+    pub(crate) fn outcome(&mut self, name: &str, arguments: &[u64], woken: Option<Wake>) -> Outcome<Value> {
         self.outcome_within(Cycles::PER_TICK, name, arguments, woken)
     }
 
-    fn outcome_within(
+    /// Makes a call in a slice with this much left; the cost of its row is spent.
+    pub(crate) fn outcome_within(
         &mut self,
+        budget: Cycles,
+        name: &str,
+        arguments: &[u64],
+        woken: Option<Wake>,
+    ) -> Outcome<Value> {
+        self.outcome_by(ThreadId::new(1), budget, name, arguments, woken)
+    }
+
+    /// Another thread makes a call.
+    pub(crate) fn call_by(&mut self, thread: Option<ThreadId>, name: &str, arguments: &[u64]) {
+        let outcome = self.outcome_by(thread, Cycles::PER_TICK, name, arguments, None);
+        assert!(matches!(outcome, Outcome::Done(_)), "{name}: {outcome:?}");
+    }
+
+    fn outcome_by(
+        &mut self,
+        thread: Option<ThreadId>,
         mut budget: Cycles,
         name: &str,
         arguments: &[u64],
@@ -60,7 +78,7 @@ impl TestBench {
     ) -> Outcome<Value> {
         let number = function_named(name).unwrap_or_else(|| panic!("no function {name}"));
         let mut caller = Caller {
-            thread: ThreadId::new(1),
+            thread,
             memory: &mut self.memory,
             threads: &mut self.threads,
             tick: self.tick,

@@ -27,7 +27,7 @@ use kmotiondef::structs::Persist;
 use kmotiondef::timing::Timing;
 use kmotiondef::variables::{PERSIST, cell_name};
 use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
-use vm::engine::{CallEnd, ContextId, Engine, Observed};
+use vm::engine::{CallEnd, ContextId, Engine, Observed, Preemption};
 use vm::interp::BytecodeEngine;
 use vm::machine::{Config as MachineConfig, Machine};
 use vm::memory::{Faults, GuestMemory};
@@ -151,6 +151,7 @@ impl<E: Engine> Board<E> {
         kernel.parts.races = (config.machine.observed != Observed::None).then(Box::default);
         kernel.parts.switches =
             (!config.switches.is_empty()).then(|| Box::new(Switches::new(config.switches)));
+        kernel.parts.calls.are_split = config.machine.preemption == Preemption::Instructions;
         connect::install(&mut kernel.parts, connected);
         let servo = connected.cpu.servo_us.map(|time| Cycles::new((time * CYCLES_PER_US) as i64));
         let settings = MachineConfig {

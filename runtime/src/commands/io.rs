@@ -2,6 +2,7 @@
 
 use kmotiondef::AccessSize;
 use kmotiondef::GuestAddr;
+use kmotiondef::firmware::Function;
 use kmotiondef::map::FPGA;
 use kmotiondef::variables::{DAC_BUFFER, VIRTUAL_BITS_EX};
 
@@ -18,24 +19,25 @@ const ZERO: i32 = 2048;
 const ANSWER_ROOM: usize = 84;
 
 pub(super) fn set_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
-    session.call(|parts, caller| io::set_bit(parts, caller, values.integer(0)));
+    session.call(|parts, caller| io::command_bit(parts, caller, Function::SetBit, values.integer(0), true));
     Answer::Nothing
 }
 
 pub(super) fn clear_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
-    session.call(|parts, caller| io::clear_bit(parts, caller, values.integer(0)));
+    session
+        .call(|parts, caller| io::command_bit(parts, caller, Function::ClearBit, values.integer(0), false));
     Answer::Nothing
 }
 
 pub(super) fn set_state_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (bit, state) = (values.integer(0), values.integer(1));
-    session.call(|parts, caller| io::set_state_bit(parts, caller, bit, state));
+    session.call(|parts, caller| io::command_bit(parts, caller, Function::SetStateBit, bit, state != 0));
     Answer::Nothing
 }
 
 pub(super) fn led(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (bit, state) = (LED0 + values.integer(0), values.integer(1));
-    session.call(|parts, caller| io::set_state_bit(parts, caller, bit, state));
+    session.call(|parts, caller| io::command_bit(parts, caller, Function::SetStateBit, bit, state != 0));
     Answer::Nothing
 }
 

@@ -7,7 +7,7 @@ use kmotiondef::firmware::Function;
 use vm::firmware::Caller;
 
 /// Ranges of bits: the last bit of each, and the cycles by which a call differs from its row.
-type Ranges = &'static [(i32, i64)];
+pub(super) type Ranges = &'static [(i32, i64)];
 
 /// `SetBit`.
 pub(super) const SET_BIT: Ranges =

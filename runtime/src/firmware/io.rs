@@ -1,15 +1,19 @@
 //! Digital and analog inputs and outputs. Source: io.md.
 
+use std::ops::RangeInclusive;
+
 use kmotiondef::Bit;
 use kmotiondef::bits::{BitDirection, BitKind, range_of};
 use kmotiondef::firmware::Function;
 use kmotiondef::limits::{MAX_PWM_VALUE, MAX_PWMC_VALUE, MAX_PWMR_VALUE};
 use kmotiondef::variables::{ADC_BUFFER_IN, KSTEP_PRESENT};
-use vm::firmware::Caller;
+use vm::firmware::{Caller, Outcome, Wake};
 
+use super::calls::{Continuation, OutputStage};
 use super::costs;
 use super::parts::Parts;
 use crate::io::amplifiers::{antiphase, current, recirculate, store_pwm};
+use crate::io::kanalog::Group;
 use crate::io::remark_on;
 use crate::io::{bits, kanalog};
 use crate::machine::{Channel, LateRead, MissedPulse};
@@ -60,33 +64,101 @@ pub(crate) fn get_bit_direction(parts: &mut Parts, caller: &mut Caller<'_>, bit:
     i32::from(bits::is_output(&parts.io, caller.memory, bit))
 }
 
-pub(crate) fn set_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) {
-    costs::spend_bit(caller, costs::SET_BIT, bit);
-    write(parts, caller, Function::SetBit, bit, true);
+pub(crate) fn set_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) -> Outcome<()> {
+    write(parts, caller, Function::SetBit, bit, true, costs::SET_BIT)
 }
 
-pub(crate) fn clear_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) {
-    costs::spend_bit(caller, costs::CLEAR_BIT, bit);
-    write(parts, caller, Function::ClearBit, bit, false);
+pub(crate) fn clear_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) -> Outcome<()> {
+    write(parts, caller, Function::ClearBit, bit, false, costs::CLEAR_BIT)
 }
 
-pub(crate) fn set_state_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32, state: i32) {
-    costs::spend_bit(caller, if state == 0 { costs::RESET_STATE_BIT } else { costs::SET_STATE_BIT }, bit);
-    write(parts, caller, Function::SetStateBit, bit, state != 0);
+pub(crate) fn set_state_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32, state: i32) -> Outcome<()> {
+    let costs = if state == 0 { costs::RESET_STATE_BIT } else { costs::SET_STATE_BIT };
+    write(parts, caller, Function::SetStateBit, bit, state != 0, costs)
 }
 
-fn write(parts: &mut Parts, caller: &mut Caller<'_>, function: Function, bit: i32, level: bool) {
+fn write(
+    parts: &mut Parts,
+    caller: &mut Caller<'_>,
+    function: Function,
+    bit: i32,
+    level: bool,
+    costs: costs::Ranges,
+) -> Outcome<()> {
+    if let (Some(_), Some(Continuation::Output(group, stage))) = (caller.woken, parts.calls.take(caller)) {
+        go_on(parts, caller, group, stage);
+        return Outcome::Done(());
+    }
+    costs::spend_bit(caller, costs, bit);
+    let Some(bit) = checked(parts, caller, function, bit) else { return Outcome::Done(()) };
+    check_written(parts, caller, function, bit);
+    if let Some(stage) = interrupted_at(parts, caller, function)
+        && let Some(group) = parts.io.outputs.changed(bit, level)
+    {
+        if stage == OutputStage::Stored {
+            parts.io.outputs.store(group);
+        }
+        parts.calls.keep(caller, Continuation::Output(group, stage));
+        return Outcome::Wait(Wake::NextSlice);
+    }
+    switch(parts, caller, function, bit, level);
+    Outcome::Done(())
+}
+
+/// A command writes a bit.
+pub(crate) fn command_bit(
+    parts: &mut Parts,
+    caller: &mut Caller<'_>,
+    function: Function,
+    bit: i32,
+    level: bool,
+) {
     if let Some(bit) = checked(parts, caller, function, bit) {
         check_written(parts, caller, function, bit);
-        let now = caller.now();
-        parts.lines(now).write(caller.memory, bit, level);
-        if level
-            && let Some(other) = parts.machine.opposite(bit)
-            && bits::bit_state(&parts.io, caller.memory, other).0
-        {
-            parts.out.diagnose(caller, Message::BothDirections { function, bit, other });
-        }
+        switch(parts, caller, function, bit, level);
     }
+}
+
+/// Gives a bit its level.
+fn switch(parts: &mut Parts, caller: &mut Caller<'_>, function: Function, bit: Bit, level: bool) {
+    let now = caller.now();
+    parts.lines(now).write(caller.memory, bit, level);
+    if level
+        && let Some(other) = parts.machine.opposite(bit)
+        && bits::bit_state(&parts.io, caller.memory, other).0
+    {
+        parts.out.diagnose(caller, Message::BothDirections { function, bit, other });
+    }
+}
+
+/// The place in a call that switches one of Kanalog's outputs where the slice ends, if what other threads do meanwhile is lost
+/// there: the firmware loads the levels of the group and stores them, then loads them again and puts them out.
+fn interrupted_at(parts: &Parts, caller: &Caller<'_>, function: Function) -> Option<OutputStage> {
+    /// Cycles before the end of the call, the wait for the register among them.
+    const STORED: RangeInclusive<i64> = 72..=77;
+    const PUT_OUT: RangeInclusive<i64> = 64..=68;
+    /// `SetStateBit` calls one of the others.
+    const RETURN: i64 = 17;
+    let after = if function == Function::SetStateBit { RETURN } else { 0 };
+    let rest = -caller.budget.get() - after;
+    let stage = if STORED.contains(&rest) {
+        OutputStage::Read
+    } else if PUT_OUT.contains(&rest) {
+        OutputStage::Stored
+    } else {
+        return None;
+    };
+    (parts.calls.are_split && caller.thread.is_some()).then_some(stage)
+}
+
+/// A call that switches one of Kanalog's outputs goes on in the next slice.
+fn go_on(parts: &mut Parts, caller: &Caller<'_>, group: Group, stage: OutputStage) {
+    let now = caller.now();
+    if stage == OutputStage::Read {
+        parts.io.outputs.store(group);
+    }
+    group.put_out(&mut parts.io.pins, now);
+    parts.lines(now).settle();
 }
 
 /// A program writes to a bit: whether that can have an effect.
@@ -121,6 +193,7 @@ pub(crate) fn read_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) -> 
     costs::spend_bit(caller, costs::READ_BIT, bit);
     let Some(bit) = checked(parts, caller, Function::ReadBit, bit) else { return 0 };
     let (level, is_input) = bits::bit_state(&parts.io, caller.memory, bit);
+    let level = parts.io.outputs.level(bit).unwrap_or(level);
     if !is_input || range_of(bit).is_none() {
         check_read(parts, caller, bit);
         return i32::from(level);
@@ -207,7 +280,9 @@ pub(crate) fn write_pwmc(parts: &mut Parts, caller: &mut Caller<'_>, channel: i3
 
 #[cfg(test)]
 mod tests {
+    use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_named};
     use kmotiondef::variables::{BIT_DIR_SHADOW, KANALOG_PRESENT, VIRTUAL_BITS};
+    use kmotiondef::{Cycles, ThreadId};
 
     use super::*;
     use crate::out::EventKind;
@@ -233,6 +308,42 @@ mod tests {
             assert_eq!(read(&mut bench, bit), state, "{bit}");
         }
         assert_eq!(bench.memory.get(VIRTUAL_BITS), 32768);
+    }
+
+    /// Sets a relay in a slice that ends `rest` cycles before the call does; another thread sets the next one meanwhile. The
+    /// levels of both as the firmware has them, and as they are.
+    fn interrupted(rest: i64, call: &str, arguments: &[u64]) -> [bool; 4] {
+        let mut bench = TestBench::new();
+        bench.kernel.parts.calls.are_split = true;
+        bench.memory.set(KANALOG_PRESENT, 1);
+        let cost = function_named(call).map_or(0, |at| FIRMWARE_FUNCTIONS[at].cost.get()) + 42;
+        let outcome = bench.outcome_within(Cycles::new(cost - rest), call, arguments, None);
+        bench.kernel.parts.calls.are_split = false;
+        bench.call_by(ThreadId::new(2), "SetBit", &[153]);
+        if let Outcome::Wait(wake) = outcome {
+            let done = bench.outcome(call, arguments, Some(wake));
+            assert!(matches!(done, Outcome::Done(_)), "{call}: {done:?}");
+        }
+        let [first, second] = [152, 153].map(|bit| Bit::new(bit).expect("an output"));
+        let io = &bench.kernel.parts.io;
+        let known = [first, second].map(|bit| io.outputs.level(bit).expect("an output"));
+        [known[0], known[1], io.pins.written(first), io.pins.written(second)]
+    }
+
+    #[test]
+    fn outputs_of_kanalog_are_not_switched_in_one_piece() {
+        for (rest, expect) in [
+            (-1, [true; 4]),
+            (63, [true; 4]),
+            (66, [true, true, true, false]),
+            (70, [true; 4]),
+            (75, [true, false, true, false]),
+            (80, [true; 4]),
+        ] {
+            assert_eq!(interrupted(rest, "SetBit", &[152]), expect, "{rest}");
+        }
+        assert_eq!(interrupted(75 + 17, "SetStateBit", &[152, 1]), [true, false, true, false]);
+        assert_eq!(interrupted(75, "SetStateBit", &[152, 1]), [true; 4]);
     }
 
     #[test]

@@ -98,7 +98,10 @@ pub(crate) fn write_bit(
             if !kanalog::is_served(&io.fpga, memory) {
                 out.remark(now, Message::KanalogOff { bit });
             }
-            io.pins.write(bit, level, now);
+            if let Some(group) = io.outputs.changed(bit, level) {
+                io.outputs.store(group);
+                group.put_out(&mut io.pins, now);
+            }
         }
         BitKind::SnapGpio => io.pins.write(bit, level, now),
         _ => {

@@ -1,11 +1,77 @@
-//! Kanalog's conversions in guest memory: all inputs are converted again in each tick while the board's port serves it.
+//! Kanalog's conversions in guest memory, and its outputs.
+//!
+//! All inputs are converted again in each tick while the board's port serves it. The outputs are switched by groups of 16, of which
+//! the firmware keeps what it last wrote.
 
 use chips::fpga::Fpga;
 use chips::kanalog::Kanalog;
+use chips::pins::Pins;
+use kmotiondef::bits::{BitKind, range_of};
 use kmotiondef::variables::{ADC_BUFFER_IN, KANALOG_PRESENT};
+use kmotiondef::{Bit, Cycles};
 use vm::memory::GuestMemory;
 
 use crate::views::Typed;
+
+/// The first output.
+const FIRST_OUTPUT: u16 = 144;
+/// The number of outputs.
+const N_OUTPUTS: u16 = 24;
+/// The outputs of a group.
+const GROUP: u16 = 16;
+
+/// The outputs as the firmware last wrote them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Outputs {
+    groups: [u16; 2],
+}
+
+/// Outputs that are switched together, and their levels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Group {
+    index: u16,
+    levels: u16,
+}
+
+impl Outputs {
+    /// The group of an output with another level of it; `None` for any other bit.
+    pub(crate) fn changed(&self, bit: Bit, level: bool) -> Option<Group> {
+        let (index, mask) = place(bit)?;
+        let levels = self.groups[usize::from(index)];
+        Some(Group { index, levels: if level { levels | mask } else { levels & !mask } })
+    }
+
+    /// Keeps the levels of a group.
+    pub(crate) fn store(&mut self, group: Group) {
+        self.groups[usize::from(group.index)] = group.levels;
+    }
+
+    /// The level of an output as the firmware has it; `None` for any other bit.
+    pub(crate) fn level(&self, bit: Bit) -> Option<bool> {
+        let (index, mask) = place(bit)?;
+        Some(self.groups[usize::from(index)] & mask != 0)
+    }
+}
+
+impl Group {
+    /// Switches the outputs of the group.
+    pub(crate) fn put_out(self, pins: &mut Pins, now: Cycles) {
+        let first = FIRST_OUTPUT + GROUP * self.index;
+        for number in first..(first + GROUP).min(FIRST_OUTPUT + N_OUTPUTS) {
+            if let Some(bit) = Bit::new(i32::from(number)) {
+                pins.write(bit, self.levels >> (number - first) & 1 != 0, now);
+            }
+        }
+    }
+}
+
+/// The group of an output and its mask there.
+fn place(bit: Bit) -> Option<(u16, u16)> {
+    let kind = range_of(bit)?.kind;
+    let is_output = matches!(kind, BitKind::KanalogOptoOutput | BitKind::KanalogFet | BitKind::KanalogOutput);
+    let number = bit.get().checked_sub(FIRST_OUTPUT).filter(|_| is_output)?;
+    Some((number / GROUP, 1 << (number % GROUP)))
+}
 
 /// Converts all inputs, if something is connected to them and the port serves Kanalog.
 pub(crate) fn tick(kanalog: &Kanalog, fpga: &Fpga, memory: &mut GuestMemory) {

@@ -22,6 +22,7 @@ use chips::uart::Uart;
 use kmotiondef::Cycles;
 
 use crate::io::flash::Banks;
+use crate::io::kanalog::Outputs;
 use crate::io::konnect::Konnects;
 use crate::io::snapamp::SnapAmps;
 use crate::out::Message;
@@ -35,6 +36,8 @@ pub(crate) struct Io {
     pub(crate) snapamps: SnapAmps,
     pub(crate) konnects: Konnects,
     pub(crate) kanalog: Kanalog,
+    /// Kanalog's outputs.
+    pub(crate) outputs: Outputs,
     pub(crate) encoders: Encoders,
     pub(crate) stepgens: StepGenerators,
     /// The visible part of flash.

@@ -13,6 +13,7 @@ use kmotiondef::{AxisId, GuestAddr, ThreadId};
 use vm::firmware::Caller;
 
 use super::motion::PlanningStage;
+use crate::io::kanalog::Group;
 
 pub(crate) use globals::Globals;
 pub(crate) use heap::Heap;
@@ -40,6 +41,17 @@ pub(crate) enum Continuation {
     Stop(Option<Vec<AxisId>>),
     /// The axes that are still to continue after a feedhold, the first last, and how far that one has come.
     Resume(Vec<AxisId>, PlanningStage),
+    /// The levels of Kanalog's outputs that the call has computed, and how far it has come.
+    Output(Group, OutputStage),
+}
+
+/// The progress of a call that switches one of Kanalog's outputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum OutputStage {
+    /// It has read what was last written.
+    Read,
+    /// It has stored the new levels, and read them again to put them out.
+    Stored,
 }
 
 /// The state of firmware functions.
@@ -57,6 +69,8 @@ pub(crate) struct Calls {
     pub(crate) token: GuestAddr,
     /// Ticks that a motion call plans before its motion begins.
     pub(crate) plan_ticks: u32,
+    /// True if slices end between any two accesses to memory, in the middle of a call, too.
+    pub(crate) are_split: bool,
     /// Motion calls in a row that each came while the one before was planned, of each axis.
     pub(crate) hurried_calls: [u8; N_CHANNELS],
     /// The calls for which threads wait.
@@ -78,6 +92,7 @@ impl Default for Calls {
             seed: 1,
             token: GuestAddr::NULL,
             plan_ticks: 0,
+            are_split: false,
             hurried_calls: [0; N_CHANNELS],
             waits: Waits::default(),
             notices: Notices::default(),
