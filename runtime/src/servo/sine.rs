@@ -205,12 +205,26 @@ pub(crate) fn sine(cycles: f64, ahead: usize) -> f32 {
     value(if fraction < 0.0 { fraction + 1.0 } else { fraction }, ahead)
 }
 
-/// The value a number of lines after an angle. The board looks beyond its table for angles outside a turn, where it
-/// found zeros.
+/// The value a number of lines after an angle.
 fn value(angle: f32, ahead: usize) -> f32 {
     let index = (angle * TURN as f32) as i64 + ahead as i64;
-    let line = usize::try_from(index).ok().and_then(|index| TABLE.get(index)).copied().unwrap_or_default();
+    let line = usize::try_from(index).map_or_else(|_| beyond(index), |index| TABLE.get(index).copied());
+    let line = line.unwrap_or_default();
     line.slope * (angle + along(ahead)) + line.origin
+}
+
+/// Pointers of the list that precedes the table in memory, each where a line would have its slope: those of the SnapAmps'
+/// bits and of what they read slowly.
+const POINTERS: [u32; 8] =
+    [0x1001_A904, 0x1001_A908, 0x1001_9058, 0x1001_905C, 0x1001_A90C, 0x1001_A910, 0x1001_9078, 0x1001_907C];
+/// The line of the first pointer.
+const FIRST_POINTER: i64 = -27;
+
+/// The line that the board takes for one of an angle below 0: it looks before its table. The numbers between the pointers are too
+/// small for singles; the rest is 0.
+fn beyond(index: i64) -> Option<Secant> {
+    let pointer = usize::try_from(index - FIRST_POINTER).ok().and_then(|at| POINTERS.get(at))?;
+    Some(Secant { slope: f32::from_bits(*pointer), origin: 0.0 })
 }
 
 /// Two phases a third of a turn apart, for an angle from 0 to 1.
@@ -247,6 +261,15 @@ mod tests {
             let found = two_phases(f32::from_bits(angle)).map(f32::to_bits);
             assert_eq!(found, [first, second], "{angle:08X}");
         }
+    }
+
+    #[test]
+    fn an_angle_below_0_finds_pointers_before_the_table() {
+        // `fidelity-2.jsonl`, "Sine3PH".
+        let [first, second] = two_phases(-3.0 / 13.0);
+        assert!((first + 5.900_993e-30).abs() < 1e-36, "{first}");
+        assert!((second - 0.601_759_6).abs() < 1e-6, "{second}");
+        assert_eq!(two_phases(-2.0 / 13.0)[0], 0.0);
     }
 
     #[test]

@@ -67,7 +67,7 @@ pub enum Division {
     #[default]
     Nearest,
     /// Those of the firmware's functions, which the vendor's code calls: the last bits may differ, and what is divided by 0
-    /// is no number.
+    /// is not a number.
     Firmware,
 }
 
