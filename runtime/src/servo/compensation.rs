@@ -9,6 +9,7 @@ use kmotiondef::structs::{Chan, Iir};
 
 use super::plan::{Filter, Gains};
 use super::state::AxisMemory;
+use super::trajectory::TICKS_PER_SECOND;
 use crate::views::AxisView;
 
 /// Limits `value` to ±`limit`, which is not below 0; what is not a number stays so.
@@ -27,15 +28,9 @@ fn dead_band(error: f32, range: f32, gain: f32) -> f32 {
     }
 }
 
-/// One tick: returns the output and stores it. An approach by a time constant has no feed forward of its acceleration.
+/// One tick: returns the output and stores it.
 #[inline(always)]
-pub(crate) fn advance(
-    own: &AxisMemory,
-    gains: &Gains,
-    chan: &mut AxisView<'_>,
-    command: f64,
-    is_exponential: bool,
-) -> f32 {
+pub(crate) fn advance(own: &AxisMemory, gains: &Gains, chan: &mut AxisView<'_>, command: f64) -> f32 {
     let position = chan.get(Chan::POSITION);
     let mut error = (command - position) as f32;
     if let Some((range, slope)) = gains.dead_band {
@@ -53,11 +48,11 @@ pub(crate) fn advance(
     let filtered = filter(chan, Chan::IIR.element(1), second, filtered);
     // The feed forward sees the destination alone, without backlash and offset.
     let mut forward = gains.ff_vel * own.velocity;
-    if gains.ff_accel != 0.0 && !is_exponential {
+    if gains.ff_accel != 0.0 {
         let change = f64::from(own.velocity - own.last_velocity);
-        forward += gains.ff_accel * (change / TIMEBASE) as f32;
+        forward += gains.ff_accel * (change * TICKS_PER_SECOND) as f32;
     }
-    let filtered = filter(chan, Chan::IIR.element(2), last, filtered + forward);
+    let filtered = filter_forward(chan, Chan::IIR.element(2), last, filtered, forward);
     let output = clamp(filtered, gains.max_output);
     let last = chan.get(Chan::OUTPUT);
     chan.set(Chan::PREV_OUTPUT, last);
@@ -68,14 +63,38 @@ pub(crate) fn advance(
 /// One tick of a second-order filter, direct form II.
 #[inline(always)]
 fn filter(chan: &mut AxisView<'_>, iir: Field<Iir>, filter: &Filter, input: f32) -> f32 {
+    filter_with(chan, iir, filter, input, |inner| inner)
+}
+
+/// The same, with a feed forward that the board adds to the sum of the input and of what the filter keeps.
+#[inline(always)]
+fn filter_forward(
+    chan: &mut AxisView<'_>,
+    iir: Field<Iir>,
+    filter: &Filter,
+    input: f32,
+    forward: f32,
+) -> f32 {
+    filter_with(chan, iir, filter, input, |inner| forward + inner)
+}
+
+#[inline(always)]
+fn filter_with(
+    chan: &mut AxisView<'_>,
+    iir: Field<Iir>,
+    filter: &Filter,
+    input: f32,
+    add: impl Fn(f32) -> f32,
+) -> f32 {
     let (d0, d1) = (chan.get(iir.field(Iir::D0)), chan.get(iir.field(Iir::D1)));
     chan.set(iir.field(Iir::D1), d0);
     // What is no number, or infinite, comes through factors of 0 too.
     if filter.is_plain && (d0 + d1).is_finite() {
-        chan.set(iir.field(Iir::D0), input);
-        return input;
+        let output = add(input);
+        chan.set(iir.field(Iir::D0), output);
+        return output;
     }
-    let inner = input + (filter.a1 * d0 + filter.a2 * d1);
+    let inner = add(input + (filter.a1 * d0 + filter.a2 * d1));
     chan.set(iir.field(Iir::D0), inner);
     filter.b0 * inner + (filter.b1 * d0 + filter.b2 * d1)
 }

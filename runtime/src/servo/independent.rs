@@ -172,6 +172,10 @@ fn enter(memory: &mut GuestMemory, axis: AxisId) -> bool {
             }
             enter_reached(memory, axis, present);
         }
+        Step::Approaching(dest, velocity) => {
+            chan.set(Chan::DEST, dest);
+            chan.set(Chan::LAST_VEL, velocity);
+        }
         Step::Ended(t) => {
             chan.set(Chan::PCOEFF, GuestAddr::NULL);
             chan.set(Chan::T, t);

@@ -53,6 +53,7 @@ use crate::out::Message;
 use crate::servo::cache::Change;
 use crate::servo::plan::Input;
 use crate::servo::state::AxisMemory;
+use crate::servo::trajectory::TICKS_PER_SECOND;
 use crate::views::{AxisView, Typed};
 use chips::stepgen::{StepLimit, generator_of};
 
@@ -331,7 +332,6 @@ fn put_out(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, command:
     let own = &mut tick.servo.axes[axis.index()];
     own.has_run = true;
     let plan = tick.servo.cache.plan(axis);
-    let is_exponential = plan.gains.ff_accel != 0.0 && independent::is_exponential(memory, axis);
     let mut chan = AxisView::of(memory, axis);
     let output = if plan.is_open_loop {
         chan.get(Chan::OUTPUT)
@@ -339,7 +339,7 @@ fn put_out(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, command:
         let moved = chan.get(Chan::POSITION) - chan.get(Chan::LAST_POSITION);
         own.response += f64::from(chan.get(Chan::OUTPUT)) * moved;
         own.moved = moved;
-        compensation::advance(own, &plan.gains, &mut chan, command, is_exponential)
+        compensation::advance(own, &plan.gains, &mut chan, command)
     };
     chan.set(Chan::PREV_DEST, chan.get(Chan::DEST));
     output::drive(tick, memory, axis, command, output);
@@ -357,14 +357,14 @@ fn direction(own: &mut AxisMemory, chan: &mut AxisView<'_>) -> bool {
     let dest = chan.get(Chan::DEST);
     let last = own.dest;
     chan.set(Chan::LAST_DEST, last);
-    own.last_velocity = own.velocity;
+    own.last_velocity = chan.get(Chan::LAST_VEL);
     own.dest = dest;
     own.knows_dest = true;
     let (mut sign, mut goes_on) = (0, false);
     if dest == last {
         own.velocity = 0.0;
     } else {
-        own.velocity = ((dest - last) / TIMEBASE) as f32;
+        own.velocity = ((dest - last) * TICKS_PER_SECOND) as f32;
         sign = i32::from(dest > last) - i32::from(dest < last);
         // The first tick of a direction counts as standing still.
         goes_on = sign != 0 && chan.get(Chan::LAST_NON_ZERO_DIR) == sign;

@@ -35,6 +35,7 @@ impl Axis {
                     self.dest = dest;
                     self.cursor = Some(next);
                 }
+                Step::Approaching(dest, _) => self.dest = dest,
                 Step::Ended(_) => self.cursor = None,
             }
         }

@@ -39,6 +39,8 @@ pub(crate) struct Approach {
 pub(crate) enum Step {
     /// The destination of this tick, and the place in the list where the next one begins.
     Moving(f64, Cursor),
+    /// The destination of this tick in an approach by a time constant, and its velocity.
+    Approaching(f64, f32),
     /// The list has ended, and so much of a tick after its end this was; the destination stays.
     Ended(f64),
 }
@@ -56,7 +58,7 @@ pub(crate) fn step(
         Mode::Off => return Step::Ended(cursor.t),
         Mode::Independent => current.at(cursor.t).x,
         // It has no time of its own.
-        Mode::Exponential => return Step::Moving(exponential(&current, &approach()), cursor),
+        Mode::Exponential => return exponential(&current, &approach()),
     };
     cursor.t += TIMEBASE;
     Step::Moving(dest, cursor)
@@ -85,14 +87,14 @@ pub(crate) fn point(cursor: Cursor, dest: f64, velocity: f64, state: impl Fn(usi
 }
 
 /// Ticks a second, by which the board multiplies where it could divide by [`TIMEBASE`].
-const TICKS_PER_SECOND: f64 = 11_111.111_111_111_111;
+pub(crate) const TICKS_PER_SECOND: f64 = 11_111.111_111_111_111;
 
-/// The destination after one tick of an exponential approach.
+/// One tick of an exponential approach.
 ///
 /// The velocity of the approach is brought within what the acceleration allows from the last tick on, then within the limit of the
 /// velocity. While it is above that at which the approach begins, it is also below a root that brakes by itself. The board takes
 /// that in singles, and from the size of the square: near its target an axis that is still too fast is slowed down to it at once.
-fn exponential(state: &MotionState, approach: &Approach) -> f64 {
+fn exponential(state: &MotionState, approach: &Approach) -> Step {
     let Approach { dest, velocity, vc, xc, v, a } = *approach;
     let next = (1.0 - state.a) * state.b + state.a * dest;
     let wanted = (next - dest) * TICKS_PER_SECOND;
@@ -111,7 +113,7 @@ fn exponential(state: &MotionState, approach: &Approach) -> f64 {
         let square = (rest - xc) * (a + a) + vc * vc;
         reached = bounded(reached, root(f64::from(square.abs())));
     }
-    dest + reached * TIMEBASE
+    Step::Approaching(dest + reached * TIMEBASE, reached as f32)
 }
 
 /// A velocity within a limit of both directions.
