@@ -502,9 +502,6 @@ messages! {
     /// A request to the PC is replaced by another one of the same thread before the PC has seen it.
     RequestReplaced { code: i32, by: i32 } = "request-replaced", Warning, [once],
         "request {code} is replaced by {by} before the PC has answered it, and is lost: wait until persist.UserData[100] is no longer positive (noticed at this call)";
-    /// The profile that the firmware plans for a move leaps.
-    ProfileLeaps { axis: AxisId, most: f64, way: f64 } = "profile-leaps", Warning, [per axis],
-        "axis {axis}: the profile of this move leaps faster than {most:.0} steps per second, although Vel is lower. The firmware plans such a leap for moves a little longer than 2 Accel\u{b3}/Jerk\u{b2}, which is {way:.0} units: use another distance, or change Jerk";
     /// Two outputs that drive a motor in opposite directions are both on.
     BothDirections { function: Function, bit: Bit, other: Bit } = "both-directions", Warning, [per bit],
         "{function}({bit}): output {other} is on as well, so the motor is switched to both directions at once: clear one before the other is set";

@@ -42,7 +42,7 @@ pub(crate) mod trajectory;
 pub(crate) mod wired;
 
 use kmotiondef::limits::TIMEBASE;
-use kmotiondef::modes::{LastMotion, OutputMode};
+use kmotiondef::modes::OutputMode;
 use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, Bit};
 use vm::memory::GuestMemory;
@@ -261,27 +261,12 @@ fn step(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId) {
     if plant.take_behind()
         && let Some(StepLimit { fastest, length }) = tick.io.stepgens.limit(axis)
     {
-        let message = leap(memory, axis, fastest).unwrap_or(Message::StepsTooFast { axis, fastest, length });
-        tick.remark_on_axis(memory, axis, message);
+        tick.remark_on_axis(memory, axis, Message::StepsTooFast { axis, fastest, length });
     }
     tick.io.stepgens.step(axis, steps, &mut tick.io.pins, tick.now);
     if tick.machine.wiring.has_drives() {
         wired::step_other(tick.machine, memory, axis, steps);
     }
-}
-
-/// Steps that are too fast although the speed of the axis is not come of the profile that the firmware has planned.
-fn leap(memory: &GuestMemory, axis: AxisId, most: f64) -> Option<Message> {
-    let limit = |field| f64::from(memory.axis(axis, field));
-    let (vel, accel, jerk) = (limit(Chan::VEL), limit(Chan::ACCEL), limit(Chan::JERK));
-    let is_move = memory.axis(axis, Chan::LAST_MOTION_TYPE) == LastMotion::Move.get()
-        && !memory.axis(axis, Chan::PCOEFF).is_null();
-    let is_slow = vel * limit(Chan::OUTPUT_GAIN).abs() < most;
-    (is_move && is_slow).then(|| Message::ProfileLeaps {
-        axis,
-        most,
-        way: 2.0 * accel * accel * accel / (jerk * jerk),
-    })
 }
 
 /// Position, protection, compensation and output of one axis; returns whether it moves or has a command.
