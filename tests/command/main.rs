@@ -18,6 +18,7 @@ mod init;
 mod interrupt;
 mod jumps;
 mod keyboard;
+mod kogna;
 #[cfg(feature = "live")]
 mod live;
 mod options;

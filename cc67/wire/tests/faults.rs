@@ -58,6 +58,24 @@ fn a_kogna_that_answers_the_abort_byte_with_a_line_is_connected() {
 }
 
 #[test]
+fn a_kogna_takes_programs_where_it_has_them_and_no_others() {
+    let (link, state) = board(Fault::Kogna);
+    let mut client = Client::over(link).expect("the board answers");
+    let at = |start: u32| LoadImage {
+        entry: start + 16,
+        parts: vec![(start, vec![1; 100]), (0xC010_0000 - 4, vec![2; 8])],
+        firmware: Some(KOGNA_VERSION.into()),
+        ..program(0)
+    };
+    load(&mut client, &at(0xC00C_0000)).expect("it is the space of thread 2");
+    assert_eq!(state.lock().expect("the state").memory.get(&0xC010_0003), Some(&2));
+    for start in [0x8006_0000, 0xC008_0000, 0xC010_0000] {
+        let message = load(&mut client, &at(start)).expect_err("it is elsewhere").to_string();
+        assert!(message.contains("thread 2"), "{message}");
+    }
+}
+
+#[test]
 fn a_silent_board_is_reported_after_five_attempts() {
     let error = Client::over(board(Fault::Silent).0).expect_err("it does not answer");
     assert!(matches!(error, WireError::Silent { .. }), "{error}");

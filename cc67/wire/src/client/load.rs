@@ -5,7 +5,7 @@
 //! thread with such a space cannot be started, so that a load which was interrupted leaves nothing that could run.
 
 use kmotiondef::ThreadId;
-use kmotiondef::map::{PROGRAM_LIMIT, PROGRAM_SIZE, program_base};
+use kmotiondef::boards::TargetBoard;
 
 use super::{ANSWER_WITHIN, Client};
 use crate::disk::hexadecimal;
@@ -54,16 +54,16 @@ impl LoadImage {
                 program: firmware.trim_end().into(),
             });
         }
-        self.check_space()
+        self.check_space(board_of(version))
     }
 
     /// Checks that the image begins in the space of its thread and ends among the spaces of programs.
     ///
     /// # Errors
     /// It has bytes elsewhere.
-    pub fn check_space(&self) -> Result<(), WireError> {
-        let start = program_base(self.thread).get();
-        let end = start + PROGRAM_SIZE - 1;
+    fn check_space(&self, board: &TargetBoard) -> Result<(), WireError> {
+        let start = board.program_base(self.thread).get();
+        let end = start + board.programs().size - 1;
         let wrong = |address| WireError::WrongSpace { thread: self.thread, address, start, end };
         if !(start..=end).contains(&self.entry) {
             return Err(wrong(self.entry));
@@ -74,8 +74,8 @@ impl LoadImage {
                 return Err(wrong(*address));
             }
             // A large program may continue in the space of the next thread (dialect.md section 7).
-            if last >= u64::from(PROGRAM_LIMIT) {
-                return Err(wrong(PROGRAM_LIMIT));
+            if last >= u64::from(board.programs().limit) {
+                return Err(wrong(board.programs().limit));
             }
         }
         Ok(())
@@ -88,8 +88,8 @@ impl LoadImage {
     }
 
     /// The parts as they are sent, the first word of the space last.
-    fn ordered(&self) -> Vec<(u32, Vec<u8>)> {
-        let start = program_base(self.thread).get();
+    fn ordered(&self, board: &TargetBoard) -> Vec<(u32, Vec<u8>)> {
+        let start = board.program_base(self.thread).get();
         let mut parts = vec![];
         let mut last = vec![];
         for (address, bytes) in &self.parts {
@@ -107,6 +107,11 @@ impl LoadImage {
     }
 }
 
+/// The board with a version; one that is not known has its programs where a KFLOP has them.
+fn board_of(version: &str) -> &'static TargetBoard {
+    TargetBoard::of_version(version.trim_end()).unwrap_or_else(TargetBoard::default_board)
+}
+
 impl Client {
     /// Loads a program into its thread, which is stopped first. Nothing is started.
     ///
@@ -119,7 +124,7 @@ impl Client {
         progress: &mut dyn FnMut(Progress),
     ) -> Result<(), WireError> {
         if is_forced {
-            image.check_space()?;
+            image.check_space(board_of(&self.version))?;
         } else {
             image.check(&self.version)?;
         }
@@ -127,7 +132,7 @@ impl Client {
         let total = image.size();
         let mut done = 0;
         progress(Progress { done, total });
-        for (address, bytes) in image.ordered() {
+        for (address, bytes) in image.ordered(board_of(&self.version)) {
             for (piece, at) in bytes.chunks(PIECE).zip((address..).step_by(PIECE)) {
                 self.send_piece(at, piece).map_err(|error| failed(image, error))?;
                 done = (done + piece.len()).min(total);
