@@ -63,7 +63,7 @@ impl Pulses {
         const POLLS: u32 = 3;
         /// Between two pulses is this many times their length: contacts that bounce have less.
         const APART: i64 = 5;
-        let driven = self.0.get_mut(&bit)?;
+        let driven = self.0.entry(bit).or_default();
         let before = driven.read.filter(|before| before.site == site);
         let reads = before.map_or(1, |before| before.reads.saturating_add(1));
         driven.read = Some(Read { site, at: now, level, count: driven.count, reads });
