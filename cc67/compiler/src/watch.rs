@@ -152,8 +152,9 @@ fn compile_here(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Ex
     let (start, known) = (sources.file(main).start + before, sink.diagnostics().len());
     lints::check(&unit, &names, &sources, &scope.options.firmware, &mut sink);
     let is_here = |diagnostic: &&Diagnostic| {
-        // The board's lack of `fabs` matters to no expression.
-        diagnostic.lint != Some(Lint::Portability) && diagnostic.span.is_some_and(|span| span.lo >= start)
+        // The board's lack of `fabs` matters to no expression, and the value of each one becomes a `double`.
+        let matters = !matches!(diagnostic.lint, Some(Lint::Portability | Lint::IntegerDivision));
+        matters && diagnostic.span.is_some_and(|span| span.lo >= start)
     };
     let doubt = sink.diagnostics().iter().skip(known).find(is_here).map(in_one_line);
     let is_ours = |function: &Function| unit.symbols[function.symbol].name == FUNCTION;
