@@ -111,8 +111,37 @@ fn is_whole(program: &AnalysedProgram<'_>, function: &TypedFunction, number: Exp
         ExprKind::Conditional(_, a, b) => is_whole(*a) && is_whole(*b),
         // Functions of the board that return a number give times, counts or whole numbers.
         ExprKind::Call(call) => called_firmware(program.unit, call).is_some(),
-        // Fields of an axis are counts.
-        ExprKind::Load(place) => is_of_axis(program, function, *place),
+        // Fields of an axis are counts, and other variables whole numbers unless something else is stored there.
+        ExprKind::Load(place) => is_of_axis(program, function, *place) || !holds_fraction(function, *place),
+        _ => false,
+    }
+}
+
+/// Reports whether a number that has a fraction, or most likely has one, is stored in a local variable.
+fn holds_fraction(function: &TypedFunction, place: PlaceId) -> bool {
+    let PlaceKind::Local(local, offset) = function.places[place].kind else { return false };
+    let is_it = |place: PlaceId| matches!(function.places[place].kind, PlaceKind::Local(other, at) if other == local && at == offset);
+    function.exprs.values().any(|expr| match &expr.kind {
+        ExprKind::Assign(place, value) => is_it(*place) && has_fraction(function, *value),
+        ExprKind::Update(update) => {
+            is_it(update.place) && (update.op == BinaryOp::Divide || has_fraction(function, update.operand))
+        }
+        _ => false,
+    })
+}
+
+/// Reports whether a value is a constant with a fraction, a quotient, or computed with one.
+fn has_fraction(function: &TypedFunction, value: ExprId) -> bool {
+    match function.exprs[value].kind {
+        ExprKind::Float(number) => number.fract() != 0.0,
+        ExprKind::Convert(inner) => function.exprs[inner].ty.is_floating() && has_fraction(function, inner),
+        ExprKind::Unary(UnaryOp::Negate, inner) => has_fraction(function, inner),
+        ExprKind::Binary(BinaryOp::Divide, _, divisor) => {
+            !matches!(function.exprs[divisor].kind, ExprKind::Float(number) if number.abs() < 1.0)
+        }
+        ExprKind::Binary(BinaryOp::Add | BinaryOp::Subtract | BinaryOp::Multiply, a, b) => {
+            has_fraction(function, a) || has_fraction(function, b)
+        }
         _ => false,
     }
 }
