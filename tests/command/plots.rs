@@ -386,6 +386,21 @@ fn a_race_links_the_slices_of_both_threads_and_marks_those_that_split_a_statemen
     assert!(strips.iter().all(|strip| strip["marks"] == json!([])), "{strips:?}");
 }
 
+#[test]
+fn a_remark_on_two_lines_of_one_thread_is_no_race() {
+    let scratch = Scratch::new("plot-two-lines");
+    let program =
+        PROGRAM.replace("    MoveTo(500);\n", "    Move(0, 500);\n    Delay_sec(0.1);\n    Move(0, 300);\n");
+    scratch.write("b.c", program);
+    let output = cc67(&scratch, ["run", "--plot", "b.html", "b.c"]);
+    assert!(
+        output.stderr.contains("before it has arrived") || output.stderr.contains("Move"),
+        "{}",
+        output.stderr
+    );
+    assert_eq!(page_data(&scratch, "b.html")["links"], json!([]));
+}
+
 /// The data in a page.
 fn page_data(scratch: &Scratch, name: &str) -> Value {
     let page = fs::read_to_string(scratch.path().join(name)).expect("it was written");

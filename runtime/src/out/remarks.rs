@@ -86,6 +86,18 @@ pub struct Remark {
     pub place: Option<CodeAddr>,
 }
 
+impl Remark {
+    /// The second place of a remark about two threads, or about a thread and a call-back.
+    #[must_use]
+    pub fn other_thread(&self) -> Option<OtherPlace> {
+        let own = match self.speaker {
+            Speaker::Thread(thread) => Some(thread),
+            Speaker::CallBack | Speaker::Command | Speaker::Board => None,
+        };
+        self.message.other().filter(|other| other.thread != own)
+    }
+}
+
 impl fmt::Display for Remark {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{}{}", self.speaker, self.message)

@@ -166,7 +166,7 @@ fn accesses<T: Target>(session: &Session<T>, remark: &Remark) -> Option<[RaceAcc
         let place = session.source(at)?;
         Some(RaceAccess { thread: thread.map(ThreadId::get), file: place.file.to_owned(), line: place.line? })
     };
-    let other = remark.message.other()?;
+    let other = remark.other_thread()?;
     let thread = match remark.speaker {
         Speaker::Thread(thread) => Some(thread),
         Speaker::CallBack | Speaker::Board | Speaker::Command => None,

@@ -158,7 +158,7 @@ impl TraceEntry {
             EventKind::Trace(Record::Slice { thread, end, interrupted_at }) => {
                 Self::Slice { thread: *thread, end: *end, interrupted_at: *interrupted_at }
             }
-            EventKind::Remark(remark) if remark.message.other().is_some() => Self::Race(remark.clone()),
+            EventKind::Remark(remark) if remark.other_thread().is_some() => Self::Race(remark.clone()),
             EventKind::Trace(Record::Packet { thread, address, cycles, text }) => {
                 Self::Packet { thread: *thread, address: *address, cycles: *cycles, text: text.clone() }
             }

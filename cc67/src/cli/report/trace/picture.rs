@@ -141,7 +141,7 @@ fn link(
     strip: impl Fn(ThreadId) -> Option<usize>,
 ) -> Option<Link> {
     let Speaker::Thread(one) = about.speaker else { return None };
-    let other = about.message.other()?.thread?;
+    let other = about.other_thread()?.thread?;
     Some(Link { at: seconds(at), strips: [strip(one)?, strip(other)?], text: remark::words(about, programs) })
 }
 
