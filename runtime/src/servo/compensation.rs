@@ -66,7 +66,7 @@ fn filter(chan: &mut AxisView<'_>, iir: Field<Iir>, filter: &Filter, input: f32)
     filter_with(chan, iir, filter, input, |inner| inner)
 }
 
-/// The same, with a feed forward that the board adds to the sum of the input and of what the filter keeps.
+/// One tick of the last filter: the board adds the feed forward to the sum of the input and the kept values.
 #[inline(always)]
 fn filter_forward(
     chan: &mut AxisView<'_>,

@@ -1,5 +1,5 @@
 //@ args: check
-//@ says: warning[absolute-time]: `WaitUntil` takes a time since power-up, and 0.5 has passed soon after it
+//@ says: warning[absolute-time]: `WaitUntil` takes a time since power-up: 0.5 s are over soon after it
 //@ says: wait_until_used_as_a_delay.c:9:5
 #include "KMotionDef.h"
 

@@ -34,7 +34,7 @@ fn delays(program: &AnalysedProgram<'_>, function: &TypedFunction, sink: &mut Si
         }
         let Some(seconds) = call.arguments.first().and_then(|time| number(function, *time)) else { continue };
         let message =
-            format!("`{WAIT_UNTIL}` takes a time since power-up, and {seconds} has passed soon after it");
+            format!("`{WAIT_UNTIL}` takes a time since power-up: {seconds} s are over soon after it");
         sink.report(
             Diagnostic::warning(Lint::AbsoluteTime, expr.span, message)
                 .at("does not wait once the board has been on for that long")

@@ -3,7 +3,7 @@
 //! Only whole objects count: after a member array comes the next member, which programs reach on purpose. A variable
 //! index is followed through the simplest loops, where every iteration is known.
 
-use super::program::AnalysedProgram;
+use super::program::{AnalysedProgram, PERSIST};
 use super::user_data_index;
 use super::walk::{Extent, Walk};
 use crate::diag::{Diagnostic, Lint, Sink};
@@ -193,8 +193,7 @@ impl Search<'_> {
         let (from, to) = (i32::try_from(from).ok()?, i32::try_from(to).ok()?);
         let place = &self.function.places[place];
         let size = self.program.unit.types.size_of(place.ty)?;
-        user_data_index::finding(from, to, size, place.span)
-            .filter(|_| self.program.name(symbol) == "persist")
+        user_data_index::finding(from, to, size, place.span).filter(|_| self.program.name(symbol) == PERSIST)
     }
 
     /// The object that a place lies in or beside, and the byte of it, with a local as a number.

@@ -4,7 +4,7 @@
 
 use kmotiondef::structs::Chan;
 
-use super::program::AnalysedProgram;
+use super::program::{AnalysedProgram, CHANNELS, axis_of_pointer};
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::Span;
 use crate::typed::{ExprKind, Function, PlaceKind, Stmt, StmtKind};
@@ -97,7 +97,7 @@ fn setting(program: &AnalysedProgram<'_>, function: &Function, stmt: &Stmt) -> O
         PlaceKind::Pointer(pointer, field) => {
             let ExprKind::Load(pointer) = function.exprs[pointer].kind else { return None };
             let PlaceKind::Symbol(symbol, 0) = function.places[pointer].kind else { return None };
-            (program.name(symbol).strip_prefix("ch")?.parse().ok()?, field)
+            (axis_of_pointer(program.name(symbol))?, field)
         }
         PlaceKind::Symbol(symbol, offset) if program.name(symbol) == CHANNELS => {
             let size = Chan::STRUCTURE.size.cast_signed();
@@ -107,6 +107,3 @@ fn setting(program: &AnalysedProgram<'_>, function: &Function, stmt: &Stmt) -> O
     };
     Some(Setting { axis, field: field.try_into().ok()?, span, place: function.places[place].span })
 }
-
-/// The array of the axes.
-const CHANNELS: &str = "chan";

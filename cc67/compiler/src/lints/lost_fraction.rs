@@ -5,7 +5,7 @@
 use kmotiondef::firmware::Function;
 
 use super::format::called_firmware;
-use super::program::AnalysedProgram;
+use super::program::{AnalysedProgram, CHANNELS, PERSIST, axis_of_pointer};
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::BinaryOp;
 use crate::ty::Types;
@@ -13,9 +13,6 @@ use crate::typed::{ExprId, ExprKind, Function as TypedFunction, PlaceId, PlaceKi
 
 /// The function that takes an `int` and is used for every number.
 const ABS: &str = Function::abs.name();
-
-/// The structure with elements for the program and the PC.
-const PERSIST: &str = "persist";
 
 /// Reports floating-point numbers that are passed to `abs` or stored in elements of `persist.UserData`.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
@@ -151,7 +148,7 @@ fn is_of_axis(program: &AnalysedProgram<'_>, function: &TypedFunction, place: Pl
     let is_axis = |place: PlaceId| match function.places[place].kind {
         PlaceKind::Symbol(symbol, _) => {
             let name = program.name(symbol);
-            name == "chan" || name.strip_prefix("ch").is_some_and(|number| number.parse::<u32>().is_ok())
+            name == CHANNELS || axis_of_pointer(name).is_some()
         }
         _ => false,
     };

@@ -6,6 +6,16 @@ use crate::source::SourceMap;
 use crate::ty::TypeId;
 use crate::typed::{Function, SymbolId, Unit};
 
+/// The structure with elements for programs and the PC.
+pub(super) const PERSIST: &str = "persist";
+/// The array of the axes.
+pub(super) const CHANNELS: &str = "chan";
+
+/// The number of the axis to which a variable of the board points, such as `ch3`.
+pub(super) fn axis_of_pointer(name: &str) -> Option<u32> {
+    name.strip_prefix("ch")?.parse().ok()
+}
+
 /// A program after analysis.
 #[derive(Clone, Copy)]
 pub(super) struct AnalysedProgram<'a> {

@@ -1,6 +1,6 @@
 //! `*(float *)persist.UserData[10]`: the element is used as an address, and the element's own address is meant.
 
-use super::program::AnalysedProgram;
+use super::program::{AnalysedProgram, PERSIST};
 use super::user_data_index;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::ty::Types;
@@ -44,7 +44,7 @@ fn element(program: &AnalysedProgram<'_>, function: &Function, pointer: ExprId) 
 fn is_element(program: &AnalysedProgram<'_>, function: &Function, place: PlaceId) -> bool {
     let PlaceKind::Symbol(symbol, offset) = function.places[place].kind else { return false };
     let (first, last) = user_data_index::range();
-    program.name(symbol) == "persist" && (first..last).contains(&offset)
+    program.name(symbol) == PERSIST && (first..last).contains(&offset)
 }
 
 /// Reports whether an address is stored in an element.

@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::format::literal_format;
-use super::program::AnalysedProgram;
+use super::program::{AnalysedProgram, PERSIST};
 use super::user_data_index;
 use super::walk::{Extent, Walk};
 use crate::diag::{Diagnostic, Lint, Sink};
@@ -220,6 +220,3 @@ fn element(program: &AnalysedProgram<'_>, function: &Function, place: PlaceId) -
     let is_inside = (first..end).contains(&offset) && (offset - first) % ELEMENT == 0;
     (program.name(symbol) == PERSIST && is_inside).then(|| (offset - first) / ELEMENT)
 }
-
-/// The variable that holds the structure.
-const PERSIST: &str = "persist";

@@ -3,7 +3,7 @@
 use kmotiondef::ctype::Role;
 use kmotiondef::firmware::row_named;
 
-use super::program::AnalysedProgram;
+use super::program::{AnalysedProgram, PERSIST};
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::BinaryOp;
 use crate::source::Span;
@@ -107,8 +107,6 @@ fn start_up(program: &AnalysedProgram<'_>, function: &Function, sink: &mut Sink)
     }
 }
 
-/// The structure that is kept in flash, and its field with the threads to start.
-const PERSIST: &str = "persist";
 const RUN_ON_START_UP: &str = "persist.RunOnStartUp";
 
 /// Reports variables with a single value, a constant, that the macro `DAC` cuts.
