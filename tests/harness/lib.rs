@@ -9,6 +9,7 @@ mod measure;
 pub mod motions;
 pub mod oracles;
 pub mod polling;
+pub mod promptness;
 pub mod random;
 pub mod stages;
 pub mod tokens;
