@@ -237,7 +237,7 @@ pub(crate) fn ecvt(
         let place = place_of_point(magnitude);
         // Without a count the digits before the point are left, as they are.
         let rounded = usize::try_from(count).map(|count| digits(magnitude, Keep::Significant(count)));
-        let Digits { digits: mut text, point } = rounded.unwrap_or_else(|_| {
+        let Digits { digits: mut text, point, .. } = rounded.unwrap_or_else(|_| {
             let all = digits(magnitude, Keep::Significant(MOST_DIGITS));
             Digits { digits: all.digits[..(place.max(0) as usize).min(all.digits.len())].to_vec(), ..all }
         });
@@ -262,7 +262,7 @@ pub(crate) fn fcvt(
         let place = place_of_point(magnitude);
         // Odd and kept: a number that is too small is rounded by its first digit, and one digit at most is left out.
         let wanted = i64::from(place) + i64::from(decimals.max(-1));
-        let Digits { digits: text, point } = digits(magnitude, Keep::Significant(wanted.max(0) as usize));
+        let Digits { digits: text, point, .. } = digits(magnitude, Keep::Significant(wanted.max(0) as usize));
         Converted { has_grown: point > place, text, point }
     };
     store_digits(caller, FCVT, value, &converted, [point, sign])

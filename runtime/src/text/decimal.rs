@@ -14,6 +14,25 @@ pub(crate) struct Digits {
     pub(crate) digits: Vec<u8>,
     /// The number of digits before the decimal point; negative for zeros after it.
     pub(crate) point: i32,
+    /// The steps that found them.
+    pub(crate) steps: Steps,
+}
+
+/// The steps in which the board finds digits: a conversion costs by their number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Steps {
+    /// Multiplications by a tenth.
+    pub(crate) scaled: u32,
+    /// Digits of the integer part.
+    pub(crate) whole: u32,
+    /// Bits of the integer part and of its quotients by ten: the board divides bit by bit.
+    pub(crate) divided: u32,
+    /// Multiplications by ten in front of the first digit.
+    pub(crate) zeros: u32,
+    /// Nines through which rounding carries.
+    pub(crate) carried: u32,
+    /// True if the last digit is rounded up.
+    pub(crate) is_raised: bool,
 }
 
 /// The digits that are needed, by the board's two algorithms.
@@ -39,9 +58,9 @@ const HALF_OF_INFINITE: f64 = f64::from_bits(0x7FE0_0000_0000_0000);
 /// as 2 to the power of 1024.
 pub(crate) fn digits(magnitude: f64, keep: Keep) -> Digits {
     if magnitude < f64::MIN_POSITIVE {
-        return Digits { digits: Vec::new(), point: 0 };
+        return Digits { digits: Vec::new(), point: 0, steps: Steps::default() };
     }
-    let (mut digits, fraction, point) = match keep {
+    let Split { mut digits, fraction, point, steps } = match keep {
         Keep::Significant(_) | Keep::Decimals(_) => split(magnitude),
         Keep::Scientific(_) => split_scientific(magnitude),
     };
@@ -50,15 +69,24 @@ pub(crate) fn digits(magnitude: f64, keep: Keep) -> Digits {
         Keep::Decimals(count) => count as i64 + i64::from(point),
     };
     let Ok(wanted) = usize::try_from(wanted) else {
-        return Digits { digits: Vec::new(), point: 0 };
+        return Digits { digits: Vec::new(), point: 0, steps };
     };
     extend(&mut digits, fraction, wanted + 1);
-    round_at(digits, point, wanted)
+    round_at(digits, point, wanted, steps)
+}
+
+/// A magnitude whose first digits are found.
+struct Split {
+    digits: Vec<u8>,
+    /// What is left of it.
+    fraction: f64,
+    point: i32,
+    steps: Steps,
 }
 
 /// Digits of a normal magnitude before its decimal point, without rounding; negative for zeros after it.
 pub(crate) fn place_of_point(magnitude: f64) -> i32 {
-    split(magnitude).2
+    split(magnitude).point
 }
 
 /// The value after the first steps of scaling down, with the places it was moved by.
@@ -67,41 +95,53 @@ fn finite(magnitude: f64) -> (f64, i32) {
     if magnitude.is_finite() { (magnitude, 0) } else { (HALF_OF_INFINITE * 0.2, 1) }
 }
 
-/// The integer part's digits, the fraction left, and the place of the point.
-fn split(magnitude: f64) -> (Vec<u8>, f64, i32) {
+/// With the digits of the integer part, if it is not 0.
+fn split(magnitude: f64) -> Split {
     let (mut value, mut point) = finite(magnitude);
     while value > WHOLE_MAX {
         value *= 0.1;
         point += 1;
     }
+    let mut steps = Steps { scaled: point.unsigned_abs(), ..Steps::default() };
     let whole = libm::trunc(value);
     let mut fraction = value - whole;
     let mut digits = Vec::new();
     if whole > 0.0 {
         digits.extend(format!("{whole:.0}").bytes().map(|digit| digit - b'0'));
         point += digits.len() as i32;
+        steps.whole = digits.len() as u32;
+        steps.divided = divided_bits(whole as u32);
     } else {
         while fraction * 10.0 < 1.0 {
             fraction *= 10.0;
             point -= 1;
+            steps.zeros += 1;
         }
     }
-    (digits, fraction, point)
+    Split { digits, fraction, point, steps }
 }
 
-/// The first digit, the fraction after it, and the place of the point.
-fn split_scientific(magnitude: f64) -> (Vec<u8>, f64, i32) {
+/// Bits of a number and of its quotients by ten.
+fn divided_bits(number: u32) -> u32 {
+    let quotients = std::iter::successors(Some(number), |rest| Some(rest / 10));
+    quotients.take_while(|rest| *rest > 0).map(|rest| rest.ilog2() + 1).sum()
+}
+
+/// With the first digit.
+fn split_scientific(magnitude: f64) -> Split {
     let (mut value, mut exponent) = finite(magnitude);
     while value >= 10.0 {
         value *= 0.1;
         exponent += 1;
     }
+    let mut steps = Steps { scaled: exponent.unsigned_abs(), ..Steps::default() };
     while value < 1.0 {
         value *= 10.0;
         exponent -= 1;
+        steps.zeros += 1;
     }
     let whole = libm::trunc(value);
-    (vec![whole as u8], value - whole, exponent + 1)
+    Split { digits: vec![whole as u8], fraction: value - whole, point: exponent + 1, steps }
 }
 
 /// Appends digits of the fraction until there are `count`.
@@ -115,11 +155,12 @@ fn extend(digits: &mut Vec<u8>, mut fraction: f64, count: usize) {
 }
 
 /// Cuts to `wanted` digits; the digit after them rounds up from 5.
-fn round_at(mut digits: Vec<u8>, mut point: i32, wanted: usize) -> Digits {
+fn round_at(mut digits: Vec<u8>, mut point: i32, wanted: usize, mut steps: Steps) -> Digits {
     let up = digits.get(wanted).is_some_and(|&digit| digit >= 5);
     digits.truncate(wanted);
     if up {
         let nines = digits.iter().rev().take_while(|&&digit| digit == 9).count();
+        (steps.is_raised, steps.carried) = (true, nines as u32);
         let changed = digits.len() - nines;
         digits[changed..].fill(0);
         if let Some(last) = changed.checked_sub(1) {
@@ -129,10 +170,25 @@ fn round_at(mut digits: Vec<u8>, mut point: i32, wanted: usize) -> Digits {
             point += 1;
         }
     }
-    Digits { digits, point }
+    Digits { digits, point, steps }
 }
 
 impl Digits {
+    /// The exponent of the first digit, 0 for zero.
+    pub(crate) fn exponent(&self) -> i32 {
+        if self.digits.is_empty() { 0 } else { self.point - 1 }
+    }
+
+    /// Returns whether `%g` shows them with an exponent.
+    pub(crate) fn is_scientific(&self, precision: usize) -> bool {
+        self.exponent() < -4 || self.exponent() >= precision as i32
+    }
+
+    /// The number of digits that are 0 at the end.
+    pub(crate) fn zeros_at_end(&self) -> usize {
+        self.digits.iter().rev().take_while(|&&digit| digit == 0).count()
+    }
+
     /// The digit at `place` counted from the decimal point: 0 is the first after it, −1 the one before it.
     fn at(&self, place: i64) -> u8 {
         let index = place + i64::from(self.point);
@@ -155,7 +211,7 @@ impl Digits {
 
     /// Text with `decimals` digits after the point and an exponent, as `%e` has it; `letter` is `e` or `E`.
     pub(crate) fn scientific(&self, decimals: usize, always_point: bool, letter: u8) -> Vec<u8> {
-        let mantissa = Self { digits: self.digits.clone(), point: 1 };
+        let mantissa = Self { digits: self.digits.clone(), point: 1, steps: self.steps };
         let mut text = mantissa.fixed(decimals, always_point);
         let exponent = if self.digits.is_empty() { 0 } else { self.point - 1 };
         push_exponent(&mut text, exponent, letter);

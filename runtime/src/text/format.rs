@@ -6,7 +6,7 @@
 //! `printf-edge.jsonl`, which the tests below replay. One thing is ours: `%lld` takes a `long long`, which the board's
 //! compiler has not.
 
-use super::decimal::{Keep, digits};
+use super::decimal::{Digits, Keep, digits};
 use super::{Dialect, cost};
 
 /// The source of the values of the conversions.
@@ -297,47 +297,42 @@ fn float(spec: &Spec, value: f64, letter: u8, out: &mut Formatted) {
     let magnitude = value.abs();
     let negative = value.is_finite() && value < 0.0 && magnitude >= f64::MIN_POSITIVE;
     let precision = spec.precision.unwrap_or(6);
-    let text = match letter {
-        b'f' => fixed(spec, magnitude, precision),
-        b'e' | b'E' => {
-            digits(magnitude, Keep::Scientific(precision + 1)).scientific(precision, spec.alternate, letter)
-        }
-        _ => general(spec, magnitude, precision.max(1), letter),
+    let keep = match letter {
+        b'f' => Keep::Decimals(precision),
+        b'e' | b'E' => Keep::Scientific(precision + 1),
+        _ => Keep::Significant(precision.max(1)),
     };
-    out.spend(float_cycles(spec, magnitude, letter));
+    let found = digits(magnitude, keep);
+    let text = match letter {
+        b'f' => fixed(spec, magnitude, precision, &found),
+        b'e' | b'E' => found.scientific(precision, spec.alternate, letter),
+        _ => general(spec, &found, precision.max(1), letter),
+    };
+    out.spend(match letter {
+        b'f' => cost::fixed(spec.precision, &found),
+        b'e' | b'E' => cost::scientific(spec.precision, &found),
+        _ => cost::general(spec.precision, &found),
+    });
+    if negative {
+        out.spend(cost::MINUS);
+    }
     pad(spec, sign(spec, negative), &text, out);
 }
 
-/// Returns the cost of a floating-point conversion: the board looks for the decimal exponent step by step.
-fn float_cycles(spec: &Spec, magnitude: f64, letter: u8) -> u32 {
-    let exponent = match magnitude {
-        magnitude if magnitude < f64::MIN_POSITIVE => 0,
-        magnitude if magnitude.is_finite() => libm::floor(libm::log10(magnitude)) as i32,
-        _ => f64::MAX_10_EXP,
-    };
-    let precision = spec.precision.map(|precision| precision as u32);
-    match letter {
-        b'f' => cost::fixed(precision, exponent),
-        b'e' | b'E' => cost::scientific(precision, exponent),
-        _ => cost::general(precision, exponent),
-    }
-}
-
 /// `%f`. Odd and kept: without decimals, values below 0.1 show their first decimal or nothing behind the point.
-fn fixed(spec: &Spec, magnitude: f64, precision: usize) -> Vec<u8> {
+fn fixed(spec: &Spec, magnitude: f64, precision: usize, found: &Digits) -> Vec<u8> {
     let is_small = (f64::MIN_POSITIVE..0.1).contains(&magnitude);
     if precision > 0 || !is_small || spec.is_nearer_to_c() {
-        return digits(magnitude, Keep::Decimals(precision)).fixed(precision, spec.alternate);
+        return found.fixed(precision, spec.alternate);
     }
     let first = digits(magnitude, Keep::Decimals(1));
     first.fixed(usize::from(!first.digits.is_empty()), true)
 }
 
 /// `%g`: `%e` for exponents below −4 or from the precision on, else `%f`, without the zeros at the end.
-fn general(spec: &Spec, magnitude: f64, precision: usize, letter: u8) -> Vec<u8> {
-    let found = digits(magnitude, Keep::Significant(precision));
-    let exponent = if found.digits.is_empty() { 0 } else { found.point - 1 };
-    if exponent < -4 || exponent >= precision as i32 {
+fn general(spec: &Spec, found: &Digits, precision: usize, letter: u8) -> Vec<u8> {
+    let exponent = found.exponent();
+    if found.is_scientific(precision) {
         let shown = if spec.alternate { precision } else { significant(&found.digits) };
         return found.scientific(shown - 1, spec.alternate, letter - (b'g' - b'e'));
     }
