@@ -66,4 +66,4 @@ main()
     exit(3);
     printf("not here\n");
 }
-//@ cycles: 98249
+//@ cycles: 98582

@@ -30,4 +30,4 @@ main()
     SetFROwRateTemp(-0.25, 0.2);
     show_rates();
 }
-//@ cycles: 68543
+//@ cycles: 68474

@@ -15,4 +15,4 @@ main()
     abort();
     printf("not here\n");
 }
-//@ cycles: 19943
+//@ cycles: 20045

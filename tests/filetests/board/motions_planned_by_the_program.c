@@ -41,4 +41,4 @@ main()
     printf("the integrator is %g\n", ch0->integrator);
     DisableAxis(0);
 }
-//@ cycles: 1156868
+//@ cycles: 1157050

@@ -19,4 +19,4 @@ main()
     printf("%.2f\n", Time_sec() - start);
     printf("%.1f %d\n", ch0->Dest, CheckDone(0));
 }
-//@ cycles: 2296880
+//@ cycles: 2296906

@@ -76,4 +76,4 @@ main()
     printf("forward again: X %.0f Y %.0f\n", ch0->Dest / 10, ch1->Dest / 10);
     while (CheckDoneBuf() == 0) ;
 }
-//@ cycles: 129587082
+//@ cycles: 129587511

@@ -54,4 +54,4 @@ main()
     PrintFloat("%8.3f\n", 2.5);
     PrintInt("%04d\n", 42);
 }
-//@ cycles: 62952
+//@ cycles: 62998

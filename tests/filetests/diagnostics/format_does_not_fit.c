@@ -8,4 +8,4 @@ main()
     printf("%s %f\n", "text", 1.5);
     printf("%d %f\n", 5, 2);
 }
-//@ cycles: 14060
+//@ cycles: 14046

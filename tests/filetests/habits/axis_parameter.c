@@ -29,4 +29,4 @@ main()
         printf("%s: %g counts/mm, dest %g\n", a->name, a->counts, chan[a->axis].Dest);
     }
 }
-//@ cycles: 29098
+//@ cycles: 29241

@@ -26,4 +26,4 @@ main()
     printf("axis 0: %g units/s, gain %g, limits %g\n", ch0->Vel, ch0->P, chan[0].SoftLimitPos);
     if (chan[1].Vel == ch0->Vel) printf("axis 1: same speed\n");
 }
-//@ cycles: 30325
+//@ cycles: 30673

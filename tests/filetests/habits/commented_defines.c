@@ -17,4 +17,4 @@ main()
 #endif
     if (n != 4) printf("wrong\n");
 }
-//@ cycles: 17706
+//@ cycles: 17688

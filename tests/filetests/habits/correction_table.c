@@ -22,4 +22,4 @@ main()
     printf("%.3f %.3f %.3f %.3f %.3f %.3f\n", Correction(0), Correction(50), Correction(100), Correction(166.6667),
            Correction(300), Correction(1000));
 }
-//@ cycles: 23100
+//@ cycles: 22343

@@ -11,4 +11,4 @@ MoveToPocket(float position, float speed)
 {
     printf("move to %.2f at %.2f\n", position, speed);
 }
-//@ cycles: 10240
+//@ cycles: 10210

@@ -20,4 +20,4 @@ main()
     }
     printf("sum %g\n", sum);
 }
-//@ cycles: 25533
+//@ cycles: 25550

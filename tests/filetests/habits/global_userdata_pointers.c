@@ -17,4 +17,4 @@ main()
     printf("%.3f %.3f %d\n", *pFeed, *pSpeed, *pTool);
     printf("%x %d\n", persist.UserData[30], pTool[0]);
 }
-//@ cycles: 16530
+//@ cycles: 16468

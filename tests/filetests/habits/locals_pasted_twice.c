@@ -10,4 +10,4 @@ main()
     double Start = 2.5; //~ redeclared: Start
     printf("second %.2f\n", Start);
 }
-//@ cycles: 10428
+//@ cycles: 10374

@@ -29,4 +29,4 @@ main()
     sscanf("3 -1.5 tail", "%d %lf %s", &n, &d, word);
     printf("%d %.2f %s\n", n, d, word);
 }
-//@ cycles: 22061
+//@ cycles: 22046

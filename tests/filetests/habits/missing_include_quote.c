@@ -10,4 +10,4 @@ main()
     double touched = -1.0;
     printf("surface at %.2f\n", touched - PROBE_OFFSET);
 }
-//@ cycles: 6191
+//@ cycles: 6176

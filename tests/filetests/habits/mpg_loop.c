@@ -32,4 +32,4 @@ main()
     *(float *)&persist.UserData[1] = Sum;
     printf("axis asked for %.2f\n", *(float *)&persist.UserData[1]);
 }
-//@ cycles: 15516
+//@ cycles: 15582

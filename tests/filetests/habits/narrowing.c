@@ -17,4 +17,4 @@ main()
     rpm *= 2.5;
     printf("%d %.9f %d %d %d\n", Steps(1.4999, 1000), f, c, u, rpm);
 }
-//@ cycles: 16841
+//@ cycles: 16837

@@ -19,4 +19,4 @@ main()
 {
     printf("%.2f %.2f %c\n", scaled(5.0, 2.5), scaled(0.04, 2.5), pick("abc", 2));
 }
-//@ cycles: 9670
+//@ cycles: 9676

@@ -26,4 +26,4 @@ main()
     int n = strncpy(name, "T05 END", 3);
     printf("%s %d %d y %.2f %.2f s %d\n", name, floor(-1.2), n, y0, y1, s);
 }
-//@ cycles: 16828
+//@ cycles: 16831

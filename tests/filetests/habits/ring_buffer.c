@@ -30,4 +30,4 @@ main()
     for (i = 1; i <= 4; i++) sum += ring[i];
     printf("average %.2f\n", sum / 4);
 }
-//@ cycles: 20460
+//@ cycles: 20284

@@ -13,4 +13,4 @@ main()
     Count(2.5);
     printf("%d parts, %.2f mm\n", Parts, Length);
 }
-//@ cycles: 7987
+//@ cycles: 8005

@@ -25,4 +25,4 @@ main()
     } while (Time_sec() < T0 + 0.45);
     printf("%d blinks\n", blinks);
 }
-//@ cycles: 1040161
+//@ cycles: 1040185

@@ -26,4 +26,4 @@ main()
     printf("%.12f\n", GetUserDataDouble(VAR));
     printf("%x\n", persist.UserData[VAR * 2 + 1]);
 }
-//@ cycles: 11187
+//@ cycles: 11156

@@ -10,4 +10,4 @@ main()
     RequestSpeed(SPINDLE_CODE, 2.5);
     printf("requested %d at %f\n", persist.UserData[REQUEST_AT], *(float *)&persist.UserData[REQUEST_AT + 1]);
 }
-//@ cycles: 9455
+//@ cycles: 9478

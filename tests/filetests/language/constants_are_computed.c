@@ -74,4 +74,4 @@ main()
     printf("%.0f %u %u\n", (double)n, (unsigned)3e9f, (unsigned)4e9);
     printf("%d %d %d %d\n", a > b, u < 5, f <= -2.75f, d != 3e10);
 }
-//@ cycles: 246692
+//@ cycles: 245270

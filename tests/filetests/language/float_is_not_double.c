@@ -13,4 +13,4 @@ main()
     printf("%.0f %.0f\n", big + 1.0f, big + 1.0);
     printf("%.16g %.17g\n", 1.1f, 1.1);
 }
-//@ cycles: 37489
+//@ cycles: 38952

@@ -44,4 +44,4 @@ main()
     default: printf("other\n");
     }
 }
-//@ cycles: 57321
+//@ cycles: 57362

@@ -28,4 +28,4 @@ main()
     if (setjmp(b) == 0) { p = v; longjmp(b, 1); }
     printf("%d\n", *p);
 }
-//@ cycles: 18062
+//@ cycles: 18065

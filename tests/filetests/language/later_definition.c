@@ -16,4 +16,4 @@ f(float a, float b)
 }
 
 double half(double x) { return x / 2; }
-//@ cycles: 10070
+//@ cycles: 10230

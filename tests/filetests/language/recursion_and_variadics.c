@@ -25,4 +25,4 @@ main()
     sum = total(&last, 3, 10, 20, 30, 1.5);
     printf("%d %d %.1f\n", 3, sum, last);
 }
-//@ cycles: 200693
+//@ cycles: 200655

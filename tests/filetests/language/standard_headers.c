@@ -45,4 +45,4 @@ main()
     errno = isnan(NAN);
     printf("%" PRId64 " %d %d %f %" PRIu32 "\n", INT64_MAX, errno, isupper('A'), fmax(1.0, 2.0), UINT32_MAX);
 }
-//@ cycles: 41337
+//@ cycles: 41377

@@ -27,4 +27,4 @@ main()
     show(6, tool, small, 3);
     printf("%d\n", tool.n);
 }
-//@ cycles: 14244
+//@ cycles: 14236

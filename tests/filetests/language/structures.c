@@ -25,4 +25,4 @@ main()
     printf("%d %.1f\n", b.n, b.x);
     printf("%d %d %d %x\n", bits.a & 7, bits.b, bits.c, *(int *)&bits & 0xf);
 }
-//@ cycles: 29991
+//@ cycles: 30035

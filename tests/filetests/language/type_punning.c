@@ -18,4 +18,4 @@ main()
     strcpy((char *)gather_buffer + 1, "PERS");
     printf("%s\n", (char *)gather_buffer + 1);
 }
-//@ cycles: 22056
+//@ cycles: 22042

@@ -7,4 +7,4 @@ main()
 {
     printf("%d %d %d %f %d\n", 010, 0xff, 0b101, 0x1.8p-1, 0xffffffff); //~ octal
 }
-//@ cycles: 13746
+//@ cycles: 13805

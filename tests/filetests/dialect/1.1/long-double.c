@@ -12,4 +12,4 @@ main()
     a *= 2;
     printf("%d %d %d %f\n", sizeof a, (char *)&s.d - &s.c, s.d == 0.1, a);
 }
-//@ cycles: 11161
+//@ cycles: 11184

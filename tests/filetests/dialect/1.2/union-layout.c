@@ -14,4 +14,4 @@ main()
     u.i[1] = 0x40000000;
     printf("%d %d %f\n", sizeof u, (char *)&s.u - &s.c, u.d);
 }
-//@ cycles: 9362
+//@ cycles: 9385

@@ -7,4 +7,4 @@ main()
 {
     show(0.1, 2.9, 200); //~ lost-fraction
 }
-//@ cycles: 14332
+//@ cycles: 14337

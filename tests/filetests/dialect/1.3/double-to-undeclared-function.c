@@ -8,4 +8,4 @@ main()
 }
 
 f(float a, int b) { printf("%f %d\n", a, b); }
-//@ cycles: 7599
+//@ cycles: 7736

@@ -14,4 +14,4 @@ main()
     unused();
     printf("%d %f %d %d\n", a, b, (int)pointer(), early(1));
 }
-//@ cycles: 11177
+//@ cycles: 11187

@@ -12,4 +12,4 @@ main()
 {
     show(2.5, 4);
 }
-//@ cycles: 7019
+//@ cycles: 7042

@@ -12,4 +12,4 @@ main()
 }
 
 void show(double d, int i, int j) { printf("%f %d %d\n", d, i, j); }
-//@ cycles: 9805
+//@ cycles: 9798

@@ -10,4 +10,4 @@ main()
     a.x = 9;
     printf("%d %f %d %d\n", b.x, b.y, a.x, c.x);
 }
-//@ cycles: 11181
+//@ cycles: 11204

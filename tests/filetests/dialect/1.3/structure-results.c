@@ -11,4 +11,4 @@ main()
     p = point(3, 4.5);
     printf("%d %f %d\n", p.x, p.y, point(3, 0).x);
 }
-//@ cycles: 9135
+//@ cycles: 9188

@@ -9,4 +9,4 @@ main()
     sprintf(text, "%f", 3); //~ format
     printf("goes on\n");
 }
-//@ cycles: 10265
+//@ cycles: 10288

@@ -15,4 +15,4 @@ main()
     printf("%.0f %.0f\n", big + one, big + 1.0);
     printf("%d %d %d\n", folded_float == big + one, folded_double == big + 1.0, third == in_float);
 }
-//@ cycles: 34320
+//@ cycles: 34674

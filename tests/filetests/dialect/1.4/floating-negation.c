@@ -9,4 +9,4 @@ main()
 {
     printf("%f %f %d %d\n", -a, -f, -zero == 0, folded == -a);
 }
-//@ cycles: 13749
+//@ cycles: 13792

@@ -10,4 +10,4 @@ main()
     printf("%.0f %.0f %.0f %.0f\n", (float)odd, (float)three, (float)most, (float)minus);
     printf("%.0f %.0f %.0f %.0f\n", a, b, c, d);
 }
-//@ cycles: 81135
+//@ cycles: 80499

@@ -11,4 +11,4 @@ main()
     printf("%.0f %.0f %.0f\n", (double)all, (float)all, 1.0 * large);
     printf("%.0f %.0f %.0f\n", a, b, c);
 }
-//@ cycles: 73916
+//@ cycles: 69920

@@ -6,4 +6,4 @@ main()
     *(float *)&persist.UserData[10] = 1.23f;
     printf("%x %f\n", persist.UserData[10], *(float *)&persist.UserData[10]);
 }
-//@ cycles: 8707
+//@ cycles: 8700

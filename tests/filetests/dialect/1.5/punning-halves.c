@@ -9,4 +9,4 @@ main()
     ((int *)&d)[1] = 0xc0020000;
     printf("%d %x %f\n", persist.UserData[20], persist.UserData[21], d);
 }
-//@ cycles: 10915
+//@ cycles: 10965

@@ -8,4 +8,4 @@ main()
     values[10] = 2.5;
     printf("%f %x %d\n", ((double *)persist.UserData)[10], persist.UserData[21], persist.UserData[20]);
 }
-//@ cycles: 10777
+//@ cycles: 10800

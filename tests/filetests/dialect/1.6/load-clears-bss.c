@@ -11,4 +11,4 @@ main()
     static char text[8];
     printf("%d %f %d %d\n", scalar, array[99], text[7], count());
 }
-//@ cycles: 11148
+//@ cycles: 11158

@@ -6,4 +6,4 @@
 #include "KMotionDef.h"
 
 main() { printf("%.1f\n", sqrt(4)); }
-//@ cycles: 4089
+//@ cycles: 4081

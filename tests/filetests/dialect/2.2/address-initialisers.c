@@ -11,4 +11,4 @@ main()
     *pair = 2.5;
     printf("%f %x\n", *speed, *raw);
 }
-//@ cycles: 8713
+//@ cycles: 8706

@@ -9,4 +9,4 @@ main()
     v.n = 9;
     printf("%f %x %d\n", v.f, v.bits, v.n);
 }
-//@ cycles: 10779
+//@ cycles: 10772

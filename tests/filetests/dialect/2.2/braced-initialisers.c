@@ -19,4 +19,4 @@ main()
     printf("%s %s %d %d %d\n", names[1], text, local[0], local[1], local[3]);
     printf("%d %.0f %f %d\n", pair.a, pair.b, mixed.x, mixed.list[2]);
 }
-//@ cycles: 35092
+//@ cycles: 35063

@@ -10,4 +10,4 @@ main()
     double c = b;
     printf("%d %.0f\n", a, c);
 }
-//@ cycles: 5257
+//@ cycles: 5278

@@ -22,4 +22,4 @@ main()
     strncpy(text, "abc", 2);
     printf("%d %s %.1f\n", floor(-2.5), text, y0 + y1);
 }
-//@ cycles: 7747
+//@ cycles: 7739

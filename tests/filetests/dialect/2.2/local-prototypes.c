@@ -10,4 +10,4 @@ main()
 
 double half(double x) { return x / 2; }
 int n = 7;
-//@ cycles: 7021
+//@ cycles: 7044

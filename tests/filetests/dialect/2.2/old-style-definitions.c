@@ -14,4 +14,4 @@ main()
     int list[] = { 8, 9 };
     printf("%d %f %d\n", add(3, 4), half(5.0), pick(list, 1));
 }
-//@ cycles: 9082
+//@ cycles: 9105

@@ -8,4 +8,4 @@ double list[3];
 double list[3];
 
 main() { printf("%d %.0f\n", a, list[2]); }
-//@ cycles: 5257
+//@ cycles: 5235

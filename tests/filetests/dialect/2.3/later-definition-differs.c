@@ -11,4 +11,4 @@ main()
 
 f(float a, float b) { printf("%f ", b); }
 double half(double x) { return x / 2; }
-//@ cycles: 10478
+//@ cycles: 10638

@@ -3,4 +3,4 @@ main()
 {
     printf("%f\n", sqrt(4)); //~ implicit-declaration: printf //~ implicit-declaration: sqrt
 }
-//@ cycles: 5323
+//@ cycles: 5346

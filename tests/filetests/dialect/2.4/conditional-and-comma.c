@@ -11,4 +11,4 @@ main()
     j = (i++, i - 1);
     printf("%f %d %d %d\n", d, yes ?: 9, j, no ?: 5);
 }
-//@ cycles: 11171
+//@ cycles: 11194

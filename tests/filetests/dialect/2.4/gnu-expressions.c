@@ -7,4 +7,4 @@ main()
     typeof(2.5) d = 2.5;
     printf("%d %f\n", a, d);
 }
-//@ cycles: 7008
+//@ cycles: 7031

@@ -14,4 +14,4 @@ main()
 there:
     printf("%d %f %d %d grün\n", Number, d, sizeof(struct Nothing), ({ int n = 7; n; }));
 }
-//@ cycles: 12269
+//@ cycles: 12292

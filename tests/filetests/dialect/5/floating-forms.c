@@ -9,4 +9,4 @@ main()
     printf("[%f] [%lf] [%0.lf] [%.2f] [%9.3f] [%6.0f] [%13f] [%g]\n", d, d, 2.3, d, d, 3.4, f, d);
     printf("[%15.12f] [%12.0f] [%12.2f]\n", third, third, -1234.567);
 }
-//@ cycles: 55438
+//@ cycles: 55782

@@ -12,4 +12,4 @@ main()
     printf("%.1f %d\n", strtod("1.5", &rest), strtol("ff", &rest, 16));
     //~^ implicit-declaration: strtod //~^ implicit-declaration: strtol
 }
-//@ cycles: 20471
+//@ cycles: 20433

@@ -3,4 +3,4 @@ main()
 {
     printf("%f %d\n", 2.5, 3); //~ implicit-declaration: printf
 }
-//@ cycles: 7008
+//@ cycles: 7031

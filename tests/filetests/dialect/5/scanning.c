@@ -13,4 +13,4 @@ main()
     printf("%d %d\n", count, n);
     printf("%d\n", sscanf("none", "%d", &n));
 }
-//@ cycles: 29140
+//@ cycles: 29155

@@ -10,4 +10,4 @@ main()
     d = list; //~ pointer-mismatch
     printf("%f\n", *(float *)&persist.UserData[10]);
 }
-//@ cycles: 4941
+//@ cycles: 4934

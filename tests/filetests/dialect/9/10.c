@@ -15,4 +15,4 @@ main()
     strncpy(text, "abc", 2);
     printf("%s %d %.1f %d %d %d\n", text, floor(2.9), y0, s, bb, GET);
 }
-//@ cycles: 13802
+//@ cycles: 13764

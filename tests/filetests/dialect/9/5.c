@@ -4,4 +4,4 @@
 main() { f(0.0, 40.0); } //~ implicit-declaration
 
 f(float a, float b) { printf("%f\n", b); }
-//@ cycles: 5530
+//@ cycles: 5667
