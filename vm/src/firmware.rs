@@ -196,6 +196,12 @@ impl Caller<'_> {
         self.slice_start + (self.slice - *self.budget)
     }
 
+    /// Returns whether the call ends in a later slice of the thread: it has spent more than what was left of this one.
+    #[must_use]
+    pub fn is_overdrawn(&self) -> bool {
+        *self.budget < Cycles::new(0)
+    }
+
     /// Spends processor time of the calling thread.
     pub fn spend(&mut self, cycles: Cycles) {
         *self.budget -= cycles;

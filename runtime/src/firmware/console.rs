@@ -139,8 +139,12 @@ pub(crate) fn cut(text: &[u8]) -> &[u8] {
     &text[..text.iter().position(|&byte| byte == 0).unwrap_or(text.len())]
 }
 
-/// Puts text on the console; the call waits while the queue is full.
+/// Puts text on the console in the slice in which its formatting ends; the call waits while the queue is full.
 pub(crate) fn put(parts: &mut Parts, caller: &Caller<'_>, text: &[u8], result: i32) -> Outcome<i32> {
+    if caller.thread.is_some() && caller.is_overdrawn() {
+        parts.calls.keep(caller, Continuation::Print { rest: text.to_vec(), result });
+        return Outcome::Wait(Wake::Retry);
+    }
     let begun = parts.calls.notices.prints(caller.thread, caller.at, text);
     if let Some(other) = begun.filter(|_| caller.thread.is_some()) {
         parts.out.diagnose(caller, Message::LinesMixed { other });
