@@ -1,10 +1,14 @@
-//! One trial of every board that the command controls, in every view: run, console, test, debugger, page.
+//! One trial of every board that the command controls, in every view: run, console, test, debugger, editor, page.
 //!
 //! The boards are the model on its engines, and the firmware files that `CC67_FIRMWARE` and `CC67_FIRMWARE_5` name.
 
 use std::env;
+use std::process::{Command, Stdio};
 
 use harness::{Output, Scratch, cc67, cc67_with_input};
+use serde_json::json;
+
+use super::attach::Editor;
 
 const PROGRAM: &str = "\
 #include \"KMotionDef.h\"
@@ -195,6 +199,46 @@ No more reverse-execution history.
         let known = text.split_inclusive("No more reverse-execution history.\n").next();
         assert_eq!(known, Some(expect), "{name}");
         assert!(text.ends_with("$N = 0\n"), "{name}: {text}");
+    }
+}
+
+#[test]
+fn an_editor_stops_and_steps_back_on_every_board() {
+    let scratch = scratch("targets-editor");
+    for (name, options) in boards() {
+        // As in the terminal, the debugger holds the model's interpreter.
+        let options = if name == "native" { Vec::new() } else { options };
+        let mut command = Command::new(harness::command());
+        command.args(["debug", "--dap", "-O0"]).args(&options).current_dir(scratch.path());
+        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("it starts");
+        let mut editor = Editor::of(&mut child);
+        editor.ask("initialize", json!({ "adapterID": "cc67" }));
+        let path = scratch.path().join("twice.c");
+        editor.ask("launch", json!({ "program": path }));
+        let breakpoints = json!({ "source": { "path": path }, "breakpoints": [{ "line": 5 }] });
+        let set = editor.ask("setBreakpoints", breakpoints);
+        assert_eq!(set["breakpoints"][0]["verified"], true, "{name}: {set}");
+        editor.ask("configurationDone", json!({}));
+        for (request, reason, line, total) in [
+            ("", "breakpoint", 5, "0"),
+            ("continue", "breakpoint", 5, "2"),
+            ("stepOut", "step", 12, "2"),
+            ("reverseContinue", "breakpoint", 5, "2"),
+            ("reverseContinue", "breakpoint", 5, "0"),
+        ] {
+            if !request.is_empty() {
+                editor.ask(request, json!({ "threadId": 1 }));
+            }
+            assert_eq!(editor.event("stopped")["reason"], reason, "{name}: {request}");
+            let stack = editor.ask("stackTrace", json!({ "threadId": 1 }));
+            let frame = &stack["stackFrames"][0];
+            assert_eq!(frame["line"], line, "{name}: {request}");
+            let value = editor.ask("evaluate", json!({ "expression": "total", "frameId": frame["id"] }));
+            assert_eq!(value["result"], total, "{name}: {request}");
+        }
+        editor.ask("disconnect", json!({}));
+        drop(editor);
+        assert!(child.wait().expect("it ends").success(), "{name}");
     }
 }
 
