@@ -11,7 +11,9 @@
 //! |---|---|
 //! | `board NAME`, `version TEXT`, `time SECONDS` | the name for `--board`, the answer to `Version`, the time stamp of the firmware file |
 //! | `programs BASE SIZE LIMIT`, `axes N` | the space of thread 1's program, its size, the end of the last; the number of axes |
-//! | `clock MHZ` | the clock of the processor |
+//! | `clock MHZ`, `counter MHZ` | the clock of the processor, the rate of TIMER0 |
+//! | `iram BASE SIZE`, `sdram BASE SIZE`, `fpga BASE SIZE`, `timer BASE SIZE` | on-chip RAM, SDRAM, the registers of the FPGA and of the timer |
+//! | `unmapped flash` | flash memory is in no addresses of programs |
 //! | `elf` | its firmware file is an ELF file, and its loader takes ELF images beside COFF2 ones |
 //! | `unproven` | nothing of it was compared with a board or its firmware in execution |
 //! | `declare PROTOTYPE`, `undeclare NAME` | a function that the header declares, or does not |
@@ -31,9 +33,9 @@ use std::sync::LazyLock;
 
 use crate::firmware::{ABSENT, FIRMWARE_FUNCTIONS, FirmwareFunction, Origin, row_named};
 use crate::hidden;
-use crate::ids::{GuestAddr, ThreadId};
+use crate::ids::{Axes, GuestAddr, ThreadId};
 use crate::limits::{N_CHANNELS, VERSION};
-use crate::map::{PROGRAM_BASE, PROGRAM_LIMIT, PROGRAM_SIZE};
+use crate::map::{MemoryMap, ProgramSpaces, Region};
 use crate::structs::STRUCTURES;
 use crate::variables::{FIRMWARE_VARIABLES, variable_named};
 
@@ -55,28 +57,17 @@ pub struct TargetBoard {
     pub version: &'static str,
     /// The time stamp of the firmware file, seconds since 1970; `None` if it is unknown.
     pub time_stamp: Option<u32>,
-    /// The number of axes.
-    pub axes: u32,
+    /// The axes.
+    pub axes: Axes,
     /// The clock of the processor, in megahertz: 200 on a KFLOP.
     pub clock: u32,
     /// True if programs for the board were compared with its firmware in execution.
     pub is_proven: bool,
     /// True if its firmware file is an ELF file and its loader takes ELF images beside COFF2 ones.
     pub has_elf: bool,
-    programs: ProgramSpaces,
+    map: MemoryMap,
     /// The differences from the default board; `None` for that board.
     facts: Option<BoardFacts>,
-}
-
-/// The spaces of the programs of threads 1 to 7.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ProgramSpaces {
-    /// The base address of the space of thread 1.
-    pub base: u32,
-    /// The bytes of each; the next thread's follows.
-    pub size: u32,
-    /// The first address that no program may use.
-    pub limit: u32,
 }
 
 impl PartialEq for TargetBoard {
@@ -165,11 +156,11 @@ impl TargetBoard {
         name: "kflop-4.34",
         version: VERSION.trim_ascii_end(),
         time_stamp: Some(1_534_288_030),
-        axes: N_CHANNELS as u32,
+        axes: Axes::new(N_CHANNELS),
         clock: 200,
         is_proven: true,
         has_elf: false,
-        programs: ProgramSpaces { base: PROGRAM_BASE, size: PROGRAM_SIZE, limit: PROGRAM_LIMIT },
+        map: MemoryMap::KFLOP,
         facts: None,
     };
 
@@ -201,7 +192,7 @@ impl TargetBoard {
     /// The board that an image is linked for: that of its version stamp, with its code in a space for programs.
     #[must_use]
     pub fn of_image(version_stamp: i16, code: u32) -> Option<&'static Self> {
-        let holds = |board: &&Self| (board.programs.base..board.programs.limit).contains(&code);
+        let holds = |board: &&Self| board.map.programs.holds(code);
         BOARDS.iter().filter(|board| board.version_stamp() == version_stamp).find(holds)
     }
 
@@ -252,13 +243,19 @@ impl TargetBoard {
     /// The start of the program of a thread.
     #[must_use]
     pub fn program_base(&self, thread: ThreadId) -> GuestAddr {
-        GuestAddr::new(self.programs.base + u32::from(thread.get() - 1) * self.programs.size)
+        self.map.programs.start(thread)
     }
 
     /// The spaces of all programs.
     #[must_use]
     pub const fn programs(&self) -> ProgramSpaces {
-        self.programs
+        self.map.programs
+    }
+
+    /// Its memories and devices.
+    #[must_use]
+    pub const fn map(&self) -> &MemoryMap {
+        &self.map
     }
 
     /// The C headers.
@@ -454,7 +451,7 @@ impl TargetBoard {
     /// The addresses of the variables of the tables on this board.
     #[must_use]
     pub fn moved_objects(&self) -> Vec<MovedObject> {
-        moved_objects(|name| self.variable(name), self.own_structures())
+        moved_objects(|name| self.variable(name), self.own_structures(), self.axes)
     }
 
     /// The layouts of structures that are not those of the default board.
@@ -499,13 +496,19 @@ impl TargetBoard {
                 "board" => board.name = rest,
                 "version" => board.version = rest,
                 "time" => board.time_stamp = Some(number(rest, 10)),
-                "axes" => board.axes = number(rest, 10),
+                "axes" => board.axes = Axes::new(number(rest, 10) as usize),
                 "programs" => {
                     let mut words = rest.split(' ').map(hexadecimal);
                     let mut next = || words.next().unwrap_or_default();
-                    board.programs = ProgramSpaces { base: next(), size: next(), limit: next() };
+                    board.map.programs = ProgramSpaces { base: next(), size: next(), limit: next() };
                 }
+                "iram" => board.map.iram = region(board.map.iram, rest),
+                "sdram" => board.map.sdram = region(board.map.sdram, rest),
+                "fpga" => board.map.fpga = region(board.map.fpga, rest),
+                "timer" => board.map.timer = region(board.map.timer, rest),
+                "unmapped" => board.map.flash = None,
                 "clock" => board.clock = number(rest, 10),
+                "counter" => board.map.counter = number(rest, 10),
                 "elf" => board.has_elf = true,
                 "unproven" => board.is_proven = false,
                 _ => facts.read(line, word, rest),
@@ -578,6 +581,12 @@ impl FieldLayout {
         let crate::structs::StructureField { name, offset, size, .. } = *field;
         Self { name, offset, size, declaration: "", meaning: "" }
     }
+}
+
+/// A region at the base and with the size of a line.
+fn region(kind: Region, line: &str) -> Region {
+    let (base, size) = line.split_once(' ').unwrap_or((line, "0"));
+    kind.at(hexadecimal(base), hexadecimal(size))
 }
 
 fn hexadecimal(text: &str) -> u32 {

@@ -126,11 +126,6 @@ macro_rules! small_id {
                 (self.0 - $low) as usize
             }
 
-            /// All valid numbers in ascending order.
-            #[inline]
-            pub fn all() -> impl DoubleEndedIterator<Item = Self> {
-                ($low..$high + 1).map(Self)
-            }
         }
 
         impl fmt::Display for $name {
@@ -146,14 +141,80 @@ small_id! {
     ThreadId(u8) = 1..=7
 }
 
-small_id! {
-    /// One of the eight axes, 0 to 7.
-    AxisId(u8) = 0..=7
+impl ThreadId {
+    /// All threads in ascending order.
+    #[inline]
+    pub fn all() -> impl DoubleEndedIterator<Item = Self> {
+        (1..=Self::MAX).map(Self)
+    }
 }
+
+small_id! {
+    /// An axis, 0 to 15. A board may have fewer: [`Axes`] are those that it has.
+    AxisId(u8) = 0..=15
+}
+
+impl AxisId {
+    /// The axes of the board that has most, in ascending order.
+    #[inline]
+    pub fn all() -> impl DoubleEndedIterator<Item = Self> {
+        Axes::new(Axes::MAX).iter()
+    }
+}
+
+/// The axes of a board, numbered from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Axes(u8);
+
+impl Axes {
+    /// The number of axes of the board that has most.
+    pub const MAX: usize = AxisId::MAX as usize + 1;
+
+    /// The first `count` axes, at most [`MAX`](Self::MAX).
+    #[must_use]
+    pub const fn new(count: usize) -> Self {
+        Self(if count < Self::MAX { count as u8 } else { Self::MAX as u8 })
+    }
+
+    /// The number of axes.
+    #[must_use]
+    #[inline]
+    pub const fn count(self) -> usize {
+        self.0 as usize
+    }
+
+    /// The number of the last axis.
+    #[must_use]
+    pub const fn last(self) -> usize {
+        self.count().saturating_sub(1)
+    }
+
+    /// Checks a number; `None` unless it is one of these axes.
+    #[must_use]
+    #[inline]
+    pub fn get(self, number: i32) -> Option<AxisId> {
+        (0..i32::from(self.0)).contains(&number).then_some(AxisId(number as u8))
+    }
+
+    /// The axes in ascending order.
+    #[inline]
+    pub fn iter(self) -> impl DoubleEndedIterator<Item = AxisId> + ExactSizeIterator + Clone {
+        (0..self.0).map(AxisId)
+    }
+}
+
 
 small_id! {
     /// A numbered digital input or output, 0 to 2047.
     Bit(u16) = 0..=2047
+}
+
+impl Bit {
+    /// All bits in ascending order.
+    #[inline]
+    pub fn all() -> impl DoubleEndedIterator<Item = Self> {
+        (0..=Self::MAX).map(Self)
+    }
 }
 
 /// A count of servo samples (90 µs each) since power-up.
@@ -271,6 +332,15 @@ mod tests {
         assert_eq!(ThreadId::new(8), None);
         assert_eq!(ThreadId::new(7).map(ThreadId::index), Some(6));
         assert_eq!(ThreadId::all().count(), 7);
+    }
+
+    #[test]
+    fn a_board_has_its_axes_and_no_others() {
+        let numbers = |axes: Axes| [-1, 7, 8, 15, 16].map(|number| axes.get(number).map(AxisId::get));
+        assert_eq!(numbers(Axes::default()), [None, Some(7), None, None, None]);
+        assert_eq!(numbers(Axes::new(16)), [None, Some(7), Some(8), Some(15), None]);
+        assert_eq!(Axes::new(17), Axes::new(Axes::MAX));
+        assert!(Axes::default().iter().map(AxisId::index).eq(0..8));
     }
 
     #[test]

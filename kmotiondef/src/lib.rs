@@ -42,5 +42,5 @@ pub mod variables;
 mod tests;
 
 pub use ctype::{CType, GuestType, Plain, Scalar, ValueClass};
-pub use ids::{AccessSize, AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
+pub use ids::{AccessSize, Axes, AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 pub use place::{Field, Place};

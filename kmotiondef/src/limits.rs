@@ -1,5 +1,7 @@
 //! The plain numbers of the board that Rust code needs; the headers have the rest.
 
+use crate::ids::Axes;
+
 macro_rules! limits {
     ($($(#[$doc:meta])+ $name:ident: $ty:ty = $value:literal;)*) => {
         $($(#[$doc])+ pub const $name: $ty = $value;)*
@@ -85,6 +87,13 @@ limits! {
     ENC_NOISE_FILTER_DEFAULT_VAL: u8 = 7;
     /// Bytes that a flash erase covers.
     FLASH_BLOCK_SIZE: u32 = 0x10000;
+}
+
+/// The axes of the default board.
+impl Default for Axes {
+    fn default() -> Self {
+        Self::new(N_CHANNELS)
+    }
 }
 
 #[cfg(test)]

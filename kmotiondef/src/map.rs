@@ -2,6 +2,8 @@
 //!
 //! Source: firmware 4.34, table `api/memory-map.csv` of the specification.
 
+use std::ops::Range;
+
 use crate::{GuestAddr, ThreadId};
 
 /// The kind of an address range.
@@ -49,6 +51,99 @@ regions! {
     FLASH = "flash" at 0x9000_0000, size 0x20_0000, Flash;
     /// Registers of the FPGA.
     FPGA = "FPGA registers" at 0x9100_0000, size 0x1000, Device;
+}
+
+/// The memories and devices of a board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MemoryMap {
+    /// On-chip RAM.
+    pub iram: Region,
+    /// The registers of the timer that programs read.
+    pub timer: Region,
+    /// The counting rate of TIMER0, in megahertz.
+    pub counter: u32,
+    /// SDRAM.
+    pub sdram: Region,
+    /// Flash memory; `None` if programs do not see it.
+    pub flash: Option<Region>,
+    /// Registers of the FPGA.
+    pub fpga: Region,
+    /// The spaces of the programs of threads 1 to 7.
+    pub programs: ProgramSpaces,
+}
+
+/// The spaces of the programs of threads 1 to 7.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ProgramSpaces {
+    /// The base address of the space of thread 1.
+    pub base: u32,
+    /// The bytes of each; the next thread's follows.
+    pub size: u32,
+    /// The first address that no program may use.
+    pub limit: u32,
+}
+
+impl ProgramSpaces {
+    /// The start of the space of a thread.
+    #[must_use]
+    pub const fn start(&self, thread: ThreadId) -> GuestAddr {
+        GuestAddr::new(self.base + thread.index() as u32 * self.size)
+    }
+
+    /// The addresses of the space of a thread; a program may go on after them.
+    #[must_use]
+    pub const fn space(&self, thread: ThreadId) -> Range<u32> {
+        let start = self.start(thread).get();
+        start..start + self.size
+    }
+
+    /// Returns whether an address is in the spaces of programs.
+    #[must_use]
+    #[inline]
+    pub const fn holds(&self, address: u32) -> bool {
+        address >= self.base && address < self.limit
+    }
+}
+
+impl Region {
+    /// Returns whether an address is in the region.
+    #[must_use]
+    #[inline]
+    pub const fn holds(&self, address: GuestAddr) -> bool {
+        address.get().wrapping_sub(self.base.get()) < self.size
+    }
+
+    /// The same region elsewhere.
+    #[must_use]
+    pub const fn at(self, base: u32, size: u32) -> Self {
+        Self { base: GuestAddr::new(base), size, ..self }
+    }
+}
+
+impl MemoryMap {
+    /// The map of a KFLOP, which the constants above and below state.
+    pub const KFLOP: Self = Self {
+        iram: IRAM,
+        timer: TIMER,
+        counter: 50,
+        sdram: SDRAM,
+        flash: Some(FLASH),
+        fpga: FPGA,
+        programs: ProgramSpaces { base: PROGRAM_BASE, size: PROGRAM_SIZE, limit: PROGRAM_LIMIT },
+    };
+
+    /// The address of TIMER0, which is at the same place among the timer's registers on every board.
+    #[must_use]
+    pub const fn timer0(&self) -> GuestAddr {
+        self.timer.base.offset(TIMER0.get() - TIMER.base.get())
+    }
+
+    /// Every mapped region.
+    pub fn regions(&self) -> impl Iterator<Item = Region> {
+        [Some(self.iram), Some(self.timer), Some(self.sdram), self.flash, Some(self.fpga)]
+            .into_iter()
+            .flatten()
+    }
 }
 
 /// Bytes of the internal ROM, which begins at address 0.

@@ -8,9 +8,9 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-use crate::GuestAddr;
 use crate::ctype::{Bool, CType, Char, Const, GuestType, UserCallback, Volatile};
-use crate::limits::{N_USER_DATA_VARS, VERSION};
+use crate::ids::{Axes, AxisId, GuestAddr};
+use crate::limits::{N_CHANNELS, N_USER_DATA_VARS, VERSION};
 use crate::place::Place;
 use crate::start::Start::{self, Address, Double, Each, Fields, Float, Int, Text, Words, Zero};
 use crate::start::Stored;
@@ -43,6 +43,36 @@ const TRANSMIT_RING: GuestAddr = RS232_TX_BUF.address();
 /// The address of an axis' structure.
 const fn axis(number: usize) -> GuestAddr {
     CHAN.element(number).address()
+}
+
+/// Axes of the tables, and those beyond.
+const TABLE_AXES: usize = N_CHANNELS;
+const LATER_AXES: usize = Axes::MAX - TABLE_AXES;
+
+/// The structures of the axes from 8 on, and their profiles, which a KFLOP does not have: in the tables they are where
+/// no memory is, and [`moved_objects`](crate::boards::moved_objects) has their places on a board.
+pub(crate) const LATER_CHAN: Place<[Chan; LATER_AXES]> = Place::new(GuestAddr::new(0xE000_0000));
+pub(crate) const LATER_TRIP_COEFFS: Place<[[TripCoeff; 20]; LATER_AXES]> =
+    Place::new(GuestAddr::new(0xE001_0000));
+
+/// The structure of an axis.
+#[must_use]
+#[inline]
+pub const fn chan(axis: AxisId) -> Place<Chan> {
+    match axis.index().checked_sub(TABLE_AXES) {
+        None => CHAN.element(axis.index()),
+        Some(later) => LATER_CHAN.element(later),
+    }
+}
+
+/// The profile of an axis.
+#[must_use]
+#[inline]
+pub const fn trip_coeffs(axis: AxisId) -> Place<[TripCoeff; 20]> {
+    match axis.index().checked_sub(TABLE_AXES) {
+        None => TRIP_COEFFS.element(axis.index()),
+        Some(later) => LATER_TRIP_COEFFS.element(later),
+    }
 }
 
 macro_rules! variables {

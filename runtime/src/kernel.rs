@@ -6,7 +6,6 @@ use kmotiondef::AccessSize;
 use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, FirmwareFunction, Function, function_at};
 use kmotiondef::function::{Attributes, Polled};
 use kmotiondef::limits::MAX_GATHER_DATA;
-use kmotiondef::map::{FPGA, PROGRAM_SIZE, TIMER0, program_base};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::{
     CURRENT_THREAD, LAST_TIMER0, NEXT_AVAIL_IN, NEXT_AVAIL_OUT, SERVO_TICK, USER_CALL_BACK,
@@ -84,6 +83,7 @@ impl Kernel {
         let method = parts.level.board().variable("StandardDerivativeMethod");
         parts.servo.cache.derivative_method = method;
         parts.servo.planner = parts.level.behaviour().planner;
+        parts.pc.downloads.spaces = parts.level.board().programs();
         Self { signatures, callees: Callees::of(parts.level.board()), parts, scripts: Scripts::default() }
     }
 
@@ -154,7 +154,7 @@ impl Kernel {
             (Some(thread), None) if !is_pure => calls.act(thread, caller.now()),
             (Some(_) | None, _) => {}
         }
-        if *drives_axis && let Some(axis) = AxisId::new(caller.arguments.get(0)) {
+        if *drives_axis && let Some(axis) = caller.memory.axes().get(caller.arguments.get(0)) {
             calls.touch(axis);
         }
         if let Some(assist) = &mut self.parts.world.assist {
@@ -205,10 +205,8 @@ impl Kernel {
     /// Reports a call-back of one thread that replaces that of another.
     fn note_call_back(&mut self, call_back: GuestAddr, now: Cycles) {
         let owner = |address: GuestAddr| {
-            ThreadId::all().find(|thread| {
-                let start = program_base(*thread).get();
-                (start..start + PROGRAM_SIZE).contains(&address.get())
-            })
+            let spaces = self.parts.level.board().programs();
+            ThreadId::all().find(|thread| spaces.space(*thread).contains(&address.get()))
         };
         let before = std::mem::replace(&mut self.parts.calls.notices.call_back, call_back);
         if let (Some(thread), Some(by)) = (owner(before), owner(call_back))
@@ -308,23 +306,25 @@ fn store_time(context: &mut TickContext<'_>) {
     let (tick, now) = (context.tick, context.now);
     context.memory.untouched(|memory| {
         memory.set(SERVO_TICK, tick.get() as f64);
-        memory.set(LAST_TIMER0, timer::count(now));
+        let count = timer::count(memory.map(), now);
+        memory.set(LAST_TIMER0, count);
     });
 }
 
 impl Bus for Kernel {
     fn read(&mut self, addr: GuestAddr, size: AccessSize, now: Cycles) -> u32 {
-        if addr == TIMER0 {
-            return timer::count(now);
+        let map = self.parts.level.board().map();
+        if addr == map.timer0() {
+            return timer::count(map, now);
         }
-        if addr < FPGA.base {
+        if !map.fpga.holds(addr) {
             return 0;
         }
         self.parts.read_register(addr, size, now)
     }
 
     fn write(&mut self, addr: GuestAddr, size: AccessSize, value: u32, now: Cycles) {
-        if addr < FPGA.base {
+        if !self.parts.level.board().map().fpga.holds(addr) {
             self.parts.out.remark(now, Message::NoEffect { address: addr });
             return;
         }
@@ -334,7 +334,7 @@ impl Bus for Kernel {
     fn access_cycles(&self, addr: GuestAddr) -> Cycles {
         match self.parts.timing.wait_states() {
             Some(waits) => Cycles::new(waits.register.into()),
-            None if addr >= FPGA.base => FPGA_CYCLES,
+            None if self.parts.level.board().map().fpga.holds(addr) => FPGA_CYCLES,
             None => TIMER_CYCLES,
         }
     }

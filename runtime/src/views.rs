@@ -3,6 +3,7 @@
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::CHAN;
+pub(crate) use kmotiondef::variables::chan;
 use kmotiondef::{AxisId, Field, GuestAddr, GuestType, Place, Plain, Scalar};
 use vm::memory::GuestMemory;
 
@@ -16,18 +17,29 @@ pub(crate) trait Typed {
     /// The address of a place in this memory.
     fn locate<T>(&self, place: Place<T>) -> GuestAddr;
 
+    /// The structure of an axis.
+    fn chan(&self, axis: AxisId) -> Place<Chan>;
+
     /// The value of a field of an axis.
+    #[inline]
     fn axis<T: Scalar>(&self, axis: AxisId, field: Field<T>) -> T::Value {
-        self.get(chan(axis).field(field))
+        self.get(self.chan(axis).field(field))
     }
 
     /// Stores a value in a field of an axis.
+    #[inline]
     fn set_axis<T: Scalar>(&mut self, axis: AxisId, field: Field<T>, value: T::Value) {
-        self.set(chan(axis).field(field), value);
+        self.set(self.chan(axis).field(field), value);
     }
 }
 
 impl Typed for GuestMemory {
+    #[inline]
+    fn chan(&self, axis: AxisId) -> Place<Chan> {
+        // Only a board whose objects are elsewhere has more axes than the tables.
+        if self.is_by_tables() { CHAN.element(axis.index()) } else { chan(axis) }
+    }
+
     #[inline]
     fn locate<T>(&self, place: Place<T>) -> GuestAddr {
         self.place_of(place.address())
@@ -56,9 +68,9 @@ impl Typed for GuestMemory {
     }
 }
 
-/// Bytes of an axis' structure, and of all of them.
+/// Bytes of an axis' structure, and of all eight of the tables.
 const CHAN_SIZE: usize = Chan::SIZE as usize;
-pub(crate) const CHANS_SIZE: usize = CHAN_SIZE * N_CHANNELS;
+const CHANS_SIZE: usize = CHAN_SIZE * N_CHANNELS;
 
 /// The structure of an axis, found once for the many fields that a tick needs.
 pub(crate) struct AxisView<'a>(&'a mut [u8; CHAN_SIZE]);
@@ -67,14 +79,13 @@ impl<'a> AxisView<'a> {
     /// The structure of `axis` in `memory`.
     #[inline(always)]
     pub(crate) fn of(memory: &'a mut GuestMemory, axis: AxisId) -> Self {
-        // All eight, because their address is mostly a constant: where they lie is then known while this is compiled.
-        let all: Option<&mut [u8; CHANS_SIZE]> = if memory.is_by_tables() {
-            memory.block_mut(CHAN.address())
-        } else {
-            memory.block_mut(memory.locate(CHAN))
-        };
-        let all = all.expect("the axis structures lie in RAM");
-        let (chans, _) = all.as_chunks_mut();
+        // All eight, because their address is a constant: where they lie is then known while this is compiled.
+        if !memory.is_by_tables() {
+            let place = memory.locate(chan(axis));
+            return Self(memory.block_mut(place).expect("the axis structures lie in RAM"));
+        }
+        let all: Option<&mut [u8; CHANS_SIZE]> = memory.block_mut(CHAN.address());
+        let (chans, _) = all.expect("the axis structures lie in RAM").as_chunks_mut();
         Self(&mut chans[axis.index()])
     }
 
@@ -119,12 +130,7 @@ fn chunk<const N: usize>(bytes: &[u8], offset: usize) -> [u8; N] {
     *bytes[offset..].first_chunk().expect("a field lies in its structure")
 }
 
-/// The structure of an axis.
-pub(crate) fn chan(axis: AxisId) -> Place<Chan> {
-    CHAN.element(axis.index())
-}
-
 /// The axis whose structure starts at an address.
 pub(crate) fn axis_at(memory: &GuestMemory, address: GuestAddr) -> Option<AxisId> {
-    AxisId::all().find(|&axis| memory.locate(chan(axis)) == address)
+    memory.axes().iter().find(|&axis| memory.locate(chan(axis)) == address)
 }

@@ -7,10 +7,14 @@ use std::thread;
 
 use harness::{Output, Scratch, cc67};
 
-/// Words of the status record.
-const STATUS_WORDS: usize = 174;
+/// The enabled axis.
+const AXIS: usize = 12;
 
-/// A board at rest; the lines that it receives arrive at the other end.
+/// Words of the status record, and the number of that with the enabled axes.
+const STATUS_WORDS: usize = 174;
+const ENABLES: usize = 126;
+
+/// A board with one enabled axis; the lines that it receives arrive at the other end.
 fn board() -> (SocketAddr, Receiver<String>) {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
     let address = listener.local_addr().expect("its address");
@@ -54,7 +58,7 @@ fn reply(command: &str) -> String {
         "VERSION" => "KOGNA 5.3.2 Build 18:10:31 Jan 31 2024\r\n".to_owned(),
         "GETSTATUS" => {
             let mut words = vec![0_u32; STATUS_WORDS];
-            words[0] = 309 << 16 | STATUS_WORDS as u32;
+            (words[0], words[ENABLES]) = (309 << 16 | STATUS_WORDS as u32, 1 << AXIS);
             let words: Vec<_> = words.iter().map(|word| format!("{word:08X}")).collect();
             words.chunks(16).map(|line| line.join(" ") + "\r\n").collect()
         }
@@ -66,6 +70,18 @@ fn reply(command: &str) -> String {
 fn on(scratch: &Scratch, words: &[&str], address: SocketAddr, more: &[&str]) -> Output {
     let place = format!("tcp:{address}");
     cc67(scratch, [words, &["--yes", "--on", &place], more].concat())
+}
+
+#[test]
+fn flash_of_a_kogna_is_not_written_while_one_of_its_upper_axes_is_enabled() {
+    let scratch = Scratch::new("kogna-flash");
+    let (address, _) = board();
+    let output = on(&scratch, &["flash"], address, &[]);
+    let expect = "flash is not written: enabled axes (12) are enabled at power-up; end that first: \
+                  `cc67 console --on tcp:";
+    assert!(output.stderr.contains(expect), "{}", output.stderr);
+    assert!(output.stderr.contains("then DisableAxis12"), "{}", output.stderr);
+    assert_eq!(output.code, 2, "{output:?}");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use kmotiondef::GuestAddr;
 use crate::engine::Slice;
 use crate::firmware::Firmware;
 use crate::kind::Width;
-use crate::memory::{Scalar, is_on_bus};
+use crate::memory::Scalar;
 use crate::slot::Slot;
 use crate::trap::{Access, TrapKind};
 use kmotiondef::AccessSize;
@@ -97,7 +97,7 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
     /// A load that memory has refused as `kind`.
     #[cold]
     fn load_from_bus<T: Scalar>(&mut self, addr: GuestAddr, kind: TrapKind) -> Result<T, TrapKind> {
-        if !is_on_bus(addr, Access::Read) {
+        if !self.memory.is_on_bus(addr, Access::Read) {
             return Err(kind);
         }
         let addr = self.memory.aligned(addr, T::LOAD_ALIGN);
@@ -118,7 +118,7 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
     /// A store that memory has refused as `kind`.
     #[cold]
     fn store_to_bus<T: Scalar>(&mut self, addr: GuestAddr, value: T, kind: TrapKind) -> Result<(), TrapKind> {
-        if !is_on_bus(addr, Access::Write) {
+        if !self.memory.is_on_bus(addr, Access::Write) {
             return Err(kind);
         }
         let addr = self.memory.aligned(addr, T::STORE_ALIGN);

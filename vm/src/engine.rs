@@ -7,7 +7,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use kmotiondef::map::{BOARD_STACK_SIZE, CALLBACK_STACK_BASE, STACK_SIZE, stack_base};
+use kmotiondef::map::{BOARD_STACK_SIZE, CALLBACK_STACK_BASE, MemoryMap, SDRAM, STACK_SIZE, stack_base};
 use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 
 use crate::call::CallArguments;
@@ -98,11 +98,19 @@ impl ContextId {
         }
     }
 
-    /// The stack of the context.
+    /// The stack of the context on a KFLOP.
     #[must_use]
     pub fn stack(self, strict: bool) -> Stack {
+        self.stack_in(&MemoryMap::KFLOP, strict)
+    }
+
+    /// The stack of the context in the memory of a board.
+    #[must_use]
+    pub fn stack_in(self, map: &MemoryMap, strict: bool) -> Stack {
         let base = self.0.map_or(GuestAddr::new(CALLBACK_STACK_BASE), stack_base);
-        let top = base.get() + STACK_SIZE;
+        // Stacks are at the beginning of SDRAM.
+        let top = base.get() - SDRAM.base.get() + map.sdram.base.get() + STACK_SIZE;
+        let base = GuestAddr::new(top - STACK_SIZE);
         Stack { limit: if strict { top - BOARD_STACK_SIZE } else { base.get() }, top }
     }
 }

@@ -349,7 +349,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         let id = ContextId::CALLBACK;
         let found = self.loaded.iter().flatten().find(|loaded| loaded.has_function(address));
         let started = found.ok_or(TrapKind::BadCallTarget { addr: address }).and_then(|loaded| {
-            let stack = id.stack(self.config.strict_stack);
+            let stack = id.stack_in(self.memory.map(), self.config.strict_stack);
             self.engines.start(id, loaded, address, stack, &self.firmware)
         });
         if let Err(kind) = started {
@@ -431,7 +431,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     fn enter(&mut self, thread: ThreadId) -> Result<(), Trap> {
         let entry = self.threads.entry(thread);
         let id = ContextId::of(thread);
-        let stack = id.stack(self.config.strict_stack);
+        let stack = id.stack_in(self.memory.map(), self.config.strict_stack);
         let loaded = self.loaded[thread.index()].as_ref();
         loaded
             .ok_or(TrapKind::BadCallTarget { addr: entry })

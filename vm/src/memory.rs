@@ -17,6 +17,7 @@
     )
 )]
 
+mod board;
 mod flash;
 pub mod places;
 pub mod snapshot;
@@ -24,8 +25,8 @@ pub mod snapshot;
 use std::ops::Range;
 use std::sync::LazyLock;
 
-use kmotiondef::map::{FLASH, IRAM, REGIONS, ROM_SIZE, RegionKind, SDRAM, silent_from};
-use kmotiondef::{GuestAddr, ThreadId};
+use kmotiondef::map::{FLASH, IRAM, MemoryMap, ROM_SIZE, SDRAM, silent_from};
+use kmotiondef::{Axes, GuestAddr, ThreadId};
 
 use self::flash::Flash;
 use self::places::Places;
@@ -141,11 +142,17 @@ scalars! {
 }
 
 /// The guest's 32-bit address space.
+///
+/// The kernel's accesses try the addresses of a KFLOP first, which are constants. On a board with another map a miss there
+/// is the rule, and the access is made where that map says.
 #[derive(Clone, Debug)]
 pub struct GuestMemory {
     sdram: Box<[u8; SDRAM_SIZE]>,
     iram: Box<[u8; IRAM_SIZE]>,
+    /// On-chip RAM of a board other than a KFLOP, in place of `iram`.
+    other_iram: Option<Box<[u8]>>,
     flash: Flash,
+    map: &'static MemoryMap,
     protection: Protection,
     faults: Faults,
     /// True if on-chip RAM may have been written, see [`GuestMemory::take_touched`].
@@ -153,13 +160,15 @@ pub struct GuestMemory {
     /// The regions of the last snapshot, which the next one shares.
     last: Option<Regions>,
     places: Places,
+    axes: Axes,
 }
 
 /// Compares the memory that a program can see, without its writers.
 impl PartialEq for GuestMemory {
     fn eq(&self, other: &Self) -> bool {
-        self.sdram == other.sdram
-            && self.iram == other.iram
+        self.map == other.map
+            && self.sdram == other.sdram
+            && self.iram_bytes() == other.iram_bytes()
             && self.flash == other.flash
             && self.protection == other.protection
     }
@@ -176,11 +185,19 @@ impl Default for GuestMemory {
 /// The large memory.
 pub(crate) type Sdram = [u8; SDRAM_SIZE];
 
+/// The first addresses of both RAMs.
+#[derive(Clone, Copy, Debug)]
+struct Bases {
+    sdram: u32,
+    iram: u32,
+}
+
 /// The state for accesses of RAM besides SDRAM, and for divisions.
 ///
 /// An engine that has both apart can keep the place of SDRAM in a register of the processor.
 pub(crate) struct RamRest<'a> {
-    iram: &'a mut [u8; IRAM_SIZE],
+    iram: &'a mut [u8],
+    bases: Bases,
     protection: &'a Protection,
     faults: Faults,
     is_touched: &'a mut bool,
@@ -190,7 +207,7 @@ impl RamRest<'_> {
     /// [`GuestMemory::load_ram`]
     #[inline(always)]
     pub(crate) fn load_ram<T: Scalar>(&self, sdram: &Sdram, addr: GuestAddr) -> Option<T> {
-        load_ram(sdram, self.iram, addr)
+        load_ram(sdram, self.iram, self.bases, addr)
     }
 
     /// [`GuestMemory::store_ram`]
@@ -205,8 +222,8 @@ impl RamRest<'_> {
         if self.protection.covers_aligned(address) {
             return None;
         }
-        if value.set_multiple(sdram, address.wrapping_sub(SDRAM_BASE)).is_none() {
-            value.set_multiple(self.iram, address.wrapping_sub(IRAM_BASE))?;
+        if value.set_multiple(sdram, address.wrapping_sub(self.bases.sdram)).is_none() {
+            value.set_multiple(self.iram, address.wrapping_sub(self.bases.iram))?;
             *self.is_touched = true;
         }
         Some(())
@@ -224,10 +241,10 @@ impl RamRest<'_> {
 
 /// A value at a multiple of its size in one of the two.
 #[inline(always)]
-fn load_ram<T: Scalar>(sdram: &Sdram, iram: &[u8; IRAM_SIZE], addr: GuestAddr) -> Option<T> {
+fn load_ram<T: Scalar>(sdram: &Sdram, iram: &[u8], bases: Bases, addr: GuestAddr) -> Option<T> {
     let address = addr.get();
-    T::get_multiple(sdram, address.wrapping_sub(SDRAM_BASE))
-        .or_else(|| T::get_multiple(iram, address.wrapping_sub(IRAM_BASE)))
+    T::get_multiple(sdram, address.wrapping_sub(bases.sdram))
+        .or_else(|| T::get_multiple(iram, address.wrapping_sub(bases.iram)))
 }
 
 const fn divided_by_zero(faults: Faults, op: WordDivision, a: i32) -> Result<i32, TrapKind> {
@@ -244,38 +261,16 @@ impl GuestMemory {
         Self {
             sdram: filled(0),
             iram: filled(0),
+            other_iram: None,
             flash: Flash::default(),
+            map: &MemoryMap::KFLOP,
             protection: Protection::default(),
             faults: Faults::default(),
             is_touched: true,
             last: None,
             places: Places::default(),
+            axes: Axes::default(),
         }
-    }
-
-    /// Says where the objects of the tables are in this memory.
-    pub fn set_places(&mut self, places: Places) {
-        self.places = places;
-    }
-
-    /// Returns whether all objects are where the tables have them.
-    #[inline(always)]
-    #[must_use]
-    pub const fn is_by_tables(&self) -> bool {
-        self.places.is_by_tables()
-    }
-
-    /// The place of an address of the tables.
-    #[inline(always)]
-    #[must_use]
-    pub fn place_of(&self, address: GuestAddr) -> GuestAddr {
-        self.places.of(address)
-    }
-
-    /// The address of the tables for a place.
-    #[must_use]
-    pub fn table_of(&self, place: GuestAddr) -> GuestAddr {
-        self.places.table_of(place)
     }
 
     /// Chooses what accesses and divisions do that a program should not make.
@@ -328,7 +323,7 @@ impl GuestMemory {
     #[must_use]
     #[inline(always)]
     pub fn load_ram<T: Scalar>(&self, addr: GuestAddr) -> Option<T> {
-        load_ram(&self.sdram, &self.iram, addr)
+        load_ram(&self.sdram, self.iram_bytes(), self.bases(), addr)
     }
 
     #[cold]
@@ -378,14 +373,17 @@ impl GuestMemory {
     /// SDRAM, and what else an engine needs for accesses of RAM.
     #[inline(always)]
     pub(crate) fn split(&mut self) -> (&mut Sdram, RamRest<'_>) {
-        let Self { sdram, iram, protection, faults, is_touched, .. } = self;
-        (sdram, RamRest { iram, protection, faults: *faults, is_touched })
+        let bases = self.bases();
+        let Self { sdram, iram, other_iram, protection, faults, is_touched, .. } = self;
+        let iram = other_iram.as_deref_mut().unwrap_or(&mut iram[..]);
+        (sdram, RamRest { iram, bases, protection, faults: *faults, is_touched })
     }
 
     #[inline]
     fn write_ram<T: Scalar>(&mut self, address: u32, value: T) -> Option<()> {
-        if value.set(&mut self.sdram[..], index(address.wrapping_sub(SDRAM_BASE))).is_none() {
-            value.set(&mut self.iram[..], index(address.wrapping_sub(IRAM_BASE)))?;
+        let bases = self.bases();
+        if value.set(&mut self.sdram[..], index(address.wrapping_sub(bases.sdram))).is_none() {
+            value.set(self.iram_bytes_mut(), index(address.wrapping_sub(bases.iram)))?;
             self.is_touched = true;
         }
         Some(())
@@ -409,6 +407,7 @@ impl GuestMemory {
         T::get(&self.iram[..], index(address.wrapping_sub(IRAM_BASE)))
             .or_else(|| T::get(&self.sdram[..], index(address.wrapping_sub(SDRAM_BASE))))
             .or_else(|| T::get(self.flash.bytes(), index(address.wrapping_sub(FLASH_BASE))))
+            .or_else(|| self.peek_by_map(address))
             .unwrap_or_default()
     }
 
@@ -423,7 +422,8 @@ impl GuestMemory {
         }
         let _ = value
             .set(&mut self.sdram[..], index(address.wrapping_sub(SDRAM_BASE)))
-            .or_else(|| value.set(self.flash.bytes_mut(), index(address.wrapping_sub(FLASH_BASE))));
+            .or_else(|| value.set(self.flash.bytes_mut(), index(address.wrapping_sub(FLASH_BASE))))
+            .or_else(|| self.poke_by_map(address, value));
     }
 
     /// The `len` bytes from `addr` on.
@@ -463,7 +463,10 @@ impl GuestMemory {
         if let Some(block) = self.sdram.get(index(address.wrapping_sub(SDRAM_BASE))..) {
             return block.first_chunk();
         }
-        self.iram.get(index(address.wrapping_sub(IRAM_BASE))..)?.first_chunk()
+        if let Some(block) = self.iram.get(index(address.wrapping_sub(IRAM_BASE))..) {
+            return block.first_chunk();
+        }
+        self.block_by_map(address)
     }
 
     /// [`block`](Self::block), to change it.
@@ -472,10 +475,13 @@ impl GuestMemory {
     pub fn block_mut<const N: usize>(&mut self, addr: GuestAddr) -> Option<&mut [u8; N]> {
         let address = addr.get();
         self.is_touched = true;
-        if let Some(block) = self.iram.get_mut(index(address.wrapping_sub(IRAM_BASE))..) {
-            return block.first_chunk_mut();
+        if let Some(offset) = offset_in(addr, IRAM_BASE, IRAM_SIZE) {
+            return self.iram.get_mut(offset..)?.first_chunk_mut();
         }
-        self.sdram.get_mut(index(address.wrapping_sub(SDRAM_BASE))..)?.first_chunk_mut()
+        if let Some(offset) = offset_in(addr, SDRAM_BASE, SDRAM_SIZE) {
+            return self.sdram.get_mut(offset..)?.first_chunk_mut();
+        }
+        self.block_mut_by_map(address)
     }
 
     /// Reads a string up to its closing 0, which is not part of the result, or `max` bytes.
@@ -502,7 +508,8 @@ impl GuestMemory {
     pub fn copy(&mut self, to: GuestAddr, from: GuestAddr, len: u32) -> Result<(), TrapKind> {
         self.bytes(from, len)?;
         self.check_writable(to, len)?;
-        let offset = |addr: GuestAddr| index(addr.get().wrapping_sub(SDRAM_BASE));
+        let base = self.bases().sdram;
+        let offset = |addr: GuestAddr| index(addr.get().wrapping_sub(base));
         if let Some(source) = range_within(offset(from), len, SDRAM_SIZE)
             && range_within(offset(to), len, SDRAM_SIZE).is_some()
         {
@@ -587,12 +594,13 @@ impl GuestMemory {
             return Ok(&mut []);
         }
         let end = addr.offset(self.rest_of_region(addr).map_or(0, length));
-        let (region, offset) = if let Some(offset) = offset_in(addr, SDRAM_BASE, SDRAM_SIZE) {
+        let bases = self.bases();
+        let (region, offset) = if let Some(offset) = offset_in(addr, bases.sdram, SDRAM_SIZE) {
             (&mut self.sdram[..], offset)
-        } else if let Some(offset) = offset_in(addr, IRAM_BASE, IRAM_SIZE) {
+        } else if let Some(offset) = offset_in(addr, bases.iram, self.iram_bytes().len()) {
             self.is_touched = true;
-            (&mut self.iram[..], offset)
-        } else if let Some(offset) = offset_in(addr, FLASH_BASE, flash::SIZE) {
+            (self.iram_bytes_mut(), offset)
+        } else if let Some(offset) = self.offset_in_flash(addr) {
             (&mut self.flash.bytes_mut()[..], offset)
         } else {
             return Err(TrapKind::Unmapped { addr, access: Access::Write });
@@ -604,11 +612,12 @@ impl GuestMemory {
 
     /// The bytes from `addr` to the end of its region.
     fn rest_of_region(&self, addr: GuestAddr) -> Option<&[u8]> {
-        if let Some(offset) = offset_in(addr, SDRAM_BASE, SDRAM_SIZE) {
+        let (bases, iram) = (self.bases(), self.iram_bytes());
+        if let Some(offset) = offset_in(addr, bases.sdram, SDRAM_SIZE) {
             self.sdram.get(offset..)
-        } else if let Some(offset) = offset_in(addr, IRAM_BASE, IRAM_SIZE) {
-            self.iram.get(offset..)
-        } else if let Some(offset) = offset_in(addr, FLASH_BASE, flash::SIZE) {
+        } else if let Some(offset) = offset_in(addr, bases.iram, iram.len()) {
+            iram.get(offset..)
+        } else if let Some(offset) = self.offset_in_flash(addr) {
             self.flash.bytes().get(offset..)
         } else {
             self.silent(addr)
@@ -627,19 +636,6 @@ impl GuestMemory {
     fn is_silent(&self, addr: GuestAddr, len: u32) -> bool {
         self.silent(addr).is_some_and(|bytes| bytes.len() >= index(len))
     }
-}
-
-/// Reports whether an access of `addr` goes to the bus: registers always, flash for a store.
-#[must_use]
-pub fn is_on_bus(addr: GuestAddr, access: Access) -> bool {
-    REGIONS
-        .iter()
-        .filter(|region| match region.kind {
-            RegionKind::Device => true,
-            RegionKind::Flash => access == Access::Write,
-            RegionKind::Ram => false,
-        })
-        .any(|region| addr.get().wrapping_sub(region.base.get()) < region.size)
 }
 
 const _: () = assert!(index_const(SDRAM.size) == SDRAM_SIZE);

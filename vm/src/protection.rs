@@ -5,14 +5,10 @@
 use std::ops::Range;
 
 use kmotiondef::ThreadId;
-use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT};
+use kmotiondef::map::{MemoryMap, ProgramSpaces};
 
 /// Bytes that one bit stands for.
 const GRANULE: u32 = 8;
-const GRANULES: u32 = (PROGRAM_LIMIT - PROGRAM_BASE) / GRANULE;
-
-/// Words of the map.
-const MAP: usize = GRANULES.div_ceil(u64::BITS) as usize;
 
 /// A range of addresses for each thread.
 pub(crate) type Texts = [Range<u32>; ThreadId::MAX as usize];
@@ -21,7 +17,9 @@ pub(crate) type Texts = [Range<u32>; ThreadId::MAX as usize];
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Protection {
     texts: Texts,
-    map: Box<[u64; MAP]>,
+    /// The area of programs.
+    area: ProgramSpaces,
+    map: Box<[u64]>,
     /// The addresses from the first to the last that is protected: most stores go elsewhere and need not ask the map.
     hull: Hull,
 }
@@ -35,25 +33,33 @@ struct Hull {
 
 impl Default for Protection {
     fn default() -> Self {
-        Self { texts: Default::default(), map: Box::new([0; MAP]), hull: Hull::default() }
+        Self::of(MemoryMap::KFLOP.programs)
     }
 }
 
 impl Protection {
+    /// Nothing is protected in an area of programs.
+    pub(crate) fn of(area: ProgramSpaces) -> Self {
+        let words = ((area.limit - area.base) / GRANULE).div_ceil(u64::BITS) as usize;
+        let map = vec![0; words].into_boxed_slice();
+        Self { texts: Default::default(), area, map, hull: Hull::default() }
+    }
+
     /// Sets `thread`'s range; only whole granules inside the program area are protected.
     pub(crate) fn set(&mut self, thread: ThreadId, text: Range<u32>) {
         self.texts[thread.index()] = text;
         self.map.fill(0);
         let (mut lowest, mut highest) = (u32::MAX, 0);
         for text in &self.texts {
-            let first = text.start.clamp(PROGRAM_BASE, PROGRAM_LIMIT).div_ceil(GRANULE);
-            let end = text.end.clamp(PROGRAM_BASE, PROGRAM_LIMIT) / GRANULE;
+            let ProgramSpaces { base, limit, .. } = self.area;
+            let first = text.start.clamp(base, limit).div_ceil(GRANULE);
+            let end = text.end.clamp(base, limit) / GRANULE;
             if first < end {
                 lowest = lowest.min(first * GRANULE);
                 highest = highest.max(end * GRANULE);
             }
             for granule in first..end {
-                let bit = granule - PROGRAM_BASE / GRANULE;
+                let bit = granule - base / GRANULE;
                 self.map[(bit / u64::BITS) as usize] |= 1 << (bit % u64::BITS);
             }
         }
@@ -80,7 +86,7 @@ impl Protection {
     #[inline]
     pub(crate) fn covers_aligned(&self, address: u32) -> bool {
         address.wrapping_sub(self.hull.first) < self.hull.size
-            && self.is_set(address.wrapping_sub(PROGRAM_BASE) / GRANULE)
+            && self.is_set(address.wrapping_sub(self.area.base) / GRANULE)
     }
 
     #[cold]
@@ -104,6 +110,8 @@ impl Protection {
 
 #[cfg(test)]
 mod tests {
+    use kmotiondef::map::PROGRAM_BASE;
+
     use super::*;
 
     #[test]

@@ -15,7 +15,7 @@ use cc67_wire::{Client, Progress, Status, WireError};
 use compiler::Options;
 use compiler::firmware::FirmwareNames;
 use kmotiondef::boards::TargetBoard;
-use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId, Ticks};
+use kmotiondef::{Axes, AxisId, Bit, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
 use runtime::stimulus::Stimulus;
 use runtime::trace::{Item, Quantity, TraceRequest};
@@ -251,6 +251,10 @@ impl Target for Controller {
 
     fn name(&self) -> &'static str {
         "a connected controller"
+    }
+
+    fn axes(&self) -> Axes {
+        self.seen.axes()
     }
 
     fn can(&self, capability: Capability) -> bool {

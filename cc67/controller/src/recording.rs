@@ -7,7 +7,7 @@ use cc67_wire::{Client, WireError};
 use kmotiondef::limits::{MAX_GATHER_DATA, MAX_GATHER_VALUES};
 use kmotiondef::modes::GatherType;
 use kmotiondef::structs::{Chan, Gather};
-use kmotiondef::variables::{CHAN, GATHER};
+use kmotiondef::variables::{GATHER, chan};
 use kmotiondef::{AxisId, GuestAddr};
 use runtime::trace::{Quantity, RecordedCell, TraceRequest};
 
@@ -49,7 +49,7 @@ pub(crate) struct BoardSample {
     /// The values that were requested.
     pub(crate) values: Vec<f64>,
     /// The axes that are enabled, a bit for each.
-    pub(crate) enabled: u8,
+    pub(crate) enabled: u16,
 }
 
 /// The end of a recording.
@@ -84,7 +84,7 @@ impl BoardRecording {
         axes.sort_unstable();
         axes.dedup();
         cells.extend(axes.iter().map(|axis| {
-            let enable = CHAN.element(axis.index()).field(Chan::ENABLE);
+            let enable = chan(*axis).field(Chan::ENABLE);
             RecordedCell::new(place(enable.address()), GatherType::Int)
         }));
         if cells.len() >= MAX_GATHER_VALUES {

@@ -2,7 +2,7 @@
 
 use cc67_host::{HostError, UserProgram};
 use cc67_wire::{Progress, Status, WireError};
-use kmotiondef::{AxisId, ThreadId};
+use kmotiondef::{Axes, AxisId, ThreadId};
 
 use crate::connection::ControllerLink;
 use crate::controller::link;
@@ -18,10 +18,10 @@ pub struct Unsettled {
 }
 
 impl Unsettled {
-    fn of(status: &Status) -> Self {
+    fn of(status: &Status, axes: Axes) -> Self {
         Self {
             threads: ThreadId::all().filter(|thread| status.is_active(*thread)).collect(),
-            axes: AxisId::all().filter(|axis| status.is_enabled(*axis)).collect(),
+            axes: axes.iter().filter(|axis| status.is_enabled(*axis)).collect(),
         }
     }
 
@@ -45,7 +45,8 @@ impl ControllerLink {
     /// # Errors
     /// The controller does not answer.
     pub fn unsettled(&mut self) -> Result<Unsettled, WireError> {
-        Ok(Unsettled::of(&self.0.status()?))
+        let axes = self.board().map_or(Axes::default(), |board| board.axes);
+        Ok(Unsettled::of(&self.0.status()?, axes))
     }
 
     /// Loads a program that was linked for the firmware `linked_for`, and does not start it.

@@ -10,9 +10,9 @@ use kmotiondef::boards::TargetBoard;
 use kmotiondef::limits::{N_PC_COMM_PERSIST, N_USER_DATA_VARS, PC_COMM_PERSIST};
 use kmotiondef::structs::{Chan, Persist};
 use kmotiondef::variables::{
-    ADC_BUFFER_IN, BIT_DIR_SHADOW, CHAN, CS0_STOPPING_STATE, DAC_BUFFER, PERSIST, VIRTUAL_BITS,
+    ADC_BUFFER_IN, BIT_DIR_SHADOW, CS0_STOPPING_STATE, DAC_BUFFER, PERSIST, VIRTUAL_BITS, chan,
 };
-use kmotiondef::{AxisId, GuestAddr};
+use kmotiondef::{Axes, GuestAddr};
 use vm::memory::places::Places;
 
 /// Elements of `persist.UserData` that are read with each status record while a view needs them: all within a second.
@@ -30,20 +30,27 @@ pub(crate) struct SeenMemory {
     next_element: usize,
     /// The places of the board's firmware for the variables of the tables.
     places: Places,
+    axes: Axes,
 }
 
 impl SeenMemory {
     /// Knows nothing of a board yet; a firmware that is not known has its variables where the default one has them.
     pub(crate) fn new(board: Option<&TargetBoard>) -> Self {
+        let axes = board.map_or(Axes::default(), |board| board.axes);
         let board = board.filter(|board| !board.is_default());
         let moved = board.map(TargetBoard::moved_objects).unwrap_or_default();
         let places = Places::new(moved.into_iter().map(|object| (object.table, object.size, object.place)));
-        Self { bytes: BTreeMap::new(), is_looked_at: Cell::new(false), next_element: 0, places }
+        Self { bytes: BTreeMap::new(), is_looked_at: Cell::new(false), next_element: 0, places, axes }
     }
 
     /// Returns the place of an address of the tables.
     pub(crate) fn place_of(&self, address: GuestAddr) -> GuestAddr {
         self.places.of(address)
+    }
+
+    /// The axes of the board.
+    pub(crate) const fn axes(&self) -> Axes {
+        self.axes
     }
 
     /// Forgets everything.
@@ -90,8 +97,8 @@ impl SeenMemory {
 
     /// Notes the objects that a status record shows.
     pub(crate) fn note_status(&mut self, status: &Status) {
-        for axis in AxisId::all() {
-            let chan = CHAN.element(axis.index());
+        for axis in self.axes.iter() {
+            let chan = chan(axis);
             self.note_object(chan.field(Chan::DEST).address(), &status.dest(axis).to_le_bytes());
             self.note_object(chan.field(Chan::POSITION).address(), &status.position(axis).to_le_bytes());
             let ints = [

@@ -23,7 +23,7 @@ pub use booted::{BootedFirmware, BootedTarget, FirmwareError};
 
 use std::fmt::Debug;
 
-use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
+use kmotiondef::{Axes, AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
 use runtime::standing::{StandingAxis, StandingThread};
 use runtime::stimulus::Stimulus;
@@ -67,6 +67,11 @@ pub trait Target {
 
     /// The target in words, such as "the firmware file".
     fn name(&self) -> &'static str;
+
+    /// The axes of the board.
+    fn axes(&self) -> Axes {
+        Axes::default()
+    }
 
     /// Returns whether it has a capability.
     fn can(&self, capability: Capability) -> bool;

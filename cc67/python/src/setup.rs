@@ -7,7 +7,7 @@ use compiler::Options;
 use kmotiondef::limits::N_USER_DATA_VARS;
 use kmotiondef::structs::Persist;
 use kmotiondef::variables::PERSIST;
-use kmotiondef::{AxisId, GuestAddr, ThreadId};
+use kmotiondef::{Axes, GuestAddr, ThreadId};
 use pyo3::prelude::*;
 use runtime::stimulus::Stimulus;
 use runtime::{Config, Directory, MachineFile};
@@ -76,7 +76,7 @@ impl BoardArguments<'_> {
         let folder = self.files.or_else(|| machine_file.pc.disk_root.as_deref().map(PathBuf::from));
         let folder = folder.unwrap_or_else(|| PathBuf::from("cc67-files"));
         let files = Box::new(Directory::new(folder).with_names(machine_file.pc.disk_files.clone()));
-        let axes = AxisId::all().map(|axis| &machine_file.axes[axis.index()]);
+        let axes = Axes::default().iter().map(|axis| &machine_file.axes[axis.index()]);
         let axes = axes.map(|axis| (axis.name.clone(), axis.units.clone())).collect();
         let machine = MachineConfig { shortcuts: self.shortcuts, ..MachineConfig::default() };
         let config = Config { machine, files, machine_file, answers: Some(answers), ..Config::default() };

@@ -2,9 +2,11 @@
 
 use super::StructureLayout;
 use crate::ctype::CType;
-use crate::ids::GuestAddr;
-use crate::structs::STRUCTURES;
-use crate::variables::{FIRMWARE_VARIABLES, FirmwareVariable};
+use crate::ctype::GuestType;
+use crate::ids::{Axes, GuestAddr};
+use crate::limits::{MAX_TRIP, N_CHANNELS};
+use crate::structs::{Chan, STRUCTURES, TripCoeff};
+use crate::variables::{FIRMWARE_VARIABLES, FirmwareVariable, LATER_CHAN, LATER_TRIP_COEFFS};
 
 /// A variable, or a field of one, of the tables of firmware 4.34, and its address in another firmware.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,10 +25,26 @@ pub struct MovedObject {
 pub fn moved_objects(
     address: impl Fn(&str) -> Option<GuestAddr>,
     layouts: &[StructureLayout],
+    axes: Axes,
 ) -> Vec<MovedObject> {
     let variables =
         FIRMWARE_VARIABLES.iter().filter_map(|variable| Some((variable, address(variable.name)?)));
-    variables.flat_map(|(variable, place)| objects(variable, place, layouts)).collect()
+    let objects = variables.flat_map(|(variable, place)| objects(variable, place, layouts));
+    objects.chain(later_axes(&address, axes)).collect()
+}
+
+/// Structures and profiles of the axes that the tables lack; on a board they follow those of the others.
+fn later_axes(address: &impl Fn(&str) -> Option<GuestAddr>, axes: Axes) -> impl Iterator<Item = MovedObject> {
+    let count = axes.count().saturating_sub(N_CHANNELS) as u32;
+    let arrays = [
+        ("chan", LATER_CHAN.address(), Chan::SIZE),
+        ("TripCoeffs", LATER_TRIP_COEFFS.address(), <[TripCoeff; MAX_TRIP]>::SIZE),
+    ];
+    let objects = arrays.map(|(name, table, element)| {
+        let place = address(name)?.offset(element * N_CHANNELS as u32);
+        Some(MovedObject { table, size: element * count, place })
+    });
+    objects.into_iter().flatten().filter(|object| object.size > 0)
 }
 
 fn objects(variable: &FirmwareVariable, place: GuestAddr, layouts: &[StructureLayout]) -> Vec<MovedObject> {

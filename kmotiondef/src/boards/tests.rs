@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use super::*;
 use crate::tests::{Row, table_of};
+use crate::variables::{chan, trip_coeffs};
 
 const OTHERS: [&str; 2] = ["kflop-5.3.2", "kogna-5.3.2"];
 
@@ -150,7 +151,7 @@ fn the_facts_of_a_made_up_version_are_a_board() {
     let facts: &'static str = Box::leak((facts + "declare int ArrivedIn533(int axis)\n").into_boxed_str());
     let next = TargetBoard::read(facts);
     assert_eq!((next.name, next.version, next.time_stamp), ("kflop-5.3.3", version, Some(1_750_000_000)));
-    assert_eq!((next.version_stamp(), next.axes, next.is_proven), (533, 8, true));
+    assert_eq!((next.version_stamp(), next.axes.count(), next.is_proven), (533, 8, true));
     assert_eq!(next.structures(), known.structures());
     assert_eq!(next.programs(), known.programs());
     for (name, address) in known.symbols() {
@@ -196,4 +197,32 @@ fn names_of_other_boards_are_found() {
     assert_eq!(other("kflop-4.34", "MB_OK"), None);
     assert_eq!(other("kflop-4.34", "Move"), None);
     assert_eq!(other("kogna-5.3.2", "N_CHANNELS"), Some("kflop-4.34"));
+}
+
+#[test]
+fn a_board_has_its_memories_and_the_places_of_its_axes() {
+    let kogna = board("kogna-5.3.2");
+    let map = kogna.map();
+    assert_eq!((map.iram.base.get(), map.iram.size), (0x1180_0000, 0x4_0000));
+    assert_eq!((map.sdram.base.get(), map.sdram.size), (0xC000_0000, 0x1000_0000));
+    assert_eq!((map.fpga.base.get(), map.timer0().get(), map.counter), (0x6000_0000, 0x01F0_D010, 228));
+    assert_eq!((map.flash, kogna.axes.count()), (None, 16));
+    let thread = ThreadId::new(7).expect("7 is a thread");
+    assert_eq!(map.programs.space(thread), 0xC020_0000..0xC024_0000);
+
+    let objects = kogna.moved_objects();
+    let place = |table: GuestAddr| {
+        let offset = |object: &MovedObject| table.get().wrapping_sub(object.table.get());
+        let object = objects.iter().find(|object| offset(object) < object.size).expect("it is moved");
+        object.place.offset(offset(object)).get()
+    };
+    for number in 0..16 {
+        let axis = kogna.axes.get(number).expect("it is an axis");
+        let number = number.cast_unsigned();
+        assert_eq!(place(chan(axis).address()), 0x1183_2780 + 432 * number, "axis {number}");
+        assert_eq!(place(trip_coeffs(axis).address()), 0xC005_5AD8 + 960 * number, "axis {number}");
+    }
+    for known in ["kflop-4.34", "kflop-5.3.2"] {
+        assert_eq!((board(known).map(), board(known).axes.count()), (&MemoryMap::KFLOP, 8), "{known}");
+    }
 }

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use coff::{Contents, Image, SectionFlags, SectionNumber, StorageClass, Target};
-use kmotiondef::GuestAddr;
 use kmotiondef::boards::{TargetBoard, moved_objects};
 use kmotiondef::map::{IRAM, ROM_SIZE, Region, SDRAM};
+use kmotiondef::{Axes, GuestAddr};
 use vm::memory::GuestMemory;
 use vm::memory::places::Places;
 
@@ -213,7 +213,7 @@ fn places(symbols: &BTreeMap<String, u32>, version: &str) -> Places {
     let board = TargetBoard::of_version(version.trim_ascii_end());
     let layouts = board.map_or(&[][..], TargetBoard::own_structures);
     let address = |name: &str| symbols.get(name).copied().map(GuestAddr::new);
-    let objects = moved_objects(address, layouts);
+    let objects = moved_objects(address, layouts, Axes::default());
     Places::new(objects.into_iter().map(|object| (object.table, object.size, object.place)))
 }
 

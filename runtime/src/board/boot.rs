@@ -47,10 +47,14 @@ impl<E: Engine> Board<E> {
         }
     }
 
-    /// Tells memory where the firmware keeps its variables.
+    /// Tells memory of which board it is: what is at which address, where the firmware keeps its variables, the axes.
     pub(super) fn set_places(&mut self) {
-        let places = self.level().places();
-        self.machine.memory_mut().set_places(places);
+        let (places, board) = (self.level().places(), self.level().board());
+        let (map, axes) = (board.map(), board.axes);
+        let memory = self.machine.memory_mut();
+        memory.set_map(map);
+        memory.set_places(places);
+        memory.set_axes(axes);
     }
 
     /// Makes a program of what flash has brought back for a thread.

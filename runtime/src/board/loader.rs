@@ -4,9 +4,11 @@
 //! design.md D7) and yields a [`Prepared`] that the board can take without failing. The vendor's
 //! own loader checks next to nothing; a mistake there overwrites another thread's program.
 
+use std::ops::Range;
+
 use coff::{Contents, FileFlags, Image, Line, Section, SectionFlags, SectionNumber, StorageClass, Target};
 use kmotiondef::boards::{BOARDS, TargetBoard};
-use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT, PROGRAM_SIZE, program_base};
+use kmotiondef::map::ProgramSpaces;
 use kmotiondef::{GuestAddr, ThreadId};
 use vm::loaded::Loaded as Code;
 use vm::verify::VerifyError;
@@ -167,8 +169,9 @@ pub fn prepare(
     check_origin(&image, board.board())?;
     let header = image.program.ok_or(LoadError::Missing("entry point"))?;
     let text = image.section(".text").ok_or(LoadError::Missing("section .text"))?;
-    check_thread(text, thread)?;
-    check_sections(&image, thread, holds)?;
+    let spaces = &board.board().programs();
+    check_thread(text, spaces, thread)?;
+    check_sections(&image, spaces, thread, holds)?;
     let base = GuestAddr::new(text.address);
     let code = match image.target {
         Target::C6000 => code::image(base, text.data().len() as u32, functions(&image), board),
@@ -179,7 +182,7 @@ pub fn prepare(
         return Err(LoadError::Entry(entry));
     }
     let sections = image.sections.iter().filter(|section| is_loaded(section)).map(place).collect();
-    Ok(Prepared { code, entry, sections, debug: debug(&image) })
+    Ok(Prepared { code, entry, sections, debug: debug(&image, spaces) })
 }
 
 fn check_origin(image: &Image, board: &TargetBoard) -> Result<(), LoadError> {
@@ -248,11 +251,11 @@ fn is_loaded(section: &Section) -> bool {
     section.size() > 0 && !is_kept_back && has_bytes
 }
 
-fn check_thread(text: &Section, wanted: ThreadId) -> Result<(), LoadError> {
-    if text.address == program_base(wanted).get() {
+fn check_thread(text: &Section, spaces: &ProgramSpaces, wanted: ThreadId) -> Result<(), LoadError> {
+    if text.address == spaces.start(wanted).get() {
         return Ok(());
     }
-    match ThreadId::all().find(|thread| program_base(*thread).get() == text.address) {
+    match ThreadId::all().find(|thread| spaces.start(*thread).get() == text.address) {
         Some(linked) => Err(LoadError::OtherThread { linked, wanted }),
         None => Err(outside(text)),
     }
@@ -269,18 +272,19 @@ fn outside(section: &Section) -> LoadError {
 /// Every section inside the program area, none over another, none in a space that is taken.
 fn check_sections(
     image: &Image,
+    spaces: &ProgramSpaces,
     thread: ThreadId,
     holds: impl Fn(ThreadId) -> bool,
 ) -> Result<(), LoadError> {
     let mut ranges = Vec::new();
     for section in image.sections.iter().filter(|section| is_loaded(section)) {
         let (start, end) = (u64::from(section.address), u64::from(section.address) + section.size());
-        if start < u64::from(program_base(thread).get()) || end > u64::from(PROGRAM_LIMIT) {
+        if start < u64::from(spaces.start(thread).get()) || end > u64::from(spaces.limit) {
             return Err(outside(section));
         }
         for other in ThreadId::all().filter(|other| holds(*other)) {
-            let base = u64::from(program_base(other).get());
-            if start < base + u64::from(PROGRAM_SIZE) && end > base {
+            let Range { start: first, end: behind } = spaces.space(other);
+            if start < u64::from(behind) && end > u64::from(first) {
                 return Err(if other == thread {
                     LoadError::SpaceTaken(thread)
                 } else {
@@ -325,7 +329,7 @@ fn place(section: &Section) -> PlacedSection {
 ///
 /// A file symbol names the file of the functions after it. The size of an object is in its
 /// auxiliary entry, where that of a function is too.
-fn debug(image: &Image) -> DebugInfo {
+fn debug(image: &Image, spaces: &ProgramSpaces) -> DebugInfo {
     let mut file = String::new();
     let (mut functions, mut objects) = (Vec::new(), Vec::new());
     for symbol in &image.symbols {
@@ -338,7 +342,7 @@ fn debug(image: &Image) -> DebugInfo {
                 functions.push(FunctionInfo { name, file: file.clone(), start, end });
             }
             StorageClass::EXTERNAL | StorageClass::STATIC
-                if symbol.section.0 > 1 && (PROGRAM_BASE..PROGRAM_LIMIT).contains(&symbol.value) =>
+                if symbol.section.0 > 1 && spaces.holds(symbol.value) =>
             {
                 objects.push(ObjectInfo { name, start: symbol.value, size });
             }

@@ -21,12 +21,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
-use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::map::FLASH;
 use kmotiondef::structs::Persist;
 use kmotiondef::timing::Timing;
 use kmotiondef::variables::{PERSIST, cell_name};
-use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
+use kmotiondef::{Axes, Cycles, GuestAddr, ThreadId, Ticks};
 use vm::engine::{CallEnd, ContextId, Engine, Observed, Preemption};
 use vm::interp::BytecodeEngine;
 use vm::machine::{Config as MachineConfig, Machine};
@@ -130,7 +129,7 @@ pub struct Board<E = BytecodeEngine> {
     /// The cost of an instruction, relative to its cost on the board.
     cost: f64,
     /// The names of the axes in the machine file, and their units; an empty unit was not given.
-    names: [(String, String); N_CHANNELS],
+    names: [(String, String); Axes::MAX],
 }
 
 impl<E: Engine> Board<E> {

@@ -116,7 +116,7 @@ impl<E: Engine> Board<E> {
     /// The axes that execute a motion of their own, such as a jog that nobody ends.
     #[must_use]
     pub fn moving(&self) -> Vec<AxisId> {
-        AxisId::all().filter(|&axis| independent::is_moving(self.memory(), axis)).collect()
+        self.memory().axes().iter().filter(|&axis| independent::is_moving(self.memory(), axis)).collect()
     }
 
     /// The level of a bit.

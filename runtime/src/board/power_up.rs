@@ -1,12 +1,13 @@
 //! The contents of guest memory when the board starts.
 
+use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::start::{Start, Stored};
-use kmotiondef::structs::{STRUCTURES, Structure, StructureField};
-use kmotiondef::variables::{FIRMWARE_VARIABLES, FirmwareVariable, VERSION_AND_BUILD_TIME};
+use kmotiondef::structs::{Chan, STRUCTURES, Structure, StructureField};
+use kmotiondef::variables::{FIRMWARE_VARIABLES, FirmwareVariable, VERSION_AND_BUILD_TIME, trip_coeffs};
 use kmotiondef::{CType, GuestAddr};
 use vm::memory::GuestMemory;
 
-use crate::views::Typed;
+use crate::views::{Typed, chan};
 
 /// The contents of memory before it is filled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +31,13 @@ impl Before {
 pub(crate) fn fill(memory: &mut GuestMemory, version: &str, before: Before) {
     for variable in FIRMWARE_VARIABLES {
         start_variable(memory, variable, before);
+    }
+    // The tables end with the axes that every board has.
+    for axis in memory.axes().iter().skip(N_CHANNELS) {
+        start_structure(memory, chan(axis).address(), &Chan::STRUCTURE, (axis.index() as u32, before));
+    }
+    for axis in memory.axes().iter() {
+        memory.set_axis(axis, Chan::C, memory.locate(trip_coeffs(axis)));
     }
     let ends = ["\n", "\0"].into_iter().flat_map(str::bytes);
     for (offset, byte) in (0..).zip(version.bytes().chain(ends)) {
@@ -138,7 +146,7 @@ fn each(memory: &mut GuestMemory, address: GuestAddr, element: CType, count: u32
 mod tests {
     use kmotiondef::AxisId;
     use kmotiondef::limits::VERSION;
-    use kmotiondef::structs::{Chan, Gather, Iir};
+    use kmotiondef::structs::{Gather, Iir};
     use kmotiondef::variables::{ADC_BUFFER_IN, CH3, CHAN, CS0_TIME_BASE, DAC_BUFFER, GATHER};
 
     use super::*;

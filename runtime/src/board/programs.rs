@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use kmotiondef::map::{PROGRAM_SIZE, program_base};
+use kmotiondef::map::ProgramSpaces;
 use kmotiondef::structs::Persist;
 use kmotiondef::variables::{PERSIST, USER_CALL_BACK};
 use kmotiondef::{CodeAddr, GuestAddr, ThreadId};
@@ -53,7 +53,7 @@ impl<E: Engine> Board<E> {
         }
         self.drop_callback(thread);
         self.drop_konnects(thread);
-        let start = program_base(thread).get();
+        let start = self.spaces().start(thread).get();
         let ends = prepared.sections.iter().map(|section| section.address.get() + section.size());
         let extent = start..ends.max().unwrap_or(start);
         let named =
@@ -75,6 +75,11 @@ impl<E: Engine> Board<E> {
         &self.machine.firmware().parts.level
     }
 
+    /// The spaces of the threads' programs.
+    fn spaces(&self) -> ProgramSpaces {
+        self.level().board().programs()
+    }
+
     /// Returns the facts about programs for a change; snapshots keep the old ones.
     pub(super) fn programs_mut(&mut self) -> &mut Programs {
         Arc::make_mut(&mut self.programs)
@@ -82,10 +87,10 @@ impl<E: Engine> Board<E> {
 
     /// Returns whether a program other than that of `except` lies in the space of `thread`.
     pub(super) fn is_taken(&self, thread: ThreadId, except: ThreadId) -> bool {
-        let start = program_base(thread).get();
+        let space = self.spaces().space(thread);
         let others = ThreadId::all().filter(|&other| other != except);
         let mut extents = others.filter_map(|other| self.programs.loaded[other.index()].as_ref());
-        extents.any(|loaded| loaded.extent.start < start + PROGRAM_SIZE && loaded.extent.end > start)
+        extents.any(|loaded| loaded.extent.start < space.end && loaded.extent.end > space.start)
     }
 
     /// Puts a section into memory; the loader has checked that it fits.
@@ -103,9 +108,8 @@ impl<E: Engine> Board<E> {
 
     /// Takes out a call-back whose code a load has replaced; the board would run what is there now.
     pub(super) fn drop_callback(&mut self, thread: ThreadId) {
-        let start = program_base(thread).get();
         let callback = self.memory().get(USER_CALL_BACK);
-        if (start..start + PROGRAM_SIZE).contains(&callback.get()) {
+        if self.spaces().space(thread).contains(&callback.get()) {
             let (kernel, context) = self.machine.firmware_mut();
             context.memory.set(USER_CALL_BACK, GuestAddr::NULL);
             kernel.parts.out.remark(context.now, Message::CallBackDropped { thread });
@@ -114,9 +118,9 @@ impl<E: Engine> Board<E> {
 
     /// Ends the service of Konnect boards whose words a load has replaced.
     pub(super) fn drop_konnects(&mut self, thread: ThreadId) {
-        let start = program_base(thread).get();
+        let space = self.spaces().space(thread);
         let (kernel, context) = self.machine.firmware_mut();
-        if kernel.parts.io.konnects.drop_within(&(start..start + PROGRAM_SIZE)) {
+        if kernel.parts.io.konnects.drop_within(&space) {
             kernel.parts.out.remark(context.now, Message::KonnectDropped { thread });
         }
     }
@@ -243,7 +247,7 @@ impl<E: Engine> Board<E> {
         thread: ThreadId,
         ends: &[GuestAddr],
     ) -> Result<Option<Code>, VerifyError> {
-        let base = program_base(thread);
+        let base = self.spaces().start(thread);
         let mut error = None;
         for end in ends {
             let text = self.memory().read_bytes(base, end.get() - base.get()).unwrap_or_default();

@@ -198,7 +198,7 @@ impl<E: Engine> Board<E> {
                 Some(Awaited::Bit(bit, self.bit(bit), self.source_of(bit, call.since)))
             }
             Polled::Motion => {
-                let axis = AxisId::new(call.argument)?;
+                let axis = self.memory().axes().get(call.argument)?;
                 let is_enabled = self.memory().axis(axis, Chan::ENABLE) != 0;
                 let done = if is_enabled { i32::from(!has_motion(self.memory(), axis)) } else { -1 };
                 Some(Awaited::Motion(axis, done))
@@ -252,7 +252,7 @@ impl<E: Engine> Board<E> {
     pub fn standing_axes(&self) -> Vec<StandingAxis> {
         let waits = &self.machine.firmware().parts.calls.waits;
         let is_enabled = |axis| self.memory().axis(axis, Chan::ENABLE) != 0;
-        let used = AxisId::all().filter(|&axis| waits.has_touched(axis) || is_enabled(axis));
+        let used = self.memory().axes().iter().filter(|&axis| waits.has_touched(axis) || is_enabled(axis));
         used.map(|axis| self.standing_axis(axis)).collect()
     }
 

@@ -14,8 +14,8 @@ use kmotiondef::function::Polled;
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::{Chan, TripCoeff};
-use kmotiondef::variables::{ADC_BUFFER_IN, CURRENT_THREAD, HOST_STATUS, KSTEP_PRESENT, TRIP_COEFFS};
-use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
+use kmotiondef::variables::{ADC_BUFFER_IN, CURRENT_THREAD, HOST_STATUS, KSTEP_PRESENT, trip_coeffs};
+use kmotiondef::{Axes, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use vm::firmware::{ExecutedPacket, TickContext};
 use vm::memory::GuestMemory;
 use vm::scheduler::{ThreadSet, Turn};
@@ -97,10 +97,10 @@ pub struct Surroundings {
     /// Steps of each generator when they were last looked at.
     steps: [f64; N_CHANNELS],
     /// The commanded position of each axis' step generator, in position units.
-    stepped: [f64; N_CHANNELS],
+    stepped: [f64; Axes::MAX],
     /// The position of each axis after the interrupt, if no program writes it.
-    positions: [f64; N_CHANNELS],
-    was_enabled: [bool; N_CHANNELS],
+    positions: [f64; Axes::MAX],
+    was_enabled: [bool; Axes::MAX],
     /// The address of the word in which this firmware keeps the active threads.
     active: GuestAddr,
     /// The results of the converters: those of one tick ago.
@@ -124,9 +124,9 @@ impl Surroundings {
             parts,
             threads: Threads::new(),
             steps: [0.0; N_CHANNELS],
-            stepped: [0.0; N_CHANNELS],
-            positions: [0.0; N_CHANNELS],
-            was_enabled: [false; N_CHANNELS],
+            stepped: [0.0; Axes::MAX],
+            positions: [0.0; Axes::MAX],
+            was_enabled: [false; Axes::MAX],
             active,
             conversions: [ADC_ZERO as u16; ADC_CHANNELS],
             asked: Vec::new(),
@@ -140,8 +140,8 @@ impl Surroundings {
         // Nothing fills them without a Kanalog: what they hold at power-up is an accident, and this is that of the model.
         (0..ADC_CHANNELS).for_each(|channel| memory.set(ADC_BUFFER_IN.element(channel), ADC_ZERO));
         // Firmware 5.3.2 loses the first jog of an axis if the mode of its first state happens to be 0.
-        for axis in 0..N_CHANNELS {
-            let first = TRIP_COEFFS.element(axis).element(0).field(TripCoeff::TRAJECTORY_MODE);
+        for axis in memory.axes().iter() {
+            let first = trip_coeffs(axis).element(0).field(TripCoeff::TRAJECTORY_MODE);
             if memory.get(first) == 0 {
                 memory.set(first, 1);
             }
@@ -152,7 +152,7 @@ impl Surroundings {
             world.play(stimulus, &mut access, memory);
         }
         self.positions = std::array::from_fn(|axis| {
-            AxisId::new(axis as i32).map_or(0.0, |axis| memory.axis(axis, Chan::POSITION))
+            memory.axes().get(axis as i32).map_or(0.0, |axis| memory.axis(axis, Chan::POSITION))
         });
     }
 
@@ -316,7 +316,7 @@ impl Surroundings {
 
     /// Moves each load by what the firmware has output for its axis in the last tick.
     fn move_loads(&mut self, instant: &mut Instant<'_>) {
-        for axis in AxisId::all() {
+        for axis in instant.memory.axes().iter() {
             let at = axis.index();
             let chan = AxisView::of(instant.memory, axis);
             let plant = &mut self.parts.machine.loads[axis];
@@ -370,7 +370,7 @@ impl Surroundings {
 
     /// Shows the firmware the counts of encoders and the levels of switches.
     fn show(&mut self, instant: &mut Instant<'_>) {
-        for axis in AxisId::all() {
+        for axis in instant.memory.axes().iter() {
             let chan = AxisView::of(instant.memory, axis);
             let position = chan.get(Chan::POSITION);
             self.positions[axis.index()] = position;

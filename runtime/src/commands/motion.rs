@@ -2,7 +2,6 @@
 
 use vm::firmware::Outcome;
 
-use kmotiondef::AxisId;
 use kmotiondef::structs::Chan;
 
 use super::arguments::Values;
@@ -72,7 +71,7 @@ pub(super) fn jog_at_accel(session: &mut Session<'_, '_>, values: &Values) -> An
 /// Of each axis the two words of its destination, the lower one first, and its speed.
 pub(super) fn destinations_and_velocities(session: &mut Session<'_, '_>, _: &Values) -> Answer {
     let memory = &*session.memory();
-    let words = AxisId::all().flat_map(|axis| {
+    let words = memory.axes().iter().flat_map(|axis| {
         let dest = memory.axis(axis, Chan::DEST).to_bits();
         [dest as u32, (dest >> 32) as u32, memory.axis(axis, Chan::LAST_VEL).to_bits()]
     });

@@ -1,7 +1,7 @@
 //! Programs: downloading them word by word, and starting and stopping threads.
 
 use kmotiondef::GuestAddr;
-use kmotiondef::map::{FLASH, REGIONS, RegionKind};
+use kmotiondef::map::{FLASH, RegionKind};
 use kmotiondef::structs::Persist;
 use kmotiondef::variables::PERSIST;
 
@@ -46,10 +46,10 @@ pub(super) fn set_startup(session: &mut Session<'_, '_>, values: &Values) -> Ans
 }
 
 /// Takes data lines, unless the bytes would lie outside memory: the released firmware does not check that.
-pub(super) fn load_data(_: &mut Session<'_, '_>, values: &Values) -> Answer {
+pub(super) fn load_data(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (start, count) = (values.word(0), values.word(1));
     let end = u64::from(start) + u64::from(count);
-    let is_inside = REGIONS.iter().any(|region| {
+    let is_inside = session.memory().map().regions().any(|region| {
         let base = region.base.get();
         region.kind == RegionKind::Ram && start >= base && end <= u64::from(base) + u64::from(region.size)
     });

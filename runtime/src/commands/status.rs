@@ -10,7 +10,7 @@ use kmotiondef::variables::{
     CS0_STOPPING_STATE, DAC_BUFFER, EDIT_CHANGE_COUNT, HOST_STATUS, LAST_PWM, PERSIST, SERVO_TICK,
     STATUS_REQUEST_COUNTER, VIRTUAL_BITS, VIRTUAL_BITS_EX,
 };
-use kmotiondef::{AxisId, Bit, Cycles, Field, Plain, Scalar, ThreadId};
+use kmotiondef::{Bit, Cycles, Field, Plain, Scalar, ThreadId};
 use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
@@ -118,7 +118,7 @@ fn axes(record: &mut Record, context: &TickContext<'_>) {
     let memory = &*context.memory;
     let (mut enables, mut done) = (0, 0);
     let (mut inputs, mut outputs) = ([0; 2], [0; 2]);
-    for axis in AxisId::all() {
+    for axis in memory.axes().iter() {
         let index = axis.index();
         record.set(MainStatus::POSITION.element(index), memory.axis(axis, Chan::POSITION));
         record.set(MainStatus::DEST.element(index), memory.axis(axis, Chan::DEST));

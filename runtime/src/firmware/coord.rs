@@ -19,7 +19,7 @@ use crate::views::Typed;
 
 /// Assigns the letters from X on; the others keep theirs.
 pub(crate) fn define(parts: &mut Parts, caller: &mut Caller<'_>, axes: &[i32]) {
-    let valid = |&axis: &i32| axis == -1 || AxisId::new(axis).is_some();
+    let valid = |&axis: &i32| axis == -1 || caller.memory.axes().get(axis).is_some();
     if !axes.iter().all(valid) {
         // The board takes any number; one that is not an axis is none.
         parts.out.diagnose(caller, Message::BadCoordSystem { axes: format!("{axes:?}") });

@@ -1,11 +1,11 @@
 //! The data recorder's functions. Source: gather-persist-console.md section 1.
 
+use kmotiondef::GuestAddr;
 use kmotiondef::firmware::Function;
 use kmotiondef::limits::MAX_GATHER_DATA;
 use kmotiondef::modes::GatherType;
 use kmotiondef::structs::{Chan, Gather, GatherValueDef};
 use kmotiondef::variables::{GATHER, GATHER_BUFFER};
-use kmotiondef::{AxisId, GuestAddr};
 use vm::firmware::Caller;
 
 use super::parts::Parts;
@@ -21,7 +21,7 @@ const MOST: usize = MAX_GATHER_DATA / 6;
 
 /// Records destination, position, output and three amplifier readings of an axis.
 pub(crate) fn setup_gather_all_on_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, samples: i32) {
-    let Some(axis) = AxisId::new(axis) else {
+    let Some(axis) = caller.memory.axes().get(axis) else {
         parts.out.diagnose(caller, Message::NoSuchAxis { function: Function::SetupGatherAllOnAxis, axis });
         return;
     };

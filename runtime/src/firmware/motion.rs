@@ -13,7 +13,7 @@ pub(crate) use together::move_xyzabc;
 
 use kmotiondef::AxisId;
 use kmotiondef::firmware::Function;
-use kmotiondef::limits::{N_CHANNELS, TIMEBASE};
+use kmotiondef::limits::TIMEBASE;
 use kmotiondef::modes::{InputMode, LastMotion, OutputMode};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::{COORD_SYSTEM0, CS0_STOPPING_STATE};
@@ -37,13 +37,16 @@ use crate::views::Typed;
 use chips::stepgen::generator_of;
 use schedule::row_cost;
 
-/// The number after the last axis, which the board does not refuse: it takes what comes after the axes in memory for one.
-const AFTER_AXES: i32 = N_CHANNELS as i32;
+/// Returns whether a number is that after the last axis, which the board does not refuse: it takes what comes after the
+/// axes in memory for one.
+fn is_after_axes(caller: &Caller<'_>, axis: i32) -> bool {
+    usize::try_from(axis) == Ok(caller.memory.axes().count())
+}
 
 /// Prints the board's message about an axis that does not exist.
 fn invalid(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: i32, what: &str) {
     parts.out.diagnose(caller, Message::NoSuchAxis { function, axis });
-    if axis != AFTER_AXES {
+    if !is_after_axes(caller, axis) {
         parts.out.console.message(&format!("Attempt to {what} invalid Chan"));
     }
 }
@@ -51,12 +54,12 @@ fn invalid(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: i32
 /// An axis that does not exist is enabled; that after the last ends the program.
 fn enable_invalid(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: i32) -> Outcome<()> {
     invalid(parts, caller, function, axis, "enable");
-    if axis == AFTER_AXES { Outcome::End } else { Outcome::Done(()) }
+    if is_after_axes(caller, axis) { Outcome::End } else { Outcome::Done(()) }
 }
 
 /// Checks an axis number that a program names.
 fn checked(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: i32) -> Option<AxisId> {
-    let checked = AxisId::new(axis);
+    let checked = caller.memory.axes().get(axis);
     if checked.is_none() {
         parts.out.diagnose(caller, Message::NoSuchAxis { function, axis });
     }
@@ -65,7 +68,7 @@ fn checked(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: i32
 
 pub(crate) fn enable_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) -> Outcome<()> {
     axis_check::goes_on(parts, caller);
-    let Some(axis) = AxisId::new(axis) else {
+    let Some(axis) = caller.memory.axes().get(axis) else {
         return enable_invalid(parts, caller, Function::EnableAxis, axis);
     };
     let mode = OutputMode::new(caller.memory.axis(axis, Chan::OUTPUT_MODE));
@@ -100,7 +103,7 @@ pub(crate) fn enable_axis_dest(
     dest: f64,
 ) -> Outcome<()> {
     axis_check::goes_on(parts, caller);
-    let Some(axis) = AxisId::new(axis) else {
+    let Some(axis) = caller.memory.axes().get(axis) else {
         return enable_invalid(parts, caller, Function::EnableAxisDest, axis);
     };
     enable(parts, caller, Function::EnableAxisDest, axis, dest);
@@ -116,7 +119,7 @@ fn enable(parts: &mut Parts, caller: &mut Caller<'_>, function: Function, axis: 
 }
 
 pub(crate) fn disable_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) {
-    let Some(axis) = AxisId::new(axis) else {
+    let Some(axis) = caller.memory.axes().get(axis) else {
         return invalid(parts, caller, Function::DisableAxis, axis, "Disable");
     };
     axis_check::ends_path(parts, caller, Function::DisableAxis, axis);
@@ -126,7 +129,7 @@ pub(crate) fn disable_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32
 
 pub(crate) fn zero(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) {
     axis_check::goes_on(parts, caller);
-    let Some(axis) = AxisId::new(axis) else {
+    let Some(axis) = caller.memory.axes().get(axis) else {
         return invalid(parts, caller, Function::Zero, axis, Function::Zero.name());
     };
     axis_check::ends_motion(parts, caller, Function::Zero, axis);
@@ -163,7 +166,8 @@ fn may_move(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Func
             parts.out.diagnose(caller, Message::NoOutput { function, axis });
         }
     }
-    for slave in AxisId::all().filter(|&slave| memory.axis(slave, Chan::MASTER_AXIS) == i32::from(axis.get()))
+    for slave in
+        memory.axes().iter().filter(|&slave| memory.axis(slave, Chan::MASTER_AXIS) == i32::from(axis.get()))
     {
         if slave != axis && memory.axis(slave, Chan::ENABLE) == 0 {
             parts.out.diagnose(caller, Message::SlaveDisabled { axis: slave, master: axis });

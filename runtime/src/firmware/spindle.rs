@@ -1,6 +1,5 @@
 //! Spindle measurement and threading. Source: coordinated-motion.md section 7.
 
-use kmotiondef::AxisId;
 use kmotiondef::variables::COORD_SYSTEM0;
 use vm::firmware::Caller;
 
@@ -18,7 +17,7 @@ pub(crate) fn configure_spindle(
     tau: f32,
     counts: f32,
 ) {
-    let Some(axis) = AxisId::new(axis) else {
+    let Some(axis) = caller.memory.axes().get(axis) else {
         parts.out.diagnose(caller, Message::NoSuchSpindleAxis { axis });
         return;
     };
@@ -59,6 +58,7 @@ pub(crate) fn trig_threading(parts: &mut Parts, caller: &mut Caller<'_>, base_sp
 
 #[cfg(test)]
 mod tests {
+    use kmotiondef::AxisId;
     use kmotiondef::structs::{Chan, Spindle};
     use kmotiondef::variables::SPINDLE;
 

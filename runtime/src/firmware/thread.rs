@@ -1,7 +1,6 @@
 //! Starting and stopping threads. Source: threads-and-time.md section 2.
 
 use kmotiondef::firmware::Function;
-use kmotiondef::map::program_base;
 use kmotiondef::structs::Persist;
 use kmotiondef::variables::PERSIST;
 use kmotiondef::{GuestAddr, ThreadId};
@@ -25,7 +24,7 @@ pub(crate) fn start(
     threads: &mut Threads,
     thread: ThreadId,
 ) -> bool {
-    let (base, entry) = (program_base(thread), entry(memory, thread));
+    let (base, entry) = (memory.map().programs.start(thread), entry(memory, thread));
     let is_new = parts.pc.downloads.has(thread) || threads.entry(thread) != entry;
     if is_new && memory.peek::<u32>(base) == 0 {
         return false;

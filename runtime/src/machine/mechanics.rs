@@ -3,9 +3,9 @@
 //! Nothing of it exists on a real board; a machine file describes it. It is moved once a tick, before the axes read
 //! their inputs.
 
-use kmotiondef::limits::{N_CHANNELS, TIMEBASE};
+use kmotiondef::limits::TIMEBASE;
 use kmotiondef::structs::Chan;
-use kmotiondef::{AxisId, Bit, Cycles};
+use kmotiondef::{Axes, AxisId, Bit, Cycles};
 use vm::memory::GuestMemory;
 
 use super::description::{
@@ -115,7 +115,7 @@ pub(crate) struct Mechanics {
 
 impl Mechanics {
     /// Creates the mechanics of a description.
-    pub(crate) fn new(axes: &[Axis; N_CHANNELS], described: &Connected) -> Self {
+    pub(crate) fn new(axes: &[Axis; Axes::MAX], described: &Connected) -> Self {
         let switches = described.switches.iter().map(|switch| Contact {
             bit: switch.bit,
             axis: switch.axis,
@@ -325,7 +325,7 @@ impl Machine {
 
     fn turn_handwheels(&mut self, memory: &GuestMemory, time: f64) {
         for wheel in &self.mechanics.handwheels {
-            let Some(axis) = AxisId::new(wheel.channel as i32) else { continue };
+            let Some(axis) = memory.axes().get(wheel.channel as i32) else { continue };
             let gain = f64::from(memory.axis(axis, Chan::INPUT_GAIN0));
             let turned: f64 =
                 wheel.moves.iter().map(|turn| turned(turn, time) - turned(turn, time - TIMEBASE)).sum();

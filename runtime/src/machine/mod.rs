@@ -17,8 +17,7 @@ pub(crate) mod wiring;
 
 use std::ops::{Index, IndexMut};
 
-use kmotiondef::limits::N_CHANNELS;
-use kmotiondef::{AxisId, Bit, Cycles};
+use kmotiondef::{Axes, AxisId, Bit, Cycles};
 use vm::memory::GuestMemory;
 
 pub use mechanics::Connected;
@@ -48,10 +47,10 @@ const EDGES_AT_ONCE: usize = 10_000;
 const OPTOS: i32 = 8;
 const FIRST_OPTOS: [i32; 2] = [72, 104];
 
-/// The loads of the eight axes.
+/// The loads of the axes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Loads {
-    plants: [Plant; N_CHANNELS],
+    plants: [Plant; Axes::MAX],
     /// True if something other than the servo has moved a load since the servo last asked.
     is_pushed: bool,
 }

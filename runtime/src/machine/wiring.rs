@@ -3,11 +3,10 @@
 //! A machine file may say both. What it leaves open is taken from the program: the load of an axis follows the axis,
 //! whatever output it uses. The encoder of a load with a motor is on the input of its own number.
 
-use kmotiondef::AxisId;
-use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::modes::OutputMode;
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::DAC_BUFFER;
+use kmotiondef::{Axes, AxisId};
 use vm::memory::GuestMemory;
 
 use super::description::{Axis, Channel, Model};
@@ -24,14 +23,14 @@ pub(crate) const PWMS: usize = 16;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Wiring {
     /// The input of each axis' encoder, if it is known.
-    inputs: [Option<usize>; N_CHANNELS],
+    inputs: [Option<usize>; Axes::MAX],
     /// The output that drives each motor, if the machine file names it.
-    drives: [Option<Channel>; N_CHANNELS],
+    drives: [Option<Channel>; Axes::MAX],
 }
 
 impl Wiring {
     /// Creates the wiring of a machine file.
-    pub(crate) fn new(axes: &[Axis; N_CHANNELS]) -> Self {
+    pub(crate) fn new(axes: &[Axis; Axes::MAX]) -> Self {
         let mut wiring = Self::default();
         for (index, axis) in axes.iter().enumerate() {
             let by_number = (axis.model == Model::Motor).then_some(index);
@@ -80,7 +79,7 @@ impl Wiring {
         // An axis without a motor watches somebody else's encoder.
         let watches = channel != i32::from(axis.get())
             && memory.axis(axis, Chan::OUTPUT_MODE) == OutputMode::None.get();
-        if watches { AxisId::new(channel) } else { Some(axis) }
+        if watches { memory.axes().get(channel) } else { Some(axis) }
     }
 }
 
@@ -117,7 +116,7 @@ mod tests {
 
     #[test]
     fn an_encoder_is_where_the_machine_file_says() {
-        let mut axes: [Axis; N_CHANNELS] = std::array::from_fn(|_| Axis::default());
+        let mut axes: [Axis; Axes::MAX] = std::array::from_fn(|_| Axis::default());
         axes[0].connection.input = Some(3);
         axes[1].model = Model::Motor;
         let wiring = Wiring::new(&axes);

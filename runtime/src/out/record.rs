@@ -39,6 +39,6 @@ pub enum Record {
         /// In the order of the request.
         values: Vec<f64>,
         /// The axes that are enabled, axis 0 lowest.
-        enabled: u8,
+        enabled: u16,
     },
 }

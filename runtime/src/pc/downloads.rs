@@ -3,14 +3,22 @@
 //! A download is bytes in memory and an entry point; nothing says where the text of a program ends. What was stored in
 //! one go is kept here, so that the board can find the text among it when the thread is started.
 
-use kmotiondef::map::{PROGRAM_SIZE, program_base};
+use kmotiondef::map::{MemoryMap, ProgramSpaces};
 use kmotiondef::{GuestAddr, ThreadId};
 
 /// The memory that downloads have stored since the threads were last started.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Downloads {
+    /// The spaces of the threads.
+    pub(crate) spaces: ProgramSpaces,
     /// First address, and the one after the last.
     stored: Vec<(GuestAddr, GuestAddr)>,
+}
+
+impl Default for Downloads {
+    fn default() -> Self {
+        Self { spaces: MemoryMap::KFLOP.programs, stored: Vec::new() }
+    }
 }
 
 /// Stretches that are kept: no program needs as many.
@@ -27,15 +35,15 @@ impl Downloads {
 
     /// Returns whether something was stored in the space of a thread.
     pub(crate) fn has(&self, thread: ThreadId) -> bool {
-        let start = program_base(thread).get();
-        self.stored.iter().any(|(stored, _)| (start..start + PROGRAM_SIZE).contains(&stored.get()))
+        let space = self.spaces.space(thread);
+        self.stored.iter().any(|(stored, _)| space.contains(&stored.get()))
     }
 
     /// Returns the possible ends of the text at the beginning of a thread's space: the ends of the adjacent ranges from
     /// there.
     pub(crate) fn ends(&self, thread: ThreadId) -> Vec<GuestAddr> {
         let mut ends = Vec::new();
-        let mut place = program_base(thread);
+        let mut place = self.spaces.start(thread);
         while let Some((_, end)) = self.stored.iter().find(|(start, _)| *start == place) {
             if *end == place {
                 break;
@@ -48,7 +56,7 @@ impl Downloads {
 
     /// Forgets what was stored in the space of a thread.
     pub(crate) fn forget(&mut self, thread: ThreadId) {
-        let start = program_base(thread).get();
-        self.stored.retain(|(stored, _)| !(start..start + PROGRAM_SIZE).contains(&stored.get()));
+        let space = self.spaces.space(thread);
+        self.stored.retain(|(stored, _)| !space.contains(&stored.get()));
     }
 }

@@ -5,9 +5,8 @@
 //! what they depend on says so with [`Cache::invalidate`] and a [`Change`]; what else should be forgotten for that
 //! follows here and nowhere else.
 
-use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::timing::WaitStates;
-use kmotiondef::{AxisId, Cycles, GuestAddr};
+use kmotiondef::{Axes, AxisId, Cycles, GuestAddr};
 use vm::memory::GuestMemory;
 
 use super::duration::duration;
@@ -34,7 +33,7 @@ pub(crate) enum Change {
 /// The derived values, until they are invalidated.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cache {
-    plans: [AxisPlan; N_CHANNELS],
+    plans: [AxisPlan; Axes::MAX],
     /// The variable that says whether the derivative gain acts on the error; `None` in firmware 4.34, which has none.
     pub(crate) derivative_method: Option<GuestAddr>,
     /// True if the plans, and the values derived from them, agree with memory.
@@ -107,10 +106,10 @@ impl Cache {
     /// Works the plans out, unless they are known.
     pub(super) fn make_plans(&mut self, memory: &mut GuestMemory, wiring: &Wiring) {
         if !self.has_plans {
-            for axis in AxisId::all() {
+            for axis in memory.axes().iter() {
                 self.plans[axis.index()] = AxisPlan::of(memory, wiring, axis, self.derivative_method);
             }
-            self.is_coupled = AxisId::all().any(|axis| self.plans[axis.index()].is_coupled(axis));
+            self.is_coupled = memory.axes().iter().any(|axis| self.plans[axis.index()].is_coupled(axis));
             self.has_slaves = self.plans.iter().any(|plan| plan.is_slave);
             self.duration = duration(memory);
             self.interrupt = Interrupt::of(memory);
@@ -124,7 +123,7 @@ impl Cache {
 
     /// Returns whether the plans still agree with the settings.
     fn plans_hold(&self, memory: &mut GuestMemory, wiring: &Wiring) -> bool {
-        AxisId::all().zip(&self.plans).all(|(axis, plan)| {
+        memory.axes().iter().zip(&self.plans).all(|(axis, plan)| {
             let now = AxisPlan::of(memory, wiring, axis, self.derivative_method);
             // A setting that is no number equals itself in print only.
             *plan == now || format!("{plan:?}") == format!("{now:?}")

@@ -4,14 +4,12 @@
 //! and input modes need (`servo_cycles` of the recorded thread measurements; means at rest, by
 //! output mode, for an axis without input; reading an encoder adds to that).
 
-use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
-use kmotiondef::variables::CHAN;
 use kmotiondef::{Cycles, GuestType};
 use vm::memory::GuestMemory;
 
-use crate::views::{Typed, field_of};
+use crate::views::{Typed, chan, field_of};
 
 /// Without an enabled axis.
 const IDLE: i64 = 2006;
@@ -21,10 +19,8 @@ const ENCODER: i64 = 44;
 /// Returns the time that the servo interrupt takes of a tick.
 pub(crate) fn duration(memory: &GuestMemory) -> Cycles {
     const SIZE: usize = Chan::SIZE as usize;
-    let Some(all) = memory.block::<{ SIZE * N_CHANNELS }>(memory.locate(CHAN)) else {
-        return Cycles::new(IDLE);
-    };
-    let enabled = all.as_chunks::<SIZE>().0.iter().filter(|chan| field_of(chan, Chan::ENABLE) != 0);
+    let chans = memory.axes().iter().filter_map(|axis| memory.block::<SIZE>(memory.locate(chan(axis))));
+    let enabled = chans.filter(|chan| field_of(chan, Chan::ENABLE) != 0);
     let axes = enabled.map(|chan| {
         // As measured: a number below the modes costs what the first one does, one above them nothing.
         let mode = OutputMode::new(field_of(chan, Chan::OUTPUT_MODE).max(0));
@@ -37,7 +33,7 @@ pub(crate) fn duration(memory: &GuestMemory) -> Cycles {
 
 #[cfg(test)]
 mod tests {
-    use kmotiondef::AxisId;
+    use kmotiondef::Axes;
 
     use super::*;
     use crate::testing::powered_memory;
@@ -47,9 +43,9 @@ mod tests {
     fn enabled_axes_cost_what_was_measured() {
         let mut memory = powered_memory();
         assert_eq!(duration(&memory).get(), 2006);
-        for axis in AxisId::all() {
-            memory.set(CHAN.element(axis.index()).field(Chan::ENABLE), 1);
-            memory.set(CHAN.element(axis.index()).field(Chan::OUTPUT_MODE), 2);
+        for axis in Axes::default().iter() {
+            memory.set_axis(axis, Chan::ENABLE, 1);
+            memory.set_axis(axis, Chan::OUTPUT_MODE, 2);
         }
         // Eight DC servo axes with encoders: 4750 cycles measured.
         assert_eq!(duration(&memory).get(), 4750);

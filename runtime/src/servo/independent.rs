@@ -78,7 +78,7 @@ pub(crate) fn run_kept(memory: &mut GuestMemory, axis: AxisId, states: &[MotionS
 
 /// Gives the first state of every axis a mode, which a jog from rest keeps.
 pub(crate) fn prepare(memory: &mut GuestMemory) {
-    for axis in AxisId::all() {
+    for axis in memory.axes().iter() {
         let mode = list(memory, axis).element(0).field(TripCoeff::TRAJECTORY_MODE);
         memory.set(mode, Mode::Independent.number());
     }

@@ -8,7 +8,7 @@ use kmotiondef::modes::{GatherType, InputMode, OutputMode};
 use kmotiondef::structs::{Chan, Gather, GatherValueDef};
 use kmotiondef::timing::WaitStates;
 use kmotiondef::variables::{COORD_SYSTEM0, GATHER, USER_CALL_BACK};
-use kmotiondef::{AxisId, Cycles};
+use kmotiondef::{Axes, Cycles};
 use vm::memory::GuestMemory;
 
 use super::coordinated::system;
@@ -74,14 +74,14 @@ pub(super) struct Interrupt {
     cycles: i64,
     accesses: i64,
     /// By axis, what moving adds; nothing for a disabled one.
-    moving: [i64; kmotiondef::limits::N_CHANNELS],
+    moving: [i64; Axes::MAX],
 }
 
 impl Interrupt {
     /// The duration by the present settings.
     pub(super) fn of(memory: &GuestMemory) -> Self {
         let mut interrupt = Self { cycles: IDLE, accesses: IDLE_ACCESSES, ..Self::default() };
-        for axis in AxisId::all().filter(|axis| memory.axis(*axis, Chan::ENABLE) != 0) {
+        for axis in memory.axes().iter().filter(|axis| memory.axis(*axis, Chan::ENABLE) != 0) {
             // As measured: a number below the modes costs what the first one does, one above them nothing.
             let output = OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE).max(0));
             let input = InputMode::new(memory.axis(axis, Chan::INPUT_MODE));
@@ -97,8 +97,10 @@ impl Interrupt {
     pub(super) fn time(&self, memory: &GuestMemory, waits: WaitStates, is_settled: bool) -> Cycles {
         let (mut cycles, mut words) = (self.cycles, 0);
         if !is_settled {
-            let going =
-                AxisId::all().filter(|axis| self.moving[axis.index()] != 0 && has_motion(memory, *axis));
+            let going = memory
+                .axes()
+                .iter()
+                .filter(|axis| self.moving[axis.index()] != 0 && has_motion(memory, *axis));
             for axis in going {
                 let is_exponential = state(memory, axis, 0).mode == Mode::Exponential;
                 cycles += self.moving[axis.index()] + if is_exponential { EXPONENTIAL } else { 0 };
@@ -175,7 +177,7 @@ mod tests {
             let mut memory = powered_memory();
             let Some(mode) = output(row["output"].as_str().expect("a name")) else { continue };
             let count = row["n"].as_u64().expect("a number") as usize;
-            for axis in AxisId::all().take(count) {
+            for axis in memory.axes().iter().take(count) {
                 memory.set_axis(axis, Chan::ENABLE, 1);
                 memory.set_axis(axis, Chan::OUTPUT_MODE, mode.get());
                 memory.set_axis(axis, Chan::INPUT_MODE, input(row["input"].as_str().expect("a name")));
@@ -186,7 +188,7 @@ mod tests {
                 let found = recorded(row, "mean_max_still", setting);
                 assert!((still / found - 1.0).abs() < 0.01, "{row}: {still}");
             }
-            for axis in AxisId::all().take(count) {
+            for axis in memory.axes().iter().take(count) {
                 let first = memory.axis(axis, Chan::C);
                 memory.set_axis(axis, Chan::PCOEFF, first);
             }

@@ -103,7 +103,9 @@ fn run_generators(tick: &mut Tick<'_>, memory: &GuestMemory) -> bool {
                 && generator_of(memory.axis(*axis, Chan::OUTPUT_CHAN0)) == generator
         };
         let wired = tick.machine.wiring.motor_on(generator);
-        let axis = wired.or_else(|| AxisId::all().find(names)).or_else(|| AxisId::new(generator as i32));
+        let axis = wired
+            .or_else(|| memory.axes().iter().find(names))
+            .or_else(|| memory.axes().get(generator as i32));
         let Some(axis) = axis.filter(|_| !is_off || generator >= ON_KSTEP) else { continue };
         let gain = f64::from(memory.axis(axis, Chan::OUTPUT_GAIN));
         if gain != 0.0 {
@@ -138,7 +140,7 @@ fn run_axes(tick: &mut Tick<'_>, memory: &mut GuestMemory) -> bool {
     if has_path || tick.servo.cache.is_coupled() || tick.machine.has_mechanics() {
         changed |= run_together(tick, memory);
     } else {
-        for axis in AxisId::all() {
+        for axis in memory.axes().iter() {
             changed |= run_alone(tick, memory, axis);
         }
     }
@@ -155,7 +157,7 @@ fn run_alone(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId) -> boo
 /// One tick of all axes, step by step, as each may depend on the others; whether anything changed.
 fn run_together(tick: &mut Tick<'_>, memory: &mut GuestMemory) -> bool {
     let mut changed = false;
-    for axis in AxisId::all() {
+    for axis in memory.axes().iter() {
         changed |= advance(tick, memory, axis);
     }
     tick.machine.signal(tick.io, tick.now);
@@ -165,7 +167,7 @@ fn run_together(tick: &mut Tick<'_>, memory: &mut GuestMemory) -> bool {
     if tick.servo.cache.has_slaves() {
         slave::follow(tick.servo, memory);
     }
-    for axis in AxisId::all() {
+    for axis in memory.axes().iter() {
         changed |= run_axis(tick, memory, axis);
     }
     changed
@@ -174,7 +176,7 @@ fn run_together(tick: &mut Tick<'_>, memory: &mut GuestMemory) -> bool {
 /// Switches the amplifiers of a KStep by their enable signal, and off where the steps move another load.
 fn switch_amplifiers(tick: &mut Tick<'_>, memory: &mut GuestMemory) {
     let is_off = amplifiers_are_off(tick);
-    for axis in AxisId::all() {
+    for axis in memory.axes().iter() {
         let is_on_kstep = generator_of(memory.axis(axis, Chan::OUTPUT_CHAN0)) < ON_KSTEP;
         let is_own = wired::steps_are_own(tick.machine, memory, axis);
         tick.machine.loads[axis].set_amplifier(is_own && !(is_off && is_on_kstep));

@@ -192,7 +192,7 @@ fn note_overwritten(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId) {
     let drives = |other: AxisId| {
         memory.axis(other, Chan::ENABLE) != 0 && channel_of(memory, other) == Some(Channel::Dac(dac))
     };
-    if AxisId::all().filter(|other| drives(*other)).eq([axis]) {
+    if memory.axes().iter().filter(|other| drives(*other)).eq([axis]) {
         tick.out.remark(tick.now, Message::DacOverwritten { axis, dac });
     }
 }

@@ -1,9 +1,8 @@
 //! Slaved axes: their destination changes with their master's.
 
-use kmotiondef::AxisId;
-use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::modes::OutputMode;
 use kmotiondef::structs::Chan;
+use kmotiondef::{Axes, AxisId};
 use vm::memory::GuestMemory;
 
 use super::state::Servo;
@@ -11,9 +10,9 @@ use crate::views::Typed;
 
 /// Applies the changes of all masters in this tick, whatever caused them.
 pub(crate) fn follow(servo: &Servo, memory: &mut GuestMemory) {
-    let mut moved = [None; N_CHANNELS];
-    for axis in AxisId::all() {
-        change(servo, memory, axis, &mut moved, N_CHANNELS);
+    let mut moved = [None; Axes::MAX];
+    for axis in memory.axes().iter() {
+        change(servo, memory, axis, &mut moved, memory.axes().count());
     }
 }
 
@@ -22,14 +21,14 @@ fn change(
     servo: &Servo,
     memory: &mut GuestMemory,
     axis: AxisId,
-    moved: &mut [Option<f64>; N_CHANNELS],
+    moved: &mut [Option<f64>; Axes::MAX],
     depth: usize,
 ) -> f64 {
     if let Some(change) = moved[axis.index()] {
         return change;
     }
     let is_enabled = memory.axis(axis, Chan::ENABLE) != 0;
-    let master = AxisId::new(memory.axis(axis, Chan::MASTER_AXIS)).filter(|_| is_enabled && depth > 0);
+    let master = memory.axes().get(memory.axis(axis, Chan::MASTER_AXIS)).filter(|_| is_enabled && depth > 0);
     if let Some(master) = master {
         let moved = change(servo, memory, master, moved, depth - 1);
         // A motion of its own does not know that: in the next tick the slave is where that says, and changes by that tick.

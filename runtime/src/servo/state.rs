@@ -1,9 +1,8 @@
 //! The servo's state outside guest memory, and the data of a servo tick.
 
-use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::modes::LastMotion;
 use kmotiondef::variables::COORD_SYSTEM0;
-use kmotiondef::{AxisId, CodeAddr, Cycles, ThreadId};
+use kmotiondef::{Axes, AxisId, CodeAddr, Cycles, ThreadId};
 use vm::memory::GuestMemory;
 
 use super::cache::Cache;
@@ -59,8 +58,8 @@ pub(crate) struct CallPlace {
 pub(crate) struct Servo {
     /// The last call of a program, and the last that commanded each axis: what happens to an axis later comes of it.
     pub(crate) last_call: Option<CallPlace>,
-    pub(crate) commands: [Option<CallPlace>; N_CHANNELS],
-    pub(crate) axes: [AxisMemory; N_CHANNELS],
+    pub(crate) commands: [Option<CallPlace>; Axes::MAX],
+    pub(crate) axes: [AxisMemory; Axes::MAX],
     /// The values derived from guest memory.
     pub(crate) cache: Cache,
     pub(super) coordinated: Coordinated,
@@ -79,7 +78,7 @@ impl Servo {
     pub(crate) fn is_busy(memory: &GuestMemory) -> bool {
         recorder::is_recording(memory)
             || path::is_under_way(memory)
-            || AxisId::all().any(|axis| independent::is_moving(memory, axis))
+            || memory.axes().iter().any(|axis| independent::is_moving(memory, axis))
     }
 }
 

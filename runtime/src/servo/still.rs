@@ -4,11 +4,12 @@
 //! changed nothing, neither will the next, until somebody else writes there. So it is enough to compare: the axis
 //! structures, the words of the outputs, which an axis writes again in each tick, and the analog inputs.
 
-use kmotiondef::GuestAddr;
+use kmotiondef::structs::Chan;
 use kmotiondef::variables::{ADC_BUFFER_IN, CHAN, DAC_BUFFER, LAST_PWM};
+use kmotiondef::{GuestAddr, GuestType};
 use vm::memory::GuestMemory;
 
-use crate::views::{CHANS_SIZE, Typed};
+use crate::views::Typed;
 
 /// Bytes of the amplifiers' words, the analog outputs and the analog inputs.
 const PWM_SIZE: usize = 64;
@@ -18,7 +19,7 @@ const ADC_SIZE: usize = 32;
 /// The memory of the axes after the last computed tick.
 #[derive(Clone, Debug)]
 pub(crate) struct Stillness {
-    chans: Box<[u8; CHANS_SIZE]>,
+    chans: Vec<u8>,
     pwm: [u8; PWM_SIZE],
     dac: [u8; DAC_SIZE],
     adc: [u8; ADC_SIZE],
@@ -32,7 +33,7 @@ pub(crate) struct Stillness {
 impl Default for Stillness {
     fn default() -> Self {
         Self {
-            chans: Box::new([0; CHANS_SIZE]),
+            chans: Vec::new(),
             pwm: [0; PWM_SIZE],
             dac: [0; DAC_SIZE],
             adc: [0; ADC_SIZE],
@@ -79,7 +80,8 @@ impl Stillness {
     pub(super) fn end(&mut self, memory: &GuestMemory) -> bool {
         self.is_still = self.is_known && self.is_seen(memory);
         if !self.is_still {
-            copy(memory, memory.locate(CHAN), &mut self.chans);
+            self.chans.clear();
+            self.chans.extend_from_slice(structures(memory));
             copy(memory, memory.locate(LAST_PWM), &mut self.pwm);
             copy(memory, memory.locate(DAC_BUFFER), &mut self.dac);
             copy(memory, memory.locate(ADC_BUFFER_IN), &mut self.adc);
@@ -94,7 +96,7 @@ impl Stillness {
     }
 
     fn has_seen_axes(&self, memory: &GuestMemory) -> bool {
-        memory.block(memory.locate(CHAN)) == Some(&*self.chans)
+        *structures(memory) == *self.chans
     }
 
     /// Those of the words of the outputs and the analog inputs.
@@ -103,6 +105,12 @@ impl Stillness {
             && memory.block(memory.locate(DAC_BUFFER)) == Some(&self.dac)
             && memory.block(memory.locate(ADC_BUFFER_IN)) == Some(&self.adc)
     }
+}
+
+/// The structures of all axes of the board.
+fn structures(memory: &GuestMemory) -> &[u8] {
+    let size = Chan::SIZE * memory.axes().count() as u32;
+    memory.read_bytes(memory.locate(CHAN), size).unwrap_or_default()
 }
 
 fn copy<const N: usize>(memory: &GuestMemory, address: GuestAddr, to: &mut [u8; N]) {

@@ -55,7 +55,9 @@ fn carried_to(io: &Io, memory: &mut GuestMemory, axis: AxisId, wired: Option<Cha
 
 /// The enabled axis that outputs to a channel.
 pub(crate) fn driver(memory: &GuestMemory, channel: Channel) -> Option<AxisId> {
-    AxisId::all()
+    memory
+        .axes()
+        .iter()
         .find(|axis| memory.axis(*axis, Chan::ENABLE) != 0 && channel_of(memory, *axis) == Some(channel))
 }
 

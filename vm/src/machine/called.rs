@@ -23,7 +23,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     /// [`CallEnd::Returned`], whatever the function has changed until then stays.
     pub fn call_function(&mut self, id: ContextId, function: GuestAddr, arguments: &[u64]) -> CallEnd {
         let start = self.held().map_or_else(|| end_of(self.tick), |(_, at)| at);
-        let whole = id.stack(self.config.strict_stack);
+        let whole = id.stack_in(self.memory.map(), self.config.strict_stack);
         let stack = CallStack { whole, is_in_use: self.is_in_progress(id) };
         let mut slice = Slice {
             memory: &mut self.memory,

@@ -7,6 +7,8 @@ use std::sync::Arc;
 
 use kmotiondef::GuestAddr;
 
+use super::GuestMemory;
+
 /// An object, where the tables have it, and where it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Object {
@@ -58,6 +60,33 @@ impl Places {
         let holds = |object: &&Object| place.get().wrapping_sub(object.place) < object.size;
         let object = objects.into_iter().find(holds);
         object.map_or(place, |object| GuestAddr::new(object.table + (place.get() - object.place)))
+    }
+}
+
+impl GuestMemory {
+    /// Says where the objects of the tables are in this memory.
+    pub fn set_places(&mut self, places: Places) {
+        self.places = places;
+    }
+
+    /// Returns whether all objects are where the tables have them.
+    #[inline(always)]
+    #[must_use]
+    pub const fn is_by_tables(&self) -> bool {
+        self.places.is_by_tables()
+    }
+
+    /// The place of an address of the tables.
+    #[inline(always)]
+    #[must_use]
+    pub fn place_of(&self, address: GuestAddr) -> GuestAddr {
+        self.places.of(address)
+    }
+
+    /// The address of the tables for a place.
+    #[must_use]
+    pub fn table_of(&self, place: GuestAddr) -> GuestAddr {
+        self.places.table_of(place)
     }
 }
 

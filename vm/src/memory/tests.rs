@@ -1,9 +1,14 @@
 //! Every way into guest memory at its borders.
 
+use kmotiondef::boards::TargetBoard;
 use kmotiondef::map::{PROGRAM_BASE, TIMER0};
 use proptest::prelude::*;
 
 use super::*;
+
+const SDRAM_BASE: u32 = SDRAM.base.get();
+const IRAM_BASE: u32 = IRAM.base.get();
+const FLASH_BASE: u32 = FLASH.base.get();
 
 fn at(address: u32) -> GuestAddr {
     GuestAddr::new(address)
@@ -11,6 +16,33 @@ fn at(address: u32) -> GuestAddr {
 
 fn unmapped<T>(address: u32, access: Access) -> Result<T, TrapKind> {
     Err(TrapKind::Unmapped { addr: at(address), access })
+}
+
+#[test]
+fn the_memory_of_another_board_is_where_its_map_says() {
+    let kogna = TargetBoard::named("kogna-5.3.2").expect("the board is known");
+    let mut memory = GuestMemory::new();
+    memory.set_map(kogna.map());
+    let (iram, sdram) = (at(0x1180_0000), at(0xc000_0000));
+    for (first, last) in [(iram, iram.offset(0x3_fffc)), (sdram, sdram.offset(0xff_fffc))] {
+        assert_eq!((memory.store(first, 7_u32), memory.store(last, 8_u32)), (Ok(()), Ok(())));
+        assert_eq!((memory.peek(first), memory.load(last)), (7_u32, Ok(8_u32)));
+        assert_eq!(memory.load::<u8>(last.offset(4)), unmapped(last.get() + 4, Access::Read));
+    }
+    for foreign in [IRAM_BASE, SDRAM_BASE, FLASH_BASE] {
+        assert_eq!(memory.load::<u32>(at(foreign)), unmapped(foreign, Access::Read));
+        assert_eq!(memory.store(at(foreign), 9_u32), unmapped(foreign, Access::Write));
+        assert_eq!(memory.load_ram::<u32>(at(foreign)), None);
+        assert_eq!(memory.store_ram(at(foreign), 9_u32), None);
+    }
+    let text = kogna.program_base(ThreadId::new(2).expect("2 is a thread"));
+    memory.protect(ThreadId::new(2).expect("2 is a thread"), text..text.offset(64));
+    assert_eq!(memory.store(text.offset(8), 1_u32), Err(TrapKind::WriteProtected { addr: text.offset(8) }));
+    assert!(memory.is_on_bus(at(0x6000_0040), Access::Write) && !memory.is_on_bus(TIMER0, Access::Read));
+    let before = memory.snapshot();
+    memory.poke(iram.offset(0x3_0000), 3_u32);
+    memory.restore(&before);
+    assert_eq!(memory.peek::<u32>(iram.offset(0x3_0000)), 0);
 }
 
 #[test]

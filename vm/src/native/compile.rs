@@ -10,6 +10,7 @@ use cranelift_frontend::FunctionBuilderContext;
 use cranelift_module::{FuncId, Module, ModuleError};
 use kmotiondef::GuestAddr;
 use kmotiondef::jumps::JumpFunction;
+use kmotiondef::map::MemoryMap;
 
 use super::state::BYTES_PER_CALL;
 use super::translate::{
@@ -45,6 +46,9 @@ pub enum CompileError {
     /// Machine code of the host has its calls on a native stack, which nothing can leave in the middle.
     #[error("a program with `setjmp` or `longjmp` is interpreted")]
     Jumps,
+    /// Machine code of the host has the addresses of one board's memories in it.
+    #[error("a program for a board whose memory is not where that of a KFLOP is, is interpreted")]
+    OtherMemory,
     /// A function is beyond a limit of Cranelift's.
     #[error(transparent)]
     Module(#[from] Box<ModuleError>),
@@ -110,6 +114,9 @@ pub(super) fn compile(
         |op: &Op| matches!(op, Op::CallFw { addr, .. } if JumpFunction::at(GuestAddr::new(addr.0)).is_some());
     if program.ops().iter().any(jumps) {
         return Err(CompileError::Jumps);
+    }
+    if !MemoryMap::KFLOP.programs.holds(program.address_of(0).get()) {
+        return Err(CompileError::OtherMemory);
     }
     let mut compiler = Compiler { context: module.make_context(), module, builder: Default::default() };
     let functions = compiler.declare_functions(program)?;

@@ -1,6 +1,6 @@
 //! Gives everything its address.
 
-use kmotiondef::boards::ProgramSpaces;
+use kmotiondef::map::ProgramSpaces;
 use kmotiondef::{GuestAddr, ThreadId};
 
 use super::error::{LinkError, LinkErrorKind, LinkWarning};

@@ -4,10 +4,10 @@ use std::ops::Range;
 use std::time::Duration;
 
 use cc67_wire::Status;
-use kmotiondef::limits::{N_CHANNELS, N_USER_DATA_VARS};
+use kmotiondef::limits::N_USER_DATA_VARS;
 use kmotiondef::structs::{Chan, Persist};
-use kmotiondef::variables::{CHAN, PERSIST};
-use kmotiondef::{AxisId, GuestAddr, ThreadId};
+use kmotiondef::variables::{PERSIST, chan};
+use kmotiondef::{GuestAddr, ThreadId};
 use runtime::RemoteBoard as _;
 
 use super::Controller;
@@ -51,12 +51,13 @@ impl Controller {
 
     /// Reads the velocities of the axes, for jog buttons.
     pub(super) fn read_velocities(&mut self) {
-        let command = AxisId::all().map(|axis| format!("Vel{axis}")).collect::<Vec<_>>().join(";");
-        match self.client.get_mut().ask_lines(&command, N_CHANNELS) {
+        let axes = self.seen.axes();
+        let command = axes.iter().map(|axis| format!("Vel{axis}")).collect::<Vec<_>>().join(";");
+        match self.client.get_mut().ask_lines(&command, axes.count()) {
             Ok(answers) => {
-                for (axis, answer) in AxisId::all().zip(answers) {
+                for (axis, answer) in axes.iter().zip(answers) {
                     if let Ok(velocity) = answer.trim().parse::<f32>() {
-                        let place = CHAN.element(axis.index()).field(Chan::VEL).address();
+                        let place = chan(axis).field(Chan::VEL).address();
                         self.seen.note(self.seen.place_of(place), &velocity.to_le_bytes());
                     }
                 }

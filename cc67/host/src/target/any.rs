@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
+use kmotiondef::{Axes, AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
 use runtime::standing::{StandingAxis, StandingThread};
 use runtime::stimulus::Stimulus;
@@ -114,6 +114,7 @@ impl Target for AnyTarget {
 
     delegate! {
         fn name(&self) -> &'static str;
+        fn axes(&self) -> Axes;
         fn lost(&self) -> Option<&str>;
         fn can(&self, capability: Capability) -> bool;
         fn tick(&self) -> Ticks;

@@ -165,7 +165,7 @@ impl BootedTarget {
     /// Returns the commanded and the measured positions of the axes, if this firmware has the variables.
     #[must_use]
     pub fn axes(&self) -> Vec<(f64, f64)> {
-        AxisId::all().filter_map(|axis| self.board.axis(axis)).collect()
+        Target::axes(self).iter().filter_map(|axis| self.board.axis(axis)).collect()
     }
 
     /// Samples from now on what the processor does, for a profile.

@@ -1,6 +1,6 @@
 //! The modelled board as a target, on any engine.
 
-use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
+use kmotiondef::{Axes, AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
 use runtime::standing::{StandingAxis, StandingThread};
 use runtime::stimulus::Stimulus;
@@ -8,7 +8,7 @@ use runtime::trace::{Item, TraceRequest};
 use runtime::{Board, BoardSnapshot, OpenBox};
 use vm::engine::{AccessRange, CallEnd, ContextId, Engine, FrameView, Hold};
 use vm::loaded::Loaded;
-use vm::memory::{GuestMemory, is_on_bus};
+use vm::memory::GuestMemory;
 use vm::scheduler::Turn;
 use vm::thread::ThreadState;
 use vm::trap::Access;
@@ -46,7 +46,7 @@ pub(super) fn read(memory: &GuestMemory, address: GuestAddr, bytes: &mut [u8]) {
 
 /// Returns whether there is memory or a register of a device at an address.
 pub(super) fn is_mapped(memory: &GuestMemory, address: GuestAddr) -> bool {
-    memory.read_bytes(address, 1).is_ok() || is_on_bus(address, Access::Read)
+    memory.read_bytes(address, 1).is_ok() || memory.is_on_bus(address, Access::Read)
 }
 
 impl<E: Engine> Target for Board<E> {
@@ -174,6 +174,10 @@ impl<E: Engine> Target for Board<E> {
 
     fn write(&mut self, address: GuestAddr, bytes: &[u8]) -> Result<(), HostError> {
         self.memory_mut().poke_bytes(address, bytes).map_err(|_| HostError::Unmapped(address))
+    }
+
+    fn axes(&self) -> Axes {
+        self.memory().axes()
     }
 
     fn value(&self, item: Item) -> f64 {

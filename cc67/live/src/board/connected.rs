@@ -1,7 +1,7 @@
 //! A connected controller: pages look until somebody switches control on; a link that is lost is told.
 
 use cc67_host::{Session, Target};
-use kmotiondef::{AxisId, ThreadId};
+use kmotiondef::ThreadId;
 use serde_json::{Value, json};
 
 use super::jogs::Jogs;
@@ -86,7 +86,7 @@ impl<T: Target> ViewState<T> {
         self.access.jogs.clear();
         let active = ThreadId::all().filter(|thread| session.thread(*thread).is_active());
         let kills = active.map(|thread| format!("Kill{thread}"));
-        let disables = AxisId::all().map(|axis| format!("DisableAxis{axis}"));
+        let disables = session.target().axes().iter().map(|axis| format!("DisableAxis{axis}"));
         let line = kills.chain(disables).collect::<Vec<_>>().join(";");
         self.command(session, &line)
     }

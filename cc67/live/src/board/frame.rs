@@ -15,8 +15,8 @@
 
 use cc67_host::{Session, Target};
 use kmotiondef::structs::{Chan, Persist};
-use kmotiondef::variables::{ADC_BUFFER_IN, BIT_DIR_SHADOW, CHAN, DAC_BUFFER, PERSIST};
-use kmotiondef::{AxisId, Bit, Field, GuestAddr, Ticks};
+use kmotiondef::variables::{ADC_BUFFER_IN, BIT_DIR_SHADOW, DAC_BUFFER, PERSIST, chan};
+use kmotiondef::{Axes, AxisId, Bit, Field, GuestAddr, Ticks};
 use runtime::trace::Item;
 
 use super::samples::Samples;
@@ -25,6 +25,8 @@ use super::samples::Samples;
 const VERSION: u32 = 1;
 /// The offset of the samples.
 const SAMPLES: usize = 1728;
+/// The axes that a page shows.
+pub(super) const SHOWN: Axes = Axes::new(8);
 /// Bits that have a direction.
 const PINS: u16 = 64;
 
@@ -56,7 +58,7 @@ pub(super) fn frame<T: Target>(
     out.extend(ticks.iter().chain(&moment.speed).flat_map(|number| number.to_le_bytes()));
     let counts_at = out.len();
     out.extend([0; 16]);
-    AxisId::all().for_each(|axis| write_axis(session, axis, &mut out));
+    SHOWN.iter().for_each(|axis| write_axis(session, axis, &mut out));
     write_bits(session, &mut out);
     write_analog(session, &mut out);
     let data = PERSIST.field(Persist::USER_DATA);
@@ -72,7 +74,7 @@ pub(super) fn frame<T: Target>(
 
 /// A field of an axis' structure.
 fn place<T>(axis: AxisId, field: Field<T>) -> GuestAddr {
-    CHAN.element(axis.index()).field(field).address()
+    chan(axis).field(field).address()
 }
 
 /// A double, not a number where it is unknown.

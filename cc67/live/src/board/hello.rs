@@ -9,6 +9,7 @@ use kmotiondef::{AxisId, Bit};
 use runtime::machine_file::{Condition, Model};
 use serde_json::{Value, json};
 
+use super::frame::SHOWN;
 use crate::Show;
 use crate::names::{self, Used};
 
@@ -40,7 +41,7 @@ pub(super) fn sources(show: &Show) -> Value {
 
 /// Returns the data that does not change while the board runs, and the programs' names of their bits.
 pub(super) fn hello(show: &Show) -> Value {
-    let axes = AxisId::all().zip(&show.machine.file.axes).map(|(axis, described)| {
+    let axes = SHOWN.iter().zip(&show.machine.file.axes).map(|(axis, described)| {
         let name = if described.name.is_empty() { format!("Axis {axis}") } else { described.name.clone() };
         json!({
             "axis": axis.get(), "name": name, "units": described.units, "exists": described.model != Model::None,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use cc67_host::{Capability, Session, Target};
 use kmotiondef::limits::N_USER_DATA_VARS;
 use kmotiondef::structs::{Chan, Persist};
-use kmotiondef::variables::{CHAN, PERSIST};
+use kmotiondef::variables::{PERSIST, chan};
 use kmotiondef::{AxisId, Bit};
 use runtime::trace::Item;
 use serde::Serialize;
@@ -44,7 +44,7 @@ impl FinalState {
         let elements =
             (0..N_USER_DATA_VARS).map(|index| (index, session.peek_object(data.element(index).address())));
         Self {
-            axes: AxisId::all().filter_map(|axis| AxisState::of(session, axis)).collect(),
+            axes: session.target().axes().iter().filter_map(|axis| AxisState::of(session, axis)).collect(),
             bits: bits.filter(|bit| value(Item::of_bit(*bit)) != 0.0).map(Bit::get).collect(),
             persist: elements.filter(|(_, value)| *value != 0).collect(),
         }
@@ -75,7 +75,7 @@ impl AxisState {
     fn of<T: Target>(session: &Session<T>, axis: AxisId) -> Option<Self> {
         let value =
             |kind: &str| Item::new(&format!("{kind}{axis}")).map_or(0.0, |item| session.target().value(item));
-        let place = CHAN.element(axis.index()).field(Chan::ENABLE);
+        let place = chan(axis).field(Chan::ENABLE);
         let enabled = session.peek_object::<u32>(place.address()) != 0;
         let state = Self {
             axis: axis.get(),

@@ -118,7 +118,7 @@ pub(crate) fn stop<T: Target>(session: &mut Session<T>, events: EventSink<'_>) {
     }
     // Nobody is there when the answer cannot be read.
     if agrees_to("Disable all axes?").unwrap_or(false) {
-        for axis in kmotiondef::AxisId::all() {
+        for axis in session.target().axes().iter() {
             session.exchange(format!("DisableAxis{axis}").as_bytes(), events);
         }
     }

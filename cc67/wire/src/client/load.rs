@@ -6,6 +6,7 @@
 
 use kmotiondef::ThreadId;
 use kmotiondef::boards::TargetBoard;
+use kmotiondef::map::ProgramSpaces;
 
 use super::{ANSWER_WITHIN, Client};
 use crate::disk::hexadecimal;
@@ -54,16 +55,16 @@ impl LoadImage {
                 program: firmware.trim_end().into(),
             });
         }
-        self.check_space(board_of(version))
+        self.check_space(&spaces(version))
     }
 
     /// Checks that the image begins in the space of its thread and ends among the spaces of programs.
     ///
     /// # Errors
     /// It has bytes elsewhere.
-    fn check_space(&self, board: &TargetBoard) -> Result<(), WireError> {
-        let start = board.program_base(self.thread).get();
-        let end = start + board.programs().size - 1;
+    fn check_space(&self, spaces: &ProgramSpaces) -> Result<(), WireError> {
+        let start = spaces.start(self.thread).get();
+        let end = start + spaces.size - 1;
         let wrong = |address| WireError::WrongSpace { thread: self.thread, address, start, end };
         if !(start..=end).contains(&self.entry) {
             return Err(wrong(self.entry));
@@ -74,8 +75,8 @@ impl LoadImage {
                 return Err(wrong(*address));
             }
             // A large program may continue in the space of the next thread (dialect.md section 7).
-            if last >= u64::from(board.programs().limit) {
-                return Err(wrong(board.programs().limit));
+            if last >= u64::from(spaces.limit) {
+                return Err(wrong(spaces.limit));
             }
         }
         Ok(())
@@ -88,8 +89,8 @@ impl LoadImage {
     }
 
     /// The parts as they are sent, the first word of the space last.
-    fn ordered(&self, board: &TargetBoard) -> Vec<(u32, Vec<u8>)> {
-        let start = board.program_base(self.thread).get();
+    fn ordered(&self, spaces: &ProgramSpaces) -> Vec<(u32, Vec<u8>)> {
+        let start = spaces.start(self.thread).get();
         let mut parts = vec![];
         let mut last = vec![];
         for (address, bytes) in &self.parts {
@@ -107,9 +108,9 @@ impl LoadImage {
     }
 }
 
-/// The board with a version; one that is not known has its programs where a KFLOP has them.
-fn board_of(version: &str) -> &'static TargetBoard {
-    TargetBoard::of_version(version.trim_end()).unwrap_or_else(TargetBoard::default_board)
+/// The spaces of programs of the board with a version; of one that is not known, those of a KFLOP.
+fn spaces(version: &str) -> ProgramSpaces {
+    TargetBoard::of_version(version.trim_end()).unwrap_or_else(TargetBoard::default_board).programs()
 }
 
 impl Client {
@@ -124,7 +125,7 @@ impl Client {
         progress: &mut dyn FnMut(Progress),
     ) -> Result<(), WireError> {
         if is_forced {
-            image.check_space(board_of(&self.version))?;
+            image.check_space(&spaces(&self.version))?;
         } else {
             image.check(&self.version)?;
         }
@@ -132,7 +133,7 @@ impl Client {
         let total = image.size();
         let mut done = 0;
         progress(Progress { done, total });
-        for (address, bytes) in image.ordered(board_of(&self.version)) {
+        for (address, bytes) in image.ordered(&spaces(&self.version)) {
             for (piece, at) in bytes.chunks(PIECE).zip((address..).step_by(PIECE)) {
                 self.send_piece(at, piece).map_err(|error| failed(image, error))?;
                 done = (done + piece.len()).min(total);

@@ -12,8 +12,7 @@ mod tables;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use kmotiondef::Bit;
-use kmotiondef::limits::N_CHANNELS;
+use kmotiondef::{Axes, Bit};
 
 pub use crate::machine::Connected;
 pub use crate::machine::description::{
@@ -30,8 +29,8 @@ pub(crate) const NS_PER_INSTRUCTION: f64 = 5.0;
 /// A machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MachineFile {
-    /// The eight axes.
-    pub axes: [Axis; N_CHANNELS],
+    /// The axes, those that the board lacks included.
+    pub axes: [Axis; Axes::MAX],
     /// The equipment that is connected to the board, without the loads of the axes.
     pub connected: Connected,
     /// Connections of outputs with inputs.

@@ -1,7 +1,7 @@
 //! Reading values of TOML, with the place of everything that is wrong.
 
 use kmotiondef::bits::{BitDirection, range_of};
-use kmotiondef::{AxisId, Bit};
+use kmotiondef::{Axes, AxisId, Bit};
 use strsim::levenshtein;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -85,7 +85,7 @@ impl Key<'_> {
 
     /// The axis it numbers.
     pub(super) fn axis(&self) -> Read<AxisId> {
-        let number = self.text.parse().ok().and_then(AxisId::new);
+        let number = self.text.parse().ok().and_then(|number| Axes::default().get(number));
         number.ok_or_else(|| Wrong::new(self.offset, format!("`{}` is not an axis (0-7)", self.text)))
     }
 }
@@ -199,7 +199,7 @@ impl<'a> Value<'a> {
         let number = self
             .parsed()
             .filter(|number| number.fract() == 0.0)
-            .and_then(|number| AxisId::new(number as i32));
+            .and_then(|number| Axes::default().get(number as i32));
         number.ok_or_else(|| self.is_wrong("an axis, 0 to 7"))
     }
 

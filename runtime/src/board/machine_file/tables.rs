@@ -1,6 +1,6 @@
 //! The tables of a machine file: what each key changes.
 
-use kmotiondef::{AxisId, Bit};
+use kmotiondef::{Axes, AxisId, Bit};
 use toml::de::DeTable;
 
 use super::read::{Read, Table, Value, Wrong, keys};
@@ -351,7 +351,7 @@ fn spindle(before: Option<Spindle>, table: &Table<'_>) -> Read<Spindle> {
 /// `axis 7`.
 fn named_axis(value: &Value<'_>) -> Read<AxisId> {
     let number = value.text()?.strip_prefix("axis").and_then(|rest| rest.trim().parse().ok());
-    number.and_then(AxisId::new).ok_or_else(|| value.is_wrong("\"axis N\", 0 to 7"))
+    number.and_then(|number| Axes::default().get(number)).ok_or_else(|| value.is_wrong("\"axis N\", 0 to 7"))
 }
 
 fn directions(table: &Table<'_>) -> Read<SpindleDrive> {

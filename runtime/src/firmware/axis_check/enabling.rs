@@ -79,7 +79,7 @@ fn limit_active(parts: &Parts, memory: &GuestMemory, function: Function, axis: A
 
 /// Every other enabled axis.
 fn others(memory: &GuestMemory, axis: AxisId) -> impl Iterator<Item = AxisId> {
-    AxisId::all().filter(move |other| *other != axis && memory.axis(*other, Chan::ENABLE) != 0)
+    memory.axes().iter().filter(move |other| *other != axis && memory.axis(*other, Chan::ENABLE) != 0)
 }
 
 fn shared_channel(memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {

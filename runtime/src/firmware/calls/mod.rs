@@ -8,8 +8,7 @@ mod reading;
 mod serial;
 mod waits;
 
-use kmotiondef::limits::N_CHANNELS;
-use kmotiondef::{AxisId, GuestAddr, ThreadId};
+use kmotiondef::{Axes, AxisId, GuestAddr, ThreadId};
 use vm::firmware::Caller;
 
 use super::motion::PlanningStage;
@@ -72,7 +71,7 @@ pub(crate) struct Calls {
     /// True if slices end between any two accesses to memory, in the middle of a call, too.
     pub(crate) are_split: bool,
     /// Motion calls in a row that each came while the one before was planned, of each axis.
-    pub(crate) hurried_calls: [u8; N_CHANNELS],
+    pub(crate) hurried_calls: [u8; Axes::MAX],
     /// The calls for which threads wait.
     pub(crate) waits: Waits,
     /// Observations that may become remarks later.
@@ -93,7 +92,7 @@ impl Default for Calls {
             token: GuestAddr::NULL,
             plan_ticks: 0,
             are_split: false,
-            hurried_calls: [0; N_CHANNELS],
+            hurried_calls: [0; Axes::MAX],
             waits: Waits::default(),
             notices: Notices::default(),
             motions: Motions::default(),

@@ -4,8 +4,7 @@
 //! disabled while a thread waits for it are mistakes that only several calls together show.
 
 use kmotiondef::firmware::Function;
-use kmotiondef::limits::N_CHANNELS;
-use kmotiondef::{AxisId, CodeAddr, Cycles, ThreadId};
+use kmotiondef::{Axes, AxisId, CodeAddr, Cycles, ThreadId};
 
 /// A thread that asked about one axis while another one, which it moves itself, still moved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,12 +68,12 @@ pub(crate) struct SmallMove {
 #[derive(Clone, Copy, Debug, Default)]
 struct Thread {
     /// Axes that it has moved, and axes that it has found in motion; a bit for each.
-    moved: u8,
-    in_motion: u8,
+    moved: u16,
+    in_motion: u16,
     /// True if it has found a path under way.
     path_in_motion: bool,
     /// Axes that it has moved to their switches and not zeroed since; a bit for each.
-    homed: u8,
+    homed: u16,
     /// A call that zeroed another axis meanwhile.
     wrong_zero: Option<WrongZero>,
     wrong_wait: Option<WrongWait>,
@@ -86,15 +85,15 @@ struct Thread {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Motions {
     /// The thread that last moved each axis.
-    movers: [Option<ThreadId>; N_CHANNELS],
+    movers: [Option<ThreadId>; Axes::MAX],
     /// Mode and channels of each axis when a program enabled it.
-    connections: [Option<[i32; 4]>; N_CHANNELS],
+    connections: [Option<[i32; 4]>; Axes::MAX],
     threads: [Thread; ThreadId::MAX as usize],
     /// The jog of each axis, and the length of its last move.
-    jogged: [Option<Jogged>; N_CHANNELS],
-    ways: [f64; N_CHANNELS],
+    jogged: [Option<Jogged>; Axes::MAX],
+    ways: [f64; Axes::MAX],
     /// The first move of each axis if that and all others are of a few counts; nothing after any other motion.
-    small: [Small; N_CHANNELS],
+    small: [Small; Axes::MAX],
 }
 
 /// The common property of the moves of an axis.
@@ -106,7 +105,7 @@ enum Small {
     Not,
 }
 
-const fn bit(axis: AxisId) -> u8 {
+const fn bit(axis: AxisId) -> u16 {
     1 << axis.get()
 }
 

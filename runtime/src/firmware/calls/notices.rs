@@ -6,8 +6,7 @@
 use std::sync::Arc;
 
 use kmotiondef::firmware::Function;
-use kmotiondef::limits::N_CHANNELS;
-use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId};
+use kmotiondef::{Axes, AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId};
 use vm::firmware::Caller;
 
 use crate::out::{Message, Out};
@@ -56,7 +55,7 @@ pub(crate) struct Notices {
     latches: Vec<Latch>,
     /// When the levels are looked at.
     pub(crate) due: Cycles,
-    moves: [Option<Called>; N_CHANNELS],
+    moves: [Option<Called>; Axes::MAX],
     /// The last call that printed.
     pub(crate) last_print: (Option<ThreadId>, Option<CodeAddr>),
     /// The thread that has begun a line of text and not ended it.

@@ -54,7 +54,7 @@ pub(crate) struct Wait {
 pub(crate) struct Waits {
     threads: [Wait; ThreadId::MAX as usize],
     /// A bit for each axis.
-    axes: u8,
+    axes: u16,
 }
 
 impl Waits {

@@ -134,7 +134,7 @@ impl Entry {
     pub(crate) fn axes(self, memory: &GuestMemory) -> [Option<AxisId>; LETTERS] {
         let fields =
             ARC_LETTERS.map(|(field, _)| field).into_iter().chain(LINEAR_LETTERS.map(|(field, _)| field));
-        let mut axes = fields.map(|field| AxisId::new(i32::from(memory.get(self.field(field)))));
+        let mut axes = fields.map(|field| memory.axes().get(i32::from(memory.get(self.field(field)))));
         std::array::from_fn(|_| axes.next().flatten())
     }
 
@@ -142,7 +142,7 @@ impl Entry {
     pub(crate) fn positions(self, memory: &GuestMemory, t: f64) -> [Option<(AxisId, f64)>; LETTERS] {
         let Kind::Segment(shape) = self.kind(memory) else { return [None; LETTERS] };
         let p = self.parameter(memory, t);
-        let axis = |field: Field<u8>| AxisId::new(i32::from(memory.get(self.field(field))));
+        let axis = |field: Field<u8>| memory.axes().get(i32::from(memory.get(self.field(field))));
         std::array::from_fn(|index| match ARC_LETTERS.get(index) {
             Some(&(letter, coefficients)) => {
                 axis(letter).map(|axis| (axis, self.on_arc(memory, coefficients, shape, p)))

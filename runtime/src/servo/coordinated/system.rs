@@ -22,7 +22,7 @@ const DEFAULT_CHANGE_TIME: f32 = 1.0;
 
 /// The axis of each letter, if it has one.
 pub(crate) fn letters(memory: &GuestMemory) -> [Option<AxisId>; LETTERS] {
-    LETTER_AXES.map(|letter| AxisId::new(memory.get(letter)))
+    LETTER_AXES.map(|letter| memory.axes().get(memory.get(letter)))
 }
 
 /// The axes of the coordinate system, in the order of their letters.

@@ -3,8 +3,7 @@
 //!
 //! Each edge is a count, four in a period. Both phases at once are not a count but a mistake, as for the real counter.
 
-use kmotiondef::limits::N_CHANNELS;
-use kmotiondef::{AxisId, Bit};
+use kmotiondef::{Axes, AxisId, Bit};
 
 use crate::machine::attached::{Attached, Outside};
 use crate::world::attached::Settings;
@@ -25,8 +24,8 @@ impl Quadrature {
     /// `a`, `b`, `axis`, `units`.
     pub(crate) fn new(settings: &mut Settings<'_>) -> Result<Self, String> {
         let (a, b) = (settings.bit("a")?, settings.bit("b")?);
-        let what = format!("an axis from 0 to {}", N_CHANNELS - 1);
-        let axis = settings.optional("axis", &what, |text| AxisId::new(text.parse().ok()?))?;
+        let what = format!("an axis from 0 to {}", Axes::default().last());
+        let axis = settings.optional("axis", &what, |text| Axes::default().get(text.parse().ok()?))?;
         let axis = axis.or_else(|| AxisId::new(0)).ok_or("there is no axis")?;
         Ok(Self { a, b, axis, units: settings.number("units", 1.0)?, levels: [false; 2] })
     }

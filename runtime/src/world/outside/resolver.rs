@@ -4,7 +4,7 @@
 //! negatives; a capacitor smooths what they show. The angle is where the load of the axis is. Source: the manual's
 //! resolver example.
 
-use kmotiondef::{AxisId, Bit, Cycles};
+use kmotiondef::{Axes, AxisId, Bit, Cycles};
 
 use crate::machine::attached::{Attached, Outside};
 use crate::world::attached::Settings;
@@ -34,8 +34,8 @@ pub(crate) struct Resolver {
 impl Resolver {
     /// `drive`, `sine`, `cosine`, `axis`, `turn`, `amplitude`.
     pub(crate) fn new(settings: &mut Settings<'_>) -> Result<Self, String> {
-        let axis =
-            settings.optional("axis", "an axis from 0 to 7", |text| AxisId::new(text.parse().ok()?))?;
+        let axis = settings
+            .optional("axis", "an axis from 0 to 7", |text| Axes::default().get(text.parse().ok()?))?;
         Ok(Self {
             drive: settings.bit("drive")?,
             sine: settings.adc("sine")?,

@@ -2,7 +2,7 @@
 
 use kmotiondef::bits::{BitDirection, range_of};
 use kmotiondef::limits::N_USER_DATA_VARS;
-use kmotiondef::{AxisId, Bit, Cycles, ThreadId};
+use kmotiondef::{Axes, AxisId, Bit, Cycles, ThreadId};
 
 use super::relation::Relation;
 use super::tokens::{Mistake, Token, TokenKind};
@@ -164,7 +164,7 @@ impl StatementReader<'_> {
     }
 
     pub(crate) fn axis(&mut self) -> Result<AxisId, Mistake> {
-        self.index("an axis from 0 to 7", AxisId::new)
+        self.index("an axis from 0 to 7", |number| Axes::default().get(number))
     }
 
     pub(crate) fn thread(&mut self) -> Result<ThreadId, Mistake> {

@@ -5,13 +5,13 @@ use std::fmt;
 use kmotiondef::bits::{BitKind, range_of};
 use kmotiondef::modes::GatherType;
 use kmotiondef::structs::{Chan, Persist};
-use kmotiondef::variables::{ADC_BUFFER_IN, CHAN, DAC_BUFFER, LAST_PWM, PERSIST};
-use kmotiondef::{AxisId, Bit, Place};
+use kmotiondef::variables::{ADC_BUFFER_IN, DAC_BUFFER, LAST_PWM, PERSIST};
+use kmotiondef::{Axes, AxisId, Bit, Place};
 
 use super::{Formula, RecordedCell, View};
 use crate::io::bits::bit_state;
 use crate::io::konnect::{KonnectBoard, Port};
-use crate::views::Typed;
+use crate::views::{self, Typed};
 
 /// A kind of value: a row of the table of kinds, which says everything about it.
 struct ItemKind {
@@ -131,7 +131,7 @@ const KINDS: &[ItemKind] = &[
 
 /// The variables of an axis.
 fn chan(index: usize) -> Place<Chan> {
-    CHAN.element(index)
+    views::chan(axis(index))
 }
 
 /// Indexes are checked when a name is read.
@@ -219,10 +219,10 @@ impl Item {
         KINDS.iter().any(|kind| kind.name == name)
     }
 
-    /// Returns the commanded position, the position and the output of every axis.
+    /// Returns the commanded position, the position and the output of every axis of a board.
     #[must_use]
-    pub fn of_axes() -> Vec<Self> {
-        AxisId::all().flat_map(Self::of_axis).collect()
+    pub fn of_axes(axes: Axes) -> Vec<Self> {
+        axes.iter().flat_map(Self::of_axis).collect()
     }
 
     /// All that `axisN` names.
@@ -232,10 +232,10 @@ impl Item {
         kinds.map(|(kind, _)| Self { kind, index: axis.index() }).collect()
     }
 
-    /// Returns the load position of every axis, in machine coordinates.
+    /// Returns the load position of every axis of a board, in machine coordinates.
     #[must_use]
-    pub fn of_loads() -> Vec<Self> {
-        AxisId::all().flat_map(|axis| Self::new(&format!("load{axis}"))).collect()
+    pub fn of_loads(axes: Axes) -> Vec<Self> {
+        axes.iter().flat_map(|axis| Self::new(&format!("load{axis}"))).collect()
     }
 
     /// Returns the kind of value: its name without the number.

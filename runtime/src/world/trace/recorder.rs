@@ -1,7 +1,7 @@
 //! Samples the quantities that were requested.
 
 use kmotiondef::structs::Chan;
-use kmotiondef::{AxisId, ThreadId, Ticks};
+use kmotiondef::{ThreadId, Ticks};
 
 use super::{Packets, Quantity, Record, TraceRequest, View};
 use crate::views::Typed;
@@ -11,7 +11,7 @@ use crate::views::Typed;
 pub(crate) struct Recorder {
     request: TraceRequest,
     /// The values as bits, so that what is not a number is equal to itself, and the enabled axes.
-    last: Option<(Vec<u64>, u8)>,
+    last: Option<(Vec<u64>, u16)>,
 }
 
 impl Recorder {
@@ -46,9 +46,12 @@ impl Recorder {
     /// The values, if some of them have changed since the last call.
     pub(crate) fn sample(&mut self, view: &View<'_>) -> Option<Record> {
         let values: Vec<f64> = self.request.quantities.iter().map(|quantity| quantity.read(view)).collect();
-        let enabled = AxisId::all()
+        let enabled = view
+            .memory
+            .axes()
+            .iter()
             .rev()
-            .fold(0, |word, axis| word << 1 | u8::from(view.memory.axis(axis, Chan::ENABLE) != 0));
+            .fold(0, |word, axis| word << 1 | u16::from(view.memory.axis(axis, Chan::ENABLE) != 0));
         let sample = Some((values.iter().map(|value| value.to_bits()).collect(), enabled));
         if sample == self.last {
             return None;

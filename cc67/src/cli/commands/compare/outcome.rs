@@ -4,8 +4,8 @@ use std::fmt;
 
 use cc67_host::{BootedTarget, Session, Target};
 use kmotiondef::structs::{Chan, Persist};
-use kmotiondef::variables::{BIT_DIR_SHADOW, CHAN, PERSIST};
-use kmotiondef::{AxisId, Bit, Cycles, Ticks};
+use kmotiondef::variables::{BIT_DIR_SHADOW, PERSIST, chan};
+use kmotiondef::{Bit, Cycles, Ticks};
 use runtime::{Event, EventKind};
 
 use crate::cli::report::numbers::{Deviation, Tolerance, deviation};
@@ -233,8 +233,8 @@ fn pins<T: Target>(session: &Session<T>) -> Vec<Pin> {
 
 /// Commanded and measured position of each axis.
 fn axes<T: Target>(session: &Session<T>) -> Vec<(f64, f64)> {
-    let axes = AxisId::all().map(|axis| {
-        let base = CHAN.address().offset(Chan::STRUCTURE.size * axis.index() as u32);
+    let axes = session.target().axes().iter().map(|axis| {
+        let base = chan(axis).address();
         let position = |field: u32| session.peek_object(base.offset(field));
         (position(Chan::DEST.offset()), position(Chan::POSITION.offset()))
     });

@@ -2,6 +2,8 @@
 //!
 //! A picture of an axis whose position nobody measures shows where its load is; for that the loads are recorded as well.
 
+use kmotiondef::Axes;
+use kmotiondef::boards::BOARDS;
 use runtime::trace::{Item, Quantity, TraceRequest};
 
 /// The quantities of a trace, each with its place in a sample.
@@ -11,24 +13,26 @@ pub(super) struct Columns {
     /// True if these are the items of all axes, of which only the enabled ones are shown, with their loads in pictures.
     is_default: bool,
     /// Axes that were enabled at some time.
-    enabled: u8,
+    enabled: u16,
 }
 
 impl Columns {
     /// Returns the items that are recorded for pictures by default.
-    pub(super) fn of_pictures() -> Vec<Item> {
-        [Item::of_axes(), Item::of_loads()].concat()
+    pub(super) fn of_pictures(axes: Axes) -> Vec<Item> {
+        [Item::of_axes(axes), Item::of_loads(axes)].concat()
     }
 
     /// Nothing is enabled yet.
     pub(super) fn new(request: &TraceRequest) -> Self {
         let items: Vec<_> = request.quantities.iter().filter_map(Quantity::item).collect();
-        let is_default = items == Item::of_axes() || items == Self::of_pictures();
+        let is_default = BOARDS
+            .iter()
+            .any(|board| items == Item::of_axes(board.axes) || items == Self::of_pictures(board.axes));
         Self { quantities: request.quantities.clone(), is_default, enabled: 0 }
     }
 
     /// Takes up which axes are enabled now.
-    pub(super) fn note(&mut self, enabled: u8) {
+    pub(super) fn note(&mut self, enabled: u16) {
         self.enabled |= enabled;
     }
 

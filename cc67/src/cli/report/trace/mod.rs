@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow, bail};
 use cc67_host::{Capability, Session, Target, WatchError};
-use kmotiondef::{Bit, CodeAddr, Cycles, ThreadId, Ticks};
+use kmotiondef::{Axes, Bit, CodeAddr, Cycles, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
 use runtime::standing::StandingAxis;
 use runtime::trace::{Item, Packets, Quantity, Record, TraceRequest};
@@ -46,7 +46,7 @@ pub(crate) fn request<T: Target>(
     session: &Session<T>,
 ) -> Result<Option<TraceRequest>> {
     let packets = arguments.trace_packets.as_ref().map(|file| packets::wanted(file, session)).transpose()?;
-    let request = requested(arguments, packets, |list| session.quantities(list))?;
+    let request = requested(arguments, packets, session.target().axes(), |list| session.quantities(list))?;
     let Some(request) = request else { return Ok(None) };
     session.require(Capability::Recordings)?;
     if arguments.trace_bits.is_some() || arguments.trace_packets.is_some() {
@@ -86,6 +86,7 @@ fn recorded_by_the_board(arguments: &TraceArguments, request: &TraceRequest) -> 
 fn requested(
     arguments: &TraceArguments,
     packets: Option<Packets>,
+    axes: Axes,
     quantities: impl FnOnce(&str) -> Result<Vec<Quantity>, WatchError>,
 ) -> Result<Option<TraceRequest>> {
     let TraceArguments { trace, trace_bits, trace_packets, plot, trace_items, trace_every } = arguments;
@@ -100,8 +101,8 @@ fn requested(
         Form::of(picture)?;
     }
     let quantities = match trace_items {
-        None if plot.is_empty() => Item::of_axes().into_iter().map(Quantity::from).collect(),
-        None => Columns::of_pictures().into_iter().map(Quantity::from).collect(),
+        None if plot.is_empty() => Item::of_axes(axes).into_iter().map(Quantity::from).collect(),
+        None => Columns::of_pictures(axes).into_iter().map(Quantity::from).collect(),
         Some(list) => quantities(list).map_err(refused)?,
     };
     let is_table = |path: &PathBuf| !matches!(suffix(path).as_str(), "vcd" | "json");
@@ -141,7 +142,7 @@ enum TraceEntry {
     /// Real code has executed a packet.
     Packet { thread: Option<ThreadId>, address: CodeAddr, cycles: Cycles, text: String },
     /// Items have these values; the axes that are enabled.
-    Sample { values: Vec<f64>, enabled: u8 },
+    Sample { values: Vec<f64>, enabled: u16 },
     /// A console line.
     Line(String),
     /// A character sent by the serial port.

@@ -1,7 +1,7 @@
 //! Loads that are pushed and encoders that are turned, or fail.
 
 use kmotiondef::structs::Chan;
-use kmotiondef::{AxisId, Cycles};
+use kmotiondef::{Axes, AxisId, Cycles};
 
 use crate::machine::COUNTS_PER_TICK;
 use crate::views::Typed;
@@ -60,7 +60,8 @@ pub(crate) fn load_spindle(scene: &mut Scene<'_, '_, '_>, axis: AxisId, load: f6
 pub(crate) fn read_turn(reader: &mut StatementReader<'_>) -> Result<(AxisId, f64, Cycles), Mistake> {
     let column = reader.column();
     let channel = encoder(reader)?;
-    let axis = AxisId::new(channel as i32)
+    let axis = Axes::default()
+        .get(channel as i32)
         .ok_or_else(|| (column, "only encoders 0 to 7 can be moved".to_owned()))?;
     reader.expect("moves")?;
     let counts = reader.number("a number of counts")?;

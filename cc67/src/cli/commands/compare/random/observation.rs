@@ -139,7 +139,7 @@ impl Observation {
             (0..columns).map(|column| session.peek_object(at(first + 2 * column))).collect()
         };
         self.rows = (0..scenario.samples() as u32).map(row).collect();
-        for axis in AxisId::all() {
+        for axis in session.target().axes().iter() {
             self.look_at_axis(session, axis, at(axis.index() as u32 * Chan::STRUCTURE.size / 4));
             let state: i32 = session.peek_object(at(STATES + axis.index() as u32));
             let name = format!("chan[{axis}].pcoeff-c");

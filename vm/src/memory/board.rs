@@ -1,0 +1,112 @@
+//! The board of a memory: what is at which address, and its axes.
+
+use kmotiondef::map::{MemoryMap, RegionKind};
+use kmotiondef::{Axes, GuestAddr};
+
+use super::{Bases, GuestMemory, Scalar, flash, index, offset_in};
+use crate::protection::Protection;
+use crate::trap::Access;
+
+impl GuestMemory {
+    /// Makes this the memory of another board at power-up, whose objects [`set_places`](Self::set_places) tells.
+    ///
+    /// Of SDRAM it has the first 16 MiB.
+    pub fn set_map(&mut self, map: &'static MemoryMap) {
+        if self.map != map {
+            self.map = map;
+            self.other_iram =
+                (*map != MemoryMap::KFLOP).then(|| vec![0; index(map.iram.size)].into_boxed_slice());
+            self.protection = Protection::of(map.programs);
+            self.last = None;
+        }
+    }
+
+    /// The memories and devices of the board of this memory.
+    #[inline(always)]
+    #[must_use]
+    pub const fn map(&self) -> &'static MemoryMap {
+        self.map
+    }
+
+    /// Says which axes the board of this memory has.
+    pub const fn set_axes(&mut self, axes: Axes) {
+        self.axes = axes;
+    }
+
+    /// The axes of the board of this memory.
+    #[inline(always)]
+    #[must_use]
+    pub const fn axes(&self) -> Axes {
+        self.axes
+    }
+
+    /// The first addresses of both RAMs, as programs see them.
+    #[inline(always)]
+    pub(super) const fn bases(&self) -> Bases {
+        Bases { sdram: self.map.sdram.base.get(), iram: self.map.iram.base.get() }
+    }
+
+    /// On-chip RAM.
+    #[inline(always)]
+    pub(super) fn iram_bytes(&self) -> &[u8] {
+        self.other_iram.as_deref().unwrap_or(&self.iram[..])
+    }
+
+    /// On-chip RAM, to change it.
+    #[inline(always)]
+    pub(super) fn iram_bytes_mut(&mut self) -> &mut [u8] {
+        self.other_iram.as_deref_mut().unwrap_or(&mut self.iram[..])
+    }
+
+    /// The offset of an address in flash memory, if this board shows it.
+    pub(super) fn offset_in_flash(&self, addr: GuestAddr) -> Option<usize> {
+        offset_in(addr, self.map.flash?.base.get(), flash::SIZE)
+    }
+
+    /// RAM from an address on, on a board whose map is not that of a KFLOP.
+    fn ram_by_map(&self, address: u32) -> Option<&[u8]> {
+        let (bases, iram) = (self.bases(), self.other_iram.as_deref()?);
+        let found = iram.get(index(address.wrapping_sub(bases.iram))..);
+        found.or_else(|| self.sdram.get(index(address.wrapping_sub(bases.sdram))..))
+    }
+
+    /// [`ram_by_map`](Self::ram_by_map), to change it.
+    fn ram_by_map_mut(&mut self, address: u32) -> Option<&mut [u8]> {
+        let bases = self.bases();
+        let iram = self.other_iram.as_deref_mut()?;
+        self.is_touched = true;
+        let found = iram.get_mut(index(address.wrapping_sub(bases.iram))..);
+        found.or_else(|| self.sdram.get_mut(index(address.wrapping_sub(bases.sdram))..))
+    }
+
+    #[cold]
+    pub(super) fn peek_by_map<T: Scalar>(&self, address: u32) -> Option<T> {
+        T::get(self.ram_by_map(address)?, 0)
+    }
+
+    #[cold]
+    pub(super) fn poke_by_map<T: Scalar>(&mut self, address: u32, value: T) -> Option<()> {
+        value.set(self.ram_by_map_mut(address)?, 0)
+    }
+
+    #[cold]
+    pub(super) fn block_by_map<const N: usize>(&self, address: u32) -> Option<&[u8; N]> {
+        self.ram_by_map(address)?.first_chunk()
+    }
+
+    #[cold]
+    pub(super) fn block_mut_by_map<const N: usize>(&mut self, address: u32) -> Option<&mut [u8; N]> {
+        self.ram_by_map_mut(address)?.first_chunk_mut()
+    }
+
+    /// Reports whether an access of `addr` goes to the bus: registers always, flash for a store.
+    #[must_use]
+    pub fn is_on_bus(&self, addr: GuestAddr, access: Access) -> bool {
+        let mut regions = self.map.regions().filter(|region| match region.kind {
+            RegionKind::Device => true,
+            RegionKind::Flash => access == Access::Write,
+            RegionKind::Ram => false,
+        });
+        regions.any(|region| region.holds(addr))
+    }
+}
