@@ -33,6 +33,12 @@ pub enum BitKind {
     KstepInput,
     /// A bit of the variable `VirtualBitsEx`.
     VirtualEx,
+    /// A pin of a Kogna whose direction programs choose.
+    KognaPin,
+    /// A differential input of a Kogna.
+    KognaInput,
+    /// An output of a Kogna.
+    KognaOutput,
 }
 
 /// The direction of the bits of a range.
@@ -133,6 +139,44 @@ macro_rules! ranges {
     };
 }
 for_each_bit_range!(ranges);
+
+macro_rules! kogna_ranges {
+    ($($(#[doc = $doc:literal])+ $first:literal..=$last:literal $name:literal, $kind:ident, $direction:ident;)*) => {
+        /// The ranges that only a Kogna has, in ascending order. Source: its header.
+        pub const KOGNA_BIT_RANGES: &[BitRange] = &[$(BitRange {
+            first: $first,
+            last: $last,
+            name: $name,
+            kind: BitKind::$kind,
+            direction: BitDirection::$direction,
+            doc: concat!($($doc),+).trim_ascii_start(),
+        }),*];
+    };
+}
+kogna_ranges! {
+    /// Ten pins of AUX2 and fourteen of EXIO, also step and direction of generators 11 to 15.
+    200..=223 "Kogna AUX2 and EXIO", KognaPin, Programmable;
+    /// Differential inputs.
+    225..=248 "Kogna differential in", KognaInput, Input;
+    /// Differential outputs.
+    250..=273 "Kogna differential out", KognaOutput, Output;
+    /// Relay drivers.
+    274..=277 "Kogna relay", KognaOutput, Output;
+    /// RS485 in place of RS422.
+    278..=278 "Kogna RS485 mode", KognaOutput, Output;
+    /// Enable of the supply of 15 V.
+    279..=279 "Kogna 15 V supply", KognaOutput, Output;
+    /// Pins of fast PWM channels 0 to 3.
+    280..=283 "Kogna HRPWM", KognaPin, Programmable;
+    /// Pins of the SPI port.
+    284..=289 "Kogna SPI", KognaPin, Programmable;
+}
+
+/// The range of a bit that only a Kogna has.
+#[must_use]
+pub fn kogna_range_of(bit: Bit) -> Option<&'static BitRange> {
+    KOGNA_BIT_RANGES.iter().find(|range| (range.first..=range.last).contains(&bit.get()))
+}
 
 /// The range that `bit` is in, if anything answers it.
 #[must_use]

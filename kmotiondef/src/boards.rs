@@ -13,6 +13,7 @@
 //! | `programs BASE SIZE LIMIT`, `axes N` | the space of thread 1's program, its size, the end of the last; the number of axes |
 //! | `clock MHZ`, `counter MHZ` | the clock of the processor, the rate of TIMER0 |
 //! | `iram BASE SIZE`, `sdram BASE SIZE`, `fpga BASE SIZE`, `timer BASE SIZE` | on-chip RAM, SDRAM, the registers of the FPGA and of the timer |
+//! | `hrpwm BASE BASE BASE`, `buffers BASE` | the registers of the fast PWM channels; the buffers and the heap after the programs |
 //! | `unmapped flash` | flash memory is in no addresses of programs |
 //! | `elf` | its firmware file is an ELF file, and its loader takes ELF images beside COFF2 ones |
 //! | `unproven` | nothing of it was compared with a board or its firmware in execution |
@@ -31,13 +32,14 @@ mod prototype;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
+use crate::bits::{BitRange, kogna_range_of, range_of};
 use crate::firmware::{ABSENT, FIRMWARE_FUNCTIONS, FirmwareFunction, Origin, row_named};
 use crate::hidden;
-use crate::ids::{Axes, GuestAddr, ThreadId};
+use crate::ids::{Axes, Bit, GuestAddr, ThreadId};
 use crate::limits::{N_CHANNELS, VERSION};
 use crate::map::{MemoryMap, ProgramSpaces, Region};
 use crate::structs::STRUCTURES;
-use crate::variables::{FIRMWARE_VARIABLES, variable_named};
+use crate::variables::{ADC_BUFFER_IN, FIRMWARE_VARIABLES, variable_named};
 
 pub use moved::{MovedObject, moved_objects};
 pub use prototype::FunctionType;
@@ -258,6 +260,12 @@ impl TargetBoard {
         &self.map
     }
 
+    /// The range that a bit is in, if anything on the board or its option boards answers it.
+    #[must_use]
+    pub fn bit_range(&self, bit: Bit) -> Option<&'static BitRange> {
+        range_of(bit).or_else(|| self.map.has_kogna_bits().then(|| kogna_range_of(bit)).flatten())
+    }
+
     /// The C headers.
     #[must_use]
     pub fn headers(&self) -> &[Header] {
@@ -451,7 +459,18 @@ impl TargetBoard {
     /// The addresses of the variables of the tables on this board.
     #[must_use]
     pub fn moved_objects(&self) -> Vec<MovedObject> {
-        moved_objects(|name| self.variable(name), self.own_structures(), self.axes)
+        let mut objects = moved_objects(|name| self.variable(name), self.own_structures(), self.axes);
+        if self.has_short_inputs() {
+            moved::halve(&mut objects, ADC_BUFFER_IN.address());
+        }
+        objects.extend(moved::buffers(&objects, self.map.buffers));
+        objects
+    }
+
+    /// Returns whether the analog inputs are of 16 bits, where the tables have 32.
+    fn has_short_inputs(&self) -> bool {
+        let declared = self.facts.as_ref().and_then(|facts| facts.variables.get("ADC_BufferIn"));
+        declared.is_some_and(|declaration| declaration.starts_with("short"))
     }
 
     /// The layouts of structures that are not those of the default board.
@@ -507,6 +526,8 @@ impl TargetBoard {
                 "fpga" => board.map.fpga = region(board.map.fpga, rest),
                 "timer" => board.map.timer = region(board.map.timer, rest),
                 "unmapped" => board.map.flash = None,
+                "hrpwm" => board.map.hrpwm = Some(hrpwm(rest)),
+                "buffers" => board.map.buffers = GuestAddr::new(hexadecimal(rest)),
                 "clock" => board.clock = number(rest, 10),
                 "counter" => board.map.counter = number(rest, 10),
                 "elf" => board.has_elf = true,
@@ -587,6 +608,12 @@ impl FieldLayout {
 fn region(kind: Region, line: &str) -> Region {
     let (base, size) = line.split_once(' ').unwrap_or((line, "0"));
     kind.at(hexadecimal(base), hexadecimal(size))
+}
+
+/// The registers of the fast PWM channels.
+fn hrpwm(line: &str) -> [Region; 3] {
+    let mut bases = line.split(' ').map(hexadecimal);
+    [(); 3].map(|()| MemoryMap::HRPWM.at(bases.next().unwrap_or_default(), MemoryMap::HRPWM.size))
 }
 
 fn hexadecimal(text: &str) -> u32 {

@@ -203,7 +203,6 @@ impl Axes {
     }
 }
 
-
 small_id! {
     /// A numbered digital input or output, 0 to 2047.
     Bit(u16) = 0..=2047

@@ -68,6 +68,10 @@ pub struct MemoryMap {
     pub flash: Option<Region>,
     /// Registers of the FPGA.
     pub fpga: Region,
+    /// Registers of the fast PWM channels, where there are any: of channels 0 and 1, of 2, of 3.
+    pub hrpwm: Option<[Region; 3]>,
+    /// The start of the buffers for recordings and motion, and of the heap.
+    pub buffers: GuestAddr,
     /// The spaces of the programs of threads 1 to 7.
     pub programs: ProgramSpaces,
 }
@@ -90,7 +94,7 @@ impl ProgramSpaces {
         GuestAddr::new(self.base + thread.index() as u32 * self.size)
     }
 
-    /// The addresses of the space of a thread; a program may go on after them.
+    /// The addresses of the space of a thread; a program may continue after them.
     #[must_use]
     pub const fn space(&self, thread: ThreadId) -> Range<u32> {
         let start = self.start(thread).get();
@@ -129,8 +133,20 @@ impl MemoryMap {
         sdram: SDRAM,
         flash: Some(FLASH),
         fpga: FPGA,
+        hrpwm: None,
+        buffers: BUFFERS,
         programs: ProgramSpaces { base: PROGRAM_BASE, size: PROGRAM_SIZE, limit: PROGRAM_LIMIT },
     };
+
+    /// The registers of one of the units of fast PWM channels.
+    pub(crate) const HRPWM: Region =
+        Region { name: "PWM registers", base: GuestAddr::NULL, size: 0x1000, kind: RegionKind::Device };
+
+    /// Returns whether bits from 200 on are those of a Kogna.
+    #[must_use]
+    pub const fn has_kogna_bits(&self) -> bool {
+        self.hrpwm.is_some()
+    }
 
     /// The address of TIMER0, which is at the same place among the timer's registers on every board.
     #[must_use]
@@ -143,6 +159,7 @@ impl MemoryMap {
         [Some(self.iram), Some(self.timer), Some(self.sdram), self.flash, Some(self.fpga)]
             .into_iter()
             .flatten()
+            .chain(self.hrpwm.into_iter().flatten())
     }
 }
 
@@ -181,6 +198,9 @@ pub const PROGRAM_SIZE: u32 = 0x1_0000;
 /// First address after every program slot: the limit for a program that needs several.
 pub const PROGRAM_LIMIT: u32 = 0x8010_0000;
 
+/// Start of the buffers for recordings and motion, and of the heap.
+pub const BUFFERS: GuestAddr = GuestAddr::new(PROGRAM_LIMIT);
+
 /// Start of the stack of thread 1; design choice: where the board has the firmware's own code, of which there is none here.
 ///
 /// All of the space after the programs of threads 1 to 6 is thread 7's, up to [`PROGRAM_LIMIT`], as on the board.
@@ -191,6 +211,12 @@ pub const STACK_SIZE: u32 = 0x8000;
 pub const BOARD_STACKS_BASE: u32 = 0x1001_3488;
 /// Bytes of one thread's stack on the real board.
 pub const BOARD_STACK_SIZE: u32 = 2048;
+
+/// The spaces of programs of a Kogna, and the start of the stack of thread 1 there. Source: its header and firmware file.
+pub const KOGNA_PROGRAMS: ProgramSpaces =
+    ProgramSpaces { base: 0xC008_0000, size: 0x4_0000, limit: 0xC030_0000 };
+/// See [`KOGNA_PROGRAMS`].
+pub const KOGNA_STACKS_BASE: u32 = 0x1182_D2F8;
 
 /// Bytes of it that the interrupts of the servo need, rounded up: 172 to 192 were measured.
 pub const INTERRUPT_STACK: u32 = 256;

@@ -6,6 +6,7 @@ use kmotiondef::AccessSize;
 use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, FirmwareFunction, Function, function_at};
 use kmotiondef::function::{Attributes, Polled};
 use kmotiondef::limits::MAX_GATHER_DATA;
+use kmotiondef::map::{FPGA, TIMER0};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::{
     CURRENT_THREAD, LAST_TIMER0, NEXT_AVAIL_IN, NEXT_AVAIL_OUT, SERVO_TICK, USER_CALL_BACK,
@@ -27,10 +28,11 @@ use crate::firmware::later::{self, Callee, Callees, LATER_FUNCTIONS};
 use crate::firmware::level::ModelledBoard;
 use crate::firmware::parts::Parts;
 use crate::firmware::races::shared;
-use crate::firmware::{math, serial, time, waits};
+use crate::firmware::{kogna_bus, math, serial, time, waits};
 use crate::io::Io;
 use crate::io::bits::bit_state;
 use crate::io::kanalog;
+use crate::io::kogna::Kogna;
 use crate::io::konnect::Konnects;
 use crate::io::timer;
 use crate::machine::Machine;
@@ -83,6 +85,7 @@ impl Kernel {
         let method = parts.level.board().variable("StandardDerivativeMethod");
         parts.servo.cache.derivative_method = method;
         parts.servo.planner = parts.level.behaviour().planner;
+        parts.io.kogna = devices(&parts.level);
         parts.pc.downloads.spaces = parts.level.board().programs();
         Self { signatures, callees: Callees::of(parts.level.board()), parts, scripts: Scripts::default() }
     }
@@ -113,6 +116,7 @@ impl Kernel {
         parts.out.console = Console::default();
         parts.out.forget_remarks(&["uart-overrun", "uart-commands", "line-in-parts", "percent-twice"]);
         parts.io.konnects = Konnects::default();
+        parts.io.kogna = devices(&parts.level);
         parts.pc.restart();
         *scripts = Scripts::default();
         parts.disturb();
@@ -144,7 +148,7 @@ impl Kernel {
         let Attributes { polls, drives_axis, is_pure, .. } = &FIRMWARE_FUNCTIONS[number].attributes;
         let place = Some(CallPlace { thread: caller.thread, at: caller.at });
         self.parts.servo.last_call = place;
-        if *drives_axis && let Some(axis) = AxisId::new(caller.arguments.get(0)) {
+        if *drives_axis && let Some(axis) = caller.memory.axes().get(caller.arguments.get(0)) {
             self.parts.servo.commands[axis.index()] = place;
         }
         let calls = &mut self.parts.calls.waits;
@@ -245,10 +249,15 @@ impl Kernel {
     }
 }
 
+/// The devices that only a Kogna has, at power-up.
+fn devices(level: &ModelledBoard) -> Option<Box<Kogna>> {
+    level.behaviour().has_kogna_devices.then(|| Box::new(Kogna::of(level.board())))
+}
+
 /// Values that a program has stored after the end of an array of the board: in the first `words` after
 /// `persist.UserData`.
 fn note_overruns(parts: &mut Parts, context: &TickContext<'_>, words: u32) {
-    if context.memory.peek::<f64>(GATHER_END).to_bits() != 0 {
+    if context.memory.peek::<f64>(context.memory.place_of(GATHER_END)).to_bits() != 0 {
         parts.servo_tick().remark_near(Message::GatherOverrun { most: MAX_GATHER_DATA });
     }
     let beyond = |word: &u32| context.memory.peek::<u32>(GuestAddr::new(USER_DATA_END + 4 * word)) != 0;
@@ -306,25 +315,34 @@ fn store_time(context: &mut TickContext<'_>) {
     let (tick, now) = (context.tick, context.now);
     context.memory.untouched(|memory| {
         memory.set(SERVO_TICK, tick.get() as f64);
-        let count = timer::count(memory.map(), now);
+        let count = if memory.has_other_map() {
+            timer::count_of(memory.map(), now) as u32
+        } else {
+            timer::count(now)
+        };
         memory.set(LAST_TIMER0, count);
     });
 }
 
 impl Bus for Kernel {
     fn read(&mut self, addr: GuestAddr, size: AccessSize, now: Cycles) -> u32 {
-        let map = self.parts.level.board().map();
-        if addr == map.timer0() {
-            return timer::count(map, now);
+        if self.parts.io.kogna.is_some() {
+            return kogna_bus::read(&mut self.parts, addr, size, now);
         }
-        if !map.fpga.holds(addr) {
+        if addr == TIMER0 {
+            return timer::count(now);
+        }
+        if addr < FPGA.base {
             return 0;
         }
         self.parts.read_register(addr, size, now)
     }
 
     fn write(&mut self, addr: GuestAddr, size: AccessSize, value: u32, now: Cycles) {
-        if !self.parts.level.board().map().fpga.holds(addr) {
+        if self.parts.io.kogna.is_some() {
+            return kogna_bus::write(&mut self.parts, addr, size, value, now);
+        }
+        if addr < FPGA.base {
             self.parts.out.remark(now, Message::NoEffect { address: addr });
             return;
         }
@@ -334,6 +352,7 @@ impl Bus for Kernel {
     fn access_cycles(&self, addr: GuestAddr) -> Cycles {
         match self.parts.timing.wait_states() {
             Some(waits) => Cycles::new(waits.register.into()),
+            None if addr >= FPGA.base => FPGA_CYCLES,
             None if self.parts.level.board().map().fpga.holds(addr) => FPGA_CYCLES,
             None => TIMER_CYCLES,
         }

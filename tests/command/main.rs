@@ -30,6 +30,7 @@ mod run;
 mod schedules;
 mod serve;
 mod shell;
+mod simulated_kogna;
 mod targets;
 mod traces;
 mod trial;

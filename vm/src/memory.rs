@@ -149,8 +149,8 @@ scalars! {
 pub struct GuestMemory {
     sdram: Box<[u8; SDRAM_SIZE]>,
     iram: Box<[u8; IRAM_SIZE]>,
-    /// On-chip RAM of a board other than a KFLOP, in place of `iram`.
-    other_iram: Option<Box<[u8]>>,
+    /// On-chip RAM of a board other than a KFLOP, in place of `iram`, and after it the SDRAM after `sdram`.
+    other_ram: Option<Box<[u8]>>,
     flash: Flash,
     map: &'static MemoryMap,
     protection: Protection,
@@ -168,7 +168,8 @@ impl PartialEq for GuestMemory {
     fn eq(&self, other: &Self) -> bool {
         self.map == other.map
             && self.sdram == other.sdram
-            && self.iram_bytes() == other.iram_bytes()
+            && self.iram == other.iram
+            && self.other_ram == other.other_ram
             && self.flash == other.flash
             && self.protection == other.protection
     }
@@ -261,7 +262,7 @@ impl GuestMemory {
         Self {
             sdram: filled(0),
             iram: filled(0),
-            other_iram: None,
+            other_ram: None,
             flash: Flash::default(),
             map: &MemoryMap::KFLOP,
             protection: Protection::default(),
@@ -374,8 +375,11 @@ impl GuestMemory {
     #[inline(always)]
     pub(crate) fn split(&mut self) -> (&mut Sdram, RamRest<'_>) {
         let bases = self.bases();
-        let Self { sdram, iram, other_iram, protection, faults, is_touched, .. } = self;
-        let iram = other_iram.as_deref_mut().unwrap_or(&mut iram[..]);
+        let Self { sdram, iram, other_ram, map, protection, faults, is_touched, .. } = self;
+        let iram = match other_ram {
+            None => &mut iram[..],
+            Some(ram) => ram.get_mut(..index(map.iram.size)).unwrap_or_default(),
+        };
         (sdram, RamRest { iram, bases, protection, faults: *faults, is_touched })
     }
 
@@ -383,7 +387,10 @@ impl GuestMemory {
     fn write_ram<T: Scalar>(&mut self, address: u32, value: T) -> Option<()> {
         let bases = self.bases();
         if value.set(&mut self.sdram[..], index(address.wrapping_sub(bases.sdram))).is_none() {
-            value.set(self.iram_bytes_mut(), index(address.wrapping_sub(bases.iram)))?;
+            if let Some(ram) = self.other_ram_mut(address) {
+                return value.set(ram, 0);
+            }
+            value.set(&mut self.iram[..], index(address.wrapping_sub(bases.iram)))?;
             self.is_touched = true;
         }
         Some(())
@@ -597,9 +604,11 @@ impl GuestMemory {
         let bases = self.bases();
         let (region, offset) = if let Some(offset) = offset_in(addr, bases.sdram, SDRAM_SIZE) {
             (&mut self.sdram[..], offset)
-        } else if let Some(offset) = offset_in(addr, bases.iram, self.iram_bytes().len()) {
+        } else if self.other_ram.is_some() {
+            (self.other_ram_mut(addr.get()).unwrap_or_default(), 0)
+        } else if let Some(offset) = offset_in(addr, bases.iram, IRAM_SIZE) {
             self.is_touched = true;
-            (self.iram_bytes_mut(), offset)
+            (&mut self.iram[..], offset)
         } else if let Some(offset) = self.offset_in_flash(addr) {
             (&mut self.flash.bytes_mut()[..], offset)
         } else {
@@ -612,11 +621,15 @@ impl GuestMemory {
 
     /// The bytes from `addr` to the end of its region.
     fn rest_of_region(&self, addr: GuestAddr) -> Option<&[u8]> {
-        let (bases, iram) = (self.bases(), self.iram_bytes());
+        let bases = self.bases();
         if let Some(offset) = offset_in(addr, bases.sdram, SDRAM_SIZE) {
             self.sdram.get(offset..)
-        } else if let Some(offset) = offset_in(addr, bases.iram, iram.len()) {
-            iram.get(offset..)
+        } else if let Some(ram) = self.other_ram_at(addr.get()) {
+            Some(ram)
+        } else if let Some(offset) =
+            offset_in(addr, bases.iram, IRAM_SIZE).filter(|_| self.other_ram.is_none())
+        {
+            self.iram.get(offset..)
         } else if let Some(offset) = self.offset_in_flash(addr) {
             self.flash.bytes().get(offset..)
         } else {

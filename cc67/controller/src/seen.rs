@@ -110,9 +110,13 @@ impl SeenMemory {
                 self.note_object(chan.field(field).address(), &value.to_le_bytes());
             }
         }
+        // A Kogna has inputs of two bytes next to each other.
+        let [first, second] = [0, 1].map(|index| self.place_of(ADC_BUFFER_IN.element(index).address()).get());
+        let input_size = second.wrapping_sub(first).min(4) as usize;
         for index in 0..8 {
             let input = status.adc(index) + ZERO;
-            self.note_object(ADC_BUFFER_IN.element(index).address(), &input.to_le_bytes());
+            let address = ADC_BUFFER_IN.element(index).address();
+            self.note_object(address, &input.to_le_bytes()[..input_size]);
             let output = (status.dac(index) + ZERO) as u16;
             self.note_object(DAC_BUFFER.element(index).address(), &output.to_le_bytes());
         }

@@ -61,7 +61,7 @@ class Row {
       el("td", { className: "keys" },
         this.#jog("−", "Jog −", -1), " ", this.#jog("+", "Jog +", 1), " ",
         key("Zero", "Zero", { onclick: () => this.#command("Zero") }), " ", this.enable));
-    this.#used = axis.exists && !/^Axis \d$/.test(axis.name);
+    this.#used = axis.exists && !/^Axis \d+$/.test(axis.name);
   }
 
   #command(word, argument = "") {

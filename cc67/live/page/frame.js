@@ -1,12 +1,13 @@
 // A frame from the board as an object; the layout is described in src/board/frame.rs.
 
-const AXES = 56, AXIS = 72, BITS = 632, DIRECTIONS = 888, ANALOG = 896, PERSIST = 928, SAMPLES = 1728;
+const AXES = 56, AXIS = 72, BITS = 632, DIRECTIONS = 888, ANALOG = 896, PERSIST = 928, LATER_AXES = 1728;
 
 export function decode(buffer) {
   const view = new DataView(buffer);
   const flags = view.getUint32(4, true);
   const number = (at) => view.getFloat64(at, true);
-  const width = view.getUint32(44, true), rows = view.getUint32(48, true);
+  const width = view.getUint32(44, true), rows = view.getUint32(48, true), later = view.getUint32(52, true);
+  const place = (index) => (index < 8 ? AXES + AXIS * index : LATER_AXES + AXIS * (index - 8));
   return {
     running: (flags & 1) !== 0,
     past: (flags & 2) !== 0,
@@ -18,8 +19,8 @@ export function decode(buffer) {
     generation: view.getUint32(40, true),
     width,
     rows,
-    samples: new Float64Array(buffer, SAMPLES, width * rows),
-    axes: Array.from({ length: 8 }, (_, index) => axis(view, AXES + AXIS * index)),
+    samples: new Float64Array(buffer, LATER_AXES + AXIS * later, width * rows),
+    axes: Array.from({ length: 8 + later }, (_, index) => axis(view, place(index))),
     bit: (bit) => (view.getUint8(BITS + (bit >> 3)) >> (bit & 7)) & 1,
     isOutput: (bit) => bit < 64 && ((view.getUint8(DIRECTIONS + (bit >> 3)) >> (bit & 7)) & 1) === 1,
     adc: (index) => view.getInt16(ANALOG + 2 * index, true),

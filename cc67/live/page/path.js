@@ -183,7 +183,7 @@ export function mountPath(section, link) {
     [axes, switches] = [hello.axes, hello.switches];
     if (!isNew) return;
     choices.forEach((choice, index) => {
-      choice.replaceChildren(...axes.map((axis) => el("option", { value: String(axis.axis), selected: axis.axis === index, title: axis.name }, axis.name.replace(/^Axis (\d)$/, "$1"))));
+      choice.replaceChildren(...axes.map((axis) => el("option", { value: String(axis.axis), selected: axis.axis === index, title: axis.name }, axis.name.replace(/^Axis (\d+)$/, "$1"))));
     });
     clear();
   });

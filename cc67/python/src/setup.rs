@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 
 use cc67_host::{BootedFirmware, HostError, Setup, UserProgram};
 use compiler::Options;
+use kmotiondef::boards::TargetBoard;
 use kmotiondef::limits::N_USER_DATA_VARS;
 use kmotiondef::structs::Persist;
 use kmotiondef::variables::PERSIST;
-use kmotiondef::{Axes, GuestAddr, ThreadId};
+use kmotiondef::{GuestAddr, ThreadId};
 use pyo3::prelude::*;
 use runtime::stimulus::Stimulus;
-use runtime::{Config, Directory, MachineFile};
+use runtime::{Config, Directory, MachineFile, ModelledBoard};
 use vm::machine::Config as MachineConfig;
 
 use crate::errors::{LoadError, input};
@@ -51,9 +52,12 @@ pub(crate) struct Arranged {
 impl BoardArguments<'_> {
     /// The setup that is requested.
     pub(crate) fn arrange(self) -> PyResult<Arranged> {
+        let options =
+            self.programs.first().map_or_else(Options::default, |(_, program, _)| program.options.clone());
+        let board = ModelledBoard::of(options.firmware.board()).unwrap_or_default();
         let mut machine_file = match &self.machine {
-            Some((name, folder, text)) => machine_file(name, folder, text)?,
-            None => MachineFile::default(),
+            Some((name, folder, text)) => machine_file(board.board(), name, folder, text)?,
+            None => MachineFile { board: board.board(), ..MachineFile::default() },
         };
         let mut values = Vec::new();
         for (key, value) in &self.settings {
@@ -65,8 +69,6 @@ impl BoardArguments<'_> {
             }
         }
         let stimulus = stimulus(&self.stim)?;
-        let options =
-            self.programs.first().map_or_else(Options::default, |(_, program, _)| program.options.clone());
         let offered = offered(&[&machine_file.stimulus, &stimulus], &options)?;
         let programs = programs(&self.programs)?;
         let mut answers = machine_file.pc.answers.clone();
@@ -76,10 +78,11 @@ impl BoardArguments<'_> {
         let folder = self.files.or_else(|| machine_file.pc.disk_root.as_deref().map(PathBuf::from));
         let folder = folder.unwrap_or_else(|| PathBuf::from("cc67-files"));
         let files = Box::new(Directory::new(folder).with_names(machine_file.pc.disk_files.clone()));
-        let axes = Axes::default().iter().map(|axis| &machine_file.axes[axis.index()]);
+        let axes = board.board().axes.iter().map(|axis| &machine_file.axes[axis.index()]);
         let axes = axes.map(|axis| (axis.name.clone(), axis.units.clone())).collect();
         let machine = MachineConfig { shortcuts: self.shortcuts, ..MachineConfig::default() };
-        let config = Config { machine, files, machine_file, answers: Some(answers), ..Config::default() };
+        let config =
+            Config { board, machine, files, machine_file, answers: Some(answers), ..Config::default() };
         let setup = Setup {
             config,
             options,
@@ -102,8 +105,8 @@ fn boot(path: &Path) -> PyResult<BootedFirmware> {
     BootedFirmware::new(&read(path)?).map_err(failed)
 }
 
-fn machine_file(name: &str, folder: &Path, text: &str) -> PyResult<MachineFile> {
-    let file = MachineFile::parse(text);
+fn machine_file(board: &'static TargetBoard, name: &str, folder: &Path, text: &str) -> PyResult<MachineFile> {
+    let file = MachineFile::parse_for(board, text);
     let mut file = file.map_err(|error| input(format!("{name}:{}:{}: {error}", error.line, error.column)))?;
     file.beside(folder);
     Ok(file)

@@ -486,3 +486,27 @@ def test_boards_are_freed_without_the_collector_and_can_be_closed(write: Write) 
         with pytest.raises(cc67.Error, match="the board is closed"):
             use()
     board.close()
+
+
+def test_a_kogna_has_sixteen_axes(write: Write) -> None:
+    text = """
+    #include "KMotionDef.h"
+    main()
+    {
+        ch12->OutputMode = NO_OUTPUT_MODE; ch12->InputMode = NO_INPUT_MODE;
+        ch12->Vel = 1000; ch12->Accel = 10000; ch12->Jerk = 100000;
+        EnableAxisDest(12, 0);
+        Move(12, 250);
+        while (!CheckDone(12)) ;
+    }
+    """
+    program = cc67.compile(write(text), board="kogna-5.3.2")
+    board = cc67.Board(programs=[program], machine="[axis.12]\nname = 'Turret'\n")
+    board.run()
+    assert len(board.axes) == 16 and board.axes["Turret"] == board.axes[12]
+    assert (board.axes[12].dest, board.axes[12].Vel, board.axes[15].dest) == (250, 1000, 0)
+    board.axes[12].Vel = 2000
+    assert board.axes[12].Vel == 2000
+    assert any("never compared" in str(remark) for remark in board.remarks)
+    with pytest.raises(IndexError):
+        cc67.Board(programs=[write(MOVE)]).axes[12]

@@ -12,7 +12,7 @@ use std::ffi::OsString;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, anyhow, bail};
 use cc67_controller::{ControllerLink, LoadTerms, ProgramStart};
 use cc67_debug::dap::AttachPoint;
 use cc67_host::{
@@ -297,7 +297,7 @@ impl PreparedBoard {
         let Started { programs, first: before } = started.into();
         let files = assign(&[programs, before, &board.load].concat())?;
         let before = files.get(programs.len()..programs.len() + before.len()).unwrap_or_default();
-        let mut machine_file = board.machine_file()?;
+        let mut machine_file = board.machine_file(options.firmware.board())?;
         let settings = [setting::all(&board.set, &mut machine_file)?, board.pc.mcode()?].concat();
         machine_file.cpu.board_faults |= board.board_faults;
         if machine_file.cpu.board_faults {
@@ -307,6 +307,12 @@ impl PreparedBoard {
         // What a run that is compared changes stays in memory.
         let is_kept = !(board.keeps_files && options.target == CodeTarget::C67x);
         let flash = board.pc.flash_file(&machine_file).filter(|_| is_kept);
+        if flash.is_some() && options.firmware.board().map().flash.is_none() {
+            bail!("`--flash`: the flash memory of {} is not simulated", options.firmware.board().name);
+        }
+        if board.races && !options.firmware.board().is_proven {
+            bail!("`--races`: accesses of threads are not followed on {}", options.firmware.board().name);
+        }
         let flash = Flash::read(flash)?;
         let mut stimulus = stimulus::read(&board.stim)?;
         stimulus.extend(one_after_the_other(before, files.get(..programs.len()).unwrap_or_default())?);

@@ -5,6 +5,7 @@ use crate::ctype::CType;
 use crate::ctype::GuestType;
 use crate::ids::{Axes, GuestAddr};
 use crate::limits::{MAX_TRIP, N_CHANNELS};
+use crate::map::BUFFERS;
 use crate::structs::{Chan, STRUCTURES, TripCoeff};
 use crate::variables::{FIRMWARE_VARIABLES, FirmwareVariable, LATER_CHAN, LATER_TRIP_COEFFS};
 
@@ -45,6 +46,25 @@ fn later_axes(address: &impl Fn(&str) -> Option<GuestAddr>, axes: Axes) -> impl 
         Some(MovedObject { table, size: element * count, place })
     });
     objects.into_iter().flatten().filter(|object| object.size > 0)
+}
+
+/// Makes one object of each element of an array of words that has half words there.
+pub(super) fn halve(objects: &mut Vec<MovedObject>, table: GuestAddr) {
+    let Some(at) = objects.iter().position(|object| object.table == table) else { return };
+    let array = objects.remove(at);
+    objects.extend((0..array.size / 4).map(|index| MovedObject {
+        table: table.offset(4 * index),
+        size: 2,
+        place: array.place.offset(2 * index),
+    }));
+}
+
+/// The buffers and the heap of the tables, which are before the first variable after them, if a board has them elsewhere.
+pub(super) fn buffers(objects: &[MovedObject], place: GuestAddr) -> Option<MovedObject> {
+    let table = BUFFERS;
+    let after = objects.iter().map(|object| object.table.get()).filter(|address| *address > table.get());
+    let size = after.min()? - table.get();
+    (place != table).then_some(MovedObject { table, size, place })
 }
 
 fn objects(variable: &FirmwareVariable, place: GuestAddr, layouts: &[StructureLayout]) -> Vec<MovedObject> {

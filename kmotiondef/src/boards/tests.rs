@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::*;
+use crate::map::{KOGNA_PROGRAMS, KOGNA_STACKS_BASE};
 use crate::tests::{Row, table_of};
 use crate::variables::{chan, trip_coeffs};
 
@@ -207,6 +208,9 @@ fn a_board_has_its_memories_and_the_places_of_its_axes() {
     assert_eq!((map.sdram.base.get(), map.sdram.size), (0xC000_0000, 0x1000_0000));
     assert_eq!((map.fpga.base.get(), map.timer0().get(), map.counter), (0x6000_0000, 0x01F0_D010, 228));
     assert_eq!((map.flash, kogna.axes.count()), (None, 16));
+    assert_eq!((map.programs, map.buffers.get()), (KOGNA_PROGRAMS, KOGNA_PROGRAMS.limit));
+    let stacks = kogna.symbols().into_iter().find(|(name, _)| *name == "Stacks").map(|(_, at)| at.get());
+    assert_eq!(stacks, Some(KOGNA_STACKS_BASE));
     let thread = ThreadId::new(7).expect("7 is a thread");
     assert_eq!(map.programs.space(thread), 0xC020_0000..0xC024_0000);
 

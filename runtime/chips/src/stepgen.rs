@@ -69,7 +69,7 @@ struct Generator {
 pub struct StepGenerators {
     generators: [Generator; GENERATORS],
     /// The output channel by which each axis owns one.
-    channels: [Option<i32>; GENERATORS],
+    channels: [Option<i32>; AxisId::MAX as usize + 1],
     settings: u8,
     /// Steps a second at most.
     fastest: f64,
@@ -100,7 +100,7 @@ impl Default for StepGenerators {
     fn default() -> Self {
         Self {
             generators: [Generator::default(); GENERATORS],
-            channels: [None; GENERATORS],
+            channels: [None; AxisId::MAX as usize + 1],
             settings: START,
             fastest: LIMIT,
             is_driven: false,

@@ -26,8 +26,9 @@ impl<E: Engine> Board<E> {
         if before == Before::Flashed {
             flash::restore(memory);
         }
-        let version = self.level().board().version;
-        power_up::fill(self.machine.memory_mut(), version, before);
+        let board = self.level().board();
+        power_up::fill(self.machine.memory_mut(), board.version, before);
+        power_up::fill_later(self.machine.memory_mut(), board);
         if self.machine.firmware().parts.servo.planner == Planner::Direct {
             independent::prepare(self.machine.memory_mut());
         }
@@ -80,6 +81,10 @@ impl<E: Engine> Board<E> {
 
     /// Saves programs and settings in flash.
     pub(super) fn save(&mut self) {
+        if self.memory().map().flash.is_none() {
+            let (kernel, context) = self.machine.firmware_mut();
+            return kernel.parts.out.remark(context.now, Message::NoFlash {});
+        }
         self.take_downloads();
         let texts: Vec<_> =
             ThreadId::all().map(|thread| self.machine.loaded(thread).map(Code::code)).collect();
@@ -116,8 +121,10 @@ impl<E: Engine> Board<E> {
         *memory = GuestMemory::new();
         self.set_places();
         let memory = self.machine.memory_mut();
-        let stored = memory.poke_bytes(FLASH.base, &flash);
-        debug_assert!(stored.is_ok(), "flash is mapped");
+        if memory.map().flash.is_some() {
+            let stored = memory.poke_bytes(FLASH.base, &flash);
+            debug_assert!(stored.is_ok(), "flash is mapped");
+        }
         self.machine.firmware_mut().0.restart();
         self.power_up(is_strict);
     }

@@ -38,7 +38,7 @@ use crate::firmware::level::ModelledBoard;
 use crate::firmware::races::switches::Switches;
 use crate::io::flash::FLASH_SIZE;
 use crate::kernel::Kernel;
-use crate::out::{Event, EventKind, Remark, Request, Speaker};
+use crate::out::{Event, EventKind, Message, Remark, Request, Speaker};
 use crate::pc::Answers;
 use crate::pc::files::{HostFiles, NoFiles};
 use crate::views::Typed;
@@ -164,13 +164,17 @@ impl<E: Engine> Board<E> {
         let cost = connected.cpu.ns_per_instruction / NS_PER_INSTRUCTION;
         let names = std::array::from_fn(|axis| connected.axes[axis].names());
         let mut board = Self { machine, programs: Arc::default(), bss_fill, cost, names };
-        if let Some(flash) = config.flash {
+        board.set_places();
+        if let Some(flash) = config.flash.filter(|_| board.memory().map().flash.is_some()) {
             let stored = board.machine.memory_mut().poke_bytes(FLASH.base, &flash);
             debug_assert!(stored.is_ok() && flash.len() == FLASH_SIZE, "flash has its size");
         }
-        board.set_places();
         board.power_up(connected.boards.strict_flash);
+        let is_proven = board.level().board().is_proven;
         let (kernel, context) = board.machine.firmware_mut();
+        if !is_proven {
+            kernel.parts.out.remark(context.now, Message::KognaUnproven {});
+        }
         connect::play(&mut kernel.parts, connected, context.memory);
         board
     }

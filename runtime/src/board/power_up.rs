@@ -1,12 +1,17 @@
 //! The contents of guest memory when the board starts.
 
+use chips::kanalog::{ADC_CHANNELS, ZERO};
+use kmotiondef::boards::TargetBoard;
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::start::{Start, Stored};
 use kmotiondef::structs::{Chan, STRUCTURES, Structure, StructureField};
-use kmotiondef::variables::{FIRMWARE_VARIABLES, FirmwareVariable, VERSION_AND_BUILD_TIME, trip_coeffs};
+use kmotiondef::variables::{
+    ADC_BUFFER_IN, FIRMWARE_VARIABLES, FirmwareVariable, VERSION_AND_BUILD_TIME, trip_coeffs,
+};
 use kmotiondef::{CType, GuestAddr};
 use vm::memory::GuestMemory;
 
+use crate::io::kanalog::set_conversion;
 use crate::views::{Typed, chan};
 
 /// The contents of memory before it is filled.
@@ -30,7 +35,9 @@ impl Before {
 /// Addresses are those of the tables until a value is stored.
 pub(crate) fn fill(memory: &mut GuestMemory, version: &str, before: Before) {
     for variable in FIRMWARE_VARIABLES {
-        start_variable(memory, variable, before);
+        if !is_narrow(memory, variable) {
+            start_variable(memory, variable, before);
+        }
     }
     // The tables end with the axes that every board has.
     for axis in memory.axes().iter().skip(N_CHANNELS) {
@@ -43,6 +50,29 @@ pub(crate) fn fill(memory: &mut GuestMemory, version: &str, before: Before) {
     for (offset, byte) in (0..).zip(version.bytes().chain(ends)) {
         memory.poke(memory.locate(VERSION_AND_BUILD_TIME).offset(offset), byte);
     }
+}
+
+/// Stores what the tables lack or have otherwise: the pointers to further axes, no axis for a letter of the primed
+/// coordinate system, analog inputs at zero.
+pub(crate) fn fill_later(memory: &mut GuestMemory, board: &TargetBoard) {
+    if memory.has_other_map() {
+        (0..ADC_CHANNELS).for_each(|channel| set_conversion(memory, channel, ZERO));
+    }
+    for axis in memory.axes().iter().skip(N_CHANNELS) {
+        if let Some(pointer) = board.variable(&format!("ch{axis}")) {
+            memory.poke(pointer, memory.locate(chan(axis)).get());
+        }
+    }
+    for letter in ["xp", "yp", "zp", "ap", "bp", "cp", "up", "vp"] {
+        if let Some(place) = board.variable(&format!("CS0_axis_{letter}")) {
+            memory.poke(place, -1_i32);
+        }
+    }
+}
+
+/// Returns whether the elements of a variable are narrower on this board than in the tables.
+fn is_narrow(memory: &GuestMemory, variable: &FirmwareVariable) -> bool {
+    memory.has_other_map() && variable.address == ADC_BUFFER_IN.address()
 }
 
 fn start_variable(memory: &mut GuestMemory, variable: &FirmwareVariable, before: Before) {
@@ -147,7 +177,7 @@ mod tests {
     use kmotiondef::AxisId;
     use kmotiondef::limits::VERSION;
     use kmotiondef::structs::{Gather, Iir};
-    use kmotiondef::variables::{ADC_BUFFER_IN, CH3, CHAN, CS0_TIME_BASE, DAC_BUFFER, GATHER};
+    use kmotiondef::variables::{CH3, CHAN, CS0_TIME_BASE, DAC_BUFFER, GATHER};
 
     use super::*;
 

@@ -4,7 +4,7 @@
 
 use std::fmt;
 
-use kmotiondef::bits::{BitDirection, BitKind, range_of};
+use kmotiondef::bits::{BitDirection, BitKind};
 use kmotiondef::function::Polled;
 use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
@@ -16,7 +16,7 @@ use vm::wake::Wake;
 
 use super::Board;
 use crate::firmware::calls::Repeated;
-use crate::io::bits::bit_state;
+use crate::io::bits::{bit_state, range_of};
 use crate::servo::coordinated::system;
 use crate::servo::independent::{has_motion, state};
 use crate::servo::profile::Mode;
@@ -235,7 +235,7 @@ impl<E: Engine> Board<E> {
             );
         }
         let (_, is_input) = bit_state(&parts.io, self.memory(), bit);
-        let range = range_of(bit);
+        let range = range_of(&parts.io, bit);
         match range.map(|range| range.direction) {
             Some(BitDirection::Memory) => Source::Memory,
             _ if range.is_some_and(|range| range.kind == BitKind::KstepInput) && !is_input => Source::NoKstep,

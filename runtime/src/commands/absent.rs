@@ -72,7 +72,8 @@ pub(super) fn explain(part: &[u8], board: &TargetBoard) -> Option<Message> {
         return Some(Message::GCode {});
     }
     let title = board.title();
-    if let Some((command, other)) = boards_with(word).find(|(_, other)| other.name != board.name) {
+    let is_other = |other: &TargetBoard| other.name != board.name && other.kind() == board.kind();
+    if let Some((command, other)) = boards_with(word).find(|(_, other)| is_other(other)) {
         let other_title = other.title();
         return Some(Message::CommandOfFirmware {
             command,
@@ -86,7 +87,10 @@ pub(super) fn explain(part: &[u8], board: &TargetBoard) -> Option<Message> {
     Some(match why {
         Named(name) => Message::CommandNamed { word, name, board: title },
         Later => Message::CommandLater { word, board: title },
-        OtherBoard => Message::CommandOtherBoard { word },
+        OtherBoard if board.kind() == TargetBoard::default_board().kind() => {
+            Message::CommandOtherBoard { word }
+        }
+        OtherBoard => Message::CommandNotSimulated { word },
     })
 }
 

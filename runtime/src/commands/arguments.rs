@@ -6,6 +6,7 @@
 
 use kmotiondef::{AxisId, Bit, ThreadId};
 
+use crate::firmware::level::CommandSet;
 use crate::text::{float_value, integer_prefix};
 
 /// An argument of a command.
@@ -13,6 +14,8 @@ use crate::text::{float_value, integer_prefix};
 pub enum Argument {
     /// A decimal integer within limits.
     Integer(i32, i32),
+    /// A decimal integer within limits, the last of which is another one on a Kogna.
+    Numbered(i32, i32, i32),
     /// A real number.
     Real,
     /// A real number within limits, which the board holds as singles.
@@ -199,10 +202,18 @@ pub(super) struct Values {
 
 impl Values {
     /// Reads what `arguments` ask for.
-    pub(super) fn read(arguments: &[Argument], reader: &mut LineReader<'_>) -> Result<Self, Mistake> {
+    pub(super) fn read(
+        arguments: &[Argument],
+        set: CommandSet,
+        reader: &mut LineReader<'_>,
+    ) -> Result<Self, Mistake> {
         let mut read = Self::default();
         for argument in arguments {
             let value = match *argument {
+                Argument::Numbered(lo, hi, of_kogna) => {
+                    let hi = if set == CommandSet::Kogna { of_kogna } else { hi };
+                    ArgumentValue::Integer(reader.integer(lo, hi)?)
+                }
                 Argument::Integer(lo, hi) => ArgumentValue::Integer(reader.integer(lo, hi)?),
                 Argument::Real => ArgumentValue::Real(reader.real()?),
                 Argument::Limited(lo, hi) => ArgumentValue::Real(reader.limited(lo, hi)?),
@@ -306,7 +317,7 @@ mod tests {
 
     /// Checks the values that are read from a text, or the column and the message.
     fn check(arguments: &[Argument], text: &str, expect: Result<&[f64], (usize, &str)>) {
-        let read = Values::read(arguments, &mut LineReader::new(text.as_bytes(), 0));
+        let read = Values::read(arguments, CommandSet::First, &mut LineReader::new(text.as_bytes(), 0));
         let numbers = read.map(|read| {
             let number = |index| match read.values[index] {
                 ArgumentValue::Integer(value) => value.into(),

@@ -33,6 +33,9 @@ pub(super) fn reboot(session: &mut Session<'_, '_>, _: &Values) -> Answer {
 
 pub(super) fn flash(session: &mut Session<'_, '_>, _: &Values) -> Answer {
     session.parts.out.ask(Request::Flash);
+    if session.memory().map().flash.is_none() {
+        return Answer::Nothing;
+    }
     Answer::LineAndConsole(FLASH_COMPLETE, VERIFIED)
 }
 

@@ -3,12 +3,13 @@
 use kmotiondef::AccessSize;
 use kmotiondef::GuestAddr;
 use kmotiondef::firmware::Function;
+use kmotiondef::limits::N_DACS;
 use kmotiondef::map::FPGA;
 use kmotiondef::variables::{DAC_BUFFER, VIRTUAL_BITS_EX};
 
 use super::arguments::Values;
 use super::session::{Answer, Session};
-use crate::firmware::io;
+use crate::firmware::{io, kogna};
 use crate::views::Typed;
 
 /// The first LED.
@@ -72,12 +73,30 @@ pub(super) fn get_virtual_bits(session: &mut Session<'_, '_>, values: &Values) -
 }
 
 pub(super) fn adc(session: &mut Session<'_, '_>, values: &Values) -> Answer {
-    (session.call(|parts, caller| io::adc_level(parts, caller, values.integer(0))) - ZERO).into()
+    session.call(|parts, caller| io::analog_input(parts, caller, values.integer(0))).into()
 }
 
 pub(super) fn dac(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let word = values.integer(1) + ZERO;
+    if let Some(index) = values.count(0).checked_sub(N_DACS)
+        && let Some(kogna) = &session.parts.io.kogna
+    {
+        kogna.set_analog_output(session.context.memory, index, word as i16);
+        return Answer::Nothing;
+    }
     session.memory().set(DAC_BUFFER.element(values.count(0)), word as i16);
+    Answer::Nothing
+}
+
+pub(super) fn hrpwm_set_mode(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (pin, mode) = (values.integer(0), values.integer(1));
+    session.call(|parts, caller| kogna::hrpwm_set_mode(parts, caller, pin, mode));
+    Answer::Nothing
+}
+
+pub(super) fn spi_set_mode(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (pin, mode) = (values.integer(0), values.integer(1));
+    session.call(|parts, caller| kogna::spi_set_mode(parts, caller, pin, mode));
     Answer::Nothing
 }
 

@@ -190,14 +190,14 @@ impl Turn<'_, '_> {
 
     /// One command, and the text after what would be the word of `Echo`.
     fn part(&mut self, part: &[u8], rest: &[u8]) {
-        let has_later = self.parts.level.behaviour().has_later_commands;
-        let Some((command, length)) = find(part, has_later) else {
+        let set = self.parts.level.behaviour().commands;
+        let Some((command, length)) = find(part, set) else {
             if let Some(message) = absent::explain(part, self.parts.level.board()) {
                 self.parts.out.remark(self.context.now, message);
             }
             return self.mistake(part, &Mistake { column: 0, message: MistakeText::InvalidCommand });
         };
-        match Values::read(command.arguments, &mut LineReader::new(part, length)) {
+        match Values::read(command.arguments, set, &mut LineReader::new(part, length)) {
             Ok(values) => self.execute(command, &values, rest),
             Err(mistake) => self.mistake(part, &mistake),
         }

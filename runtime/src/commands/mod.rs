@@ -27,7 +27,7 @@ mod status;
 mod table;
 
 pub use arguments::Argument;
-pub use table::{COMMANDS, LATER_COMMANDS};
+pub use table::{COMMANDS, KOGNA_COMMANDS, LATER_COMMANDS};
 
 use kmotiondef::boards::{BOARDS, TargetBoard};
 use vm::firmware::TickContext;
@@ -37,7 +37,7 @@ use link::Link;
 use memory::Experiment;
 use session::{Answer, Session};
 
-use crate::firmware::level::ModelledBoard;
+use crate::firmware::level::{CommandSet, ModelledBoard};
 use crate::firmware::parts::Parts;
 
 /// The state of script commands.
@@ -132,7 +132,7 @@ impl Argument {
     fn placeholder(&self) -> String {
         match self {
             Self::Integer(i32::MIN, i32::MAX) => "<integer>".to_owned(),
-            Self::Integer(lo, hi) => format!("<{lo}..{hi}>"),
+            Self::Integer(lo, hi) | Self::Numbered(lo, hi, _) => format!("<{lo}..{hi}>"),
             Self::Real => "<number>".to_owned(),
             Self::Limited(0.0, hi) => format!("<0..{hi:e}>"),
             Self::Limited(lo, hi) => format!("<{lo:e}..{hi:e}>"),
@@ -144,7 +144,7 @@ impl Argument {
 }
 
 /// The command that a text in upper case begins with, and the length of its word: the longest that matches.
-fn find(text: &[u8], has_later: bool) -> Option<(&'static Command, usize)> {
+fn find(text: &[u8], set: CommandSet) -> Option<(&'static Command, usize)> {
     let matches = |command: &&Command| {
         let length = command.name.len();
         let word = text.get(..length).is_some_and(|word| word.eq_ignore_ascii_case(command.name.as_bytes()));
@@ -158,16 +158,21 @@ fn find(text: &[u8], has_later: bool) -> Option<(&'static Command, usize)> {
         };
         word && text.get(length).is_none_or(ends)
     };
-    let later = LATER_COMMANDS.iter().filter(|_| has_later);
+    let lists = [
+        (COMMANDS, CommandSet::First),
+        (LATER_COMMANDS, CommandSet::Later),
+        (KOGNA_COMMANDS, CommandSet::Kogna),
+    ];
+    let known = lists.into_iter().filter(|(_, first)| set >= *first).flat_map(|(list, _)| list);
     // Of two with one name the last counts.
-    let longest = COMMANDS.iter().chain(later).filter(matches).max_by_key(|command| command.name.len())?;
+    let longest = known.filter(matches).max_by_key(|command| command.name.len())?;
     Some((longest, longest.name.len()))
 }
 
 /// The command that a line begins with, in whatever case.
 #[must_use]
 pub fn command_at(line: &str) -> Option<&'static Command> {
-    find(line.to_ascii_uppercase().as_bytes(), false).map(|(command, _)| command)
+    find(line.to_ascii_uppercase().as_bytes(), CommandSet::First).map(|(command, _)| command)
 }
 
 /// The boards whose firmware has a command of this name, in whatever case, each with the name as its manual writes it.
@@ -175,10 +180,14 @@ pub fn boards_with(name: &str) -> impl Iterator<Item = (&'static str, &'static T
     let named = move |list: &'static [Command]| {
         list.iter().find(|command| command.name.eq_ignore_ascii_case(name)).map(|command| command.name)
     };
-    let (always, later) = (named(COMMANDS), named(LATER_COMMANDS));
+    let names = [
+        (CommandSet::First, named(COMMANDS)),
+        (CommandSet::Later, named(LATER_COMMANDS)),
+        (CommandSet::Kogna, named(KOGNA_COMMANDS)),
+    ];
     BOARDS.iter().filter_map(move |board| {
-        let has_later = ModelledBoard::of(board)?.behaviour().has_later_commands;
-        Some((always.or(later.filter(|_| has_later))?, board))
+        let set = ModelledBoard::of(board)?.behaviour().commands;
+        Some((names.into_iter().find_map(|(first, name)| name.filter(|_| set >= first))?, board))
     })
 }
 
@@ -212,7 +221,11 @@ mod tests {
             ("CHECKTHREAD+1", None),
             ("", None),
         ] {
-            assert_eq!(find(text.as_bytes(), false).map(|(command, _)| command.name), expect, "{text}");
+            assert_eq!(
+                find(text.as_bytes(), CommandSet::First).map(|(command, _)| command.name),
+                expect,
+                "{text}"
+            );
         }
     }
 

@@ -2,13 +2,15 @@
 //!
 //! Layout: gather-persist-console.md section 3, host-protocol.md section 5.
 
+mod of_kogna;
+
 use kmotiondef::boards::StructureLayout;
-use kmotiondef::limits::{N_DACS, N_PC_COMM_PERSIST, PC_COMM_PERSIST, TIMEBASE};
+use kmotiondef::limits::{N_CHANNELS, N_DACS, N_PC_COMM_PERSIST, PC_COMM_PERSIST, TIMEBASE};
 use kmotiondef::structs::{Chan, MainStatus, Persist};
 use kmotiondef::variables::{
-    ADC_BUFFER_IN, ADC_BUFFER_IN_SNAP, BIT_DIR_SHADOW, BIT_DIR_SHADOW_SNAP0, BIT_DIR_SHADOW_SNAP1,
-    CS0_STOPPING_STATE, DAC_BUFFER, EDIT_CHANGE_COUNT, HOST_STATUS, LAST_PWM, PERSIST, SERVO_TICK,
-    STATUS_REQUEST_COUNTER, VIRTUAL_BITS, VIRTUAL_BITS_EX,
+    ADC_BUFFER_IN_SNAP, BIT_DIR_SHADOW, BIT_DIR_SHADOW_SNAP0, BIT_DIR_SHADOW_SNAP1, CS0_STOPPING_STATE,
+    DAC_BUFFER, EDIT_CHANGE_COUNT, HOST_STATUS, LAST_PWM, PERSIST, SERVO_TICK, STATUS_REQUEST_COUNTER,
+    VIRTUAL_BITS, VIRTUAL_BITS_EX,
 };
 use kmotiondef::{Bit, Cycles, Field, Plain, Scalar, ThreadId};
 use vm::firmware::TickContext;
@@ -17,6 +19,7 @@ use vm::memory::GuestMemory;
 use super::arguments::Values;
 use super::session::{Answer, Session};
 use crate::firmware::parts::Parts;
+use crate::io::kanalog::conversion;
 use crate::servo::hold;
 use crate::views::Typed;
 
@@ -85,7 +88,13 @@ pub(crate) fn record(parts: &Parts, context: &TickContext<'_>) -> Vec<u8> {
     record.set(MainStatus::VIRTUAL_BITS, memory.get(VIRTUAL_BITS));
     record.set(MainStatus::VIRTUAL_BITS_EX0, memory.get(VIRTUAL_BITS_EX.element(0)));
     match parts.level.status() {
-        Some(layout) => record.arranged(layout, parts.level.behaviour().status_version),
+        Some(layout) => {
+            let bytes = record.arranged(layout, parts.level.behaviour().status_version);
+            match &parts.io.kogna {
+                Some(kogna) => of_kogna::complete(bytes, layout, (parts, memory), kogna),
+                None => bytes,
+            }
+        }
         None => record.0,
     }
 }
@@ -101,7 +110,7 @@ fn seconds(context: &TickContext<'_>) -> f64 {
 fn analog(record: &mut Record, context: &TickContext<'_>) {
     let memory = &*context.memory;
     for index in 0..8 {
-        record.set(MainStatus::ADC.element(index), memory.get(ADC_BUFFER_IN.element(index)) - ZERO);
+        record.set(MainStatus::ADC.element(index), conversion(memory, index) - ZERO);
     }
     for index in 0..16 {
         record.set(MainStatus::ADC.element(8 + index), memory.get(ADC_BUFFER_IN_SNAP.element(index)));
@@ -118,7 +127,7 @@ fn axes(record: &mut Record, context: &TickContext<'_>) {
     let memory = &*context.memory;
     let (mut enables, mut done) = (0, 0);
     let (mut inputs, mut outputs) = ([0; 2], [0; 2]);
-    for axis in memory.axes().iter() {
+    for axis in memory.axes().iter().take(N_CHANNELS) {
         let index = axis.index();
         record.set(MainStatus::POSITION.element(index), memory.axis(axis, Chan::POSITION));
         record.set(MainStatus::DEST.element(index), memory.axis(axis, Chan::DEST));

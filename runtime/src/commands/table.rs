@@ -5,17 +5,19 @@
 
 use kmotiondef::structs::Chan;
 
-use super::Argument::{Assign, End, Equals, Hex, Integer, Limited, OptionalEquals, OptionalHex, Real};
+use super::Argument::{
+    Assign, End, Equals, Hex, Integer, Limited, Numbered, OptionalEquals, OptionalHex, Real,
+};
 use super::data::GATHER_WORDS;
 use super::{Argument, Command, axes, board, gather, io, motion, path, persist, programs, status};
 use crate::servo::coordinated::download::Plane;
 
 const THREAD: Argument = Integer(1, 7);
-const AXIS: Argument = Integer(0, 7);
+const AXIS: Argument = Numbered(0, 7, 15);
 const BIT: Argument = Integer(0, 2047);
 const SWITCH: Argument = Integer(0, 1);
 /// The axis of a letter, or none.
-const LETTER: Argument = Integer(-1, 7);
+const LETTER: Argument = Numbered(-1, 7, 15);
 const ELEMENT: Argument = Integer(0, 199);
 const WORD: Argument = Integer(0, GATHER_WORDS - 1);
 const SAMPLES: Argument = Integer(1, 40_000);
@@ -49,6 +51,13 @@ commands! {
     "JogAtAccel" TARGET_AND => motion::jog_at_accel, "moves an axis at a speed, reached with an acceleration; 0 stops it";
     "GetAllDestVelHex" &[] => motion::destinations_and_velocities, "reports destination and speed of all axes, in hexadecimal";
     "GetVirtualBits" &[Integer(0, 31), Integer(0, 32)] => io::get_virtual_bits, "reports words of extended virtual bits, in hexadecimal";
+}
+
+commands! {
+    /// Commands that only a Kogna has. Source: the command table of its firmware and its manual; never compared.
+    KOGNA_COMMANDS:
+    "HRPWMSetMode" &[Integer(0, 3), Equals, SWITCH] => io::hrpwm_set_mode, "makes the pin of a fast PWM channel general, 1, or gives it to PWM, 0";
+    "SPISetMode" &[Integer(0, 5), Equals, Integer(0, 2)] => io::spi_set_mode, "gives a pin to SPI, 0, or I2C, 2, or makes it general, 1";
 }
 
 commands! {
@@ -124,7 +133,7 @@ commands! {
     "OutputMode" &[AXIS, Assign, Integer(0, 8)] => |s, v| axes::integer(s, v, Chan::OUTPUT_MODE), "output that the axis drives";
     "InputChan0" &[AXIS, Assign, Integer(0, 15)] => |s, v| axes::integer(s, v, Chan::INPUT_CHAN0), "first input channel";
     "InputChan1" &[AXIS, Assign, Integer(0, 15)] => |s, v| axes::integer(s, v, Chan::INPUT_CHAN1), "second input channel";
-    "OutputChan0" &[AXIS, Assign, Integer(0, 63)] => |s, v| axes::integer(s, v, Chan::OUTPUT_CHAN0), "first output channel";
+    "OutputChan0" &[AXIS, Assign, Numbered(0, 63, 255)] => |s, v| axes::integer(s, v, Chan::OUTPUT_CHAN0), "first output channel";
     "OutputChan1" &[AXIS, Assign, Integer(0, 15)] => |s, v| axes::integer(s, v, Chan::OUTPUT_CHAN1), "second output channel";
     "InputGain0" REAL => |s, v| axes::single(s, v, Chan::INPUT_GAIN0), "gain of the first input";
     "InputGain1" REAL => |s, v| axes::single(s, v, Chan::INPUT_GAIN1), "gain of the second input";
@@ -145,7 +154,7 @@ commands! {
     "LimitSwitchPosBit" &[AXIS, Assign, BIT] => |s, v| axes::integer(s, v, Chan::LIMIT_SWITCH_POS_BIT), "bit of the positive limit switch";
     "SoftLimitNeg" REAL => |s, v| axes::single(s, v, Chan::SOFT_LIMIT_NEG), "lowest destination";
     "SoftLimitPos" REAL => |s, v| axes::single(s, v, Chan::SOFT_LIMIT_POS), "highest destination";
-    "MasterAxis" &[AXIS, Assign, Integer(-1, 7)] => |s, v| axes::integer(s, v, Chan::MASTER_AXIS), "axis that this one follows, or -1";
+    "MasterAxis" &[AXIS, Assign, LETTER] => |s, v| axes::integer(s, v, Chan::MASTER_AXIS), "axis that this one follows, or -1";
     "SlaveGain" REAL => |s, v| axes::double(s, v, Chan::SLAVE_GAIN), "distance moved per unit of the master axis";
     "BacklashMode" &[AXIS, Assign, Integer(0, 4)] => |s, v| axes::integer(s, v, Chan::BACKLASH_MODE), "backlash compensation: 0 off, 1 linear";
     "BacklashAmount" POSITIVE_REAL => |s, v| axes::single(s, v, Chan::BACKLASH_AMOUNT), "backlash to compensate";
@@ -210,12 +219,12 @@ commands! {
     "ClearBit" &[BIT] => io::clear_bit, "clears an output bit";
     "SetStateBit" &[BIT, Equals, SWITCH] => io::set_state_bit, "drives an output bit";
     "ReadBit" &[BIT] => io::read_bit, "reports the level of a bit";
-    "SetBitDirection" &[Integer(0, 167), OptionalEquals, SWITCH] => io::set_bit_direction, "makes a bit an input, 0, or an output, 1";
-    "GetBitDirection" &[Integer(0, 167)] => io::get_bit_direction, "reports whether a bit is an output";
+    "SetBitDirection" &[Numbered(0, 167, 289), OptionalEquals, SWITCH] => io::set_bit_direction, "makes a bit an input, 0, or an output, 1";
+    "GetBitDirection" &[Numbered(0, 167, 289)] => io::get_bit_direction, "reports whether a bit is an output";
     "GetVirtualBits" &[Integer(0, 31), Integer(0, 31)] => io::get_virtual_bits, "reports words of extended virtual bits, in hexadecimal";
     "LED" &[SWITCH, Equals, SWITCH] => io::led, "turns an LED on or off";
-    "ADC" &[AXIS] => io::adc, "reports an analog input, -2048 to 2047";
-    "DAC" &[AXIS, Equals, Integer(-2048, 2047)] => io::dac, "sets an analog output";
+    "ADC" &[Numbered(0, 7, 11)] => io::adc, "reports an analog input, -2048 to 2047";
+    "DAC" &[Numbered(0, 7, 15), Equals, Integer(-2048, 2047)] => io::dac, "sets an analog output";
     "PWM" &[Integer(0, 15), Equals, Integer(-255, 255)] => io::pwm, "sets a PWM output, locked anti-phase";
     "PWMR" &[Integer(0, 15), Equals, Integer(-511, 511)] => io::pwmr, "sets a PWM output, recirculating";
     "PWMC" &[Integer(8, 15), Equals, Integer(-1000, 1000)] => io::pwmc, "sets a PWM output, current mode";

@@ -6,7 +6,7 @@ use kmotiondef::Bit;
 use kmotiondef::bits::{BitDirection, BitKind, range_of};
 use kmotiondef::firmware::Function;
 use kmotiondef::limits::{MAX_PWM_VALUE, MAX_PWMC_VALUE, MAX_PWMR_VALUE};
-use kmotiondef::variables::{ADC_BUFFER_IN, KSTEP_PRESENT};
+use kmotiondef::variables::KSTEP_PRESENT;
 use vm::firmware::{Caller, Outcome, Wake};
 
 use super::calls::{Continuation, OutputStage};
@@ -14,6 +14,7 @@ use super::costs;
 use super::parts::Parts;
 use crate::io::amplifiers::{antiphase, current, recirculate, store_pwm};
 use crate::io::kanalog::Group;
+use crate::io::kogna::INPUTS;
 use crate::io::remark_on;
 use crate::io::{bits, kanalog};
 use crate::machine::{Channel, LateRead, MissedPulse};
@@ -163,7 +164,7 @@ fn go_on(parts: &mut Parts, caller: &Caller<'_>, group: Group, stage: OutputStag
 
 /// A program writes to a bit: whether that can have an effect.
 fn check_written(parts: &mut Parts, caller: &Caller<'_>, function: Function, bit: Bit) {
-    let Some(range) = range_of(bit) else {
+    let Some(range) = bits::range_of(&parts.io, bit) else {
         return parts.out.diagnose(caller, Message::BitUnused { function, bit });
     };
     match range.direction {
@@ -177,7 +178,7 @@ fn check_written(parts: &mut Parts, caller: &Caller<'_>, function: Function, bit
 
 /// A program reads a bit: whether it can ever change.
 fn check_read(parts: &mut Parts, caller: &Caller<'_>, bit: Bit) {
-    match range_of(bit).map(|range| range.kind) {
+    match bits::range_of(&parts.io, bit).map(|range| range.kind) {
         None => parts.out.diagnose(caller, Message::BitUnused { function: Function::ReadBit, bit }),
         Some(BitKind::KstepInput) if caller.memory.get(KSTEP_PRESENT) == 0 => {
             parts.out.diagnose(caller, Message::KstepAbsent { bit });
@@ -194,7 +195,7 @@ pub(crate) fn read_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) -> 
     let Some(bit) = checked(parts, caller, Function::ReadBit, bit) else { return 0 };
     let (level, is_input) = bits::bit_state(&parts.io, caller.memory, bit);
     let level = parts.io.outputs.level(bit).unwrap_or(level);
-    if !is_input || range_of(bit).is_none() {
+    if !is_input || bits::range_of(&parts.io, bit).is_none() {
         check_read(parts, caller, bit);
         return i32::from(level);
     }
@@ -221,12 +222,23 @@ pub(crate) fn read_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) -> 
 /// Returns the reading of an analog input, -2048 to 2047, as the macro `ADC` does. The board reads 0 in place of the
 /// conversion of a channel that does not exist.
 pub(crate) fn read_adc(parts: &mut Parts, caller: &mut Caller<'_>, channel: i32) -> i32 {
-    let level = adc_level(parts, caller, channel) - ZERO;
+    let level = analog_input(parts, caller, channel);
     let is_undriven = |index| index < ADC_CHANNELS && !parts.io.kanalog.is_connected(index);
     if usize::try_from(channel).is_ok_and(is_undriven) {
         parts.out.diagnose(caller, Message::UndrivenAdc { channel, level });
     }
     level
+}
+
+/// The value of an analog input: of a Kanalog, or on a Kogna of the board, which come after them.
+pub(crate) fn analog_input(parts: &mut Parts, caller: &Caller<'_>, channel: i32) -> i32 {
+    if let Some(kogna) = &parts.io.kogna
+        && let Some(index) = usize::try_from(channel).ok().and_then(|index| index.checked_sub(ADC_CHANNELS))
+        && index < INPUTS
+    {
+        return kogna.analog_input(caller.memory, index);
+    }
+    adc_level(parts, caller, channel) - ZERO
 }
 
 /// Returns the raw conversion of an analog input, without a remark about inputs that nothing drives.
@@ -235,7 +247,7 @@ pub(crate) fn adc_level(parts: &mut Parts, caller: &Caller<'_>, channel: i32) ->
         parts.out.diagnose(caller, Message::NoSuchAdc { channel });
         return 0;
     };
-    caller.memory.get(ADC_BUFFER_IN.element(index))
+    kanalog::conversion(caller.memory, index)
 }
 
 /// A value for a PWM output: whether there is the channel, and it takes the value.

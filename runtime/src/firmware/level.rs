@@ -20,6 +20,17 @@ pub(crate) enum MutexRule {
     Counted,
 }
 
+/// The script commands of a firmware; each set has those of the one before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum CommandSet {
+    /// Those of firmware 4.34.
+    First,
+    /// Those that came with firmware 5.
+    Later,
+    /// Those of a Kogna, with its limits.
+    Kogna,
+}
+
 /// Everything in which the modelled firmwares differ.
 #[derive(Debug)]
 pub(crate) struct Behaviour {
@@ -33,8 +44,10 @@ pub(crate) struct Behaviour {
     pub(crate) compares_by_difference: bool,
     /// The version of the status record.
     pub(crate) status_version: i32,
-    /// True if the script commands that came with firmware 5 exist.
-    pub(crate) has_later_commands: bool,
+    /// The script commands.
+    pub(crate) commands: CommandSet,
+    /// True if the bits, converters and fast PWM channels of a Kogna exist.
+    pub(crate) has_kogna_devices: bool,
 }
 
 /// Firmware 4.34.
@@ -44,7 +57,8 @@ const FIRMWARE_4: Behaviour = Behaviour {
     text: Dialect::Firmware4,
     compares_by_difference: false,
     status_version: 308,
-    has_later_commands: false,
+    commands: CommandSet::First,
+    has_kogna_devices: false,
 };
 
 /// Firmware 5.3.2, as measured on the released file.
@@ -54,8 +68,15 @@ const FIRMWARE_5: Behaviour = Behaviour {
     text: Dialect::Firmware5,
     compares_by_difference: true,
     status_version: 309,
-    has_later_commands: true,
+    commands: CommandSet::Later,
+    has_kogna_devices: false,
 };
+
+/// Firmware 5.3.2 of a Kogna: that of a KFLOP with the differences that its header and manual state. Never compared.
+const KOGNA_5: Behaviour = Behaviour { commands: CommandSet::Kogna, has_kogna_devices: true, ..FIRMWARE_5 };
+
+/// The board besides KFLOP whose devices are modelled.
+const KOGNA: &str = "KOGNA";
 
 /// A board that can be simulated.
 #[derive(Clone, Debug)]
@@ -79,10 +100,10 @@ impl ModelledBoard {
         if board.is_default() {
             return Some(Self::default());
         }
-        if board.kind() != TargetBoard::default_board().kind() {
-            return None;
+        if board.kind() == TargetBoard::default_board().kind() {
+            return Some(Self { board, behaviour: &FIRMWARE_5 });
         }
-        Some(Self { board, behaviour: &FIRMWARE_5 })
+        (board.kind() == KOGNA).then_some(Self { board, behaviour: &KOGNA_5 })
     }
 
     /// The board.

@@ -10,6 +10,8 @@ pub(crate) mod files;
 mod float_bits;
 pub(crate) mod gather;
 pub(crate) mod io;
+pub(crate) mod kogna;
+pub(crate) mod kogna_bus;
 pub(crate) mod konnect;
 pub(crate) mod later;
 pub(crate) mod level;

@@ -26,6 +26,7 @@ use super::{axis_check, costs, float_bits};
 use crate::arithmetic::division::divide;
 use crate::arithmetic::doubles::exp;
 use crate::io::bits;
+use crate::machine::wiring::generator;
 use crate::out::{Message, OtherPlace};
 use crate::servo::coordinated::system;
 use crate::servo::independent::{has_motion, is_planned, present, run, start, state};
@@ -34,7 +35,7 @@ use crate::servo::planning;
 use crate::servo::profile::{LEAD, Mode, MotionState};
 use crate::servo::{hold, switching};
 use crate::views::Typed;
-use chips::stepgen::generator_of;
+use chips::stepgen::GENERATORS;
 use schedule::row_cost;
 
 /// Returns whether a number is that after the last axis, which the board does not refuse: it takes what comes after the
@@ -87,7 +88,11 @@ fn take_pins(parts: &mut Parts, caller: &mut Caller<'_>, axis: AxisId) {
         return;
     }
     let channel = caller.memory.axis(axis, Chan::OUTPUT_CHAN0);
-    for bit in parts.io.stepgens.pins(generator_of(channel)).into_iter().flatten() {
+    let generator = generator(caller.memory, channel);
+    if generator >= GENERATORS {
+        return parts.out.diagnose(caller, Message::ChannelNotSimulated { axis, channel });
+    }
+    for bit in parts.io.stepgens.pins(generator).into_iter().flatten() {
         if parts.machine.mechanics.contact(bit).is_some() || parts.io.pins.is_declared(bit) {
             parts.out.diagnose(caller, Message::StepPins { axis, bit, channel });
         }

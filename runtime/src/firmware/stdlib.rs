@@ -12,8 +12,8 @@ use super::string::LONGEST;
 use crate::out::Message;
 use crate::text::{Digits, Keep, digits, float_prefix, integer_prefix, magnitude, place_of_point};
 
-pub(crate) fn malloc(parts: &mut Parts, _: &mut Caller<'_>, size: u32) -> GuestAddr {
-    parts.calls.heap.take(size).unwrap_or_default()
+pub(crate) fn malloc(parts: &mut Parts, caller: &mut Caller<'_>, size: u32) -> GuestAddr {
+    parts.calls.heap.take(size).map_or(GuestAddr::NULL, |block| caller.memory.place_of(block))
 }
 
 pub(crate) fn calloc(

@@ -2,7 +2,7 @@
 
 use kmotiondef::Cycles;
 use kmotiondef::firmware::Function;
-use kmotiondef::limits::TIMEBASE;
+use kmotiondef::limits::{CLOCKFREQ, TIMEBASE};
 use kmotiondef::variables::{LAST_TIMER0, SERVO_TICK};
 use vm::firmware::{Caller, Outcome, Wake};
 use vm::memory::GuestMemory;
@@ -29,9 +29,14 @@ pub(crate) fn time_sec(_: &mut Parts, caller: &mut Caller<'_>) -> f64 {
 
 /// The time that `Time_sec` computes from the variables that programs see, in seconds.
 pub(crate) fn seconds(memory: &GuestMemory, now: Cycles) -> f64 {
-    let map = memory.map();
-    let since = timer::count(map, now).wrapping_sub(memory.get(LAST_TIMER0));
-    memory.get(SERVO_TICK) * TIMEBASE + f64::from(since) / (f64::from(map.counter) * 1e6)
+    let (count, rate) = if memory.has_other_map() {
+        let map = memory.map();
+        (timer::count_of(map, now) as u32, f64::from(map.counter) * 1e6)
+    } else {
+        (timer::count(now), CLOCKFREQ)
+    };
+    let since = count.wrapping_sub(memory.get(LAST_TIMER0));
+    memory.get(SERVO_TICK) * TIMEBASE + f64::from(since) / rate
 }
 
 /// Waits until a time.

@@ -1,7 +1,7 @@
 //! Numbered inputs and outputs, wherever they are: pins, option boards, words of guest memory. Source: io.md.
 
 use chips::pins::PINS;
-use kmotiondef::bits::{BitKind, range_of};
+use kmotiondef::bits::{BitKind, BitRange, kogna_range_of};
 use kmotiondef::variables::{
     BIT_DIR_SHADOW, BIT_DIR_SHADOW_SNAP0, BIT_DIR_SHADOW_SNAP1, KSTEP_PRESENT, VIRTUAL_BITS, VIRTUAL_BITS_EX,
 };
@@ -18,6 +18,12 @@ const VIRTUAL: u16 = 48;
 const VIRTUAL_EX: u16 = 1024;
 /// The first pin of SnapAmp 0 and of SnapAmp 1.
 const SNAP: [u16; 2] = [64, 96];
+
+/// The range that a bit is in, if anything on this board answers it.
+pub(crate) fn range_of(io: &Io, bit: Bit) -> Option<&'static BitRange> {
+    let of_kogna = || io.kogna.as_ref().and_then(|_| kogna_range_of(bit));
+    kmotiondef::bits::range_of(bit).or_else(of_kogna)
+}
 
 /// The word and mask that hold a bit kept in memory.
 fn memory_bit(bit: Bit, kind: BitKind) -> Option<(Place<i32>, i32)> {
@@ -59,7 +65,11 @@ fn change(memory: &mut GuestMemory, word: Place<i32>, mask: i32, set: bool) {
 /// Makes a pin an output or an input; virtual bits are what they are. Of other bits the direction is noted, whether
 /// there is a SnapAmp or not.
 pub(crate) fn set_direction(io: &mut Io, memory: &mut GuestMemory, bit: Bit, is_output: bool, now: Cycles) {
-    if bit.get() < PINS {
+    if let Some(kogna) = &mut io.kogna
+        && kogna_range_of(bit).is_some()
+    {
+        kogna.set_output(memory, bit, is_output);
+    } else if bit.get() < PINS {
         io.pins.set_output(bit, is_output, now);
         let word = BIT_DIR_SHADOW.element(bit.index() / 32);
         change(memory, word, 1 << (bit.get() % 32), is_output);
@@ -72,7 +82,11 @@ pub(crate) fn set_direction(io: &mut Io, memory: &mut GuestMemory, bit: Bit, is_
 /// Returns whether a bit is an output. Outputs of option boards count as inputs until a program says otherwise, as the
 /// board has it.
 pub(crate) fn is_output(io: &Io, memory: &GuestMemory, bit: Bit) -> bool {
-    if bit.get() < PINS {
+    if let Some(kogna) = &io.kogna
+        && kogna_range_of(bit).is_some()
+    {
+        kogna.is_output(bit)
+    } else if bit.get() < PINS {
         io.pins.is_output(bit)
     } else if bit.get() < SNAP[0] {
         true
@@ -91,7 +105,7 @@ pub(crate) fn write_bit(
     level: bool,
     now: Cycles,
 ) {
-    let Some(kind) = range_of(bit).map(|range| range.kind) else { return };
+    let Some(kind) = range_of(io, bit).map(|range| range.kind) else { return };
     match kind {
         BitKind::Pin | BitKind::Led => io.pins.set_latch(bit, level, now),
         BitKind::KanalogOptoOutput | BitKind::KanalogFet | BitKind::KanalogOutput => {
@@ -103,7 +117,7 @@ pub(crate) fn write_bit(
                 group.put_out(&mut io.pins, now);
             }
         }
-        BitKind::SnapGpio => io.pins.write(bit, level, now),
+        BitKind::SnapGpio | BitKind::KognaPin | BitKind::KognaOutput => io.pins.write(bit, level, now),
         _ => {
             if let Some((word, mask)) = memory_bit(bit, kind) {
                 change(memory, word, mask, level);
@@ -116,7 +130,7 @@ pub(crate) fn write_bit(
 /// The state of a bit and whether it is an input from outside.
 pub(crate) fn bit_state(io: &Io, memory: &GuestMemory, bit: Bit) -> (bool, bool) {
     let pins = &io.pins;
-    let Some(kind) = range_of(bit).map(|range| range.kind) else { return (false, false) };
+    let Some(kind) = range_of(io, bit).map(|range| range.kind) else { return (false, false) };
     match kind {
         BitKind::Pin | BitKind::Led => (pins.level(bit), !pins.is_output(bit)),
         BitKind::KanalogOptoOutput | BitKind::KanalogFet | BitKind::KanalogOutput => {
@@ -127,6 +141,10 @@ pub(crate) fn bit_state(io: &Io, memory: &GuestMemory, bit: Bit) -> (bool, bool)
             let mask = 1 << shift;
             if memory.get(word) & mask != 0 { (pins.written(bit), false) } else { (pins.input(bit), true) }
         }
+        BitKind::KognaPin | BitKind::KognaOutput => match &io.kogna {
+            Some(kogna) if kogna.is_output(bit) => (pins.written(bit), false),
+            _ => (pins.input(bit), true),
+        },
         // Nobody switches the banks of KStep's inputs through before it is announced.
         BitKind::KstepInput if memory.get(KSTEP_PRESENT) == 0 => (false, false),
         _ => match memory_bit(bit, kind) {

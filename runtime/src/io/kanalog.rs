@@ -73,19 +73,36 @@ fn place(bit: Bit) -> Option<(u16, u16)> {
     Some((number / GROUP, 1 << (number % GROUP)))
 }
 
+/// The conversion of an input in memory: an `int` on a KFLOP, a `short` on a Kogna.
+#[inline]
+pub(crate) fn conversion(memory: &GuestMemory, channel: usize) -> i32 {
+    let place = ADC_BUFFER_IN.element(channel);
+    if memory.has_other_map() { memory.peek::<i16>(memory.locate(place)).into() } else { memory.get(place) }
+}
+
+/// Stores the conversion of an input.
+pub(crate) fn set_conversion(memory: &mut GuestMemory, channel: usize, level: i32) {
+    let place = ADC_BUFFER_IN.element(channel);
+    if memory.has_other_map() {
+        memory.poke(memory.locate(place), level as i16);
+    } else {
+        memory.set(place, level);
+    }
+}
+
 /// Converts all inputs, if something is connected to them and the port serves Kanalog.
 pub(crate) fn tick(kanalog: &Kanalog, fpga: &Fpga, memory: &mut GuestMemory) {
     if !kanalog.is_driven() || !is_served(fpga, memory) {
         return;
     }
     for (channel, level) in kanalog.conversions().into_iter().enumerate() {
-        memory.set(ADC_BUFFER_IN.element(channel), level);
+        set_conversion(memory, channel, level);
     }
 }
 
 /// Returns whether the next tick converts what the last one did.
 pub(crate) fn is_settled(kanalog: &Kanalog, fpga: &Fpga, memory: &GuestMemory) -> bool {
-    let is_same = |(channel, level): (usize, i32)| memory.get(ADC_BUFFER_IN.element(channel)) == level;
+    let is_same = |(channel, level): (usize, i32)| conversion(memory, channel) == level;
     !kanalog.is_driven()
         || !is_served(fpga, memory)
         || kanalog.conversions().into_iter().enumerate().all(is_same)

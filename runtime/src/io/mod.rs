@@ -9,6 +9,7 @@ pub(crate) mod bits;
 pub(crate) mod changes;
 pub(crate) mod flash;
 pub(crate) mod kanalog;
+pub(crate) mod kogna;
 pub(crate) mod konnect;
 pub(crate) mod snapamp;
 pub(crate) mod timer;
@@ -23,6 +24,7 @@ use kmotiondef::Cycles;
 
 use crate::io::flash::Banks;
 use crate::io::kanalog::Outputs;
+use crate::io::kogna::Kogna;
 use crate::io::konnect::Konnects;
 use crate::io::snapamp::SnapAmps;
 use crate::out::Message;
@@ -40,6 +42,8 @@ pub(crate) struct Io {
     pub(crate) outputs: Outputs,
     pub(crate) encoders: Encoders,
     pub(crate) stepgens: StepGenerators,
+    /// The devices that only a Kogna has.
+    pub(crate) kogna: Option<Box<Kogna>>,
     /// The visible part of flash.
     pub(crate) flash: Banks,
 }

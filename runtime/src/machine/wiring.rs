@@ -83,13 +83,20 @@ impl Wiring {
     }
 }
 
+/// The step generator that an output channel names: a Kogna has sixteen, of which the first eight have pins here.
+pub(crate) fn generator(memory: &GuestMemory, channel: i32) -> usize {
+    if memory.has_other_map() { (channel & 15) as usize } else { generator_of(channel) }
+}
+
 /// The output that an axis drives, if there is one of that number.
 pub(crate) fn channel_of(memory: &GuestMemory, axis: AxisId) -> Option<Channel> {
     let number = memory.axis(axis, Chan::OUTPUT_CHAN0);
     let index = usize::try_from(number).ok();
     match OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE))? {
         OutputMode::None => None,
-        OutputMode::StepDir | OutputMode::ClosedLoopStepDir => Some(Channel::Generator(generator_of(number))),
+        OutputMode::StepDir | OutputMode::ClosedLoopStepDir => {
+            Some(Channel::Generator(generator(memory, number)))
+        }
         OutputMode::DacServo => index.filter(|dac| *dac < DACS).map(Channel::Dac),
         OutputMode::Microstep
         | OutputMode::ClosedLoopMicrostep

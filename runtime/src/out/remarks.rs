@@ -775,6 +775,24 @@ messages! {
     /// A command belongs to another board.
     CommandOtherBoard { word: String } = "command-other-board", Warning, [always],
         "{word} is a command of the Kogna board; the simulated board is a KFLOP";
+    /// The simulated board is a Kogna.
+    KognaUnproven { } = "kogna-unproven", Warning, [once],
+        "the simulated Kogna is made from its header and manual, and was never compared with a board; times are those of a KFLOP";
+    /// A command of a Kogna is not simulated.
+    CommandNotSimulated { word: String } = "command-not-simulated", Warning, [always],
+        "{word} is not simulated: what a Kogna answers to it is not known";
+    /// A program calls a function of a Kogna that is not simulated.
+    NotSimulated { function: &'static str } = "function-not-simulated", Warning, [always],
+        "{function} is not simulated; the thread ends here";
+    /// A program accesses a register of a Kogna that is not simulated.
+    RegisterNotSimulated { number: u32 } = "register-not-simulated", Warning, [per number],
+        "FPGA register {number:#x} of a Kogna is not simulated: it reads 0 and ignores writes";
+    /// An axis of a Kogna takes a channel that is not simulated.
+    ChannelNotSimulated { axis: AxisId, channel: i32 } = "channel-not-simulated", Warning, [per axis],
+        "axis {axis}: the pins of step generator {channel} of a Kogna are not simulated; the load follows the axis all the same";
+    /// Flash of a Kogna is not simulated.
+    NoFlash { } = "flash-not-simulated", Warning, [always],
+        "the flash memory of a Kogna is not simulated: nothing is saved";
 }
 
 #[cfg(test)]

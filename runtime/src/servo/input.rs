@@ -4,10 +4,11 @@ use std::f32::consts::{PI, TAU};
 
 use kmotiondef::AxisId;
 use kmotiondef::structs::Chan;
-use kmotiondef::variables::{ADC_BUFFER_IN, RESOLVER_FACTOR};
+use kmotiondef::variables::RESOLVER_FACTOR;
 use vm::memory::GuestMemory;
 
 use super::plan::Input;
+use crate::io::kanalog::conversion;
 use crate::machine::Loads;
 use crate::views::{AxisView, Typed};
 
@@ -58,7 +59,7 @@ fn convert(loads: &mut Loads, memory: &mut GuestMemory, axis: AxisId) {
 /// An analog input, −2048 to 2047; 0 for a channel that does not exist.
 fn converted(memory: &GuestMemory, channel: i32) -> i32 {
     let channel = usize::try_from(channel).ok().filter(|&channel| channel < 8);
-    channel.map_or(0, |channel| memory.get(ADC_BUFFER_IN.element(channel)) - 2048)
+    channel.map_or(0, |channel| conversion(memory, channel) - 2048)
 }
 
 /// The angle of a resolver from its two analog inputs.

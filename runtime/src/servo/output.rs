@@ -51,9 +51,11 @@ pub(crate) fn drive(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId,
 /// The same in any other mode than that of a brushed motor.
 fn drive_otherwise(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, command: f64, output: f32) {
     let mode = tick.servo.cache.plan(axis).mode;
+    let has_more_generators = memory.has_other_map();
     let chan = AxisView::of(memory, axis);
-    if OutputMode::has_generator(mode) {
-        let channel = chan.get(Chan::OUTPUT_CHAN0);
+    let channel = chan.get(Chan::OUTPUT_CHAN0);
+    // Generators 8 to 15 of a Kogna have no pins here.
+    if OutputMode::has_generator(mode) && !(has_more_generators && channel & 8 != 0) {
         tick.io.stepgens.claim(axis, channel, &mut tick.io.pins, tick.now);
     } else {
         tick.io.stepgens.release(axis, &mut tick.io.pins, tick.now);

@@ -1,6 +1,10 @@
 //! The page with all that a board has at work: how often it shows a new state.
 
+use std::fs;
+
 use harness::Scratch;
+use serde_json::Value;
+use tungstenite::Message;
 
 use super::Live;
 use super::browser::Browser;
@@ -61,4 +65,38 @@ fn a_page_with_eight_axes_and_seven_threads_shows_many_states_a_second() {
     assert!(states >= LEAST && frames >= LEAST, "{states} states and {frames} frames a second");
     assert_eq!(browser.complaints(), [""; 0]);
     assert_eq!(live.end(), "");
+}
+
+#[test]
+fn the_page_of_a_kogna_gets_its_sixteen_axes() {
+    const PROGRAM: &str = "#include \"KMotionDef.h\"\nmain() { ch12->OutputMode = NO_OUTPUT_MODE; ch12->Vel = 1000; \
+                           ch12->Accel = 10000; ch12->Jerk = 100000; EnableAxisDest(12, 0); Move(12, 250); for (;;) \
+                           WaitNextTimeSlice(); }\n";
+    for (board, axes) in [("kflop-5.3.2", 8), ("kogna-5.3.2", 16)] {
+        let folder = Scratch::new(&format!("live-{board}"));
+        let program = if axes == 16 { PROGRAM } else { "main() { for (;;) ; }\n" };
+        fs::write(folder.path().join("a.c"), program).expect("files can be written");
+        let live = Live::start(&folder, &["--board", board, "a.c"]);
+        let (mut socket, _) = tungstenite::connect(live.socket()).expect("a page may come");
+        socket.send(Message::text(r#"{"do":"rate","frames":60}"#)).expect("it listens");
+        let (mut hello, mut at) = (None, None);
+        while hello != Some(axes) || at.is_none() {
+            match socket.read().expect("it goes on") {
+                Message::Text(text) => {
+                    let message: Value = serde_json::from_str(&text).expect("it is JSON");
+                    hello = message["axes"].as_array().map(Vec::len).or(hello);
+                }
+                Message::Binary(frame) => {
+                    let word =
+                        |place: usize| u32::from_le_bytes(frame[place..place + 4].try_into().expect("four"));
+                    assert_eq!(word(52), axes as u32 - 8, "{board}");
+                    let place = 1728 + 72 * 4;
+                    let dest =
+                        |frame: &[u8]| f64::from_le_bytes(frame[place..place + 8].try_into().expect("eight"));
+                    at = (axes == 8 || dest(&frame) == 250.0).then_some(());
+                }
+                _ => {}
+            }
+        }
+    }
 }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use c67x::Reg;
 use c67x::convention::{ARGUMENTS, LINK, RESULT, STACK};
-use kmotiondef::map::{BOARD_STACK_SIZE, BOARD_STACKS_BASE};
+use kmotiondef::map::{BOARD_STACK_SIZE, BOARD_STACKS_BASE, KOGNA_STACKS_BASE};
 use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId};
 
 use super::account::{Account, Branch, is_return_of};
@@ -75,8 +75,9 @@ impl DspEngine {
 }
 
 /// B15 at the start of a thread, and the lowest address of its stack.
-fn board_stack(thread: ThreadId) -> (u32, u32) {
-    let base = BOARD_STACKS_BASE + BOARD_STACK_SIZE * (u32::from(thread.get()) - 1);
+fn board_stack(image: &Image, thread: ThreadId) -> (u32, u32) {
+    let stacks = if image.is_for_kogna() { KOGNA_STACKS_BASE } else { BOARD_STACKS_BASE };
+    let base = stacks + BOARD_STACK_SIZE * (u32::from(thread.get()) - 1);
     // The start code leaves room for what an interrupt saves, and takes it back at once.
     let top = ((base + BOARD_STACK_SIZE - 140) & !7) + 128;
     (top, base)
@@ -106,7 +107,7 @@ impl Executor for DspEngine {
         let mut core = Core::new(entry.get());
         let (top, base, returns_to) = match id.thread() {
             Some(thread) => {
-                let (top, base) = board_stack(thread);
+                let (top, base) = board_stack(code, thread);
                 core.state.set_reg(A14, u32::from(thread.get()));
                 (top, base, code.returns_to().get())
             }
@@ -115,7 +116,8 @@ impl Executor for DspEngine {
         core.state.set_reg(STACK, top);
         core.state.set_reg(LINK, returns_to);
         core.watch_stack(base, top);
-        core.translate_hot(self.hot);
+        // Translated code has the addresses of a KFLOP's memory in it.
+        core.translate_hot(self.hot.filter(|_| !code.is_for_kogna()));
         if let Some(account) = &mut self.account {
             account.begin(id);
         }

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use kmotiondef::GuestAddr;
-use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT};
+use kmotiondef::map::{KOGNA_PROGRAMS, MemoryMap};
 
 /// Code of the real processor; its words are in guest memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,6 +47,12 @@ impl Image {
         self.functions.binary_search(&address).is_ok()
     }
 
+    /// Reports whether it is code for a Kogna, by its place.
+    #[must_use]
+    pub const fn is_for_kogna(&self) -> bool {
+        KOGNA_PROGRAMS.holds(self.code.start.get())
+    }
+
     /// The addresses that its code lies among.
     #[must_use]
     pub fn code(&self) -> Range<GuestAddr> {
@@ -74,6 +80,6 @@ impl Image {
     /// Reports whether code at an address is executed, and not called as a firmware function.
     #[must_use]
     pub const fn is_code(address: u32) -> bool {
-        address >= PROGRAM_BASE && address < PROGRAM_LIMIT
+        MemoryMap::KFLOP.programs.holds(address) || KOGNA_PROGRAMS.holds(address)
     }
 }

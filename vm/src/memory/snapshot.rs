@@ -121,10 +121,10 @@ impl GuestMemory {
     /// It takes as much of the host's memory as has changed since the last snapshot of this memory was taken or
     /// restored, in pages of 4 KiB, and a list of the pages, which is less than 40 KiB.
     pub fn snapshot(&mut self) -> MemorySnapshot {
-        let before = self.last.take().unwrap_or_else(|| Regions::new(self.iram_bytes().len()));
+        let before = self.last.take().unwrap_or_else(|| Regions::new(self.rest_bytes().len()));
         let regions = Regions {
             sdram: Pages::of(&self.sdram[..], &before.sdram),
-            iram: Pages::of(self.iram_bytes(), &before.iram),
+            iram: Pages::of(self.rest_bytes(), &before.iram),
             flash: if self.flash.is_erased() {
                 before.flash
             } else {
@@ -144,7 +144,7 @@ impl GuestMemory {
     pub fn restore(&mut self, snapshot: &MemorySnapshot) {
         let MemorySnapshot { regions, is_flash_erased, protection, is_touched } = snapshot;
         regions.sdram.put_back(&mut self.sdram[..]);
-        regions.iram.put_back(self.iram_bytes_mut());
+        regions.iram.put_back(self.rest_bytes_mut());
         if *is_flash_erased {
             self.flash = Flash::default();
         } else {

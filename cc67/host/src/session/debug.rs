@@ -40,7 +40,7 @@ impl<T: Target> Session<T> {
     /// Returns the value of an item of the board by its name in expressions, such as `bit46`.
     #[must_use]
     pub fn item(&self, name: &str) -> Option<f64> {
-        Item::new(name).ok().map(|item| self.target.value(item))
+        Item::among(self.target.axes(), name).ok().map(|item| self.target.value(item))
     }
 
     /// Holds programs before these instructions, and before no others. What a program does, and when, stays the same.

@@ -192,7 +192,7 @@ impl<T: Target> Session<T> {
 }
 
 fn watch(text: &str, programs: &[UserProgram], options: &Options) -> Result<Watch, WatchError> {
-    match Item::new(text) {
+    match Item::among(options.firmware.board().axes, text) {
         Ok(item) => Ok(Watch(Watched::Item(item))),
         // A number that is too high is not the name of a variable.
         Err(error) if Item::is_kind(text.trim_end_matches(|c: char| c.is_ascii_digit())) => Err(error.into()),
@@ -213,7 +213,9 @@ pub fn quantities(
     let mut quantities = Vec::new();
     for name in expressions(list) {
         if let Some(number) = name.strip_prefix("axis").filter(|number| is_number(number)) {
-            let axis = Item::new(&format!("dest{number}"))?.axis().and_then(|axis| AxisId::new(axis as i32));
+            let axes = options.firmware.board().axes;
+            let axis =
+                Item::among(axes, &format!("dest{number}"))?.axis().and_then(|axis| AxisId::new(axis as i32));
             quantities.extend(axis.into_iter().flat_map(Item::of_axis).map(Quantity::from));
             continue;
         }
@@ -365,18 +367,16 @@ impl<'a> Vocabulary<'a> {
             Err(error) => error,
         };
         // A name of the program goes before that of an item; so items are tried second.
+        let item = |name: &str| Item::among(options.firmware.board().axes, name).ok();
         let mut names: Vec<&str> =
-            words(text).filter(|word| !symbols.contains_key(*word) && Item::new(word).is_ok()).collect();
+            words(text).filter(|word| !symbols.contains_key(*word) && item(word).is_some()).collect();
         names.sort_unstable();
         names.dedup();
         if names.is_empty() {
             return Err(first);
         }
         let expression = watch::compile(scope, text, &names)?;
-        Ok(Compiled {
-            expression,
-            items: names.into_iter().filter_map(|name| Item::new(name).ok()).collect(),
-        })
+        Ok(Compiled { expression, items: names.into_iter().filter_map(item).collect() })
     }
 }
 

@@ -6,27 +6,26 @@
 //! |---|---|
 //! | 0 | version, flags (1 running, 2 in the past, 4 programs ended), as u32 |
 //! | 8 | tick, last tick of the run, speed requested, speed measured, as f64 |
-//! | 40 | generation of the signals, numbers in a row, rows, spare, as u32 |
+//! | 40 | generation of the signals, numbers in a row, rows, axes after the first eight, as u32 |
 //! | 56 | eight axes of 72 bytes: Dest, Position, load, output, velocity, soft limits, Vel as f64; enable, input mode, output mode, limits reached, spare as u8 |
 //! | 632 | levels of the 2048 bits; then directions of the first 64, 1 for an output |
 //! | 896 | eight analog inputs, eight analog outputs, as i16 |
 //! | 928 | the 200 words of `persist.UserData` |
-//! | 1728 | rows of samples: tick and values as f64 |
+//! | 1728 | the axes after the first eight; then rows of samples: tick and values as f64 |
 
 use cc67_host::{Session, Target};
+use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::structs::{Chan, Persist};
 use kmotiondef::variables::{ADC_BUFFER_IN, BIT_DIR_SHADOW, DAC_BUFFER, PERSIST, chan};
-use kmotiondef::{Axes, AxisId, Bit, Field, GuestAddr, Ticks};
+use kmotiondef::{AxisId, Bit, Field, GuestAddr, Ticks};
 use runtime::trace::Item;
 
 use super::samples::Samples;
 
 /// The version of the layout.
 const VERSION: u32 = 1;
-/// The offset of the samples.
-const SAMPLES: usize = 1728;
-/// The axes that a page shows.
-pub(super) const SHOWN: Axes = Axes::new(8);
+/// The offset of the axes after the first eight, or of the samples if there are none.
+const LATER_AXES: usize = 1728;
 /// Bits that have a direction.
 const PINS: u16 = 64;
 
@@ -50,7 +49,7 @@ pub(super) fn frame<T: Target>(
     samples: &Samples,
     next_row: u64,
 ) -> (Vec<u8>, u64) {
-    let mut out = Vec::with_capacity(SAMPLES + 4096);
+    let mut out = Vec::with_capacity(LATER_AXES + 4096);
     let flags = [moment.is_running, moment.is_past, session.has_ended()];
     let flags = flags.iter().rev().fold(0, |all, flag| all << 1 | u32::from(*flag));
     out.extend([VERSION, flags].iter().flat_map(|word| word.to_le_bytes()));
@@ -58,15 +57,19 @@ pub(super) fn frame<T: Target>(
     out.extend(ticks.iter().chain(&moment.speed).flat_map(|number| number.to_le_bytes()));
     let counts_at = out.len();
     out.extend([0; 16]);
-    SHOWN.iter().for_each(|axis| write_axis(session, axis, &mut out));
+    let axes = session.target().axes();
+    axes.iter().take(N_CHANNELS).for_each(|axis| write_axis(session, axis, &mut out));
     write_bits(session, &mut out);
     write_analog(session, &mut out);
     let data = PERSIST.field(Persist::USER_DATA);
     let words = (0..kmotiondef::limits::N_USER_DATA_VARS).map(|index| data.element(index).address());
     out.extend(words.flat_map(|address| word(session, address).to_le_bytes()));
-    debug_assert_eq!(out.len(), SAMPLES, "the table above");
+    debug_assert_eq!(out.len(), LATER_AXES, "the table above");
+    let later = axes.iter().skip(N_CHANNELS);
+    let later_count = later.len() as u32;
+    later.for_each(|axis| write_axis(session, axis, &mut out));
     let (rows, next) = samples.write(next_row, &mut out);
-    let counts = [samples.generation, samples.names().len() as u32 + 1, rows, 0];
+    let counts = [samples.generation, samples.names().len() as u32 + 1, rows, later_count];
     let counts: Vec<u8> = counts.iter().flat_map(|word| word.to_le_bytes()).collect();
     out.splice(counts_at..counts_at + counts.len(), counts);
     (out, next)
@@ -93,7 +96,8 @@ fn word<T: Target>(session: &Session<T>, address: GuestAddr) -> u32 {
 }
 
 fn write_axis<T: Target>(session: &Session<T>, axis: AxisId, out: &mut Vec<u8>) {
-    let load = Item::new(&format!("load{axis}")).map_or(0.0, |item| session.target().value(item));
+    let load = Item::among(session.target().axes(), &format!("load{axis}"))
+        .map_or(0.0, |item| session.target().value(item));
     let int = |field: Field<i32>| word(session, place(axis, field)).cast_signed();
     let numbers = [
         double(session, place(axis, Chan::DEST)),
@@ -125,6 +129,7 @@ fn write_bits<T: Target>(session: &Session<T>, out: &mut Vec<u8>) {
 }
 
 fn write_analog<T: Target>(session: &Session<T>, out: &mut Vec<u8>) {
+    // Where an input has 16 bits, those above them do not count here either.
     let inputs =
         (0..8).map(|index| word(session, ADC_BUFFER_IN.element(index).address()).cast_signed() - 2048);
     let output = |index| session.glance_at_object::<u16>(DAC_BUFFER.element(index).address());

@@ -4,12 +4,11 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::PathBuf;
 
-use kmotiondef::bits::{BitDirection, range_of};
-use kmotiondef::{AxisId, Bit};
+use kmotiondef::bits::BitDirection;
+use kmotiondef::{Axes, AxisId, Bit};
 use runtime::machine_file::{Condition, Model};
 use serde_json::{Value, json};
 
-use super::frame::SHOWN;
 use crate::Show;
 use crate::names::{self, Used};
 
@@ -40,8 +39,8 @@ pub(super) fn sources(show: &Show) -> Value {
 }
 
 /// Returns the data that does not change while the board runs, and the programs' names of their bits.
-pub(super) fn hello(show: &Show) -> Value {
-    let axes = SHOWN.iter().zip(&show.machine.file.axes).map(|(axis, described)| {
+pub(super) fn hello(show: &Show, axes: Axes) -> Value {
+    let axes = axes.iter().zip(&show.machine.file.axes).map(|(axis, described)| {
         let name = if described.name.is_empty() { format!("Axis {axis}") } else { described.name.clone() };
         json!({
             "axis": axis.get(), "name": name, "units": described.units, "exists": described.model != Model::None,
@@ -99,7 +98,7 @@ fn bits(show: &Show) -> Vec<Value> {
     names::name_groups(&mut used);
     let places = places(show);
     let row = |(bit, used): (Bit, Used)| {
-        let range = range_of(bit);
+        let range = show.machine.file.board.bit_range(bit);
         let is_input = match range.map(|range| range.direction) {
             Some(BitDirection::Input) => true,
             Some(BitDirection::Output) | None => false,

@@ -8,7 +8,6 @@ use kmotiondef::AxisId;
 
 use super::ViewState;
 use super::clock::now;
-use super::frame::SHOWN;
 use crate::hub::PageId;
 
 /// The longest time between two words of a page that holds a button; it sends one every 0.1 s.
@@ -43,7 +42,8 @@ impl<T: Target> ViewState<T> {
         axis: i32,
         velocity: f64,
     ) -> Result<(), String> {
-        let axis = SHOWN.get(axis).ok_or_else(|| format!("no such axis {axis} (0-7)"))?;
+        let axes = session.target().axes();
+        let axis = axes.get(axis).ok_or_else(|| format!("no such axis {axis} (0-{})", axes.last()))?;
         if !velocity.is_finite() {
             return Err("the velocity is not a number".to_owned());
         }

@@ -259,7 +259,7 @@ impl<T: Target> ViewState<T> {
             Incoming::Saved(compiled) => {
                 let programs = self.programs.saved(*compiled, self.may_load());
                 self.load(session, programs);
-                self.broadcast(&hello::hello(&self.show));
+                self.broadcast(&hello::hello(&self.show, session.target().axes()));
                 self.broadcast(&hello::sources(&self.show));
                 self.broadcast(&self.programs.message());
             }
@@ -270,7 +270,7 @@ impl<T: Target> ViewState<T> {
     fn join(&mut self, session: &mut Session<T>, id: PageId, mailbox: Arc<Mailbox>) {
         let page = Page { mailbox, every: None, last: now(), next_row: 0, generation: 0 };
         self.pages.insert(id, page);
-        self.answer(id, &hello::hello(&self.show));
+        self.answer(id, &hello::hello(&self.show, session.target().axes()));
         self.answer(id, &hello::sources(&self.show));
         if self.is_real() {
             self.answer(id, &self.access.message());

@@ -409,7 +409,7 @@ class Board(Fixed):
 
     @property
     def axes(self) -> Axes:
-        """The eight axes, by number or by the name in the machine file."""
+        """The axes of the board, by number or by the name in the machine file."""
         return self._axes
 
     @property

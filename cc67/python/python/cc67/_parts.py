@@ -333,7 +333,7 @@ class Axis(AxisFields):
 
 
 class Axes(Fixed):
-    """The eight axes: `board.axes[0]`, or by the name in the machine file, `board.axes["Slide"]`."""
+    """The axes of the board: `board.axes[0]`, or by the name in the machine file, `board.axes["Slide"]`."""
 
     __slots__ = ("_axes",)
 
@@ -349,7 +349,7 @@ class Axes(Fixed):
                     raise UnknownNameError(f"no such axis: {which!r}; the machine file names none")
                 raise unknown("axis", which, names)
             return found[0]
-        return self._axes[_index(which, "axis", 8)]
+        return self._axes[_index(which, "axis", len(self._axes))]
 
     def __len__(self) -> int:
         return len(self._axes)

@@ -1,11 +1,10 @@
 //! The fields of an axis by their names in C.
 
 use cc67_host::{HostError, Session, Target};
-use kmotiondef::GuestAddr;
 use kmotiondef::ctype::CType;
-use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::structs::{Chan, StructureField};
-use kmotiondef::variables::CHAN;
+use kmotiondef::variables::chan;
+use kmotiondef::{AxisId, GuestAddr};
 
 /// The value of a field of an axis; `None` for another name, or a field that is not one number.
 ///
@@ -16,9 +15,10 @@ pub(crate) fn field<T: Target>(
     axis: usize,
     name: &str,
 ) -> Result<Option<f64>, HostError> {
-    let (Some(field), true) = (number(name), axis < N_CHANNELS) else { return Ok(None) };
     let target = session.target();
-    let address = target.place_of(CHAN.element(axis).address().offset(field.offset));
+    let axis = i32::try_from(axis).ok().and_then(|axis| target.axes().get(axis));
+    let (Some(field), Some(axis)) = (number(name), axis) else { return Ok(None) };
+    let address = target.place_of(chan(axis).address().offset(field.offset));
     let mut bytes = [0; 8];
     target.read(address, &mut bytes[..field.size as usize])?;
     let [first, second, third, fourth, ..] = bytes;
@@ -41,8 +41,9 @@ pub(crate) fn field<T: Target>(
 /// # Errors
 /// The value does not fit in its type.
 pub(crate) fn stored(axis: usize, name: &str, value: f64) -> Option<Result<(GuestAddr, Vec<u8>), String>> {
-    let field = number(name).filter(|_| axis < N_CHANNELS)?;
-    let address = CHAN.element(axis).address().offset(field.offset);
+    let axis = AxisId::new(i32::try_from(axis).ok()?)?;
+    let field = number(name)?;
+    let address = chan(axis).address().offset(field.offset);
     let whole = value.trunc();
     let (limits, bytes) = match field.ty {
         CType::Double => return Some(Ok((address, value.to_le_bytes().into()))),

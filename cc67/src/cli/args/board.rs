@@ -7,6 +7,7 @@ use anyhow::{Result, ensure};
 use cc67_host::Schedule;
 use clap::{Args, ValueEnum};
 use compiler::words::suggest;
+use kmotiondef::boards::TargetBoard;
 use runtime::{Directory, HostFiles, MachineFile, Overlay, REMARKS};
 use vm::engine::{Observed, Preemption};
 use vm::machine::Config as MachineConfig;
@@ -187,8 +188,8 @@ impl BoardArguments {
     }
 
     /// Reads the machine file, and sets which remarks are shown.
-    pub(crate) fn machine_file(&self) -> Result<MachineFile> {
-        let mut machine = self.described()?;
+    pub(crate) fn machine_file(&self, board: &'static TargetBoard) -> Result<MachineFile> {
+        let mut machine = self.described(board)?;
         for switch in &self.remarks {
             let (code, is_wanted) =
                 switch.strip_prefix("no-").map_or((&**switch, true), |code| (code, false));
@@ -206,11 +207,13 @@ impl BoardArguments {
     }
 
     /// Reads the machine file.
-    fn described(&self) -> Result<MachineFile> {
-        let Some(path) = self.machine.as_deref() else { return Ok(MachineFile::default()) };
+    fn described(&self, board: &'static TargetBoard) -> Result<MachineFile> {
+        let Some(path) = self.machine.as_deref() else {
+            return Ok(MachineFile { board, ..MachineFile::default() });
+        };
         let bytes = read(path)?;
         let Ok(text) = String::from_utf8(bytes) else { anyhow::bail!("{} is not text", path.display()) };
-        let mut machine = MachineFile::parse(&text).map_err(|error| {
+        let mut machine = MachineFile::parse_for(board, &text).map_err(|error| {
             anyhow::anyhow!("{}:{}:{}: {error}", path.display(), error.line, error.column)
         })?;
         machine.beside(path.parent().unwrap_or(Path::new("")));

@@ -73,8 +73,10 @@ impl FinalState {
 
 impl AxisState {
     fn of<T: Target>(session: &Session<T>, axis: AxisId) -> Option<Self> {
-        let value =
-            |kind: &str| Item::new(&format!("{kind}{axis}")).map_or(0.0, |item| session.target().value(item));
+        let value = |kind: &str| {
+            Item::among(session.target().axes(), &format!("{kind}{axis}"))
+                .map_or(0.0, |item| session.target().value(item))
+        };
         let place = chan(axis).field(Chan::ENABLE);
         let enabled = session.peek_object::<u32>(place.address()) != 0;
         let state = Self {

@@ -12,6 +12,7 @@ mod tables;
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use kmotiondef::boards::TargetBoard;
 use kmotiondef::{Axes, Bit};
 
 pub use crate::machine::Connected;
@@ -29,6 +30,8 @@ pub(crate) const NS_PER_INSTRUCTION: f64 = 5.0;
 /// A machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MachineFile {
+    /// The board that it is for.
+    pub board: &'static TargetBoard,
     /// The axes, those that the board lacks included.
     pub axes: [Axis; Axes::MAX],
     /// The equipment that is connected to the board, without the loads of the axes.
@@ -56,6 +59,7 @@ pub struct MachineFile {
 impl Default for MachineFile {
     fn default() -> Self {
         Self {
+            board: TargetBoard::default_board(),
             axes: std::array::from_fn(|_| Axis::default()),
             connected: Connected::default(),
             wires: Vec::new(),
@@ -174,12 +178,20 @@ pub struct Uart {
 }
 
 impl MachineFile {
-    /// Reads a machine file.
+    /// Reads a machine file for the default board.
     ///
     /// # Errors
     /// The first thing that is wrong, with its place.
     pub fn parse(text: &str) -> Result<Self, MachineFileError> {
-        let mut machine = Self::default();
+        Self::parse_for(TargetBoard::default_board(), text)
+    }
+
+    /// Reads a machine file for a board, which decides the axes and bits that it can name.
+    ///
+    /// # Errors
+    /// As [`parse`](Self::parse).
+    pub fn parse_for(board: &'static TargetBoard, text: &str) -> Result<Self, MachineFileError> {
+        let mut machine = Self { board, ..Self::default() };
         tables::apply(&mut machine, text)?;
         Ok(machine)
     }

@@ -1,7 +1,8 @@
 //! Reading values of TOML, with the place of everything that is wrong.
 
-use kmotiondef::bits::{BitDirection, range_of};
-use kmotiondef::{Axes, AxisId, Bit};
+use kmotiondef::bits::BitDirection;
+use kmotiondef::boards::TargetBoard;
+use kmotiondef::{AxisId, Bit};
 use strsim::levenshtein;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -40,21 +41,28 @@ pub(super) struct Table<'a> {
     pub(super) name: String,
     pub(super) offset: usize,
     entries: &'a DeTable<'a>,
+    /// The board that the machine is for.
+    board: &'static TargetBoard,
 }
 
 impl<'a> Table<'a> {
-    pub(super) fn new(name: &str, offset: usize, entries: &'a DeTable<'a>) -> Self {
-        Self { name: name.to_owned(), offset, entries }
+    pub(super) fn new(
+        name: &str,
+        offset: usize,
+        entries: &'a DeTable<'a>,
+        board: &'static TargetBoard,
+    ) -> Self {
+        Self { name: name.to_owned(), offset, entries, board }
     }
 
     /// Its keys with their values.
     pub(super) fn entries(&self) -> impl Iterator<Item = (Key<'a>, Value<'a>)> {
-        let name = self.name.clone();
+        let (name, board) = (self.name.clone(), self.board);
         self.entries.iter().map(move |(key, value)| {
             let text = key.get_ref().as_ref();
             let path = if name.is_empty() { text.to_owned() } else { format!("{name}.{text}") };
-            let key = Key { text, offset: key.span().start, table: name.clone() };
-            (key, Value { path, source: value })
+            let key = Key { text, offset: key.span().start, table: name.clone(), board };
+            (key, Value { path, source: value, board })
         })
     }
 
@@ -69,6 +77,7 @@ pub(super) struct Key<'a> {
     pub(super) text: &'a str,
     offset: usize,
     table: String,
+    board: &'static TargetBoard,
 }
 
 impl Key<'_> {
@@ -85,8 +94,10 @@ impl Key<'_> {
 
     /// The axis it numbers.
     pub(super) fn axis(&self) -> Read<AxisId> {
-        let number = self.text.parse().ok().and_then(|number| Axes::default().get(number));
-        number.ok_or_else(|| Wrong::new(self.offset, format!("`{}` is not an axis (0-7)", self.text)))
+        let axes = self.board.axes;
+        let number = self.text.parse().ok().and_then(|number| axes.get(number));
+        let wrong = || format!("`{}` is not an axis (0-{})", self.text, axes.last());
+        number.ok_or_else(|| Wrong::new(self.offset, wrong()))
     }
 }
 
@@ -95,6 +106,7 @@ impl Key<'_> {
 pub(super) struct Value<'a> {
     pub(super) path: String,
     source: &'a Spanned<DeValue<'a>>,
+    board: &'static TargetBoard,
 }
 
 impl<'a> Value<'a> {
@@ -194,13 +206,18 @@ impl<'a> Value<'a> {
         found.map(|(_, choice)| *choice).ok_or_else(|| self.is_wrong(&names.join(" or ")))
     }
 
+    /// The board that the machine is for.
+    pub(super) const fn board(&self) -> &'static TargetBoard {
+        self.board
+    }
+
     /// An axis number.
     pub(super) fn axis(&self) -> Read<AxisId> {
         let number = self
             .parsed()
             .filter(|number| number.fract() == 0.0)
-            .and_then(|number| Axes::default().get(number as i32));
-        number.ok_or_else(|| self.is_wrong("an axis, 0 to 7"))
+            .and_then(|number| self.board.axes.get(number as i32));
+        number.ok_or_else(|| self.is_wrong(&format!("an axis, 0 to {}", self.board.axes.last())))
     }
 
     /// A bit that something outside can drive.
@@ -219,7 +236,7 @@ impl<'a> Value<'a> {
         let number =
             self.parsed().filter(|number| number.fract() == 0.0).and_then(|number| Bit::new(number as i32));
         let bit = number.ok_or_else(|| self.is_wrong("a bit number, 0 to 2047"))?;
-        match range_of(bit) {
+        match self.board.bit_range(bit) {
             Some(range) if goes(range.direction) => Ok(bit),
             Some(range) => {
                 let text = format!("`{}` must be {what}, not bit {bit} ({})", self.path, range.name);
@@ -235,7 +252,11 @@ impl<'a> Value<'a> {
             DeValue::Array(values) => Ok(values
                 .iter()
                 .enumerate()
-                .map(|(index, source)| Value { path: format!("{}[{index}]", self.path), source })
+                .map(|(index, source)| Value {
+                    path: format!("{}[{index}]", self.path),
+                    source,
+                    board: self.board,
+                })
                 .collect()),
             _ => Err(self.is_wrong("an array in [brackets]")),
         }
@@ -244,7 +265,9 @@ impl<'a> Value<'a> {
     /// A table.
     pub(super) fn table(&self) -> Read<Table<'a>> {
         match self.source.get_ref() {
-            DeValue::Table(entries) => Ok(Table::new(&self.path, self.source.span().start, entries)),
+            DeValue::Table(entries) => {
+                Ok(Table::new(&self.path, self.source.span().start, entries, self.board))
+            }
             DeValue::Array(_) => Err(self.is_wrong(&format!("one table, `[{}]`", self.path))),
             _ => Err(self.is_wrong("a table")),
         }

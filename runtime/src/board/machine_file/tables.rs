@@ -1,6 +1,6 @@
 //! The tables of a machine file: what each key changes.
 
-use kmotiondef::{Axes, AxisId, Bit};
+use kmotiondef::{AxisId, Bit};
 use toml::de::DeTable;
 
 use super::read::{Read, Table, Value, Wrong, keys};
@@ -18,7 +18,7 @@ pub(super) fn apply(machine: &mut MachineFile, text: &str) -> Result<(), Machine
         Wrong::new(offset, error.message()).in_text(text)
     })?;
     let mut statements = Vec::new();
-    let root = root(machine, &mut statements, &Table::new("", 0, table.get_ref()));
+    let root = root(machine, &mut statements, &Table::new("", 0, table.get_ref(), machine.board));
     root.map_err(|wrong| wrong.in_text(text))?;
     machine.stimulus.rules.extend(events::rules(statements, text)?);
     Ok(())
@@ -351,7 +351,9 @@ fn spindle(before: Option<Spindle>, table: &Table<'_>) -> Read<Spindle> {
 /// `axis 7`.
 fn named_axis(value: &Value<'_>) -> Read<AxisId> {
     let number = value.text()?.strip_prefix("axis").and_then(|rest| rest.trim().parse().ok());
-    number.and_then(|number| Axes::default().get(number)).ok_or_else(|| value.is_wrong("\"axis N\", 0 to 7"))
+    let axes = value.board().axes;
+    let wrong = || value.is_wrong(&format!("\"axis N\", 0 to {}", axes.last()));
+    number.and_then(|number| axes.get(number)).ok_or_else(wrong)
 }
 
 fn directions(table: &Table<'_>) -> Read<SpindleDrive> {

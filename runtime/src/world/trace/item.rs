@@ -10,6 +10,7 @@ use kmotiondef::{Axes, AxisId, Bit, Place};
 
 use super::{Formula, RecordedCell, View};
 use crate::io::bits::bit_state;
+use crate::io::kanalog::conversion;
 use crate::io::konnect::{KonnectBoard, Port};
 use crate::views::{self, Typed};
 
@@ -18,6 +19,8 @@ struct ItemKind {
     name: &'static str,
     /// The number of items, which are numbered from 0.
     count: usize,
+    /// True if there is one of each axis of the board, whatever the count says.
+    is_by_axis: bool,
     /// The unit; empty for mere numbers.
     unit: &'static str,
     /// True if `axisN` includes it.
@@ -27,9 +30,26 @@ struct ItemKind {
     cell: Option<fn(usize) -> RecordedCell>,
 }
 
-/// A kind that is numbered by axis and not a part of what `axisN` names.
-const OTHER: ItemKind =
-    ItemKind { name: "", count: 8, unit: "", is_of_axes: false, read: |_, _| 0.0, cell: None };
+/// A kind of eight items that is not a part of what `axisN` names.
+const OTHER: ItemKind = ItemKind {
+    name: "",
+    count: 8,
+    is_by_axis: false,
+    unit: "",
+    is_of_axes: false,
+    read: |_, _| 0.0,
+    cell: None,
+};
+
+/// A kind that is numbered by axis.
+const BY_AXIS: ItemKind = ItemKind { is_by_axis: true, ..OTHER };
+
+impl ItemKind {
+    /// The number of items on a board.
+    const fn count_on(&self, axes: Axes) -> usize {
+        if self.is_by_axis { axes.count() } else { self.count }
+    }
+}
 
 /// All kinds.
 const KINDS: &[ItemKind] = &[
@@ -40,7 +60,7 @@ const KINDS: &[ItemKind] = &[
         is_of_axes: true,
         read: |view, index| view.memory.axis(axis(index), Chan::DEST),
         cell: Some(|index| RecordedCell::new(chan(index).field(Chan::DEST).address(), GatherType::Double)),
-        ..OTHER
+        ..BY_AXIS
     },
     // Where it is.
     ItemKind {
@@ -51,7 +71,7 @@ const KINDS: &[ItemKind] = &[
         cell: Some(|index| {
             RecordedCell::new(chan(index).field(Chan::POSITION).address(), GatherType::Double)
         }),
-        ..OTHER
+        ..BY_AXIS
     },
     // What drives it.
     ItemKind {
@@ -59,7 +79,7 @@ const KINDS: &[ItemKind] = &[
         is_of_axes: true,
         read: |view, index| view.memory.axis(axis(index), Chan::OUTPUT).into(),
         cell: Some(|index| RecordedCell::new(chan(index).field(Chan::OUTPUT).address(), GatherType::Float)),
-        ..OTHER
+        ..BY_AXIS
     },
     // How fast it is sent there.
     ItemKind {
@@ -67,17 +87,17 @@ const KINDS: &[ItemKind] = &[
         unit: "units/s",
         read: |view, index| view.memory.axis(axis(index), Chan::LAST_VEL).into(),
         cell: Some(|index| RecordedCell::new(chan(index).field(Chan::LAST_VEL).address(), GatherType::Float)),
-        ..OTHER
+        ..BY_AXIS
     },
     // Where its load is, in machine coordinates.
-    ItemKind { name: "load", unit: "units", read: |view, index| view.machine.table(axis(index)), ..OTHER },
+    ItemKind { name: "load", unit: "units", read: |view, index| view.machine.table(axis(index)), ..BY_AXIS },
     // A bit.
     ItemKind { name: "bit", count: Bit::MAX as usize + 1, read: bit, ..OTHER },
     // An analog input, -2048 to 2047.
     ItemKind {
         name: "adc",
         unit: "counts",
-        read: |view, index| f64::from(view.memory.get(ADC_BUFFER_IN.element(index)) - 2048),
+        read: |view, index| f64::from(conversion(view.memory, index) - 2048),
         cell: Some(|index| RecordedCell {
             offset: -2048.0,
             ..RecordedCell::new(ADC_BUFFER_IN.element(index).address(), GatherType::Int)
@@ -175,11 +195,19 @@ pub struct UnknownItem {
 }
 
 impl Item {
-    /// The item of a name such as `dest0` or `bit46`.
+    /// The item of a name such as `dest0` or `bit46` on the default board.
     ///
     /// # Errors
     /// A name that is not one.
     pub fn new(name: &str) -> Result<Self, UnknownItem> {
+        Self::among(Axes::default(), name)
+    }
+
+    /// The item of a name on a board with these axes.
+    ///
+    /// # Errors
+    /// A name that is not one.
+    pub fn among(axes: Axes, name: &str) -> Result<Self, UnknownItem> {
         // `persist.5` is how `--set` calls it.
         let name = &name.replacen("persist.", "persist", 1);
         let letters = name.trim_end_matches(|character: char| character.is_ascii_digit());
@@ -188,7 +216,7 @@ impl Item {
         let is_single = kind.is_some_and(|kind| KINDS[kind].count == 1) && letters.len() == name.len();
         let index = if is_single { Some(0) } else { name[letters.len()..].parse().ok() };
         if let (Some(kind), Some(index)) = (kind, index)
-            && index < KINDS[kind].count
+            && index < KINDS[kind].count_on(axes)
         {
             return Ok(Self { kind, index });
         }
@@ -196,7 +224,7 @@ impl Item {
         let known: Vec<_> = KINDS
             .iter()
             .filter(is_near)
-            .map(|kind| match kind.count {
+            .map(|kind| match kind.count_on(axes) {
                 1 => kind.name.to_owned(),
                 count => format!("{}0 to {0}{}", kind.name, count - 1),
             })
@@ -235,7 +263,7 @@ impl Item {
     /// Returns the load position of every axis of a board, in machine coordinates.
     #[must_use]
     pub fn of_loads(axes: Axes) -> Vec<Self> {
-        axes.iter().flat_map(|axis| Self::new(&format!("load{axis}"))).collect()
+        axes.iter().flat_map(|axis| Self::among(axes, &format!("load{axis}"))).collect()
     }
 
     /// Returns the kind of value: its name without the number.

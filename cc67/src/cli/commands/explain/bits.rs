@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use anyhow::{Result, bail};
 use kmotiondef::Bit;
-use kmotiondef::bits::{BIT_RANGES, BitDirection, BitKind, BitRange, range_of};
+use kmotiondef::bits::{BIT_RANGES, BitDirection, BitKind, BitRange, kogna_range_of, range_of};
 
 /// Every range.
 pub(super) fn list() -> String {
@@ -23,7 +23,7 @@ pub(super) fn answer(name: &str) -> Result<Option<String>> {
     let Some(bit) = i32::try_from(number).ok().and_then(Bit::new) else {
         bail!("no such bit: {number} (0-2047)");
     };
-    let Some(range) = range_of(bit) else {
+    let Some(range) = range_of(bit).or_else(|| kogna_range_of(bit)) else {
         let text = format!(
             "# bit {number}\n\nNothing on the board or its option boards is connected to this bit: it reads 0 and cannot be \
              written. `cc67 --explain bits` lists the ranges.\n"
@@ -80,6 +80,7 @@ fn outside(range: &BitRange, number: u32) -> String {
         | BitKind::KanalogOutput => "It is on a Kanalog board: `board.kanalog = true` in the machine file.\n",
         BitKind::KstepInput => "It is on a KStep board: the program sets `KStepPresent = TRUE` first.\n",
         BitKind::SnapDifferential | BitKind::SnapOpto | BitKind::SnapGpio => "It is on a SnapAmp board.\n",
+        BitKind::KognaPin | BitKind::KognaInput | BitKind::KognaOutput => "Only a Kogna has it.\n",
         BitKind::Pin | BitKind::Led | BitKind::Virtual | BitKind::VirtualEx => "",
     };
     let drive = match range.direction {

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use kmotiondef::boards::BOARDS;
 use runtime::ModelledBoard;
-use runtime::commands::{COMMANDS, Command, LATER_COMMANDS, boards_with};
+use runtime::commands::{COMMANDS, Command, KOGNA_COMMANDS, LATER_COMMANDS, boards_with};
 
 use super::Explained;
 
@@ -16,7 +16,7 @@ pub(super) fn entries() -> impl Iterator<Item = Explained> {
 /// The commands of all firmware.
 fn all() -> impl Iterator<Item = &'static Command> {
     let is_new = |command: &&Command| COMMANDS.iter().all(|known| known.name != command.name);
-    COMMANDS.iter().chain(LATER_COMMANDS.iter().filter(is_new))
+    COMMANDS.iter().chain(LATER_COMMANDS.iter().filter(is_new)).chain(KOGNA_COMMANDS)
 }
 
 /// Every command.

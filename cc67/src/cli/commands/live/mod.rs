@@ -196,6 +196,7 @@ pub(super) fn show(
     compiler: &CompilerArguments,
 ) -> Result<Show> {
     let files = assign(&[programs, &board.load].concat())?;
+    let options = compiler.resolve()?;
     let shown = files.into_iter().map(|file| Program {
         thread: file.thread,
         is_image: file.is_image(),
@@ -205,12 +206,12 @@ pub(super) fn show(
     Ok(Show {
         title: programs.join(OsStr::new(", ")).to_string_lossy().into_owned(),
         machine: ShownMachine {
-            file: board.machine_file()?,
+            file: board.machine_file(options.firmware.board())?,
             path: board.machine.clone(),
             can_rebuild: false,
         },
         programs: shown.collect(),
-        include_dirs: compiler.resolve()?.preprocessor.include_dirs,
+        include_dirs: options.preprocessor.include_dirs,
         watch: String::new(),
         speed: 1.0,
         is_paused: false,

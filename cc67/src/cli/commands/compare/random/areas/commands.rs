@@ -90,6 +90,7 @@ fn command(draw: &mut Draw) -> String {
             Argument::Assign | Argument::Equals => line += draw.pick(&["=", "=", " = ", "= ", " ="]),
             Argument::OptionalEquals => line += draw.pick(&["=", " ", " = "]),
             Argument::Integer(..)
+            | Argument::Numbered(..)
             | Argument::Real
             | Argument::Limited(..)
             | Argument::Hex
@@ -118,7 +119,7 @@ fn value(draw: &mut Draw, argument: Argument) -> String {
         return draw.pick(&["", "-", "+", "abc", "1e9", "-1", "99999", "0.5", "."]).to_owned();
     }
     match argument {
-        Argument::Integer(low, high) => {
+        Argument::Integer(low, high) | Argument::Numbered(low, high, _) => {
             let high = if low == 0 && high == 7 { 2 } else { high };
             if draw.chance(5) { (high + 1).to_string() } else { draw.integer(low, high).to_string() }
         }
