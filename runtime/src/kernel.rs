@@ -524,7 +524,7 @@ impl Firmware for Kernel {
         let Parts { pc, servo, out, .. } = parts;
         for acts in [
             pc.disk.slice(context),
-            limits::slice(servo, out, context.memory, context.threads.active().is_empty()),
+            limits::slice(servo, out, context.memory),
             host::slice(&mut pc.host, out, context),
         ] {
             if acts {

@@ -240,9 +240,8 @@ fn check_soft(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, end: &End
     tick.servo.stop_request.ask(text, Tells::Always);
 }
 
-/// Acts on the limits in the primary thread's slice; returns whether a stop was tried. Where no other thread is active,
-/// it stops the first axis without being interrupted.
-pub(crate) fn slice(servo: &mut Servo, out: &mut Out, memory: &mut GuestMemory, is_alone: bool) -> bool {
+/// Acts on the limits in the primary thread's slice; returns whether a stop was tried.
+pub(crate) fn slice(servo: &mut Servo, out: &mut Out, memory: &mut GuestMemory) -> bool {
     if hold::stop_next(servo, memory) {
         return true;
     }
@@ -258,9 +257,6 @@ pub(crate) fn slice(servo: &mut Servo, out: &mut Out, memory: &mut GuestMemory, 
         return false;
     }
     let stops = hold::begin(servo, memory);
-    if is_alone {
-        hold::stop_next(servo, memory);
-    }
     let is_told = |tells| match tells {
         Tells::Stop => stops,
         Tells::Always => true,

@@ -6,6 +6,7 @@ use kmotiondef::{AxisId, CType, GuestAddr};
 use serde_json::Value as Json;
 
 use super::coordinated::system;
+use super::hold;
 use crate::testing::TestBench;
 use crate::text::vectors::rows;
 use crate::views::{Typed, chan};
@@ -317,6 +318,8 @@ fn protects(row: &Json, wait: u64) -> Result<(), String> {
         let state = bench.memory.get(CS0_STOPPING_STATE);
         if tick > 0 || number(&values[2]) == 0.0 {
             bench.run(1);
+            // No interrupt of the recorder came between the beginning of a stop and its first axis; on a board one does.
+            hold::stop_next(&mut bench.kernel.parts.servo, &mut bench.memory);
         }
         let moves = !bench.memory.axis(axis(), Chan::PCOEFF).is_null();
         let found = [

@@ -70,7 +70,7 @@ fn check(row: &Json, board: &Model, program: &Program) -> Vec<String> {
 
 #[test]
 fn programs_do_on_the_model_what_was_recorded_of_firmware_5() {
-    compare(&["program"], &[], program);
+    compare(&["program"], program);
 }
 
 fn compensation(row: &Json) -> Vec<String> {
@@ -97,5 +97,5 @@ fn compensation(row: &Json) -> Vec<String> {
 
 #[test]
 fn compensation_of_the_model_is_as_recorded_of_firmware_5() {
-    compare(&["pid"], &[], compensation);
+    compare(&["pid"], compensation);
 }

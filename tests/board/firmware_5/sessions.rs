@@ -58,5 +58,5 @@ fn session(row: &Json) -> Vec<String> {
 
 #[test]
 fn sessions_of_the_model_are_as_recorded_of_firmware_5() {
-    compare(&["session"], &[], session);
+    compare(&["session"], session);
 }
