@@ -22,7 +22,7 @@ use vm::scheduler::Turn;
 use vm::trap::{Trap, TrapKind};
 
 use crate::commands::Scripts;
-use crate::firmware::calls::{SmallMove, WrongWait, WrongZero};
+use crate::firmware::calls::{Calls, HeldLock, SmallMove, WrongWait, WrongZero};
 use crate::firmware::dispatch::{Answer, HANDLERS, signatures};
 use crate::firmware::later::{self, Callee, Callees, LATER_FUNCTIONS};
 use crate::firmware::level::ModelledBoard;
@@ -37,7 +37,7 @@ use crate::io::konnect::Konnects;
 use crate::io::timer;
 use crate::machine::Machine;
 use crate::machine::description::Condition;
-use crate::out::{Console, EventKind, Message, Speaker};
+use crate::out::{Console, EventKind, Message, Out, Speaker};
 use crate::pc::Pc;
 use crate::pc::files::HostFiles;
 use crate::pc::host;
@@ -184,6 +184,9 @@ impl Kernel {
         if let Some(races) = races {
             races.finish(context.threads, context.now, out);
         }
+        if races.is_none() {
+            note_kept_locks(calls, out, context);
+        }
         for (axis, SmallMove { thread, at, function, way }) in calls.motions.small_moves() {
             let message = Message::TinyMove { function, axis, way };
             out.remark_of(context.now, Speaker::Thread(thread), at, message);
@@ -263,6 +266,17 @@ fn note_overruns(parts: &mut Parts, context: &TickContext<'_>, words: u32) {
     let beyond = |word: &u32| context.memory.peek::<u32>(GuestAddr::new(USER_DATA_END + 4 * word)) != 0;
     if let Some(word) = (0..words).find(beyond).filter(|_| parts.level.board().is_default()) {
         parts.servo_tick().remark_near(Message::UserDataOverrun { index: USER_DATA_ELEMENTS + word });
+    }
+}
+
+/// Tells which locks threads have kept that have ended.
+fn note_kept_locks(calls: &Calls, out: &mut Out, context: &TickContext<'_>) {
+    for HeldLock { thread, lock, at } in calls.locks.held().iter().copied() {
+        let has_ended = context.threads.state(thread).is_ready() && context.threads.has_run(thread);
+        if has_ended && context.memory.peek::<i32>(lock) != 0 {
+            let lock = calls.notices.name_of(lock, 4);
+            out.remark_of(context.now, Speaker::Thread(thread), at, Message::LockKept { lock });
+        }
     }
 }
 

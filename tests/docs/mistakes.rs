@@ -15,6 +15,7 @@ No program in `c-programs/` gets any of these messages, and neither do correct p
 
 /// Those that come to light in the servo interrupt or on the PC, where nobody knows a line, or in another program.
 const WITHOUT_LINE: &[&str] = &[
+    "address_of_a_text_in_a_request",
     "analog_input_of_a_stimulus_in_volts",
     "analog_output_of_an_axis_written",
     "call_back_of_another_thread_replaced",

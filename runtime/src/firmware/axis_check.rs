@@ -89,8 +89,18 @@ pub(crate) fn arrived(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId) {
     let rest = (dest - position).abs();
     let is_far = rest > FAR && rest > parts.calls.motions.way(axis) / 2.0;
     if is_far && loop_input(memory, axis).is_some() {
-        parts.out.diagnose(caller, Message::NotThere { axis, position, dest });
+        let advice = advice(memory, axis, rest);
+        parts.out.diagnose(caller, Message::NotThere { axis, position, dest, advice });
     }
+}
+
+/// The first thing to look at where a motor stays away from Dest by `rest`.
+fn advice(memory: &GuestMemory, axis: AxisId, rest: f64) -> String {
+    let band = memory.axis(axis, Chan::DEAD_BAND_RANGE);
+    if memory.axis(axis, Chan::DEAD_BAND_GAIN) < 1.0 && f64::from(band) >= rest {
+        return format!("its dead band, DeadBandRange = {band}, covers the rest");
+    }
+    "check P, OutputMode and the wiring".to_owned()
 }
 
 /// A thread begins a jog, or ends one: whether a switch of the axis was as the thread waited for before it has moved.
@@ -108,6 +118,13 @@ pub(crate) fn jogs(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, speed: 
     let now = (speed != 0.0).then_some(Jogged { thread, dest, speed, looked });
     let before =
         parts.calls.motions.jogs(axis, now).filter(|before| now.is_none() && before.thread == thread);
+    if let Some(message) = before
+        .filter(|_| parts.calls.waits.of(thread).has_read)
+        .and(last_bit)
+        .and_then(|bit| watches_other(parts, caller.memory, axis, bit))
+    {
+        parts.out.diagnose(caller, message);
+    }
     let Some(Jogged { speed, .. }) =
         before.filter(|before| (dest - before.dest).abs() < MOVED && looked > before.looked && !has_repeated)
     else {
@@ -117,6 +134,17 @@ pub(crate) fn jogs(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, speed: 
     if let Some(bit) = last_bit.filter(of_axis) {
         parts.out.diagnose(caller, Message::JogEnded { axis, speed, bit });
     }
+}
+
+/// A switch that only axes can press which rest, watched while another axis moves that has switches of its own.
+fn watches_other(parts: &Parts, memory: &GuestMemory, axis: AxisId, bit: Bit) -> Option<Message> {
+    let mechanics = &parts.machine.mechanics;
+    let other = mechanics.owners(bit).next().filter(|_| mechanics.has_contacts(axis))?;
+    let rests = |owner: AxisId| {
+        let is_slave = memory.axis(owner, Chan::MASTER_AXIS) == i32::from(axis.get());
+        owner != axis && !is_slave && !has_motion(memory, owner)
+    };
+    mechanics.owners(bit).all(rests).then_some(Message::WatchesOther { axis, bit, other })
 }
 
 /// A thread zeroes an axis: whether it is the one that it has moved to its switch.

@@ -1,5 +1,6 @@
 //! Single axes: enabling, independent moves. Source: axes-and-motion.md sections 3 to 6 and 12.
 
+mod replaced;
 pub(super) mod schedule;
 mod structure;
 mod together;
@@ -20,14 +21,14 @@ use kmotiondef::variables::{COORD_SYSTEM0, CS0_STOPPING_STATE};
 use vm::firmware::{Caller, Outcome};
 use vm::memory::GuestMemory;
 
-use super::calls::{Called, Continuation, Wait};
+use super::calls::{Commanded, Continuation};
 use super::parts::Parts;
 use super::{axis_check, costs, float_bits};
 use crate::arithmetic::division::divide;
 use crate::arithmetic::doubles::exp;
 use crate::io::bits;
 use crate::machine::wiring::generator;
-use crate::out::{Message, OtherPlace};
+use crate::out::Message;
 use crate::servo::coordinated::system;
 use crate::servo::independent::{has_motion, is_planned, present, run, start, state};
 use crate::servo::moves::{Accelerations, Planner, limits_with, start_jog, start_move_to};
@@ -128,6 +129,7 @@ pub(crate) fn disable_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32
         return invalid(parts, caller, Function::DisableAxis, axis, "Disable");
     };
     axis_check::ends_path(parts, caller, Function::DisableAxis, axis);
+    replaced::ends(parts, caller, axis, Function::DisableAxis);
     switching::switch_off(&mut parts.servo, &mut parts.machine, caller.memory, axis);
     hold::abort_if_member(caller.memory, axis);
 }
@@ -223,33 +225,6 @@ fn notice_hurry(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: 
     }
 }
 
-/// Tells a program that calls a move of an axis right after another that the earlier one never happens, and one that
-/// calls it after a delay that is too short that the earlier one does not arrive.
-fn notice_replaced(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Function, target: f64) {
-    /// A thread that has looked at the time more often waits for something.
-    const DELAYS: u32 = 3;
-    /// A part of the way that may be left.
-    const REST: f64 = 0.01;
-    let Some(thread) = caller.thread else { return };
-    let Wait { looked, looks, .. } = *parts.calls.waits.of(thread);
-    let called = Called { thread, at: caller.at, target, looked, looks };
-    let before = parts.calls.notices.moves(axis, called);
-    let is_own = |before: &Called| before.thread == thread && before.target != target;
-    let Some(before) = before.filter(is_own).filter(|_| has_motion(caller.memory, axis)) else { return };
-    let earlier = before.target;
-    if before.looked == looked {
-        return parts.out.diagnose(caller, Message::MoveReplaced { function, axis, earlier, target });
-    }
-    let is_delay = (1..=DELAYS).contains(&looks.wrapping_sub(before.looks));
-    let dest = caller.memory.axis(axis, Chan::DEST);
-    let is_far = (earlier - dest).abs() > REST * parts.calls.motions.way(axis);
-    let is_move = caller.memory.axis(axis, Chan::LAST_MOTION_TYPE) == LastMotion::Move.get();
-    if let (Some(at), true) = (before.at, is_delay && is_far && is_move && before.at != caller.at) {
-        let other = OtherPlace { thread: Some(thread), at };
-        parts.out.diagnose(caller, Message::MoveCut { function, axis, dest, earlier, target, other });
-    }
-}
-
 /// Returns whether a target or speed is a number; reports one that is not finite.
 fn is_number(parts: &mut Parts, caller: &Caller<'_>, function: Function, value: f64) -> bool {
     if !value.is_finite() {
@@ -294,7 +269,10 @@ fn request(parts: &mut Parts, caller: &mut Caller<'_>, request: &MoveRequest) ->
         return Outcome::Done(());
     }
     let Some((limits, decel)) = limits_with(caller.memory, axis, request.velocity, request.own) else {
-        no_limits(parts, caller, axis, function);
+        match request.velocity.filter(|speed| *speed <= 0.0) {
+            Some(speed) => parts.out.diagnose(caller, Message::NoSpeed { function, axis, speed }),
+            None => no_limits(parts, caller, axis, function),
+        }
         return Outcome::Done(());
     };
     let is_direct = parts.servo.planner == Planner::Direct;
@@ -333,7 +311,11 @@ fn begins(
         costs::refused(caller, function);
         return false;
     }
-    notice_replaced(parts, caller, axis, function, target);
+    let motion = match request.is_relative {
+        true => Commanded::MoveRel(request.target, target),
+        false => Commanded::Move(target),
+    };
+    replaced::begins(parts, caller, axis, function, motion);
     float_bits::notice(parts, caller, function, request.target);
     let way = target - caller.memory.axis(axis, Chan::DEST);
     axis_check::moved(parts, caller, function, axis);
@@ -571,7 +553,10 @@ fn begin_jog(
             costs::spend(caller, costs::NOTHING_TO_STOP - row_cost(Function::Jog));
             return Outcome::Done(());
         }
-        if velocity != 0.0 {
+        if velocity == 0.0 {
+            replaced::ends(parts, caller, axis, Function::Jog);
+        } else {
+            replaced::begins(parts, caller, axis, Function::Jog, Commanded::Jog(velocity));
             axis_check::moved(parts, caller, Function::Jog, axis);
         }
     }
@@ -670,6 +655,7 @@ pub(crate) fn check_done(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) 
     if let Some(thread) = caller.thread {
         let has_waited = parts.calls.motions.waits_for(thread, axis);
         parts.calls.motions.asked(thread, axis, done, caller.at, is_moving);
+        parts.calls.notices.asks(thread, axis);
         if done == 1 && has_waited {
             axis_check::arrived(parts, caller, axis);
         }

@@ -4,6 +4,7 @@ use kmotiondef::{GuestAddr, ThreadId};
 use vm::firmware::{Caller, Outcome, Wake};
 use vm::trap::TrapKind;
 
+use super::calls::HeldLock;
 use super::level::MutexRule;
 use super::parts::Parts;
 
@@ -22,6 +23,9 @@ pub(crate) fn mutex_lock(
     match taken {
         Some(taken) => {
             caller.memory.store(mutex, taken)?;
+            if let Some(thread) = caller.thread {
+                parts.calls.locks.taken(HeldLock { thread, lock: mutex, at: caller.at });
+            }
             Ok(Outcome::Done(()))
         }
         None => Ok(Outcome::Wait(Wake::Retry)),
@@ -68,6 +72,7 @@ pub(crate) fn mutex_unlock(
     caller: &mut Caller<'_>,
     mutex: GuestAddr,
 ) -> Result<(), TrapKind> {
+    parts.calls.locks.freed(mutex);
     if parts.level.behaviour().mutexes == MutexRule::Owner {
         return caller.memory.store(mutex, 0_i32);
     }

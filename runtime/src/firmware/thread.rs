@@ -45,8 +45,22 @@ fn stop_board(parts: &mut Parts, caller: &mut Caller<'_>, function: Function) {
     parts.pc.uart.die();
 }
 
+/// Tells a program that starts a thread again which it has started before and which has not ended. (`--races` watches
+/// that itself.)
+fn notice_restart(parts: &mut Parts, caller: &Caller<'_>, thread: ThreadId) {
+    let bit = 1 << thread.index();
+    let was_started = parts.calls.started & bit != 0;
+    parts.calls.started |= bit;
+    if was_started && parts.races.is_none() && caller.threads.state(thread).is_active() {
+        parts.out.diagnose(caller, Message::ThreadRestarted { thread });
+    }
+}
+
 /// Starts the program of a thread; the caller's own number has no effect.
 pub(crate) fn start_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i32) -> Outcome<()> {
+    if let Some(id) = ThreadId::new(thread).filter(|id| caller.thread != Some(*id)) {
+        notice_restart(parts, caller, id);
+    }
     match ThreadId::new(thread) {
         // The caller's number needs no start, which would look for a download there.
         Some(id) if caller.thread != Some(id) && !start(parts, caller.memory, caller.threads, id) => {

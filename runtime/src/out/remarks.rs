@@ -5,104 +5,15 @@
 //! it, is decided there and nowhere else.
 
 mod key;
+mod remark;
 
 use std::fmt;
 
 use kmotiondef::firmware::Function;
-use kmotiondef::{AxisId, Bit, CodeAddr, GuestAddr, ThreadId};
+use kmotiondef::{AxisId, Bit, GuestAddr, ThreadId};
 
 use key::Key;
-
-/// The weight of a remark.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Severity {
-    /// A remark for those who ask for all of them.
-    Detail,
-    /// A step that a program may have forgotten; a machine file can switch these off.
-    Hint,
-    /// Something is not as it was meant.
-    Warning,
-}
-
-/// The subject of a remark.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Speaker {
-    /// The board, or what is around it.
-    #[default]
-    Board,
-    /// A call of a thread.
-    Thread(ThreadId),
-    /// A call of the call-back.
-    CallBack,
-    /// A script command.
-    Command,
-}
-
-impl From<Option<ThreadId>> for Speaker {
-    /// The thread of a call; without one it is the call-back.
-    fn from(thread: Option<ThreadId>) -> Self {
-        thread.map_or(Self::CallBack, Self::Thread)
-    }
-}
-
-impl fmt::Display for Speaker {
-    /// The words in front of a text about it.
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Board => Ok(()),
-            Self::Thread(thread) => write!(formatter, "thread {thread}: "),
-            Self::CallBack => formatter.write_str("call-back: "),
-            Self::Command => formatter.write_str("command: "),
-        }
-    }
-}
-
-/// The second place of a remark about two.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OtherPlace {
-    /// The thread; `None` for the call-back.
-    pub thread: Option<ThreadId>,
-    /// The instruction.
-    pub at: CodeAddr,
-}
-
-impl fmt::Display for OtherPlace {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.thread {
-            Some(thread) => write!(formatter, "thread {thread} at {}", self.at),
-            None => write!(formatter, "the call-back at {}", self.at),
-        }
-    }
-}
-
-/// A remark of the simulation that the real board would not make.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Remark {
-    /// The message.
-    pub message: Message,
-    /// The subject.
-    pub speaker: Speaker,
-    /// The code address, if known.
-    pub place: Option<CodeAddr>,
-}
-
-impl Remark {
-    /// The second place of a remark about two threads, or about a thread and a call-back.
-    #[must_use]
-    pub fn other_thread(&self) -> Option<OtherPlace> {
-        let own = match self.speaker {
-            Speaker::Thread(thread) => Some(thread),
-            Speaker::CallBack | Speaker::Command | Speaker::Board => None,
-        };
-        self.message.other().filter(|other| other.thread != own)
-    }
-}
-
-impl fmt::Display for Remark {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{}{}", self.speaker, self.message)
-    }
-}
+pub use remark::{OtherPlace, Remark, Severity, Speaker};
 
 /// Of what a remark is made once: of nothing, of the whole run, or of each value of an argument.
 macro_rules! once {
@@ -297,9 +208,9 @@ messages! {
         "takes the lock {lock} while it holds {held}, and {other} takes them in the opposite order: both can wait forever. Take locks in the same order everywhere";
     /// A thread has ended with a lock.
     LockKept { lock: String } = "lock-kept", Warning, [always],
-        "took the lock {lock} and has ended without MutexUnlock: the next thread that needs it waits forever";
+        "took the lock `{lock}` and has ended without MutexUnlock: the next thread that needs it waits forever";
     /// A call starts a thread that is active.
-    ThreadRestarted { thread: ThreadId } = "thread-restarted", Warning, [always],
+    ThreadRestarted { thread: ThreadId } = "thread-restarted", Warning, [per thread],
         "StartThread({thread}): thread {thread} is active, so it begins again, and what it had half done stays half done";
     /// A call names a bit that does not exist.
     NoSuchBit { function: Function, bit: i32 } = "no-such-bit", Warning, [always],
@@ -347,8 +258,17 @@ messages! {
     SlaveDisabled { axis: AxisId, master: AxisId } = "slave-disabled", Warning, [per axis],
         "axis {axis} has MasterAxis = {master}, but is disabled, so it does not follow: call EnableAxis({axis})";
     /// A move replaces an earlier move of the same axis that has not started yet.
-    MoveReplaced { function: Function, axis: AxisId, earlier: f64, target: f64 } = "move-replaced", Warning, [per axis],
-        "{function}: the move of axis {axis} to {earlier} is replaced by one to {target} before it starts: wait with `while (!CheckDone({axis}));` in between";
+    MoveReplaced { function: Function, axis: AxisId, earlier: f64, effect: String } = "move-replaced", Warning, [per axis],
+        "{function}: the move of axis {axis} to {earlier} is {effect} before it starts: wait with `while (!CheckDone({axis}));` in between";
+    /// A thread moves an axis by a distance right after another move, so the distances do not add up.
+    RelativeReplaced { function: Function, axis: AxisId, earlier: f64, way: f64, dest: f64, target: f64 } = "relative-replaced", Warning, [per axis],
+        "{function}: axis {axis} has only come to {dest} on its way to {earlier}, and {way} more from there is {target}: the distances do not add up. Wait with `while (!CheckDone({axis}));` in between";
+    /// A thread begins a jog of an axis and right after it another motion.
+    JogReplaced { function: Function, axis: AxisId, speed: f64, effect: &'static str } = "jog-replaced", Warning, [per axis],
+        "{function}: the jog of axis {axis} at {speed} units/s is {effect} before it starts: wait in between, for a switch, a place or a time";
+    /// A thread disables an axis after a delay that is too short for its move.
+    MoveEnded { function: Function, axis: AxisId, dest: f64, earlier: f64 } = "move-ended", Warning, [per axis],
+        "{function}: axis {axis} is at {dest:.0} on its way to {earlier}, and its motion ends here at once: wait with `while (!CheckDone({axis}));` first";
     /// A path starts while one of its axes is disabled.
     PathDisabled { } = "path-disabled", Warning, [once],
         "a path is started, but an axis of the coordinate system is disabled, so nothing moves: enable all axes named in DefineCoordSystem";
@@ -460,6 +380,12 @@ messages! {
     /// A loop with a sign that is right overshoots until its following error disables the axis.
     Overshoots { axis: AxisId, cause: &'static str } = "overshoots", Warning, [per axis],
         "axis {axis} overshoots until its following error disables it: {cause}";
+    /// The output of a closed loop changes between its ends, so that the motor does not follow.
+    Chatters { axis: AxisId, times: u32 } = "chatters", Warning, [per axis],
+        "axis {axis} does not follow: its output has changed from end to end {times} times since it was enabled: lower D, or P";
+    /// The position of a closed loop does not react, because its output has stayed too small.
+    WeakOutput { axis: AxisId, output: f64, most: f32, p: f32 } = "weak-output", Warning, [per axis],
+        "axis {axis} has not moved since it was enabled: its output has only come to {output:.1} of {most} (MaxOutput), which is too little to move its motor: raise P (now {p}) or FFVel";
     /// An axis does not move although its output drives it.
     NoResponse { axis: AxisId, output: f32 } = "no-response", Warning, [per axis],
         "axis {axis} has not moved since it was enabled, although its output is {output:.0}: check that OutputChan0 and InputChan0 name its amplifier and its encoder";
@@ -495,7 +421,7 @@ messages! {
         "ReadBit({bit}): a pulse of {width_ms:.1} ms at this input has come and gone in the {gap_ms:.0} ms since the read before, and nobody saw it: read more often, or make the pulse longer";
     /// A move begins while an earlier one, which the thread has given some time, is under way.
     MoveCut { function: Function, axis: AxisId, dest: f64, earlier: f64, target: f64, other: OtherPlace } = "move-cut", Warning, [per axis],
-        "calls {function} for axis {axis}, which is at {dest:.0} on its way to {earlier:.0} (by {other}): it goes to {target:.0} from here and never arrives there. Wait with `while (!CheckDone({axis}));` in place of a delay";
+        "calls {function} for axis {axis}, which is at {dest:.0} on its way to {earlier:.0} (by {other}): it goes to {target:.0} from here and never arrives at {earlier:.0}. Wait for it with `while (!CheckDone({axis}));`";
     /// A number that a program uses is the bits of a floating-point number in `persist.UserData`.
     FloatBits { function: Function, value: i32, index: usize, float: f32 } = "float-bits", Warning, [per index],
         "{function}: {value} is the bits of the float {float}, which is in persist.UserData[{index}]: read it as *(float *)&persist.UserData[{index}]";
@@ -511,6 +437,9 @@ messages! {
     /// The PC finds no text where a request says, but at the same number of bytes or of doubles.
     TextElsewhere { code: i32, offset: i32, unit: &'static str, words: i32 } = "text-elsewhere", Warning, [per code],
         "request {code}: no text is at word {offset} of the gather buffer, but there is one at {offset} {unit}: the offset counts words of 4 bytes, so store {words} in persist.UserData[101]";
+    /// A request names the address of a text, where the PC takes an offset in the gather buffer.
+    TextAddress { code: i32 } = "text-address", Warning, [per code],
+        "request {code}: persist.UserData[101] is the address of a text, but the PC reads texts in the gather buffer alone: copy it there, and store its offset in words";
     /// A request to the PC is replaced by another one of the same thread before the PC has seen it.
     RequestReplaced { code: i32, by: i32 } = "request-replaced", Warning, [once],
         "request {code} is replaced by {by} before the PC has answered it, and is lost: wait until persist.UserData[100] is no longer positive (noticed at this call)";
@@ -560,11 +489,14 @@ messages! {
     LongDelay { function: Function, seconds: f64 } = "long-delay", Hint, [once],
         "{function}({seconds}): the thread waits {seconds} seconds; write {function}(0.001 * ms) for milliseconds";
     /// A motion has ended, but the axis is somewhere else.
-    NotThere { axis: AxisId, position: f64, dest: f64 } = "not-there", Warning, [per axis],
-        "CheckDone({axis}) is 1, but axis {axis} is at {position:.0} and its Dest is {dest:.0}: CheckDone looks only at Dest, which the motor does not follow (check P, OutputMode and the wiring)";
+    NotThere { axis: AxisId, position: f64, dest: f64, advice: String } = "not-there", Warning, [per axis],
+        "CheckDone({axis}) is 1, but axis {axis} is at {position:.0} and its Dest is {dest:.0}: CheckDone looks only at Dest, which the motor does not follow ({advice})";
     /// A limit switch of an axis is at its other end.
     LimitAtOtherEnd { function: Function, axis: AxisId, end: &'static str, bit: Bit, place: String } = "limit-at-other-end", Warning, [per axis],
         "{function}: LimitSwitch{end}Bit of axis {axis} is {bit}, a switch that is active {place}, at the other end";
+    /// A thread stops a jog after it has watched the switch of an axis that rests.
+    WatchesOther { axis: AxisId, bit: Bit, other: AxisId } = "watches-other", Warning, [per axis],
+        "Jog({axis}, 0): the thread has watched bit {bit} on the way, but that is a switch of axis {other}, which rests: watch the switch of axis {axis}";
     /// A jog is stopped before the axis has moved.
     JogEnded { axis: AxisId, speed: f64, bit: Bit } = "jog-ended", Hint, [per axis],
         "Jog({axis}, 0): axis {axis} has not moved since Jog({axis}, {speed}): bit {bit} was already as the program waited for (is the switch inverted?)";
@@ -622,6 +554,9 @@ messages! {
     /// A motion call passes a number that is not finite.
     NotAPlace { function: Function, value: f64, effect: &'static str } = "not-a-place", Warning, [always],
         "{function}: {value} is not a valid position or speed: {effect}";
+    /// A move names a speed that is not positive.
+    NoSpeed { function: Function, axis: AxisId, speed: f32 } = "no-speed", Warning, [per axis],
+        "{function}: the speed {speed} of axis {axis} is not positive, so it does not move; the target decides the direction";
     /// A motion call names an axis without limits.
     NoLimits { function: Function, axis: AxisId } = "no-limits", Warning, [always],
         "{function}: Vel, Accel and Jerk of axis {axis} are not all positive";

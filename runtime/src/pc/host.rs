@@ -343,11 +343,15 @@ fn find_text(out: &mut Out, context: &TickContext<'_>, code: i32, offset: i32) {
     const LEAST: usize = 2;
     let memory = &*context.memory;
     let buffer = memory.get(GATHER_BUFFER);
-    let is_text = |unit: u32| {
-        let address = buffer.offset(offset.cast_unsigned().wrapping_mul(unit));
+    let is_text_at = |address: GuestAddr| {
         let bytes = memory.read_c_string(address, 4 * STRING_WORDS).unwrap_or_default();
         bytes.len() >= LEAST && bytes.iter().all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace())
     };
+    let is_text = |unit: u32| is_text_at(buffer.offset(offset.cast_unsigned().wrapping_mul(unit)));
+    // Addresses of the memory of programs are negative as numbers.
+    if offset < 0 && is_text_at(GuestAddr::new(offset.cast_unsigned())) {
+        return out.remark(context.now, Message::TextAddress { code });
+    }
     if offset <= 0 || is_text(4) {
         return;
     }

@@ -9,7 +9,7 @@ use vm::memory::GuestMemory;
 use super::coordinated::system::is_member;
 use super::hold;
 use super::plan::AxisPlan;
-use super::state::{Servo, Tick};
+use super::state::{AxisMemory, Servo, Tick};
 use super::stop::Tells;
 use super::switching::switch_off;
 use crate::io::Io;
@@ -90,8 +90,7 @@ pub(crate) fn check(
     }
     let plan = tick.servo.cache.plan(axis);
     if command.is_some_and(|command| follows_badly(&mut AxisView::of(memory, axis), plan, command)) {
-        let response = tick.servo.axes[axis.index()].response;
-        if let Some(message) = cause(memory, axis, response) {
+        if let Some(message) = cause(memory, axis, &tick.servo.axes[axis.index()]) {
             tick.remark_on_axis(memory, axis, message);
         }
         tell(tick, &format!("Following Error Disabled Axis:{axis}"));
@@ -101,9 +100,13 @@ pub(crate) fn check(
     memory.axis(axis, Chan::ENABLE) != 0
 }
 
-/// Returns the cause of an excessive following error, as far as the response of the position shows it: `response` is
-/// the sum of output times motion since the axis was enabled.
-fn cause(memory: &GuestMemory, axis: AxisId, response: f64) -> Option<Message> {
+/// Returns the cause of an excessive following error, as far as the servo has seen it since the axis was enabled.
+fn cause(memory: &GuestMemory, axis: AxisId, own: &AxisMemory) -> Option<Message> {
+    /// A part of the error that disables the axis.
+    const SWINGS: f64 = 0.3;
+    /// Changes that no motion needs.
+    const MANY_FLIPS: u32 = 20;
+    let AxisMemory { response, ahead, flips, .. } = *own;
     let error = memory.axis(axis, Chan::LAST_FOLLOWING_ERROR);
     let (output, velocity) = (memory.axis(axis, Chan::OUTPUT), memory.axis(axis, Chan::LAST_VEL));
     let most = memory.axis(axis, Chan::MAX_OUTPUT);
@@ -116,10 +119,21 @@ fn cause(memory: &GuestMemory, axis: AxisId, response: f64) -> Option<Message> {
         return Some(Message::RunsAway { axis });
     }
     if response == 0.0 {
-        return Some(Message::NoResponse { axis, output });
+        // Less than a count of the output moves nothing, and hardly any amplifier moves its motor at a few.
+        const WEAK: f32 = 0.02;
+        let p = memory.axis(axis, Chan::P);
+        let is_weak = output.abs() < WEAK * most || output.abs() < 1.0;
+        return Some(match is_weak {
+            true => Message::WeakOutput { axis, output: f64::from(output), most, p },
+            false => Message::NoResponse { axis, output },
+        });
     }
-    // A destination that moves on in the direction of the error leaves the axis behind.
-    if f64::from(velocity) * error > 0.0 {
+    if flips > MANY_FLIPS {
+        return Some(Message::Chatters { axis, times: flips });
+    }
+    // A destination that moves on in the direction of the error leaves the axis behind, unless that swings around it.
+    let swings = ahead > SWINGS * error.abs();
+    if f64::from(velocity) * error > 0.0 && !swings {
         let is_at_limit = output.abs() >= most;
         return Some(if is_at_limit { Message::OutputLimit { axis, most } } else { lags(memory, axis) });
     }

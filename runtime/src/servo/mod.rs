@@ -326,7 +326,16 @@ fn put_out(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, command:
         let moved = chan.get(Chan::POSITION) - chan.get(Chan::LAST_POSITION);
         own.response += f64::from(chan.get(Chan::OUTPUT)) * moved;
         own.moved = moved;
-        compensation::advance(own, &plan.gains, &mut chan, command)
+        let error = command - chan.get(Chan::POSITION);
+        if error * f64::from(own.velocity) < 0.0 && error.abs() > own.ahead {
+            own.ahead = error.abs();
+        }
+        let before = chan.get(Chan::OUTPUT);
+        let output = compensation::advance(own, &plan.gains, &mut chan, command);
+        if before * output < 0.0 && (output - before).abs() > chan.get(Chan::MAX_OUTPUT) {
+            own.flips = own.flips.saturating_add(1);
+        }
+        output
     };
     chan.set(Chan::PREV_DEST, chan.get(Chan::DEST));
     output::drive(tick, memory, axis, command, output);

@@ -27,6 +27,10 @@ pub(crate) struct AxisMemory {
     /// Sum of output times motion since the axis was enabled: above 0 if the output moves the position in its own
     /// direction.
     pub(super) response: f64,
+    /// The farthest that the position has been ahead of a destination that moves.
+    pub(super) ahead: f64,
+    /// Changes of the output from one half of its range to the other, in one tick each.
+    pub(super) flips: u32,
     /// Change of the position in this tick.
     pub(super) moved: f64,
     /// True if the servo has run the axis since it was enabled.

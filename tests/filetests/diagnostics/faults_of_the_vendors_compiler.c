@@ -1,4 +1,4 @@
-//@ args: check -Wno-constant-comparison -Wvendor
+//@ args: check -Wno-constant-comparison -Wno-parameter-copy -Wvendor
 //@ snapshot
 #include "KMotionDef.h"
 

@@ -9,7 +9,7 @@ main()
 {
     int n = -5;
     bits.low = 7;
-    printf("%d %d %d\n", n % bits.low, n < bits.low, n < (unsigned)bits.low);
+    printf("%d %d %d\n", n % bits.low, n < bits.low, n < (unsigned)bits.low); //~ negative-comparison
     printf("%d %d\n", (unsigned)bits.low - 8 < 0, bits.low - 8 < 0);  //~ constant-comparison
 }
 //@ cycles: 11365

@@ -9,7 +9,7 @@ double d = 0.1;
 
 main()
 {
-    printf("%d %d\n", f == 0.1, f == 0.1f);
+    printf("%d %d\n", f == 0.1, f == 0.1f); //~ float-equality
     printf("%.0f %.0f\n", big + 1.0f, big + 1.0);
     printf("%.16g %.17g\n", 1.1f, 1.1);
 }

@@ -12,7 +12,7 @@ typedef struct { int n; double x; } Pair;
 struct Bits { int a : 3; int b : 5; unsigned c : 24; };
 
 Pair add(Pair p, int n) { p.n += n; return p; }
-void change(Pair p) { p.n = 99; }
+void change(Pair p) { p.n = 99; } //~ parameter-copy
 
 main()
 {

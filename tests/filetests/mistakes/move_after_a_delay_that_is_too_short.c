@@ -1,4 +1,4 @@
-//@ says: thread 1 at move_after_a_delay_that_is_too_short.c:14:5 in `main` calls Move for axis 0, which is at 4000 on its way to 10000 (by thread 1 at move_after_a_delay_that_is_too_short.c:12:5 in `main`): it goes to 0 from here and never arrives there. Wait with `while (!CheckDone(0));` in place of a delay
+//@ says: thread 1 at move_after_a_delay_that_is_too_short.c:14:5 in `main` calls Move for axis 0, which is at 4000 on its way to 10000 (by thread 1 at move_after_a_delay_that_is_too_short.c:12:5 in `main`): it goes to 0 from here and never arrives at 10000. Wait for it with `while (!CheckDone(0));`
 #include "KMotionDef.h"
 
 main()

@@ -10,7 +10,7 @@ main()
     ch0->Jerk = 1e6;
     EnableAxisDest(0, 0);
     Move(0, 20000);
-    Delay_sec(0.2);
+    while (ch0->Dest < 3000) ;
     DisableAxis(0);
     printf("%d\n", CheckDone(0));
 }

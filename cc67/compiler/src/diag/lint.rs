@@ -81,7 +81,7 @@ macro_rules! for_each_lint {
             /// An integer constant has the suffix `f`.
             IntegerFloatSuffix = "integer-float-suffix", On;
             /// The result of a computation with integer constants does not fit in its type.
-            Overflow = "overflow", On;
+            Overflow = "overflow", On, pass overflow;
             /// A number begins with 0, which makes it octal.
             Octal = "octal", On;
             /// `^` between two numbers is exclusive or, not a power.
@@ -124,6 +124,8 @@ macro_rules! for_each_lint {
             IdleLoop = "idle-loop", On, pass idle_loop;
             /// A statement is indented as if it belonged to the condition above it.
             MisleadingIndentation = "misleading-indentation", On;
+            /// A condition without braces guards only the first statement of a macro.
+            MultistatementMacro = "multistatement-macro", On;
             /// A function that may wait is called in a call-back of the servo interrupt.
             CallBackWait = "call-back-wait", On, pass call_back_wait;
             /// A call-back of the servo interrupt takes more time than the servo leaves for it.
@@ -138,6 +140,8 @@ macro_rules! for_each_lint {
             Conversion = "conversion", Extra;
             /// A fraction is lost: in an integer that stores a constant, in `persist.UserData`, or in the argument of `abs`.
             LostFraction = "lost-fraction", On, pass lost_fraction;
+            /// A place of an axis is stored in a type that is too small for it.
+            NarrowType = "narrow-type", On, pass narrow_type;
             /// A division of integers loses its fraction before it is used as a floating-point number.
             IntegerDivision = "integer-division", On, pass integer_division;
             /// An element of `persist.UserData` is used as a pointer where its address is meant: the `&` is missing.
@@ -148,18 +152,26 @@ macro_rules! for_each_lint {
             TextComparison = "text-comparison", On, pass text_comparison;
             /// A function returns the address of a variable that ends with it.
             ReturnedLocal = "returned-local", On, pass returned_local;
+            /// A function changes only its own copies of its arguments.
+            ParameterCopy = "parameter-copy", On, pass parameter_copy;
             /// A text is stored in an array that is too small for it.
             TextOverflow = "text-overflow", On, pass text_overflow;
             /// One side of `&&` or `||` is a number other than 0 and 1.
             LogicalConstant = "logical-constant", On;
+            /// The answer of a message box is compared with a number that none of its buttons has.
+            BoxAnswer = "box-answer", On, pass box_answer;
             /// A loop that waits for several axes ends with the first one.
             WaitForAny = "wait-for-any", On, pass wait_for_any;
             /// A line among the settings of one axis sets another: it was copied from there.
             CopiedAxis = "copied-axis", On, pass copied_axis;
             /// The type of a value decides a comparison.
             ConstantComparison = "constant-comparison", On, pass constant_comparison;
+            /// A variable that can be negative is compared with an unsigned value.
+            NegativeComparison = "negative-comparison", On, pass negative_comparison;
             /// A loop never begins, or counts away from its end.
             LoopCondition = "loop-condition", On, pass loop_condition;
+            /// A statement comes after a jump or an endless loop, so it is never executed.
+            UnreachableCode = "unreachable-code", On, pass unreachable_code;
             /// A variable is changed twice in an expression, in no order.
             Unsequenced = "unsequenced", On, pass unsequenced;
             /// An angle is given in degrees where radians are needed.
@@ -172,8 +184,14 @@ macro_rules! for_each_lint {
             AdcCounts = "adc-counts", On, pass adc_counts;
             /// A recording is read as soon as it has begun.
             GatherEarly = "gather-early", On, pass gather_early;
+            /// An answer of the PC or a result of another thread is read before it can be there.
+            EarlyAnswer = "early-answer", On, pass early_answer;
             /// A `float` or an `int` holds the time since power-up.
             FloatTime = "float-time", On, pass float_time;
+            /// A `float` counts further than its digits reach.
+            FloatCounter = "float-counter", On, pass float_counter;
+            /// Rounded floating-point numbers are compared for equality.
+            FloatEquality = "float-equality", On, pass float_equality;
             /// An element of `persist.UserData` is stored as one type and read as another.
             UserDataType = "user-data-type", On, pass user_data_type;
             /// A loop waits for a variable that nothing in the program changes.

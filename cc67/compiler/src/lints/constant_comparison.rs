@@ -1,4 +1,5 @@
-//! Comparisons whose result the types decide, `unsigned >= 0`, `char == 200`, or the function, `ReadBit(3) == 5`.
+//! Comparisons whose result the types decide, `unsigned >= 0`, `char == 200`, or the function, `ReadBit(3) == 5`; pairs
+//! of which one is always true, `x != 1 || x != 2`, or false, `x < 1 && x > 2`.
 
 use kmotiondef::firmware::row_named;
 use kmotiondef::function::Polled;
@@ -7,13 +8,15 @@ use super::format::called_firmware;
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::CompareOp;
+use crate::source::ExpansionId;
 use crate::ty::{TypeId, Types};
-use crate::typed::{ExprId, ExprKind, Function};
+use crate::typed::{Expr, ExprId, ExprKind, Function, PlaceKind};
 
 /// Reports comparisons with a constant that no value of the other side's type decides differently.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         for expr in function.exprs.values() {
+            sink.report_if(pair(program, function, expr));
             let ExprKind::Compare(op, a, b) = expr.kind else { continue };
             let sides = match (constant(function, a), constant(function, b)) {
                 (None, Some(number)) => Some((op, a, number)),
@@ -34,6 +37,87 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
                     .help(help),
             );
         }
+    }
+}
+
+/// Two comparisons of the same variable that exclude or complete each other.
+fn pair(program: &AnalysedProgram<'_>, function: &Function, expr: &Expr) -> Option<Diagnostic> {
+    let (is_or, a, b) = match expr.kind {
+        ExprKind::Or(a, b) => (true, a, b),
+        ExprKind::And(a, b) => (false, a, b),
+        _ => return None,
+    };
+    let (one, other) = (compared(program, function, a)?, compared(program, function, b)?);
+    // An `or` is always true where the opposite of both cannot be.
+    let opposite = |op| if is_or { negated(op) } else { op };
+    let (low, high) = (opposite(one.op), opposite(other.op));
+    let is_impossible = one.of == other.of && excludes((low, one.number), (high, other.number));
+    is_impossible.then(|| {
+        let message = format!("this condition is always {is_or}");
+        let (used, meant) = if is_or { ("||", "&&") } else { ("&&", "||") };
+        Diagnostic::warning(Lint::ConstantComparison, expr.span, message)
+            .at(format!("`{}` is a single number", one.of))
+            .help(format!("write `{meant}` in place of `{used}`, or compare different things"))
+    })
+}
+
+/// A comparison of a variable with a number.
+struct Compared {
+    op: CompareOp,
+    /// The text of the variable.
+    of: String,
+    number: f64,
+}
+
+fn compared(program: &AnalysedProgram<'_>, function: &Function, expr: ExprId) -> Option<Compared> {
+    let ExprKind::Compare(op, a, b) = function.exprs[expr].kind else { return None };
+    let number = |expr: ExprId| match function.exprs[expr].kind {
+        ExprKind::Int(number) => Some(number as f64),
+        ExprKind::Float(number) => Some(number),
+        _ => None,
+    };
+    let (op, value, number) = match (number(a), number(b)) {
+        (None, Some(number)) => (op, a, number),
+        (Some(number), None) => (mirrored(op), b, number),
+        _ => return None,
+    };
+    let mut load = value;
+    while let ExprKind::Convert(inner) = function.exprs[load].kind {
+        load = inner;
+    }
+    // What a program waits for may change in between.
+    let ExprKind::Load(place) = function.exprs[load].kind else { return None };
+    let is_plain = !matches!(function.places[place].kind, PlaceKind::Bits(..));
+    let span = function.exprs[load].span;
+    let of = String::from_utf8_lossy(program.sources.text(span)).into_owned();
+    let is_named = span.expansion == ExpansionId::NONE && !of.is_empty() && !of.contains(['(', '+', '=']);
+    (is_plain && is_named).then_some(Compared { op, of, number })
+}
+
+const fn negated(op: CompareOp) -> CompareOp {
+    match op {
+        CompareOp::Equal => CompareOp::NotEqual,
+        CompareOp::NotEqual => CompareOp::Equal,
+        CompareOp::Less => CompareOp::GreaterEqual,
+        CompareOp::LessEqual => CompareOp::Greater,
+        CompareOp::Greater => CompareOp::LessEqual,
+        CompareOp::GreaterEqual => CompareOp::Less,
+    }
+}
+
+/// Returns whether no number passes both comparisons.
+fn excludes((op, number): (CompareOp, f64), (other, limit): (CompareOp, f64)) -> bool {
+    use CompareOp::{Equal, Greater, GreaterEqual, Less, LessEqual, NotEqual};
+    match (op, other) {
+        (Equal, Equal) => number != limit,
+        (Less | LessEqual, Greater) | (Less, GreaterEqual) => number <= limit,
+        (LessEqual, GreaterEqual) => number < limit,
+        (Greater | GreaterEqual, Less) | (Greater, LessEqual) => number >= limit,
+        (GreaterEqual, LessEqual) => number > limit,
+        (Equal, NotEqual | Less | LessEqual | Greater | GreaterEqual)
+        | (NotEqual, _)
+        | (Less | LessEqual, Equal | NotEqual | Less | LessEqual)
+        | (Greater | GreaterEqual, Equal | NotEqual | Greater | GreaterEqual) => false,
     }
 }
 

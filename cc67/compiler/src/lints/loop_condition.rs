@@ -1,9 +1,13 @@
 //! `for (i = 0; i == 7; i++)`, which never begins, `for (i = 0; i < 7; i--)`, which counts away from its end, and
-//! `for (x = 0; x != 1; x += 0.1)`, which steps over it; `while (CheckDone(0));`, which waits while the axis rests.
+//! `for (x = 0; x != 1; x += 0.1)`, which steps over it; `while (CheckDone(0));`, which waits while the axis rests;
+//! `while (ch0->Position != 1000);`, which a measured position hardly ever ends, and `while (persist.UserData[100] != 0);`,
+//! which an error of the PC does not end.
 
 use kmotiondef::firmware::Function as FirmwareFunction;
+use kmotiondef::structs::Chan;
 
-use super::program::AnalysedProgram;
+use super::program::{AnalysedProgram, CHANNELS, axis_of_pointer};
+use super::user_data_type;
 use super::wait_for_any::{called, is_check_done};
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::{BinaryOp, CompareOp};
@@ -21,6 +25,10 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
             StmtKind::Loop { condition, body, .. } => {
                 sink.report_if(
                     condition.and_then(|condition| waits_at_rest(program, function, condition, body)),
+                );
+                sink.report_if(condition.and_then(|condition| waits_for_exact(program, function, condition)));
+                sink.report_if(
+                    condition.and_then(|condition| waits_for_0(program, function, condition, body)),
                 );
                 loops(function, body, sink);
             }
@@ -68,6 +76,68 @@ fn waits_at_rest(
         Diagnostic::warning(Lint::LoopCondition, span, "this loop ends as soon as the axis moves")
             .at("1 when the axis has arrived, 0 while it moves")
             .help("to wait until it has arrived, write `!` before `CheckDone`")
+    })
+}
+
+/// A loop until a measured position is exactly a number.
+fn waits_for_exact(
+    program: &AnalysedProgram<'_>,
+    function: &Function,
+    condition: ExprId,
+) -> Option<Diagnostic> {
+    let ExprKind::Compare(CompareOp::NotEqual, a, b) = function.exprs[condition].kind else { return None };
+    let is_position = |expr: ExprId| axis_place(program, function, expr) == Some(Chan::POSITION.offset());
+    (is_position(a) || is_position(b)).then(|| {
+        let span = function.exprs[condition].span;
+        Diagnostic::warning(
+            Lint::LoopCondition,
+            span,
+            "this loop ends only if `Position` is exactly this number",
+        )
+        .at("a motor stops a little beside it")
+        .help("wait with `while (!CheckDone(n));`, or until the difference is small: `while (fast_fabs(a - b) > 2);`")
+    })
+}
+
+/// The offset of the field of an axis that an expression loads.
+pub(super) fn axis_place(program: &AnalysedProgram<'_>, function: &Function, expr: ExprId) -> Option<u32> {
+    let place = match function.exprs[expr].kind {
+        ExprKind::Load(place) => place,
+        ExprKind::Convert(inner) => return axis_place(program, function, inner),
+        _ => return None,
+    };
+    match function.places[place].kind {
+        PlaceKind::Pointer(pointer, offset) => {
+            let ExprKind::Load(pointer) = function.exprs[pointer].kind else { return None };
+            let PlaceKind::Symbol(symbol, 0) = function.places[pointer].kind else { return None };
+            axis_of_pointer(program.name(symbol)).map(|_| offset.cast_unsigned())
+        }
+        PlaceKind::Symbol(symbol, offset) if program.name(symbol) == CHANNELS => {
+            Some(offset.cast_unsigned() % Chan::STRUCTURE.size)
+        }
+        _ => None,
+    }
+}
+
+/// A loop until the PC has stored 0, which it does not where it refuses the request.
+fn waits_for_0(
+    program: &AnalysedProgram<'_>,
+    function: &Function,
+    condition: ExprId,
+    body: &[Stmt],
+) -> Option<Diagnostic> {
+    const CODE: i32 = 100;
+    let value = match function.exprs[condition].kind {
+        ExprKind::Compare(CompareOp::NotEqual, value, zero) if int(function, zero) == Some(0) => value,
+        _ => condition,
+    };
+    let ExprKind::Load(place) = function.exprs[value].kind else { return None };
+    let is_code = user_data_type::element(program, function, place) == Some(CODE);
+    (is_code && body.iter().all(|stmt| only_waits(program, function, stmt))).then(|| {
+        let span = function.exprs[condition].span;
+        Diagnostic::warning(Lint::LoopCondition, span, "this loop never ends if the PC refuses the request")
+            .at("then the PC stores a negative number")
+            .help("write `while (persist.UserData[100] > 0)`, and look at the number after the loop")
     })
 }
 

@@ -29,7 +29,7 @@ pub(crate) fn finding(sources: &SourceMap, guard: &Statement, next: &Statement) 
 }
 
 /// The last body without braces of a statement with a condition.
-fn unbraced_body(statement: &Statement) -> Option<&Statement> {
+pub(super) fn unbraced_body(statement: &Statement) -> Option<&Statement> {
     let body = match &statement.kind {
         StatementKind::If { otherwise: Some(otherwise), .. } => otherwise,
         StatementKind::If { then: body, .. }

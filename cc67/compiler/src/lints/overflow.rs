@@ -1,8 +1,38 @@
-//! `50000 * 50000`: a computation with `int` constants that leaves the range of `int`.
+//! `50000 * 50000`: a computation with `int` constants that leaves the range of `int`, also where a variable holds one.
 
-use crate::diag::{Diagnostic, Lint};
+use super::program::AnalysedProgram;
+use super::value_range::single_value;
+use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::BinaryOp;
 use crate::source::Span;
+use crate::ty::Types;
+use crate::typed::{ExprId, ExprKind, Function, PlaceKind};
+
+/// Reports products with variables that have a single value, a constant.
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
+    for function in program.functions() {
+        for expr in function.exprs.values() {
+            let ExprKind::Binary(BinaryOp::Multiply, a, b) = expr.kind else { continue };
+            if expr.ty == Types::INT
+                && let (Some(a), Some(b)) = (value(function, a), value(function, b))
+            {
+                sink.report_if(finding(BinaryOp::Multiply, a, b, expr.span));
+            }
+        }
+    }
+}
+
+/// A constant, or that of a variable.
+fn value(function: &Function, expr: ExprId) -> Option<i64> {
+    match function.exprs[expr].kind {
+        ExprKind::Int(number) => Some(number),
+        ExprKind::Load(place) => match function.places[place].kind {
+            PlaceKind::Local(local, 0) => single_value(function, local),
+            _ => None,
+        },
+        _ => None,
+    }
+}
 
 /// The message for a computation of two signed constants of 32 bits.
 pub(crate) fn finding(op: BinaryOp, a: i64, b: i64, span: Span) -> Option<Diagnostic> {

@@ -1,4 +1,4 @@
-//! Operators that take less than it seems: `a & b == c`, `a < b < c`, `!a == 3`.
+//! Operators that take less than it seems: `a & b == c`, `a < b < c`, `!a == 3`, `a + b + c / 3`.
 
 use crate::ast::{Expression, ExpressionKind, UnaryOperator};
 use crate::diag::{Diagnostic, Lint};
@@ -15,8 +15,74 @@ pub(crate) fn finding(condition: &Expression) -> Option<Diagnostic> {
     }
 }
 
+/// `a + b + c / 3`: a sum of terms of one kind, of which only the last is divided by their number.
+pub(crate) fn mean(sum: &Expression) -> Option<Diagnostic> {
+    const LEAST: usize = 3;
+    let (mut rest, last) = plain(sum, BinaryOperator::Add)?;
+    let (last, number) = plain(last, BinaryOperator::Divide)?;
+    let mut terms = vec![last];
+    while let Some((before, term)) = plain(rest, BinaryOperator::Add) {
+        terms.push(term);
+        rest = before;
+    }
+    terms.push(rest);
+    let count = match &number.kind {
+        ExpressionKind::Integer(literal) => literal.value as f64,
+        ExpressionKind::Floating(literal) => literal.value,
+        _ => return None,
+    };
+    let is_mean = terms.len() >= LEAST && terms.len() as f64 == count;
+    (is_mean && terms.iter().all(|term| is_like(term, last))).then(|| {
+        Diagnostic::warning(
+            Lint::Precedence,
+            sum.span,
+            format!("only the last of these {count} terms is divided by {count}"),
+        )
+        .label(last.span.to(number.span), "computed before the sum")
+        .help(format!("for a mean, write the sum in parentheses: `( … ) / {count}`"))
+    })
+}
+
+/// The sides of an operator that no parentheses are around.
+fn plain(expression: &Expression, wanted: BinaryOperator) -> Option<(&Expression, &Expression)> {
+    match &expression.kind {
+        ExpressionKind::Binary(operator, left, right) if *operator == wanted => {
+            (expression.span.lo == left.span.lo).then_some((left, right))
+        }
+        _ => None,
+    }
+}
+
+/// Reports whether two terms are values of one kind: variables, elements of one array, results of one function, or the
+/// same member of two structures.
+fn is_like(term: &Expression, other: &Expression) -> bool {
+    match (&term.kind, &other.kind) {
+        (ExpressionKind::Identifier(_), ExpressionKind::Identifier(_)) => true,
+        (ExpressionKind::Index(a, _), ExpressionKind::Index(b, _))
+        | (ExpressionKind::Call(a, _), ExpressionKind::Call(b, _)) => is_same(a, b),
+        (ExpressionKind::Member { member: a, .. }, ExpressionKind::Member { member: b, .. }) => a == b,
+        _ => false,
+    }
+}
+
+/// Reports whether two expressions are the same name, or members of that name.
+fn is_same(a: &Expression, b: &Expression) -> bool {
+    match (&a.kind, &b.kind) {
+        (ExpressionKind::Identifier(a), ExpressionKind::Identifier(b)) => a == b,
+        (ExpressionKind::Member { member: a, .. }, ExpressionKind::Member { member: b, .. }) => a == b,
+        _ => false,
+    }
+}
+
 /// `a & b == c`
 fn mask(operator: BinaryOperator, left: &Expression, right: &Expression) -> Option<Diagnostic> {
+    if operator == BinaryOperator::And && is_negated(left) && is_large(right) {
+        return Some(
+            Diagnostic::warning(Lint::Precedence, left.span, "`!` is computed before `&`")
+                .at("this is 0 or 1, so the mask always gives 0")
+                .help("write `!(a & b)`"),
+        );
+    }
     let (found, compare) = match (comparison(left), comparison(right)) {
         (None, Some(compare)) if !is_truth(left) => (right, compare),
         (Some(compare), None) if !is_truth(right) => (left, compare),

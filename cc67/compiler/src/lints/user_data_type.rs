@@ -214,7 +214,7 @@ fn integer_load(program: &AnalysedProgram<'_>, function: &Function, value: ExprI
 }
 
 /// The element of `persist.UserData` at which a place begins.
-fn element(program: &AnalysedProgram<'_>, function: &Function, place: PlaceId) -> Option<i32> {
+pub(super) fn element(program: &AnalysedProgram<'_>, function: &Function, place: PlaceId) -> Option<i32> {
     let PlaceKind::Symbol(symbol, offset) = function.places[place].kind else { return None };
     let (first, end) = user_data_index::range();
     let is_inside = (first..end).contains(&offset) && (offset - first) % ELEMENT == 0;

@@ -156,7 +156,7 @@ fn plain(function: &Function, mut expr: ExprId) -> &ExprKind {
 }
 
 /// The constant that is the only value ever stored in a variable.
-fn single_value(function: &Function, local: LocalId) -> Option<i64> {
+pub(super) fn single_value(function: &Function, local: LocalId) -> Option<i64> {
     if function.locals[local].in_memory || function.parameters.contains(&local) {
         return None;
     }

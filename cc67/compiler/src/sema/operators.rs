@@ -6,7 +6,7 @@ use super::operands::Operand;
 use crate::ast::{Expression, ExpressionKind};
 use crate::diag::{Diagnostic, Lint};
 use crate::lints::{
-    assignment_condition, logical_constant, macro_parentheses, overflow, power, sign_compare,
+    assignment_condition, logical_constant, macro_parentheses, overflow, power, precedence, sign_compare,
 };
 use crate::operators::{BinaryOp, BinaryOperator, OperatorMeaning};
 use crate::source::Span;
@@ -16,13 +16,16 @@ use crate::typed::{ExprId, ExprKind};
 impl Sema<'_> {
     /// A tree of binary operators. A long sum leans to the left; its spine is walked without recursion.
     pub(super) fn binary_expression(&mut self, expression: &Expression) -> Option<ExprId> {
-        let mut spine = Vec::new();
+        let mut spine: Vec<(BinaryOperator, &Expression, Span)> = Vec::new();
         let mut leftmost = expression;
         while let ExpressionKind::Binary(operator, left, right) = &leftmost.kind {
             if matches!(operator.meaning(), OperatorMeaning::Bitwise(BinaryOp::Xor)) {
                 self.report_finding(power::finding(left, right, leftmost.span));
             }
             self.report_finding(macro_parentheses::finding(self.sources, *operator, left, right));
+            if !matches!(spine.last(), Some((BinaryOperator::Add | BinaryOperator::Subtract, ..))) {
+                self.report_finding(precedence::mean(leftmost));
+            }
             spine.push((*operator, &**right, leftmost.span));
             leftmost = left;
         }

@@ -9,7 +9,7 @@ use crate::ast::{Expression, Statement, StatementKind};
 use crate::diag::Diagnostic;
 use crate::lints::{
     assignment_condition, dangling_else, duplicated_condition, empty_body, misleading_indentation,
-    precedence, unused_value,
+    multistatement_macro, precedence, unused_value,
 };
 use crate::names::Name;
 use crate::source::Span;
@@ -23,6 +23,7 @@ impl Sema<'_> {
             self.statement(statement, out);
             if let Some(next) = statements.get(index + 1) {
                 self.report_finding(misleading_indentation::finding(self.sources, statement, next));
+                self.report_finding(multistatement_macro::finding(self.sources, statement, next));
                 self.report_finding(empty_body::loop_finding(self.sources, statement, next));
             }
         }

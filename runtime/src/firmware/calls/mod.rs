@@ -2,6 +2,7 @@
 
 mod globals;
 mod heap;
+mod locks;
 mod motions;
 mod notices;
 mod reading;
@@ -16,8 +17,9 @@ use crate::io::kanalog::Group;
 
 pub(crate) use globals::Globals;
 pub(crate) use heap::Heap;
+pub(crate) use locks::{HeldLock, Locks};
 pub(crate) use motions::{EndedWait, Jogged, Motions, SmallMove, WrongWait, WrongZero};
-pub(crate) use notices::{Called, Named, Notices};
+pub(crate) use notices::{Called, Commanded, Named, Notices};
 pub(crate) use reading::Reading;
 pub(crate) use serial::SerialService;
 pub(crate) use waits::{Repeated, Wait, Waits};
@@ -78,6 +80,10 @@ pub(crate) struct Calls {
     pub(crate) notices: Notices,
     /// The threads that move each axis.
     pub(crate) motions: Motions,
+    /// The threads that programs have started, one bit each.
+    pub(crate) started: u8,
+    /// The locks that threads hold.
+    pub(crate) locks: Locks,
 }
 
 impl Default for Calls {
@@ -96,6 +102,8 @@ impl Default for Calls {
             waits: Waits::default(),
             notices: Notices::default(),
             motions: Motions::default(),
+            started: 0,
+            locks: Locks::default(),
         }
     }
 }

@@ -6,6 +6,7 @@
 use std::sync::Arc;
 
 use kmotiondef::firmware::Function;
+use kmotiondef::variables::cell_name;
 use kmotiondef::{Axes, AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId};
 use vm::firmware::Caller;
 
@@ -38,15 +39,33 @@ struct Latch {
     at: Option<CodeAddr>,
 }
 
-/// The last move of an axis.
+/// A motion that a program commands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Commanded {
+    /// A move to a place.
+    Move(f64),
+    /// A move by a distance, to a place.
+    MoveRel(f64, f64),
+    /// A jog at a speed.
+    Jog(f64),
+}
+
+/// The last motion of an axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Called {
     pub(crate) thread: ThreadId,
     pub(crate) at: Option<CodeAddr>,
-    pub(crate) target: f64,
+    pub(crate) motion: Commanded,
+    /// Dest at the call, and its time.
+    pub(crate) dest: f64,
+    pub(crate) called: Cycles,
     /// When the thread had last waited or looked at anything, and how often it had.
     pub(crate) looked: Cycles,
     pub(crate) looks: u32,
+    /// How often it had looked at motions, and at anything else but the time; true once it has looked at this one.
+    pub(crate) motion_looks: u32,
+    pub(crate) other_looks: u32,
+    pub(crate) is_asked: bool,
 }
 
 /// The observations in progress.
@@ -114,14 +133,34 @@ impl Notices {
         }
     }
 
-    /// A move of an axis is called; the one before.
-    pub(crate) fn moves(&mut self, axis: AxisId, called: Called) -> Option<Called> {
-        self.moves[axis.index()].replace(called)
+    /// A motion of an axis is called, or ended for `None`; the one before.
+    pub(crate) fn moves(&mut self, axis: AxisId, called: Option<Called>) -> Option<Called> {
+        std::mem::replace(&mut self.moves[axis.index()], called)
+    }
+
+    /// A thread asks about the motion of an axis.
+    pub(crate) fn asks(&mut self, thread: ThreadId, axis: AxisId) {
+        if let Some(called) = &mut self.moves[axis.index()] {
+            called.is_asked |= called.thread == thread;
+        }
     }
 
     /// A program with these named objects is loaded.
     pub(crate) fn load(&mut self, thread: ThreadId, objects: Arc<[Named]>) {
         self.objects[thread.index()] = objects;
+    }
+
+    /// The name in programs for the memory at an address, their own data included.
+    pub(crate) fn name_of(&self, address: GuestAddr, size: u32) -> String {
+        let mut objects = self.objects.iter().flat_map(|objects| objects.iter());
+        let own = objects.find(|object| address.get().wrapping_sub(object.start) < object.size);
+        own.map_or_else(
+            || cell_name(address, size),
+            |object| match address.get() - object.start {
+                0 => object.name.clone(),
+                offset => format!("{} + {offset}", object.name),
+            },
+        )
     }
 
     /// The object that some bytes begin in and go beyond.

@@ -40,6 +40,12 @@ pub(crate) struct Wait {
     pub(crate) looked: Cycles,
     /// A measure of how often it has looked at anything; a look at the time counts least.
     pub(crate) looks: u32,
+    /// True if it has read a bit since it last did anything else; and if it had before that.
+    reads: bool,
+    pub(crate) has_read: bool,
+    /// The number of times that it has looked at motions, and at anything else but the time.
+    pub(crate) motion_looks: u32,
+    pub(crate) other_looks: u32,
     /// True if it has read a bit again since it last did anything else; and if it had before that.
     repeats: bool,
     pub(crate) has_repeated: bool,
@@ -64,9 +70,17 @@ impl Waits {
         wait.looked = caller.now();
         wait.looks = wait.looks.wrapping_add(if polls == Polled::Time { 1 } else { MANY_LOOKS });
         let call = Repeated { polls, argument: caller.arguments.get(0), at: caller.at, since: caller.now() };
+        match polls {
+            Polled::Time => {}
+            Polled::Motion => wait.motion_looks = wait.motion_looks.wrapping_add(1),
+            Polled::Bit | Polled::Path | Polled::Recording | Polled::Lock => {
+                wait.other_looks = wait.other_looks.wrapping_add(1);
+            }
+        }
         let is_known = wait.calls.iter().any(|known| known.is_as(&call));
         if polls == Polled::Bit {
             wait.last_bit = Bit::new(call.argument);
+            wait.reads = true;
             wait.repeats |= is_known;
         }
         if wait.calls.len() < MOST && !is_known {
@@ -79,6 +93,7 @@ impl Waits {
         let wait = &mut self.threads[thread.index()];
         wait.calls.clear();
         wait.has_repeated = std::mem::take(&mut wait.repeats);
+        wait.has_read = std::mem::take(&mut wait.reads);
         wait.since = now;
     }
 

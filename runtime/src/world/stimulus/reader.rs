@@ -28,7 +28,8 @@ impl StatementReader<'_> {
             Some(TokenKind::Sign(sign)) => format!("`{sign}`"),
             Some(TokenKind::Semicolon) => "`;`".to_owned(),
         };
-        Err((self.column(), format!("expected {what}, found {found}")))
+        let hint = self.peek().map_or("", hint);
+        Err((self.column(), format!("expected {what}, found {found}{hint}")))
     }
 
     pub(crate) fn peek(&self) -> Option<&str> {
@@ -206,6 +207,18 @@ impl StatementReader<'_> {
             }
             BitDirection::Programmable | BitDirection::Input | BitDirection::Memory => Ok(bit),
         }
+    }
+}
+
+/// The remedy where a word is out of place.
+fn hint(word: &str) -> &'static str {
+    match word {
+        "at" | "when" | "every" => ": separate statements with `;`, or write each on its own line",
+        "after" | "wait" | "sleep" | "delay" => {
+            ": a statement begins with its time, as in `at 1s set bit 136`"
+        }
+        _ if word.starts_with('[') => ": this is a line of a machine file, which `--machine` reads",
+        _ => "",
     }
 }
 

@@ -212,6 +212,7 @@ mod tests {
             ("adc 3 = 2.5V", "At(Cycles(0)) Adc(3, Constant(512.0))"),
             ("axis 0 push 100", "At(Cycles(0)) Push(AxisId(0), 100.0)"),
             ("encoder 3 moves -40 in 0.5s", "At(Cycles(0)) Turn(AxisId(3), -40.0, Cycles(100000000))"),
+            ("encoder 3 moves -40 in 500 ms", "At(Cycles(0)) Turn(AxisId(3), -40.0, Cycles(100000000))"),
             ("at 1 start thread 2", "At(Cycles(200000000)) Start(ThreadId(2))"),
             ("run thread 3 \"jog.c\"", "At(Cycles(0)) Run(ThreadId(3), \"jog.c\")"),
             ("answer \"msgbox=no\"", "At(Cycles(0)) Answer(\"msgbox=no\")"),
@@ -312,6 +313,10 @@ mod tests {
             ("at -1s set bit 3", "x.stim:1:4: expected a time such as 1.5s, 20ms or 90us, found `-1s`"),
             ("at 1s set bit", "x.stim:1:14: expected a bit from 0 to 2047, found the end of the statement"),
             ("set bit 5 now", "x.stim:1:11: expected 0 or 1, found `now`"),
+            (
+                "set bit 5 at 2s",
+                "x.stim:1:11: expected 0 or 1, found `at`: separate statements with `;`, or write each on its own line",
+            ),
             ("set adc 3 = 950", "x.stim:1:1: write `adc N = VALUE` without `set`"),
             ("set bit 5 =", "x.stim:1:12: expected 0 or 1, found the end of the statement"),
             ("bit 5 = 2", "x.stim:1:9: expected 0 or 1, found `2`"),

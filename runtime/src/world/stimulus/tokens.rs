@@ -57,7 +57,27 @@ pub(super) fn tokens(line: &str) -> Result<Vec<Token>, Mistake> {
         }
         tokens.push(Token { kind, column });
     }
-    Ok(tokens)
+    Ok(with_units(tokens))
+}
+
+/// The units of times.
+const UNITS: [&str; 4] = ["s", "ms", "us", "µs"];
+
+/// Joins numbers and the units that a blank separates from them, as in `0.5 s`.
+fn with_units(tokens: Vec<Token>) -> Vec<Token> {
+    let mut joined: Vec<Token> = Vec::with_capacity(tokens.len());
+    for token in tokens {
+        if let TokenKind::Word(unit) = &token.kind
+            && UNITS.contains(&unit.as_str())
+            && let Some(Token { kind: TokenKind::Word(number), .. }) = joined.last_mut()
+            && number.parse::<f64>().is_ok()
+        {
+            number.push_str(unit);
+            continue;
+        }
+        joined.push(token);
+    }
+    joined
 }
 
 /// The first word of statements and conditions about an element of `persist.UserData`.

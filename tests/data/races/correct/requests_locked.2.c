@@ -5,7 +5,7 @@ void ask(int code, int value)
     MutexLock(&persist.UserData[9]);
     persist.UserData[101] = value;
     persist.UserData[100] = code;
-    while (persist.UserData[100])
+    while (persist.UserData[100] > 0)
         ;
     MutexUnlock(&persist.UserData[9]);
 }

@@ -9,7 +9,8 @@ _Static_assert(sizeof 4294967295 == 4 && sizeof 4294967296 == 8, "above 32 bits:
 main()
 {
     int minus = -1;
-    printf("%d %d %d %d %d %d\n", minus < 2147483648, minus < 0x80000000, -2147483648 > 0,
+    printf("%d %d %d %d %d %d\n", minus < 2147483648, minus < 0x80000000, -2147483648 > 0, //~ negative-comparison
+    //~^ negative-comparison
            sizeof 0xffffffff, sizeof 0x100000000, 4294967296 > 0);
 }
 //@ cycles: 12828

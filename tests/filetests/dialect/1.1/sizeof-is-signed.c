@@ -9,6 +9,6 @@ main()
 {
     int i = -1;
     size_t unsigned_size = 4;
-    printf("%d %d\n", i < sizeof a, i < unsigned_size ? 1 : i);
+    printf("%d %d\n", i < sizeof a, i < unsigned_size ? 1 : i); //~ negative-comparison
 }
 //@ cycles: 4711

@@ -11,7 +11,7 @@ enum { SAME = 0.1f == 0.1, LESS = 0.1f < 0.1 };
 main()
 {
     double in_float = one / three;
-    printf("%d %d %d %d\n", f == 0.1, f == 0.1f, 16777216.0f + 1.0f == 16777216.0f, SAME);
+    printf("%d %d %d %d\n", f == 0.1, f == 0.1f, 16777216.0f + 1.0f == 16777216.0f, SAME); //~ float-equality
     printf("%.0f %.0f\n", big + one, big + 1.0);
     printf("%d %d %d\n", folded_float == big + one, folded_double == big + 1.0, third == in_float);
 }

@@ -11,6 +11,6 @@ main()
 {
     int n = -1;
     unsigned one = 1;
-    printf("%d %d %d %d %d\n", a + b, s, (a + b == constant) & (constant == FOLDED), n < one | MIXED, bits.u);
+    printf("%d %d %d %d %d\n", a + b, s, (a + b == constant) & (constant == FOLDED), n < one | MIXED, bits.u); //~ negative-comparison
 }
 //@ cycles: 12048

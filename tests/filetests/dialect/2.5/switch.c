@@ -25,7 +25,7 @@ main()
     case 5:  //~ fall-through
     }
     goto end;
-    printf("wrong\n");
+    printf("wrong\n"); //~ unreachable-code
 end:
     printf("end\n");
     goto last;

@@ -10,7 +10,7 @@ main()
     Number Number = 5;
     void *where = &&there;
     goto *where;
-    Number = 6;
+    Number = 6; //~ unreachable-code
 there:
     printf("%d %f %d %d grün\n", Number, d, sizeof(struct Nothing), ({ int n = 7; n; }));
 }

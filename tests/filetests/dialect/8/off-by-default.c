@@ -3,7 +3,7 @@
 
 int unused;
 
-helper(int a, int b) { a = b; }
+helper(int a, int b) { a = b; } //~ parameter-copy
 
 void main()
 {

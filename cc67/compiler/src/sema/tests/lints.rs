@@ -112,7 +112,7 @@ fn loops_without_an_end() {
         ],
     );
     accept(
-        "volatile int x; void w(void); int f(int i) { for (;;) w(); for (;;) { if (i) break; } for (;;) x = 1; while (x) ; }",
+        "volatile int x; void w(void); void f(void) { for (;;) w(); } void g(int i) { for (;;) { if (i) break; } while (x) ; for (;;) x = 1; }",
     );
 }
 

@@ -108,7 +108,9 @@ fn expression(source: &str, expect: &str) {
          void test(int i, unsigned u, char c, float f, double d, int *p, char *s, long long l, double *q)\n\
          {{ {source}; }}"
     );
-    let (tree, said) = run(&program);
+    let (tree, mut said) = run(&program);
+    // An expression that stores in a parameter is all that the function does.
+    said.retain(|message| !message.contains("parameter-copy"));
     assert_eq!(said, [""; 0], "said about:\n{source}");
     let body =
         tree.split_once("test(").and_then(|(_, rest)| rest.split_once("{\n")).map_or("", |(_, body)| body);

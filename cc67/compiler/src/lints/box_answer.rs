@@ -1,0 +1,183 @@
+//! `if (MsgBox(text, MB_YESNO) == 1)`: the button *Yes* is `IDYES`, 6, and *No* is not 0.
+
+use super::program::AnalysedProgram;
+use super::user_data_type::element;
+use crate::diag::{Diagnostic, Lint, Sink};
+use crate::operators::CompareOp;
+use crate::source::Span;
+use crate::typed::{
+    Call, Callee, ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind, StmtKind, SymbolId, UnaryOp,
+};
+
+/// The elements of `persist.UserData` with the flags of a message box and with its answer.
+const FLAGS: i32 = 102;
+const ANSWER: i32 = 103;
+
+/// The buttons of a message box.
+#[derive(Clone, Copy)]
+struct Buttons {
+    /// The flag that asks for them, and its value.
+    flag: &'static str,
+    value: i64,
+    /// Their numbers.
+    answers: &'static [i64],
+    /// The first two of them by name.
+    names: &'static str,
+}
+
+/// The low bits of the flags, which choose the buttons.
+const CHOICE: i64 = 0xf;
+
+const BUTTONS: [Buttons; 6] = [
+    Buttons { flag: "MB_OK", value: 0, answers: &[1], names: "IDOK (1)" },
+    Buttons { flag: "MB_OKCANCEL", value: 1, answers: &[1, 2], names: "IDOK (1) or IDCANCEL (2)" },
+    Buttons {
+        flag: "MB_ABORTRETRYIGNORE",
+        value: 2,
+        answers: &[3, 4, 5],
+        names: "IDABORT (3), IDRETRY (4) or IDIGNORE (5)",
+    },
+    Buttons {
+        flag: "MB_YESNOCANCEL",
+        value: 3,
+        answers: &[2, 6, 7],
+        names: "IDYES (6), IDNO (7) or IDCANCEL (2)",
+    },
+    Buttons { flag: "MB_YESNO", value: 4, answers: &[6, 7], names: "IDYES (6) or IDNO (7)" },
+    Buttons { flag: "MB_RETRYCANCEL", value: 5, answers: &[2, 4], names: "IDRETRY (4) or IDCANCEL (2)" },
+];
+
+/// Reports answers that are compared with a number of no button, and those that are tested like a truth.
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
+    for function in program.functions() {
+        for expr in function.exprs.values() {
+            let tested = match expr.kind {
+                ExprKind::Compare(op @ (CompareOp::Equal | CompareOp::NotEqual), a, b) => {
+                    let ExprKind::Int(number) = function.exprs[b].kind else { continue };
+                    answer(program, function, a)
+                        .filter(|buttons| !buttons.answers.contains(&number))
+                        .map(|buttons| compared(buttons, expr.span, op == CompareOp::NotEqual, number))
+                }
+                ExprKind::Unary(UnaryOp::Not, value) => truth(program, function, value, false),
+                ExprKind::And(a, b) | ExprKind::Or(a, b) => {
+                    sink.report_if(truth(program, function, a, true));
+                    truth(program, function, b, true)
+                }
+                ExprKind::Conditional(value, ..) => truth(program, function, value, true),
+                _ => None,
+            };
+            sink.report_if(tested);
+        }
+        function.each_stmt(&mut |stmt| match &stmt.kind {
+            StmtKind::If { condition, .. } => sink.report_if(truth(program, function, *condition, true)),
+            StmtKind::Loop { condition: Some(condition), .. } => {
+                sink.report_if(truth(program, function, *condition, true));
+            }
+            _ => {}
+        });
+    }
+}
+
+fn compared(buttons: Buttons, span: Span, result: bool, number: i64) -> Diagnostic {
+    let Buttons { flag, names, .. } = buttons;
+    Diagnostic::warning(
+        Lint::BoxAnswer,
+        span,
+        format!("a box with the buttons of `{flag}` never answers {number}"),
+    )
+    .at(format!("always {result}"))
+    .help(format!("it answers {names}"))
+}
+
+/// An answer in place of a condition: no button has the number 0.
+fn truth(
+    program: &AnalysedProgram<'_>,
+    function: &Function,
+    value: ExprId,
+    result: bool,
+) -> Option<Diagnostic> {
+    let buttons = answer(program, function, value).filter(|buttons| buttons.answers.len() > 1)?;
+    let Buttons { flag, names, .. } = buttons;
+    let message = format!("a box with the buttons of `{flag}` never answers 0");
+    Some(
+        Diagnostic::warning(Lint::BoxAnswer, function.exprs[value].span, message)
+            .at(format!("so this is always {result}"))
+            .help(format!("compare with {names}")),
+    )
+}
+
+/// The buttons of the box whose answer a value is.
+fn answer(program: &AnalysedProgram<'_>, function: &Function, value: ExprId) -> Option<Buttons> {
+    match &function.exprs[value].kind {
+        ExprKind::Call(call) => asked(program, function, call),
+        ExprKind::Load(place) => match function.places[*place].kind {
+            PlaceKind::Local(local, 0) => stored(program, function, local),
+            _ if element(program, function, *place) == Some(ANSWER) => posted(program, function),
+            _ => None,
+        },
+        ExprKind::Convert(inner) => answer(program, function, *inner),
+        _ => None,
+    }
+}
+
+/// The buttons of a call, by its flags.
+fn asked(program: &AnalysedProgram<'_>, function: &Function, call: &Call) -> Option<Buttons> {
+    let Callee::Symbol(callee) = call.callee else { return None };
+    let name = program.name(callee).to_lowercase();
+    let is_box = name.contains("msgbox") || name.contains("messagebox");
+    let flags = call.arguments.iter().rev().find_map(|argument| match function.exprs[*argument].kind {
+        ExprKind::Int(number) => Some(number),
+        _ => None,
+    })?;
+    (is_box && hands_on(program, callee)).then(|| buttons(flags)).flatten()
+}
+
+/// Returns whether a function returns an answer as it is; one of the program may make another value of it.
+fn hands_on(program: &AnalysedProgram<'_>, callee: SymbolId) -> bool {
+    let Some(function) = program.functions().find(|function| function.symbol == callee) else { return true };
+    let mut is_answer = true;
+    function.each_stmt(&mut |stmt| {
+        if let StmtKind::Return(Some(value)) = stmt.kind {
+            is_answer &= matches!(function.exprs[value].kind, ExprKind::Load(_) | ExprKind::Call(_));
+        }
+    });
+    is_answer
+}
+
+/// The buttons of the only box whose answer is stored in a variable.
+fn stored(program: &AnalysedProgram<'_>, function: &Function, wanted: LocalId) -> Option<Buttons> {
+    let is_it =
+        |place: PlaceId| matches!(function.places[place].kind, PlaceKind::Local(local, _) if local == wanted);
+    let mut found = None;
+    for expr in function.exprs.values() {
+        match &expr.kind {
+            ExprKind::Update(update) if is_it(update.place) => return None,
+            ExprKind::Address(place) if is_it(*place) => return None,
+            ExprKind::Assign(place, value) if is_it(*place) => {
+                let ExprKind::Call(call) = &function.exprs[*value].kind else { return None };
+                let asked = asked(program, function, call)?;
+                if found.is_some_and(|found: Buttons| found.value != asked.value) {
+                    return None;
+                }
+                found = Some(asked);
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+/// The buttons of the only box that a function asks for in the mailbox.
+fn posted(program: &AnalysedProgram<'_>, function: &Function) -> Option<Buttons> {
+    let mut flags = function.exprs.values().filter_map(|expr| match expr.kind {
+        ExprKind::Assign(place, value) if element(program, function, place) == Some(FLAGS) => Some(value),
+        _ => None,
+    });
+    let (Some(value), None) = (flags.next(), flags.next()) else { return None };
+    let ExprKind::Int(flags) = function.exprs[value].kind else { return None };
+    buttons(flags)
+}
+
+fn buttons(flags: i64) -> Option<Buttons> {
+    BUTTONS.into_iter().find(|buttons| buttons.value == flags & CHOICE)
+}

@@ -1,0 +1,234 @@
+//! `persist.UserData[100] = PC_COMM_MSG; if (persist.UserData[103] == IDYES)`: the PC has not answered yet; and
+//! `StartThread(2); x = persist.UserData[10];`: the other thread has not run yet. A parameter that is stored after its
+//! request is a related mistake.
+//!
+//! Only what follows in a straight line is looked at; a loop, or a call that may wait, ends it.
+
+use std::collections::BTreeMap;
+
+use kmotiondef::firmware::Function as FirmwareFunction;
+
+use super::format::called_firmware;
+use super::program::AnalysedProgram;
+use super::user_data_type::element;
+use super::walk::{Extent, Walk};
+use crate::diag::{Diagnostic, Lint, Sink};
+use crate::source::Span;
+use crate::typed::{ExprId, ExprKind, Function, Stmt, StmtKind};
+
+/// The element with the code of a request, and those of its parameters and answers.
+const CODE: i32 = 100;
+const MAILBOX: std::ops::RangeInclusive<i32> = 100..=107;
+/// The parameters that can name other elements.
+const NAMES: std::ops::RangeInclusive<i32> = 101..=104;
+
+/// Functions of the board that let no time pass.
+const INSTANT: [&str; 4] = [
+    FirmwareFunction::printf.name(),
+    FirmwareFunction::sprintf.name(),
+    FirmwareFunction::Time_sec.name(),
+    FirmwareFunction::ReadBit.name(),
+];
+
+/// Those of them that print.
+const PRINTS: [&str; 2] = [FirmwareFunction::printf.name(), FirmwareFunction::sprintf.name()];
+
+/// Reports answers that are read right after the request, and results of a thread right after it was started.
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
+    let mut stores = BTreeMap::new();
+    let mut loads = BTreeMap::new();
+    for function in program.functions() {
+        all_stores(program, function, &mut stores);
+        Walk { function, extent: Extent::All }.stmts(&function.body, &mut |expr| {
+            if let ExprKind::Load(place) = function.exprs[expr].kind
+                && let Some(element) = element(program, function, place)
+            {
+                *loads.entry(element).or_default() += 1;
+            }
+        });
+    }
+    for function in program.functions() {
+        let mut own = BTreeMap::new();
+        all_stores(program, function, &mut own);
+        let mut scan = Scan {
+            program,
+            function,
+            all: &stores,
+            own,
+            loads: &loads,
+            since: None,
+            prints: false,
+            findings: Vec::new(),
+        };
+        scan.stmts(&function.body);
+        scan.findings.into_iter().for_each(|finding| sink.report(finding));
+    }
+}
+
+/// The values that are stored in elements of `persist.UserData`: constants, or `None`.
+type Stores = BTreeMap<i32, Vec<Option<i64>>>;
+
+fn all_stores(program: &AnalysedProgram<'_>, function: &Function, stores: &mut Stores) {
+    Walk { function, extent: Extent::All }.stmts(&function.body, &mut |expr| {
+        let (place, value) = match &function.exprs[expr].kind {
+            ExprKind::Assign(place, value) => match function.exprs[*value].kind {
+                ExprKind::Int(number) => (*place, Some(number)),
+                _ => (*place, None),
+            },
+            ExprKind::Update(update) => (update.place, None),
+            ExprKind::Address(place) => (*place, None),
+            _ => return,
+        };
+        if let Some(element) = element(program, function, place) {
+            stores.entry(element).or_default().push(value);
+        }
+    });
+}
+
+/// Something whose answer takes time.
+#[derive(Clone, Copy)]
+enum Since {
+    /// A request to the PC.
+    Posted(Span),
+    /// The start of a thread.
+    Started(Span),
+}
+
+struct Scan<'a> {
+    program: &'a AnalysedProgram<'a>,
+    function: &'a Function,
+    /// The stores of the program, and of the function.
+    all: &'a Stores,
+    own: Stores,
+    /// How often the program loads each element.
+    loads: &'a BTreeMap<i32, u32>,
+    since: Option<Since>,
+    /// True in an expression that prints.
+    prints: bool,
+    findings: Vec<Diagnostic>,
+}
+
+impl Scan<'_> {
+    fn stmts(&mut self, stmts: &[Stmt]) {
+        for stmt in stmts {
+            match &stmt.kind {
+                StmtKind::Expr(expr) => self.expr(*expr),
+                StmtKind::Return(Some(value)) => self.expr(*value),
+                StmtKind::Block(inner) => self.stmts(inner),
+                StmtKind::If { condition, then, otherwise } => {
+                    self.expr(*condition);
+                    let before = self.since;
+                    self.stmts(then);
+                    let after = std::mem::replace(&mut self.since, before);
+                    self.stmts(otherwise);
+                    self.since = self.since.and(after);
+                }
+                StmtKind::Loop { body, .. } | StmtKind::Switch { body, .. } => {
+                    self.since = None;
+                    self.stmts(body);
+                    self.since = None;
+                }
+                StmtKind::Label(_) => self.since = None,
+                _ => {}
+            }
+        }
+    }
+
+    fn expr(&mut self, expr: ExprId) {
+        let function = self.function;
+        let mut parts = Vec::new();
+        Walk { function, extent: Extent::All }.expr(expr, &mut |expr| parts.push(expr));
+        self.prints = parts.iter().any(|part| match &function.exprs[*part].kind {
+            ExprKind::Call(call) => {
+                called_firmware(self.program.unit, call).is_some_and(|name| PRINTS.contains(&name))
+            }
+            _ => false,
+        });
+        // A request is posted once its value is known.
+        parts.sort_by_key(|part| matches!(function.exprs[*part].kind, ExprKind::Assign(..)));
+        for part in parts {
+            self.part(part);
+        }
+    }
+
+    fn part(&mut self, part: ExprId) {
+        let (program, function) = (self.program, self.function);
+        let span = function.exprs[part].span;
+        match &function.exprs[part].kind {
+            ExprKind::Call(call) => match called_firmware(program.unit, call) {
+                Some(name) if name == FirmwareFunction::StartThread.name() => {
+                    self.since = Some(Since::Started(span));
+                }
+                Some(name) if INSTANT.contains(&name) => {}
+                _ => self.since = None,
+            },
+            ExprKind::Assign(place, value) if element(program, function, *place) == Some(CODE) => {
+                let is_request = !matches!(function.exprs[*value].kind, ExprKind::Int(..=0));
+                self.since = is_request.then_some(Since::Posted(span));
+            }
+            ExprKind::Assign(place, _) => {
+                let stored = element(program, function, *place).filter(|element| MAILBOX.contains(element));
+                if let (Some(Since::Posted(request)), Some(element)) = (self.since, stored) {
+                    self.findings.push(too_late(element, span, request));
+                    self.since = None;
+                }
+            }
+            ExprKind::Load(place) => match (self.since, element(program, function, *place)) {
+                (Some(_), Some(CODE)) => self.since = None,
+                (Some(Since::Posted(request)), Some(element)) if self.is_answer(element) => {
+                    self.findings.push(unanswered(element, span, request));
+                    self.since = None;
+                }
+                (Some(Since::Started(start)), Some(element)) if self.is_result(element) => {
+                    self.findings.push(not_run(element, span, start));
+                    self.since = None;
+                }
+                _ => {}
+            },
+            _ => {}
+        }
+    }
+
+    /// Returns whether the PC stores its answer in an element, which the function itself at most sets to 0.
+    fn is_answer(&self, element: i32) -> bool {
+        let only_clears = |stores: &Vec<Option<i64>>| stores.iter().all(|value| *value == Some(0));
+        let is_named = || {
+            let names = self.own.range(NAMES).flat_map(|(_, values)| values).flatten();
+            let element = i64::from(element);
+            names.into_iter().any(|name| *name > 0 && (*name == element || 2 * *name == element))
+        };
+        self.own.get(&element).is_none_or(only_clears) && (MAILBOX.contains(&element) || is_named())
+    }
+
+    /// Returns whether another program must have stored an element: this one only clears it, or only prints it. Anything
+    /// else may be a parameter from the PC.
+    fn is_result(&self, element: i32) -> bool {
+        let clears = |stores: &Vec<Option<i64>>| stores.iter().all(|value| matches!(value, Some(0 | -1)));
+        let is_printed = || self.prints && self.loads.get(&element) == Some(&1);
+        !MAILBOX.contains(&element) && self.all.get(&element).map_or_else(is_printed, clears)
+    }
+}
+
+fn unanswered(element: i32, span: Span, request: Span) -> Diagnostic {
+    let message = format!("`persist.UserData[{element}]` is read before the PC has answered");
+    Diagnostic::warning(Lint::EarlyAnswer, span, message)
+        .at("the value of before")
+        .label(request, "the request")
+        .help("wait in between: `while (persist.UserData[100] > 0) WaitNextTimeSlice();`")
+}
+
+fn too_late(element: i32, span: Span, request: Span) -> Diagnostic {
+    let message = format!("`persist.UserData[{element}]` is stored after the request to the PC");
+    Diagnostic::warning(Lint::EarlyAnswer, span, message)
+        .at("the PC may have read the value of before")
+        .label(request, "the request")
+        .help("store the parameters first, and the request in `persist.UserData[100]` last")
+}
+
+fn not_run(element: i32, span: Span, start: Span) -> Diagnostic {
+    let message = format!("`persist.UserData[{element}]` is read before the thread that was started has run");
+    Diagnostic::warning(Lint::EarlyAnswer, span, message)
+        .at("the value of before")
+        .label(start, "the thread begins after the slice of this one")
+        .help("let that thread set a flag last, and wait for it: `while (!persist.UserData[…]) WaitNextTimeSlice();`")
+}

@@ -1,0 +1,158 @@
+//! Motions that a thread replaces or ends before the axis has come anywhere, or before it has arrived.
+//!
+//! A thread that has looked at anything since, at a bit or at the axis, has had its reason; one that has only let a
+//! little time pass has meant to wait.
+
+use kmotiondef::firmware::Function;
+use kmotiondef::modes::LastMotion;
+use kmotiondef::structs::Chan;
+use kmotiondef::{AxisId, Cycles};
+use vm::firmware::Caller;
+
+use crate::firmware::calls::{Called, Commanded, Wait};
+use crate::firmware::parts::Parts;
+use crate::out::{Message, OtherPlace};
+use crate::servo::independent::has_motion;
+use crate::views::Typed;
+
+/// A thread that has looked at the time more often waits for something.
+const DELAYS: u32 = 3;
+/// A part of the way that may be left, or that is not worth a word.
+const REST: f64 = 0.01;
+/// The time in which a thread has hardly waited: 50 ms.
+const HARDLY: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 20);
+
+/// A motion that the thread has begun and that is still under way.
+struct Interrupted {
+    called: Called,
+    dest: f64,
+    is_at_start: bool,
+    is_after_delay: bool,
+}
+
+/// A thread begins a motion of an axis: whether that replaces another one.
+pub(super) fn begins(
+    parts: &mut Parts,
+    caller: &Caller<'_>,
+    axis: AxisId,
+    function: Function,
+    motion: Commanded,
+) {
+    let Some(Interrupted { called, dest, is_at_start, is_after_delay }) =
+        interrupted(parts, caller, axis, Some(motion))
+    else {
+        return;
+    };
+    let message = match (called.motion, motion) {
+        _ if !is_at_start && !is_after_delay => return,
+        (Commanded::Move(earlier) | Commanded::MoveRel(_, earlier), Commanded::MoveRel(way, target))
+            if is_at_start =>
+        {
+            let [earlier, way, dest, target] = [earlier, way, dest, target].map(rounded);
+            Message::RelativeReplaced { function, axis, earlier, way, dest, target }
+        }
+        (Commanded::Move(earlier) | Commanded::MoveRel(_, earlier), Commanded::Move(target))
+            if is_at_start && earlier != target =>
+        {
+            let effect = format!("replaced by one to {}", rounded(target));
+            Message::MoveReplaced { function, axis, earlier: rounded(earlier), effect }
+        }
+        (Commanded::Move(earlier) | Commanded::MoveRel(_, earlier), Commanded::Jog(_)) if is_at_start => {
+            let effect = "replaced by a jog".to_owned();
+            Message::MoveReplaced { function, axis, earlier: rounded(earlier), effect }
+        }
+        (Commanded::Jog(speed), Commanded::Move(_) | Commanded::MoveRel(..)) if is_at_start => {
+            Message::JogReplaced { function, axis, speed, effect: "replaced by a move" }
+        }
+        (Commanded::Jog(speed), Commanded::Jog(other)) if is_at_start && speed * other < 0.0 => {
+            Message::JogReplaced { function, axis, speed, effect: "replaced by one in the other direction" }
+        }
+        (
+            Commanded::Move(earlier) | Commanded::MoveRel(_, earlier),
+            Commanded::Move(target) | Commanded::MoveRel(_, target),
+        ) if is_after_delay && earlier != target && called.at != caller.at => {
+            let Some(at) = called.at else { return };
+            let other = OtherPlace { thread: Some(called.thread), at };
+            Message::MoveCut { function, axis, dest, earlier, target, other }
+        }
+        _ => return,
+    };
+    parts.out.diagnose(caller, message);
+}
+
+/// A thread ends the motion of an axis: whether that has come anywhere.
+pub(super) fn ends(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Function) {
+    let Some(Interrupted { called, dest, is_at_start, is_after_delay }) =
+        interrupted(parts, caller, axis, None)
+    else {
+        return;
+    };
+    let disables = function == Function::DisableAxis;
+    let effect = if disables { "ended" } else { "stopped" };
+    let message = match called.motion {
+        Commanded::Move(earlier) | Commanded::MoveRel(_, earlier) if is_at_start => {
+            Message::MoveReplaced { function, axis, earlier: rounded(earlier), effect: effect.to_owned() }
+        }
+        Commanded::Jog(speed) if is_at_start => Message::JogReplaced { function, axis, speed, effect },
+        Commanded::Move(earlier) | Commanded::MoveRel(_, earlier) if is_after_delay && disables => {
+            Message::MoveEnded { function, axis, dest, earlier: rounded(earlier) }
+        }
+        _ => return,
+    };
+    parts.out.diagnose(caller, message);
+}
+
+/// The motion of an axis that the calling thread has begun itself and that is under way. `motion` is the one that it
+/// begins now.
+fn interrupted(
+    parts: &mut Parts,
+    caller: &Caller<'_>,
+    axis: AxisId,
+    motion: Option<Commanded>,
+) -> Option<Interrupted> {
+    let thread = caller.thread?;
+    let Wait { looked, looks, motion_looks, other_looks, .. } = *parts.calls.waits.of(thread);
+    let memory = &*caller.memory;
+    let dest = memory.axis(axis, Chan::DEST);
+    let (at, now) = (caller.at, caller.now());
+    let is_asked = false;
+    let own = motion.map(|motion| Called {
+        thread,
+        at,
+        motion,
+        dest,
+        called: now,
+        looked,
+        looks,
+        motion_looks,
+        other_looks,
+        is_asked,
+    });
+    let called = parts.calls.notices.moves(axis, own)?;
+    let is_enabled = memory.axis(axis, Chan::ENABLE) != 0;
+    if called.thread != thread || !is_enabled || !has_motion(memory, axis) {
+        return None;
+    }
+    let gone = (dest - called.dest).abs();
+    let (is_near, is_far) = match called.motion {
+        Commanded::Move(target) | Commanded::MoveRel(_, target) => {
+            let way = (target - called.dest).abs();
+            (gone <= f64::max(1.0, REST * way), (target - dest).abs() > REST * way)
+        }
+        Commanded::Jog(_) => (gone <= 1.0, false),
+    };
+    let is_at_start = called.looked == looked && is_near && now - called.called < HARDLY;
+    let is_move = memory.axis(axis, Chan::LAST_MOTION_TYPE) == LastMotion::Move.get();
+    let is_delay = (1..=DELAYS).contains(&looks.wrapping_sub(called.looks));
+    // It has waited for other axes alone.
+    let is_forgotten =
+        !called.is_asked && called.motion_looks != motion_looks && called.other_looks == other_looks;
+    let is_after_delay = (is_delay || is_forgotten) && is_far && is_move;
+    Some(Interrupted { called, dest, is_at_start, is_after_delay })
+}
+
+/// A place or distance in thousandths.
+fn rounded(value: f64) -> f64 {
+    const PARTS: f64 = 1e3;
+    libm::round(value * PARTS) / PARTS
+}

@@ -1,0 +1,6 @@
+#include "KMotionDef.h"
+
+main()
+{
+    Delay_sec(1);
+}

@@ -1,0 +1,19 @@
+//@ args: --machine parts/two_homes.toml
+//@ says: thread 1 at switch_of_another_axis_watched.c:16:5 in `main`: Jog(0, 0): the thread has watched bit 137 on the way, but that is a switch of axis 1, which rests: watch the switch of axis 0
+#include "KMotionDef.h"
+
+main()
+{
+    double end = Time_sec() + 0.5;
+    ch0->InputMode = NO_INPUT_MODE;
+    ch0->OutputMode = STEP_DIR_MODE;
+    ch0->Vel = 10000;
+    ch0->Accel = 100000;
+    ch0->Jerk = 1e6;
+    EnableAxisDest(0, 0);
+    Jog(0, -1000);
+    while (!ReadBit(137) && Time_sec() < end) ;
+    Jog(0, 0);
+    while (!CheckDone(0)) ;
+    Zero(0);
+}
