@@ -20,7 +20,9 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
 }
 
 fn labels(program: &AnalysedProgram<'_>, stmts: &[Stmt], sink: &mut Sink) {
-    for [before, label] in stmts.array_windows() {
+    // Nothing reaches the statements in front of the first label.
+    let first = stmts.iter().position(is_label).unwrap_or(stmts.len());
+    for [before, label] in stmts[first..].array_windows() {
         if is_label(label) && !is_label(before) && completes(before) && !is_announced(program, before, label)
         {
             sink.report(

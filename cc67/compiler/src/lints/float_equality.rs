@@ -1,11 +1,12 @@
 //! `x += 0.1; … if (x == 1.0)`, and `float f = 0.1; if (f == 0.1)`: rounded numbers that are hardly ever equal.
 
+use super::loop_condition::steps_over;
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::{BinaryOp, CompareOp};
 use crate::source::Span;
 use crate::ty::Types;
-use crate::typed::{ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind, Update};
+use crate::typed::{ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind, StmtKind, Update};
 
 /// Numbers that are a multiple of this part of 1 have exact sums.
 const EXACT: f64 = 1_048_576.0;
@@ -13,7 +14,8 @@ const EXACT: f64 = 1_048_576.0;
 /// Reports comparisons for equality of sums of rounded steps, and of a `float` with a constant that no `float` is.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
-        for expr in function.exprs.values() {
+        let told = loops_that_step_over(function);
+        for (_, expr) in function.exprs.iter().filter(|(id, _)| !told.contains(id)) {
             let ExprKind::Compare(op @ (CompareOp::Equal | CompareOp::NotEqual), a, b) = expr.kind else {
                 continue;
             };
@@ -25,6 +27,19 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
             sink.report_if(finding);
         }
     }
+}
+
+/// The conditions of loops that another warning is about.
+fn loops_that_step_over(function: &Function) -> Vec<ExprId> {
+    let mut found = Vec::new();
+    function.each_stmt(&mut |stmt| {
+        if let StmtKind::Loop { condition: Some(condition), step: Some(step), .. } = stmt.kind
+            && steps_over(function, condition, step).is_some()
+        {
+            found.push(condition);
+        }
+    });
+    found
 }
 
 /// A `float` compared with a constant that no `float` is.

@@ -243,7 +243,7 @@ fn goes_away(function: &Function, condition: ExprId, step: ExprId) -> Option<Dia
 }
 
 /// A loop that ends at one floating-point number, which its steps miss.
-fn steps_over(function: &Function, condition: ExprId, step: ExprId) -> Option<Diagnostic> {
+pub(super) fn steps_over(function: &Function, condition: ExprId, step: ExprId) -> Option<Diagnostic> {
     /// Steps that are a multiple of this part of 1 have exact sums.
     const EXACT: f64 = 1_048_576.0;
     let ExprKind::Compare(CompareOp::NotEqual, tested, _) = function.exprs[condition].kind else {
