@@ -141,6 +141,18 @@ fn commands_take_the_axes_and_channels_of_a_kogna() {
 }
 
 #[test]
+fn commands_that_reach_outside_the_simulated_registers_and_memory_say_so() {
+    let script = "FPGAW 320 1\nFPGA 4 0\nLoadData c13fffff 1\n55\nLoadData c1400000 1\n";
+    let output = kogna("simulated-kogna-outside", &[], &["console"], script);
+    assert_eq!(output.stdout, "invalid address\n", "{output:?}");
+    let found: Vec<_> = output.stderr.lines().filter(|line| line.contains("FPGA register")).collect();
+    assert!(
+        matches!(found[..], [one] if one.contains("FPGA register 0x140 of a Kogna is not simulated")),
+        "{found:?}"
+    );
+}
+
+#[test]
 fn the_status_record_has_all_axes_and_bits() {
     let script = "Pos12=5.5\nEnableAxis12\nSetBit 274\nGetStatus\n";
     let output = kogna("simulated-kogna-status", &[], &["console"], script);

@@ -1,15 +1,13 @@
 //! Digital and analog inputs and outputs, and registers.
 
 use kmotiondef::AccessSize;
-use kmotiondef::GuestAddr;
 use kmotiondef::firmware::Function;
 use kmotiondef::limits::N_DACS;
-use kmotiondef::map::FPGA;
 use kmotiondef::variables::{DAC_BUFFER, VIRTUAL_BITS_EX};
 
 use super::arguments::Values;
 use super::session::{Answer, Session};
-use crate::firmware::{io, kogna};
+use crate::firmware::{io, kogna, kogna_bus};
 use crate::views::Typed;
 
 /// The first LED.
@@ -118,16 +116,19 @@ pub(super) fn pwmc(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     Answer::Nothing
 }
 
-/// The place of a register; the last number that the command takes lies outside.
-fn register(number: i32) -> Option<GuestAddr> {
-    let offset = number.cast_unsigned() * 4 + 2;
-    (offset < FPGA.size).then(|| FPGA.base.offset(offset))
-}
-
 fn write(session: &mut Session<'_, '_>, values: &Values, size: AccessSize) -> Answer {
-    if let Some(address) = register(values.integer(0)) {
-        let (value, now) = (values.integer(1).cast_unsigned(), session.context.now);
-        session.parts.write_register(address, size, value, now);
+    let (number, value) = (values.integer(0).cast_unsigned(), values.integer(1).cast_unsigned());
+    let (fpga, now) = (session.memory().map().fpga, session.context.now);
+    let is_kogna = session.parts.io.kogna.is_some();
+    let offset = if is_kogna { 2 * number } else { 4 * number + 2 };
+    // On a KFLOP the last number that the command takes lies outside.
+    if offset < fpga.size {
+        let (address, parts) = (fpga.base.offset(offset), &mut *session.parts);
+        if is_kogna {
+            kogna_bus::write(parts, address, size, value, now);
+        } else {
+            parts.write_register(address, size, value, now);
+        }
     }
     Answer::Nothing
 }

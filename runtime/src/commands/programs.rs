@@ -49,11 +49,13 @@ pub(super) fn set_startup(session: &mut Session<'_, '_>, values: &Values) -> Ans
 pub(super) fn load_data(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (start, count) = (values.word(0), values.word(1));
     let end = u64::from(start) + u64::from(count);
-    let is_inside = session.memory().map().regions().any(|region| {
+    let memory = session.memory();
+    let is_inside = memory.map().regions().any(|region| {
         let base = region.base.get();
         region.kind == RegionKind::Ram && start >= base && end <= u64::from(base) + u64::from(region.size)
     });
-    if !is_inside {
+    // Of a Kogna's SDRAM only the first part is simulated.
+    if !is_inside || memory.read_bytes(GuestAddr::new(start), count).is_err() {
         return Answer::Refused("invalid address");
     }
     data(DataKind::Program, start, count)
