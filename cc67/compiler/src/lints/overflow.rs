@@ -1,20 +1,23 @@
 //! `50000 * 50000`: a computation with `int` constants that leaves the range of `int`, also where a variable holds one.
 
+use std::collections::BTreeMap;
+
 use super::program::AnalysedProgram;
-use super::value_range::single_value;
+use super::value_range::single_values;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::BinaryOp;
 use crate::source::Span;
 use crate::ty::Types;
-use crate::typed::{ExprId, ExprKind, Function, PlaceKind};
+use crate::typed::{ExprId, ExprKind, Function, LocalId, PlaceKind};
 
 /// Reports products with variables that have a single value, a constant.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
+        let known = single_values(function);
         for expr in function.exprs.values() {
             let ExprKind::Binary(BinaryOp::Multiply, a, b) = expr.kind else { continue };
             if expr.ty == Types::INT
-                && let (Some(a), Some(b)) = (value(function, a), value(function, b))
+                && let (Some(a), Some(b)) = (value(function, &known, a), value(function, &known, b))
             {
                 sink.report_if(finding(BinaryOp::Multiply, a, b, expr.span));
             }
@@ -23,11 +26,11 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
 }
 
 /// A constant, or that of a variable.
-fn value(function: &Function, expr: ExprId) -> Option<i64> {
+fn value(function: &Function, known: &BTreeMap<LocalId, i64>, expr: ExprId) -> Option<i64> {
     match function.exprs[expr].kind {
         ExprKind::Int(number) => Some(number),
         ExprKind::Load(place) => match function.places[place].kind {
-            PlaceKind::Local(local, 0) => single_value(function, local),
+            PlaceKind::Local(local, 0) => known.get(&local).copied(),
             _ => None,
         },
         _ => None,

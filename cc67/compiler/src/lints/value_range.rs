@@ -1,5 +1,7 @@
 //! Constants beyond what an output of the board takes.
 
+use std::collections::BTreeMap;
+
 use kmotiondef::ctype::Role;
 use kmotiondef::firmware::row_named;
 
@@ -144,7 +146,8 @@ fn cut_variable(function: &Function, value: ExprId) -> Option<(&str, i64)> {
         && matches!(plain(function, *zero), ExprKind::Int(DAC_ZERO));
     let ExprKind::Load(place) = plain(function, *variable) else { return None };
     let PlaceKind::Local(local, 0) = function.places[*place].kind else { return None };
-    Some((function.locals[local].name.as_str(), single_value(function, local)?)).filter(|_| is_macro)
+    let value = is_macro.then(|| single_values(function).get(&local).copied()).flatten()?;
+    Some((function.locals[local].name.as_str(), value))
 }
 
 /// An expression without its conversions.
@@ -155,25 +158,35 @@ fn plain(function: &Function, mut expr: ExprId) -> &ExprKind {
     &function.exprs[expr].kind
 }
 
-/// The constant that is the only value ever stored in a variable.
-pub(super) fn single_value(function: &Function, local: LocalId) -> Option<i64> {
-    if function.locals[local].in_memory || function.parameters.contains(&local) {
-        return None;
-    }
-    let is_it =
-        |place: PlaceId| matches!(function.places[place].kind, PlaceKind::Local(it, _) if it == local);
-    let mut only = None;
+/// The variables into which one constant is stored, and nothing else, each with it.
+pub(super) fn single_values(function: &Function) -> BTreeMap<LocalId, i64> {
+    let stored = |place: PlaceId| match function.places[place].kind {
+        PlaceKind::Local(local, _) => Some(local),
+        _ => None,
+    };
+    let mut values: BTreeMap<LocalId, Option<i64>> =
+        function.parameters.iter().map(|&parameter| (parameter, None)).collect();
     for expr in function.exprs.values() {
-        match &expr.kind {
-            ExprKind::Update(update) if is_it(update.place) => return None,
-            ExprKind::Assign(place, value) if is_it(*place) => {
-                let ExprKind::Int(number) = function.exprs[*value].kind else { return None };
-                if only.replace(number).is_some() {
-                    return None;
-                }
-            }
-            _ => {}
+        let (local, value) = match &expr.kind {
+            ExprKind::Update(update) => (stored(update.place), None),
+            ExprKind::Assign(place, value) => (stored(*place), constant(function, *value)),
+            _ => continue,
+        };
+        if let Some(local) = local {
+            values.entry(local).and_modify(|only| *only = None).or_insert(value);
         }
     }
-    only
+    let is_in_memory = |local: LocalId| function.locals[local].in_memory;
+    values
+        .into_iter()
+        .filter_map(|(local, value)| Some((local, value?)))
+        .filter(|(local, _)| !is_in_memory(*local))
+        .collect()
+}
+
+fn constant(function: &Function, value: ExprId) -> Option<i64> {
+    match function.exprs[value].kind {
+        ExprKind::Int(number) => Some(number),
+        _ => None,
+    }
 }
