@@ -49,7 +49,7 @@ const BUTTONS: [Buttons; 6] = [
 
 /// Reports answers that are compared with a number of no button, and those that are tested like a truth.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
-    for function in program.functions() {
+    for function in program.functions().filter(|function| shows_a_box(program, function)) {
         for expr in function.exprs.values() {
             let tested = match expr.kind {
                 ExprKind::Compare(op @ (CompareOp::Equal | CompareOp::NotEqual), a, b) => {
@@ -76,6 +76,15 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
             _ => {}
         });
     }
+}
+
+/// Returns whether a function calls one that shows a box, or asks for one in the mailbox.
+fn shows_a_box(program: &AnalysedProgram<'_>, function: &Function) -> bool {
+    function.exprs.values().any(|expr| match &expr.kind {
+        ExprKind::Call(call) => asked(program, function, call).is_some(),
+        ExprKind::Assign(place, _) => element(program, function, *place) == Some(FLAGS),
+        _ => false,
+    })
 }
 
 fn compared(buttons: Buttons, span: Span, result: bool, number: i64) -> Diagnostic {

@@ -1,5 +1,7 @@
 //! `x += 0.1; … if (x == 1.0)`, and `float f = 0.1; if (f == 0.1)`: rounded numbers that are hardly ever equal.
 
+use std::collections::BTreeMap;
+
 use super::loop_condition::steps_over;
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
@@ -14,7 +16,7 @@ const EXACT: f64 = 1_048_576.0;
 /// Reports comparisons for equality of sums of rounded steps, and of a `float` with a constant that no `float` is.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
-        let told = loops_that_step_over(function);
+        let (told, updates) = (loops_that_step_over(function), updates(function));
         for (_, expr) in function.exprs.iter().filter(|(id, _)| !told.contains(id)) {
             let ExprKind::Compare(op @ (CompareOp::Equal | CompareOp::NotEqual), a, b) = expr.kind else {
                 continue;
@@ -22,7 +24,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
             let result = op == CompareOp::NotEqual;
             let finding = [(a, b), (b, a)].into_iter().find_map(|(side, other)| {
                 constant(function, side, other, (expr.span, result))
-                    .or_else(|| sum(function, side, expr.span))
+                    .or_else(|| sum(function, &updates, side, expr.span))
             });
             sink.report_if(finding);
         }
@@ -60,28 +62,38 @@ fn constant(
     })
 }
 
-/// A variable to which rounded steps are added.
-fn sum(function: &Function, side: ExprId, span: Span) -> Option<Diagnostic> {
-    let local = loaded(function, side).filter(|_| function.exprs[side].ty.is_floating())?;
-    let mut steps = function.exprs.values().filter_map(|expr| match &expr.kind {
-        ExprKind::Update(update) if self::local(function, update.place) == Some(local) => {
-            Some((expr.span, update))
+/// The updates of each variable, `x += step` for example, in the order of the program.
+type Updates<'f> = BTreeMap<LocalId, Vec<(Span, &'f Update)>>;
+
+fn updates(function: &Function) -> Updates<'_> {
+    let mut found = Updates::new();
+    for expr in function.exprs.values() {
+        if let ExprKind::Update(update) = &expr.kind
+            && let Some(local) = local(function, update.place)
+        {
+            found.entry(local).or_default().push((expr.span, update));
         }
-        _ => None,
-    });
+    }
+    found
+}
+
+/// A variable to which rounded steps are added.
+fn sum(function: &Function, updates: &Updates<'_>, side: ExprId, span: Span) -> Option<Diagnostic> {
+    let local = loaded(function, side).filter(|_| function.exprs[side].ty.is_floating())?;
     // Another loop may use the variable with other steps.
     let is_rounded = |update: &Update| {
         matches!(update.op, BinaryOp::Add | BinaryOp::Subtract) && is_rounded(function, update.operand)
     };
-    let (step, first) = steps.next()?;
-    if !is_rounded(first) || !steps.all(|(_, update)| is_rounded(update)) {
+    let steps = updates.get(&local)?;
+    if !steps.iter().all(|(_, update)| is_rounded(update)) {
         return None;
     }
+    let (step, _) = steps.first()?;
     let name = &function.locals[local].name;
     Some(
         Diagnostic::warning(Lint::FloatEquality, span, format!("`{name}` is a sum of rounded steps"))
             .at("hardly ever exactly equal")
-            .label(step, "rounded here")
+            .label(*step, "rounded here")
             .help("test whether the difference is small, or count with an `int`"),
     )
 }

@@ -1,5 +1,7 @@
 //! `int i = -1; if (i < count)` with an unsigned `count`: as unsigned, -1 is the largest number.
 
+use std::collections::BTreeMap;
+
 use kmotiondef::structs::Chan;
 
 use super::format::called_firmware;
@@ -14,16 +16,17 @@ use crate::typed::{ExprId, ExprKind, Function, LocalId, PlaceKind, UnaryOp};
 /// Reports comparisons with an unsigned value of variables in which the function stores what can be negative.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
+        let negatives = negatives(program, function);
         for expr in function.exprs.values() {
             let ExprKind::Compare(op, a, b) = expr.kind else { continue };
             if matches!(op, CompareOp::Equal | CompareOp::NotEqual) {
                 continue;
             }
             for (side, other) in [(a, b), (b, a)] {
-                if let Some((local, stored)) = converted(function, (side, expr.span), other)
-                    .and_then(|local| Some((local, negative(program, function, local)?)))
+                if let Some(local) = converted(function, (side, expr.span), other)
+                    && let Some(stored) = negatives.get(&local)
                 {
-                    sink.report(finding(function, local, stored, expr.span));
+                    sink.report(finding(function, local, *stored, expr.span));
                 }
             }
         }
@@ -56,13 +59,18 @@ fn converted(function: &Function, (side, comparison): (ExprId, Span), other: Exp
     (is_unsigned && is_mixed && is_named && !is_cast).then_some(local)
 }
 
-/// The place where a function stores in a local what can be negative.
-fn negative(program: &AnalysedProgram<'_>, function: &Function, wanted: LocalId) -> Option<Span> {
-    function.exprs.values().find_map(|expr| {
-        let ExprKind::Assign(place, value) = expr.kind else { return None };
-        let is_it = matches!(function.places[place].kind, PlaceKind::Local(local, 0) if local == wanted);
-        (is_it && can_be_negative(program, function, value)).then(|| function.exprs[value].span)
-    })
+/// The locals in which a function stores what can be negative, each with the first place that does.
+fn negatives(program: &AnalysedProgram<'_>, function: &Function) -> BTreeMap<LocalId, Span> {
+    let mut found = BTreeMap::new();
+    for expr in function.exprs.values() {
+        if let ExprKind::Assign(place, value) = expr.kind
+            && let PlaceKind::Local(local, 0) = function.places[place].kind
+            && can_be_negative(program, function, value)
+        {
+            found.entry(local).or_insert(function.exprs[value].span);
+        }
+    }
+    found
 }
 
 /// A negative number, a number that is negated, a place of an axis, or an answer of the board from which a constant is
