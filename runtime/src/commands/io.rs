@@ -88,13 +88,13 @@ pub(super) fn dac(session: &mut Session<'_, '_>, values: &Values) -> Answer {
 
 pub(super) fn hrpwm_set_mode(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (pin, mode) = (values.integer(0), values.integer(1));
-    session.call(|parts, caller| kogna::hrpwm_set_mode(parts, caller, pin, mode));
+    session.call(|parts, caller| kogna::hrpwm::set_mode(parts, caller, pin, mode));
     Answer::Nothing
 }
 
 pub(super) fn spi_set_mode(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (pin, mode) = (values.integer(0), values.integer(1));
-    session.call(|parts, caller| kogna::spi_set_mode(parts, caller, pin, mode));
+    session.call(|parts, caller| kogna::spi::set_mode(parts, caller, pin, mode));
     Answer::Nothing
 }
 

@@ -51,61 +51,47 @@ fn refuse<T>(parts: &mut Parts, caller: &Caller<'_>, function: &'static str) -> 
     Outcome::End
 }
 
-pub(crate) fn hrpwm_set_mode(parts: &mut Parts, _: &mut Caller<'_>, pin: i32, to: i32) {
-    set_mode(parts, PinGroup::Hrpwm, pin, to);
-}
+/// The functions of a group of pins, in a module.
+macro_rules! pin_functions {
+    ($module:ident, $group:ident) => {
+        pub(crate) mod $module {
+            use vm::firmware::Caller;
 
-pub(crate) fn hrpwm_get_mode(parts: &mut Parts, _: &mut Caller<'_>, pin: i32) -> i32 {
-    mode(parts, PinGroup::Hrpwm, pin)
-}
+            use crate::firmware::parts::Parts;
+            use crate::io::kogna::PinGroup;
 
-pub(crate) fn hrpwm_set_dir(parts: &mut Parts, caller: &mut Caller<'_>, pin: i32, to: i32) {
-    set_direction(parts, caller, PinGroup::Hrpwm, pin, to);
-}
+            pub(crate) fn set_mode(parts: &mut Parts, _: &mut Caller<'_>, pin: i32, to: i32) {
+                super::set_mode(parts, PinGroup::$group, pin, to);
+            }
 
-pub(crate) fn hrpwm_get_dir(parts: &mut Parts, caller: &mut Caller<'_>, pin: i32) -> i32 {
-    direction(parts, caller, PinGroup::Hrpwm, pin)
-}
+            pub(crate) fn get_mode(parts: &mut Parts, _: &mut Caller<'_>, pin: i32) -> i32 {
+                super::mode(parts, PinGroup::$group, pin)
+            }
 
-pub(crate) fn hrpwm_set_bit(parts: &mut Parts, caller: &mut Caller<'_>, pin: i32) {
-    write(parts, caller, PinGroup::Hrpwm, pin, true);
-}
+            pub(crate) fn set_dir(parts: &mut Parts, caller: &mut Caller<'_>, pin: i32, to: i32) {
+                super::set_direction(parts, caller, PinGroup::$group, pin, to);
+            }
 
-pub(crate) fn hrpwm_clear_bit(parts: &mut Parts, caller: &mut Caller<'_>, pin: i32) {
-    write(parts, caller, PinGroup::Hrpwm, pin, false);
-}
+            pub(crate) fn get_dir(parts: &mut Parts, caller: &mut Caller<'_>, pin: i32) -> i32 {
+                super::direction(parts, caller, PinGroup::$group, pin)
+            }
 
-pub(crate) fn hrpwm_read_bit(parts: &mut Parts, caller: &mut Caller<'_>, pin: i32) -> i32 {
-    read(parts, caller, PinGroup::Hrpwm, pin)
-}
+            pub(crate) fn set_bit(parts: &mut Parts, caller: &mut Caller<'_>, pin: i32) {
+                super::write(parts, caller, PinGroup::$group, pin, true);
+            }
 
-pub(crate) fn spi_set_mode(parts: &mut Parts, _: &mut Caller<'_>, pin: i32, to: i32) {
-    set_mode(parts, PinGroup::Spi, pin, to);
-}
+            pub(crate) fn clear_bit(parts: &mut Parts, caller: &mut Caller<'_>, pin: i32) {
+                super::write(parts, caller, PinGroup::$group, pin, false);
+            }
 
-pub(crate) fn spi_get_mode(parts: &mut Parts, _: &mut Caller<'_>, pin: i32) -> i32 {
-    mode(parts, PinGroup::Spi, pin)
+            pub(crate) fn read_bit(parts: &mut Parts, caller: &mut Caller<'_>, pin: i32) -> i32 {
+                super::read(parts, caller, PinGroup::$group, pin)
+            }
+        }
+    };
 }
-
-pub(crate) fn spi_set_dir(parts: &mut Parts, caller: &mut Caller<'_>, pin: i32, to: i32) {
-    set_direction(parts, caller, PinGroup::Spi, pin, to);
-}
-
-pub(crate) fn spi_get_dir(parts: &mut Parts, caller: &mut Caller<'_>, pin: i32) -> i32 {
-    direction(parts, caller, PinGroup::Spi, pin)
-}
-
-pub(crate) fn spi_set_bit(parts: &mut Parts, caller: &mut Caller<'_>, pin: i32) {
-    write(parts, caller, PinGroup::Spi, pin, true);
-}
-
-pub(crate) fn spi_clear_bit(parts: &mut Parts, caller: &mut Caller<'_>, pin: i32) {
-    write(parts, caller, PinGroup::Spi, pin, false);
-}
-
-pub(crate) fn spi_read_bit(parts: &mut Parts, caller: &mut Caller<'_>, pin: i32) -> i32 {
-    read(parts, caller, PinGroup::Spi, pin)
-}
+pin_functions!(hrpwm, Hrpwm);
+pin_functions!(spi, Spi);
 
 #[expect(clippy::too_many_arguments, reason = "as the function has them in C")]
 pub(crate) fn define_coord_system_8p(

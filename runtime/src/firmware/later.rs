@@ -9,6 +9,7 @@ use kmotiondef::{Cycles, GuestAddr};
 use vm::firmware::Signature;
 
 use super::dispatch::{Handler, handler_of, signature_of};
+use super::kogna::{hrpwm, spi};
 use super::{kogna, motion, sync};
 
 /// A function that firmware 4.34 lacks.
@@ -44,20 +45,20 @@ functions! {
     motion::move_rel_at_vel_accel_decel_soft = MoveRelAtVelAccelDecelSoft, cost 3372;
     sync::atomic_set_16 = AtomicSet16, cost 24;
     sync::atomic_clear_16 = AtomicClear16, cost 24;
-    kogna::hrpwm_set_mode = HRPWM_SetMode, cost 100;
-    kogna::hrpwm_get_mode = HRPWM_GetMode, cost 100;
-    kogna::hrpwm_set_dir = HRPWM_GPIO_SetDir, cost 100;
-    kogna::hrpwm_get_dir = HRPWM_GPIO_GetDir, cost 100;
-    kogna::hrpwm_set_bit = HRPWM_GPIO_SetBit, cost 100;
-    kogna::hrpwm_clear_bit = HRPWM_GPIO_ClearBit, cost 100;
-    kogna::hrpwm_read_bit = HRPWM_GPIO_ReadBit, cost 100;
-    kogna::spi_set_mode = SPI_SetMode, cost 100;
-    kogna::spi_get_mode = SPI_GetMode, cost 100;
-    kogna::spi_set_dir = SPI_GPIO_SetDir, cost 100;
-    kogna::spi_get_dir = SPI_GPIO_GetDir, cost 100;
-    kogna::spi_set_bit = SPI_GPIO_SetBit, cost 100;
-    kogna::spi_clear_bit = SPI_GPIO_ClearBit, cost 100;
-    kogna::spi_read_bit = SPI_GPIO_ReadBit, cost 100;
+    hrpwm::set_mode = HRPWM_SetMode, cost 100;
+    hrpwm::get_mode = HRPWM_GetMode, cost 100;
+    hrpwm::set_dir = HRPWM_GPIO_SetDir, cost 100;
+    hrpwm::get_dir = HRPWM_GPIO_GetDir, cost 100;
+    hrpwm::set_bit = HRPWM_GPIO_SetBit, cost 100;
+    hrpwm::clear_bit = HRPWM_GPIO_ClearBit, cost 100;
+    hrpwm::read_bit = HRPWM_GPIO_ReadBit, cost 100;
+    spi::set_mode = SPI_SetMode, cost 100;
+    spi::get_mode = SPI_GetMode, cost 100;
+    spi::set_dir = SPI_GPIO_SetDir, cost 100;
+    spi::get_dir = SPI_GPIO_GetDir, cost 100;
+    spi::set_bit = SPI_GPIO_SetBit, cost 100;
+    spi::clear_bit = SPI_GPIO_ClearBit, cost 100;
+    spi::read_bit = SPI_GPIO_ReadBit, cost 100;
     kogna::define_coord_system_8p = DefineCoordSystem8P, cost 100;
     kogna::nand_write_blocks = NandWriteBlocks, cost 100;
     kogna::nand_read_blocks = NandReadBlocks, cost 100;
