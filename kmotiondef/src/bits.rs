@@ -71,89 +71,68 @@ pub struct BitRange {
     pub doc: &'static str,
 }
 
-/// Hands every row of the table of bit ranges to the macro `$m`.
-///
-/// A row is ``/// meaning`` then `first..=last "name", Kind, Direction;`, in ascending order.
-/// Numbers in no row read 0 and ignore writes.
-#[macro_export]
-macro_rules! for_each_bit_range {
-    ($m:ident) => {
-        $m! {
-            /// Encoders 0 to 3 (A on even, B on odd numbers), also plain pins.
-            0..=7 "JP7", Pin, Programmable;
-            /// Homes and limits, or step and direction of generators 0 to 3.
-            8..=15 "JP7", Pin, Programmable;
-            /// Auxiliary port 0: Kanalog, SnapAmp or Konnect bus; 22 to 25 also generators 0 and 1.
-            16..=25 "JP4", Pin, Programmable;
-            /// Auxiliary port 1: I/O PWM 0 to 7 on 26 to 33; 32 to 35 also generators 2 and 3.
-            26..=35 "JP6", Pin, Programmable;
-            /// Encoders 4 to 7, or step and direction of generators 4 to 7.
-            36..=43 "JP5", Pin, Programmable;
-            /// Transmit and receive of the UART, if enabled.
-            44..=45 "JP7", Pin, Programmable;
-            /// The two diodes of the board, lit at power-up.
-            46..=47 "LED", Led, Output;
-            /// Bit n is bit n - 48 of `VirtualBits`.
-            48..=63 "virtual bits", Virtual, Memory;
-            /// Differential inputs of SnapAmp 0.
-            64..=71 "SnapAmp 0", SnapDifferential, Input;
-            /// Opto inputs of SnapAmp 0.
-            72..=79 "SnapAmp 0", SnapOpto, Input;
-            /// General pins of SnapAmp 0.
-            80..=93 "SnapAmp 0", SnapGpio, Programmable;
-            /// Differential inputs of SnapAmp 1.
-            96..=103 "SnapAmp 1", SnapDifferential, Input;
-            /// Opto inputs of SnapAmp 1.
-            104..=111 "SnapAmp 1", SnapOpto, Input;
-            /// General pins of SnapAmp 1.
-            112..=125 "SnapAmp 1", SnapGpio, Programmable;
-            /// General inputs of Kanalog.
-            128..=135 "Kanalog GPIN", KanalogInput, Input;
-            /// Opto inputs of Kanalog.
-            136..=143 "Kanalog opto in", KanalogOptoInput, Input;
-            /// Opto outputs of Kanalog.
-            144..=151 "Kanalog opto out", KanalogOptoOutput, Output;
-            /// FET and relay drivers of Kanalog.
-            152..=159 "Kanalog FET", KanalogFet, Output;
-            /// General outputs of Kanalog.
-            160..=167 "Kanalog GPOUT", KanalogOutput, Output;
-            /// Opto inputs of KStep, if `KStepPresent` is set.
-            168..=183 "KStep", KstepInput, Input;
-            /// Bit n is bit (n - 1024) % 32 of `VirtualBitsEx[(n - 1024) / 32]`.
-            1024..=2047 "extended virtual bits", VirtualEx, Memory;
-        }
-    };
-}
-
+/// A row is ``/// meaning`` then `first..=last "name", Kind, Direction;`.
 macro_rules! ranges {
     ($($(#[doc = $doc:literal])+ $first:literal..=$last:literal $name:literal, $kind:ident, $direction:ident;)*) => {
-        /// Every range, in ascending order.
-        pub const BIT_RANGES: &[BitRange] = &[$(BitRange {
+        &[$(BitRange {
             first: $first,
             last: $last,
             name: $name,
             kind: BitKind::$kind,
             direction: BitDirection::$direction,
             doc: concat!($($doc),+).trim_ascii_start(),
-        }),*];
+        }),*]
     };
 }
-for_each_bit_range!(ranges);
 
-macro_rules! kogna_ranges {
-    ($($(#[doc = $doc:literal])+ $first:literal..=$last:literal $name:literal, $kind:ident, $direction:ident;)*) => {
-        /// The ranges that only a Kogna has, in ascending order. Source: its header.
-        pub const KOGNA_BIT_RANGES: &[BitRange] = &[$(BitRange {
-            first: $first,
-            last: $last,
-            name: $name,
-            kind: BitKind::$kind,
-            direction: BitDirection::$direction,
-            doc: concat!($($doc),+).trim_ascii_start(),
-        }),*];
-    };
-}
-kogna_ranges! {
+/// Every range, in ascending order. Numbers in no range read 0 and ignore writes.
+pub const BIT_RANGES: &[BitRange] = ranges! {
+    /// Encoders 0 to 3 (A on even, B on odd numbers), also plain pins.
+    0..=7 "JP7", Pin, Programmable;
+    /// Homes and limits, or step and direction of generators 0 to 3.
+    8..=15 "JP7", Pin, Programmable;
+    /// Auxiliary port 0: Kanalog, SnapAmp or Konnect bus; 22 to 25 also generators 0 and 1.
+    16..=25 "JP4", Pin, Programmable;
+    /// Auxiliary port 1: I/O PWM 0 to 7 on 26 to 33; 32 to 35 also generators 2 and 3.
+    26..=35 "JP6", Pin, Programmable;
+    /// Encoders 4 to 7, or step and direction of generators 4 to 7.
+    36..=43 "JP5", Pin, Programmable;
+    /// Transmit and receive of the UART, if enabled.
+    44..=45 "JP7", Pin, Programmable;
+    /// The two diodes of the board, lit at power-up.
+    46..=47 "LED", Led, Output;
+    /// Bit n is bit n - 48 of `VirtualBits`.
+    48..=63 "virtual bits", Virtual, Memory;
+    /// Differential inputs of SnapAmp 0.
+    64..=71 "SnapAmp 0", SnapDifferential, Input;
+    /// Opto inputs of SnapAmp 0.
+    72..=79 "SnapAmp 0", SnapOpto, Input;
+    /// General pins of SnapAmp 0.
+    80..=93 "SnapAmp 0", SnapGpio, Programmable;
+    /// Differential inputs of SnapAmp 1.
+    96..=103 "SnapAmp 1", SnapDifferential, Input;
+    /// Opto inputs of SnapAmp 1.
+    104..=111 "SnapAmp 1", SnapOpto, Input;
+    /// General pins of SnapAmp 1.
+    112..=125 "SnapAmp 1", SnapGpio, Programmable;
+    /// General inputs of Kanalog.
+    128..=135 "Kanalog GPIN", KanalogInput, Input;
+    /// Opto inputs of Kanalog.
+    136..=143 "Kanalog opto in", KanalogOptoInput, Input;
+    /// Opto outputs of Kanalog.
+    144..=151 "Kanalog opto out", KanalogOptoOutput, Output;
+    /// FET and relay drivers of Kanalog.
+    152..=159 "Kanalog FET", KanalogFet, Output;
+    /// General outputs of Kanalog.
+    160..=167 "Kanalog GPOUT", KanalogOutput, Output;
+    /// Opto inputs of KStep, if `KStepPresent` is set.
+    168..=183 "KStep", KstepInput, Input;
+    /// Bit n is bit (n - 1024) % 32 of `VirtualBitsEx[(n - 1024) / 32]`.
+    1024..=2047 "extended virtual bits", VirtualEx, Memory;
+};
+
+/// The ranges that only a Kogna has, in ascending order. Source: its header.
+pub const KOGNA_BIT_RANGES: &[BitRange] = ranges! {
     /// Ten pins of AUX2 and fourteen of EXIO, also step and direction of generators 11 to 15.
     200..=223 "Kogna AUX2 and EXIO", KognaPin, Programmable;
     /// Differential inputs.
@@ -170,7 +149,7 @@ kogna_ranges! {
     280..=283 "Kogna HRPWM", KognaPin, Programmable;
     /// Pins of the SPI port.
     284..=289 "Kogna SPI", KognaPin, Programmable;
-}
+};
 
 /// The range of a bit that only a Kogna has.
 #[must_use]
