@@ -117,7 +117,7 @@ impl Region {
         address.get().wrapping_sub(self.base.get()) < self.size
     }
 
-    /// The same region elsewhere.
+    /// Returns the region with another base and size.
     #[must_use]
     pub const fn at(self, base: u32, size: u32) -> Self {
         Self { base: GuestAddr::new(base), size, ..self }

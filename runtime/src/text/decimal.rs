@@ -78,7 +78,7 @@ pub(crate) fn digits(magnitude: f64, keep: Keep) -> Digits {
 /// A magnitude whose first digits are found.
 struct Split {
     digits: Vec<u8>,
-    /// What is left of it.
+    /// The rest after the first digits.
     fraction: f64,
     point: i32,
     steps: Steps,

@@ -100,7 +100,7 @@ struct Scan<'a> {
     /// The stores of the program, and of the function.
     all: &'a Stores,
     own: Stores,
-    /// How often the program loads each element.
+    /// The number of loads of each element in the program.
     loads: &'a BTreeMap<i32, u32>,
     since: Option<Since>,
     /// True in an expression that prints.

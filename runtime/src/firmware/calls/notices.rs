@@ -59,10 +59,10 @@ pub(crate) struct Called {
     /// Dest at the call, and its time.
     pub(crate) dest: f64,
     pub(crate) called: Cycles,
-    /// When the thread had last waited or looked at anything, and how often it had.
+    /// The instant at which the thread had last waited or looked at anything, and the number of times that it had.
     pub(crate) looked: Cycles,
     pub(crate) looks: u32,
-    /// How often it had looked at motions, and at anything else but the time; true once it has looked at this one.
+    /// The counts of looks at motions, and at anything else but the time, before it; true once it has looked at this one.
     pub(crate) motion_looks: u32,
     pub(crate) other_looks: u32,
     pub(crate) is_asked: bool,
