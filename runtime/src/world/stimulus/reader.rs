@@ -236,10 +236,12 @@ pub(super) fn integer(word: &str) -> Option<i32> {
     }
 }
 
+/// The units of times, in seconds; a longer one comes before what it ends with.
+pub(super) const TIME_UNITS: [(&str, f64); 4] = [("us", 1e-6), ("µs", 1e-6), ("ms", 1e-3), ("s", 1.0)];
+
 /// A time; a bare number is seconds.
 pub(super) fn time(word: &str) -> Option<Cycles> {
-    let units = [("us", 1e-6), ("µs", 1e-6), ("ms", 1e-3), ("s", 1.0)];
-    let (digits, unit) = units
+    let (digits, unit) = TIME_UNITS
         .into_iter()
         .find_map(|(name, unit)| word.strip_suffix(name).map(|digits| (digits, unit)))
         .unwrap_or((word, 1.0));

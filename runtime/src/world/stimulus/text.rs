@@ -210,6 +210,7 @@ mod tests {
                  Toggle(Bit(24))",
             ),
             ("adc 3 = 2.5V", "At(Cycles(0)) Adc(3, Constant(512.0))"),
+            ("adc 3 = 2.5 V", "At(Cycles(0)) Adc(3, Constant(512.0))"),
             ("axis 0 push 100", "At(Cycles(0)) Push(AxisId(0), 100.0)"),
             ("encoder 3 moves -40 in 0.5s", "At(Cycles(0)) Turn(AxisId(3), -40.0, Cycles(100000000))"),
             ("encoder 3 moves -40 in 500 ms", "At(Cycles(0)) Turn(AxisId(3), -40.0, Cycles(100000000))"),

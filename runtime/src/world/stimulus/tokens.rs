@@ -1,5 +1,7 @@
 //! Words, texts and signs of a line, each with its column.
 
+use super::reader::TIME_UNITS;
+
 /// The kind and content of a token.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum TokenKind {
@@ -60,15 +62,15 @@ pub(super) fn tokens(line: &str) -> Result<Vec<Token>, Mistake> {
     Ok(with_units(tokens))
 }
 
-/// The units of times.
-const UNITS: [&str; 4] = ["s", "ms", "us", "µs"];
+/// The unit of analog inputs.
+const VOLTS: &str = "V";
 
-/// Joins numbers and the units that a blank separates from them, as in `0.5 s`.
+/// Joins numbers and the units that a blank separates from them, as in `0.5 s` and `2.5 V`.
 fn with_units(tokens: Vec<Token>) -> Vec<Token> {
     let mut joined: Vec<Token> = Vec::with_capacity(tokens.len());
     for token in tokens {
         if let TokenKind::Word(unit) = &token.kind
-            && UNITS.contains(&unit.as_str())
+            && (unit == VOLTS || TIME_UNITS.iter().any(|(name, _)| name == unit))
             && let Some(Token { kind: TokenKind::Word(number), .. }) = joined.last_mut()
             && number.parse::<f64>().is_ok()
         {
