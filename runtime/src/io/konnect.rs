@@ -70,6 +70,11 @@ impl Konnects {
         if self.is_present(board) { self.inputs.get(&board).copied().unwrap_or(0) } else { 0 }
     }
 
+    /// The level of an input of a board.
+    pub(crate) fn input(&self, board: KonnectBoard, input: u8) -> bool {
+        self.given(board) >> input & 1 != 0
+    }
+
     /// Empties the list.
     pub(crate) fn clear(&mut self) {
         self.services.clear();

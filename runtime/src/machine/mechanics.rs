@@ -109,6 +109,8 @@ pub(crate) struct Mechanics {
     racked: Option<Racked>,
     /// Inputs that a stimulus has taken from their switches.
     held: Vec<Bit>,
+    /// The axes that are described.
+    axes: Vec<AxisId>,
     /// True if there is any such equipment.
     is_any: bool,
 }
@@ -159,6 +161,7 @@ impl Mechanics {
             gantries,
             racked: None,
             held: Vec::new(),
+            axes: AxisId::all().filter(|axis| axes[axis.index()] != Axis::default()).collect(),
             is_any,
         }
     }
@@ -231,6 +234,16 @@ impl Mechanics {
         is_new
     }
 
+    /// Returns whether an action has taken an input from its switch.
+    pub(crate) fn is_held(&self, bit: Bit) -> bool {
+        self.held.contains(&bit)
+    }
+
+    /// Returns whether the machine file gives an analog input its signal.
+    pub(crate) fn has_source(&self, channel: usize) -> bool {
+        self.analog.iter().any(|analog| analog.channel == channel)
+    }
+
     /// Gives an input back to its switch.
     pub(crate) fn let_go(&mut self, bit: Bit) {
         self.held.retain(|held| *held != bit);
@@ -301,6 +314,25 @@ impl Machine {
                 if one == bit { Some(other) } else { (other == bit).then_some(one) }
             },
         )
+    }
+
+    /// Returns whether the machine file describes an axis, or something on it.
+    pub(crate) fn has_axis(&self, axis: AxisId) -> bool {
+        let Mechanics { axes, gantries, spindles, .. } = &self.mechanics;
+        axes.contains(&axis)
+            || self.mechanics.has_contacts(axis)
+            || gantries.iter().any(|gantry| gantry.axes.contains(&axis))
+            || spindles.iter().any(|turning| turning.spindle.axis == axis)
+    }
+
+    /// Returns the outputs that the machine file connects a motor or a spindle to.
+    pub(crate) fn outputs(&self) -> Vec<Channel> {
+        let spindles = self.mechanics.spindles.iter().filter_map(|turning| match turning.spindle.drive {
+            SpindleDrive::Dac(number) => Some(Channel::Dac(number)),
+            SpindleDrive::Bits { cw, ccw } => Some(Channel::Relays(cw, ccw)),
+            SpindleDrive::Axis(_) => None,
+        });
+        AxisId::all().filter_map(|axis| self.wiring.drive(axis)).chain(spindles).collect()
     }
 
     /// Returns whether a machine file connects any equipment besides the loads.

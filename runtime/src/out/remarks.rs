@@ -683,6 +683,12 @@ messages! {
     /// Statements of a stimulus took no effect during the run.
     NeverHappened { statements: String } = "never-happened", Warning, [always],
         "never happened: {statements}";
+    /// A statement of a stimulus gave an input the level that it had, each time.
+    NothingChanged { place: String, state: String } = "nothing-changed", Warning, [always],
+        "{place}: {state}: this action changes nothing";
+    /// A statement of a stimulus limits something that nothing in the run moves.
+    CannotFail { place: String, cause: String } = "cannot-fail", Warning, [always],
+        "{place}: {cause}, so this cannot fail";
     /// A stimulus has too many actions.
     TooMuchPlanned { most: usize } = "too-much-planned", Warning, [once],
         "the stimulus has more than {most} actions; later ones are left out";

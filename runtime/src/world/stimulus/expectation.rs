@@ -12,6 +12,7 @@ use kmotiondef::{AxisId, ThreadId};
 use vm::scheduler::ThreadSet;
 
 use super::reader::{StatementReader, integer, number};
+use super::reading;
 use super::relation::Relation;
 use super::scene::Scene;
 use super::tokens::Mistake;
@@ -156,7 +157,10 @@ impl Expectation {
         let is_wanted = self.sense == Sense::Is;
         let (holds, was) = match &self.predicate {
             Predicate::Value { subject, relation, number, tolerance } => match facts.value(subject) {
-                Some(value) => (relation.holds(value, *number, *tolerance), format!("{subject} is {value}")),
+                Some(value) => {
+                    let holds = relation.holds(value, *number, *tolerance);
+                    (holds, format!("{subject} is {}", shown(value)))
+                }
                 // It is not met either way.
                 None => (!is_wanted, format!("{subject} has no value here")),
             },
@@ -176,7 +180,10 @@ impl Expectation {
                 (is_active == *expected, format!("thread {thread} is {state}"))
             }
         };
-        Seen { is_met: holds == is_wanted, text: format!("{was}, expected {}", self.expected()) }
+        let is_met = holds == is_wanted;
+        let hint = || reading::hint(self, |subject| facts.value(subject)).unwrap_or_default();
+        let hint = if is_met { String::new() } else { hint() };
+        Seen { is_met, text: format!("{was}, expected {}{hint}", self.expected()) }
     }
 
     /// Returns the words that follow "expected" in messages.
@@ -244,9 +251,15 @@ impl fmt::Display for Expectation {
     }
 }
 
+/// A value for a message; the bits of a small integer, read as a floating-point number, would have dozens of zeros.
+fn shown(value: f64) -> String {
+    const SMALL: f64 = 1e-9;
+    if value != 0.0 && value.abs() < SMALL { format!("{value:e}") } else { value.to_string() }
+}
+
 impl Subject {
     /// Its value; `None` for an expression that nobody has resolved.
-    fn value(&self, view: &View<'_>) -> Option<f64> {
+    pub(super) fn value(&self, view: &View<'_>) -> Option<f64> {
         let user_data = PERSIST.field(Persist::USER_DATA);
         let word = |index| view.memory.get(user_data.element(index)).cast_unsigned();
         match self {

@@ -25,15 +25,18 @@ mod action;
 mod acts;
 mod assist;
 mod expectation;
+mod idle;
 mod monitor;
 mod plans;
 mod player;
 mod reader;
+mod reading;
 mod relation;
 mod scene;
 mod text;
 mod tokens;
 mod trigger;
+mod vacuous;
 mod wave;
 
 pub use action::{Action, usages};

@@ -9,8 +9,9 @@ use vm::firmware::TickContext;
 use super::expectation::Look;
 use super::plans::Due;
 use super::player::Player;
-use super::{Action, Condition, Expectation, Trigger};
-use crate::out::EventKind;
+use super::vacuous;
+use super::{Action, Condition, Expectation, Predicate, Trigger};
+use crate::out::{EventKind, Message};
 use crate::world::WorldAccess;
 use crate::world::trace::View;
 
@@ -26,10 +27,37 @@ pub(super) struct Progress {
     pub(super) said: bool,
     /// True if it has acted or checked something.
     pub(super) happened: bool,
+    /// The state that its action has found, where it has changed nothing, and whether it ever has.
+    pub(super) idle: Option<String>,
+    /// True if its action has changed something.
+    pub(super) has_changed: bool,
+    /// True if it acts as soon as it is known: it prepares, or a person has done it.
+    pub(super) is_initial: bool,
+    /// The value that an expectation of the whole run has seen, and whether it was ever another one.
+    value: Option<f64>,
+    /// See `value`.
+    has_varied: bool,
     /// True if a failure was reported.
     told: bool,
     /// When the condition happened after which something has to come.
     since: Option<Cycles>,
+}
+
+impl Progress {
+    /// Nothing yet.
+    pub(super) fn new(is_initial: bool) -> Self {
+        Self { is_initial, ..Self::default() }
+    }
+
+    /// Returns whether an expectation has seen more than one value, or none.
+    pub(super) const fn has_varied(&self) -> bool {
+        self.has_varied || self.value.is_none()
+    }
+
+    /// An expectation of the whole run has seen a value.
+    fn note_value(&mut self, value: f64) {
+        self.has_varied |= self.value.replace(value).is_some_and(|before| before != value);
+    }
 }
 
 impl Player {
@@ -94,12 +122,24 @@ impl Player {
                     let is_watched =
                         while_met.as_ref().is_none_or(|met| self.look(access, context, index, met).0);
                     if is_watched && !self.progress[index].told {
+                        self.note_value(access, context, index);
                         self.check(access, context, index);
                     }
                 }
                 Trigger::Within { .. } => self.watch_deadline(access, context, index),
                 Trigger::At(_) | Trigger::Every { .. } | Trigger::When { .. } | Trigger::End => {}
             }
+        }
+    }
+
+    /// Notes the value that an expectation of the whole run has now.
+    fn note_value(&mut self, access: &WorldAccess<'_>, context: &TickContext<'_>, index: usize) {
+        if let Action::Expect(Expectation { predicate: Predicate::Value { subject, .. }, .. }) =
+            &self.rules[index].action
+        {
+            let view = View::new(access.machine, access.io, context.now, context.memory);
+            let value = subject.value(&view);
+            value.into_iter().for_each(|value| self.progress[index].note_value(value));
         }
     }
 
@@ -163,6 +203,24 @@ impl Player {
                 let text = format!("{place}: {condition} never happened, so nothing was checked");
                 access.out.tell(context.now, EventKind::Unmet(text));
                 self.progress[index].happened = true;
+            }
+        }
+    }
+}
+
+impl Player {
+    /// The run is over: reports actions that have changed nothing, and expectations that could not fail.
+    pub(super) fn finish_doubts(&self, access: &mut WorldAccess<'_>, context: &TickContext<'_>) {
+        for (index, progress) in self.progress.iter().enumerate() {
+            let place = self.rules[index].place.to_string();
+            if let Some(state) = progress.idle.clone().filter(|_| !progress.has_changed) {
+                access.out.remark(context.now, Message::NothingChanged { place, state });
+                continue;
+            }
+            let view = View::new(access.machine, access.io, context.now, context.memory);
+            let cause = vacuous::cause(&self.rules, &self.progress, index, &view).filter(|_| !progress.told);
+            if let Some(cause) = cause {
+                access.out.remark(context.now, Message::CannotFail { place, cause });
             }
         }
     }

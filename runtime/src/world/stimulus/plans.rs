@@ -84,6 +84,12 @@ impl Plans {
         self.waves[channel] = Some((wave, now));
     }
 
+    /// Returns whether an analog input is still on its course.
+    pub(super) fn has_wave(&self, channel: usize, now: Cycles) -> bool {
+        let wave = self.waves.get(channel).and_then(Option::as_ref);
+        wave.is_some_and(|(wave, begun)| !wave.is_over(now - *begun))
+    }
+
     /// An encoder begins to turn.
     pub(crate) fn begin_turn(&mut self, axis: AxisId, counts: f64, over: Cycles, now: Cycles) {
         self.turning.push(Turning { axis, counts, begun: now, over, turned: 0.0 });

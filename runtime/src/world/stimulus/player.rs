@@ -12,6 +12,7 @@ use super::monitor::Progress;
 use super::plans::{Due, MOST_PLANNED, Plans};
 use super::scene::Scene;
 use super::{Condition, Edge, Rule, Stimulus, Trigger};
+use super::{idle, reading};
 use crate::io::changes;
 use crate::machine::SentByte;
 use crate::out::{Message, Out};
@@ -31,6 +32,8 @@ pub(crate) struct Player {
     /// The last characters that the serial port has sent.
     sent: VecDeque<u8>,
     active: ThreadSet,
+    /// The bits whose levels statements have changed.
+    moved: Vec<Bit>,
     /// True if the last tick had nothing that a statement could wait for: no thread is active any more.
     is_idle: bool,
 }
@@ -45,6 +48,7 @@ impl Player {
             lines: VecDeque::new(),
             sent: VecDeque::new(),
             active: ThreadSet::EMPTY,
+            moved: Vec::new(),
             is_idle: false,
         }
     }
@@ -71,6 +75,8 @@ impl Player {
                 access.io.uart.listen();
             }
             let index = self.rules.len();
+            let is_initial =
+                matches!(rule.trigger, Trigger::At(time) if time <= access.now + Cycles::PER_TICK);
             match rule.trigger {
                 Trigger::At(time) | Trigger::Every { from: time, .. } => {
                     self.plans.add(time, Due::Rule(index));
@@ -78,7 +84,7 @@ impl Player {
                 Trigger::When { .. } | Trigger::Within { .. } | Trigger::Always { .. } | Trigger::End => {}
             }
             self.rules.push(rule);
-            self.progress.push(Progress::default());
+            self.progress.push(Progress::new(is_initial));
         }
     }
 
@@ -176,8 +182,10 @@ impl Player {
     /// Forgets the last statements as far as they were due once and have acted: those that a person executes one after
     /// another would otherwise cost more with each.
     fn forget_done(&mut self) {
-        while let (Some(Rule { trigger: Trigger::At(_), .. }), Some(Progress { happened: true, .. })) =
-            (self.rules.last(), self.progress.last())
+        while let (
+            Some(Rule { trigger: Trigger::At(_), .. }),
+            Some(Progress { happened: true, idle: None, .. }),
+        ) = (self.rules.last(), self.progress.last())
         {
             self.rules.pop();
             self.progress.pop();
@@ -268,9 +276,20 @@ impl Player {
         self.progress[index].happened = true;
         let Rule { place, action, .. } = self.rules[index].clone();
         let place = place.to_string();
-        let mut scene = Scene { plans: &mut self.plans, access, context, place: &place, is_checked: false };
+        let Self { plans, moved, progress, .. } = self;
+        let mut scene = Scene { plans, access, context, place: &place, moved, is_checked: false };
+        let idle = idle::state(&scene, &action);
+        let bit = idle::bit(&action);
         action.act(&mut scene);
-        if scene.is_checked {
+        let is_checked = scene.is_checked;
+        let progress = &mut progress[index];
+        if idle.is_none() {
+            progress.has_changed = true;
+            moved.extend(bit.filter(|bit| !moved.contains(bit)));
+        } else if !progress.is_initial {
+            progress.idle = idle;
+        }
+        if is_checked {
             self.check(access, context, index);
         }
     }
@@ -279,8 +298,7 @@ impl Player {
     fn never_happened(&self, view: &View<'_>) -> Vec<String> {
         let idle = self.rules.iter().zip(&self.progress).filter(|(_, progress)| !progress.happened);
         idle.map(|(rule, progress)| {
-            let constant = unchanged_level(rule, progress, view);
-            let reason = constant.map(|level| format!(" (it was {} all the time)", u8::from(level)));
+            let reason = unchanged_level(rule, progress, view).or_else(|| other_reading(rule, view));
             format!("{}: {}{}", rule.place, rule.trigger, reason.unwrap_or_default())
         })
         .collect()
@@ -308,16 +326,23 @@ impl Player {
         if !statements.is_empty() {
             access.out.remark(context.now, Message::NeverHappened { statements: statements.join("; ") });
         }
+        self.finish_doubts(access, context);
     }
 }
 
 /// The level of a bit whose edge a statement waits for, where the bit had the level after that edge all the time.
-fn unchanged_level(rule: &Rule, progress: &Progress, view: &View<'_>) -> Option<bool> {
+fn unchanged_level(rule: &Rule, progress: &Progress, view: &View<'_>) -> Option<String> {
     match rule.trigger.condition()? {
         Condition::Bit(bit, edge @ (Edge::Rises | Edge::Falls)) if progress.last_due.is_none() => {
             let level = view.item(Item::of_bit(*bit)) != 0.0;
-            edge.fits(level).then_some(level)
+            edge.fits(level).then(|| format!(" (it was {} all the time)", u8::from(level)))
         }
         _ => None,
     }
+}
+
+/// The form in which the element of `persist.UserData` has the number that a statement waits for in another one.
+fn other_reading(rule: &Rule, view: &View<'_>) -> Option<String> {
+    let Condition::Becomes(expectation) = rule.trigger.condition()? else { return None };
+    reading::hint(expectation, |subject| subject.value(view))
 }

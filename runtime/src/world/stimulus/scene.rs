@@ -1,5 +1,6 @@
 //! The parts of the board that an action reaches.
 
+use kmotiondef::Bit;
 use vm::firmware::TickContext;
 
 use super::plans::Plans;
@@ -13,6 +14,8 @@ pub(crate) struct Scene<'a, 'b, 'c> {
     pub(crate) context: &'a mut TickContext<'c>,
     /// The location of the statement, for messages.
     pub(crate) place: &'a str,
+    /// The bits whose levels statements have changed.
+    pub(crate) moved: &'a [Bit],
     /// True if its expectation should be checked.
     pub(crate) is_checked: bool,
 }

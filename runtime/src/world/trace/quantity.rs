@@ -56,8 +56,8 @@ impl RecordedCell {
 /// The board as somebody sees it who only looks.
 #[derive(Debug)]
 pub struct View<'a> {
-    pub(super) machine: &'a Machine,
-    pub(super) io: &'a Io,
+    pub(in crate::world) machine: &'a Machine,
+    pub(in crate::world) io: &'a Io,
     /// When the present tick began.
     pub(super) tick_start: Cycles,
     /// Guest memory, as programs see it.

@@ -193,7 +193,7 @@ fn is_memory(bit: Bit) -> bool {
 }
 
 /// The level that the world gives a bit.
-fn level(scene: &Scene<'_, '_, '_>, bit: Bit) -> bool {
+pub(crate) fn level(scene: &Scene<'_, '_, '_>, bit: Bit) -> bool {
     if is_memory(bit) {
         bit_state(scene.access.io, scene.context.memory, bit).0
     } else {

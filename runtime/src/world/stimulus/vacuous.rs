@@ -1,0 +1,110 @@
+//! Expectations of the whole run that cannot fail, because they are about something that nothing moves.
+//!
+//! A number of an axis or an input is easily written wrong, and such an expectation is then always met. That an axis
+//! or an output rests is also what a test may want to know: only a limit away from rest is doubted, and that of a
+//! machine that has the axis only if no other statement limits one that moves.
+
+use kmotiondef::bits::BitDirection;
+use kmotiondef::structs::Chan;
+use kmotiondef::{AxisId, Bit};
+
+use super::Rule;
+use super::action::Action;
+use super::expectation::{Expectation, Predicate, Subject};
+use super::monitor::Progress;
+use super::relation::Relation;
+use super::trigger::Trigger;
+use crate::io::bits::range_of;
+use crate::machine::Channel;
+use crate::views::Typed;
+use crate::world::trace::{Item, View};
+
+/// Something that an expectation of the whole run limits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Limited {
+    Axis(AxisId),
+    Dac(usize),
+    Pwm(usize),
+    Bit(Bit),
+}
+
+/// Returns the reason why an expectation of the whole run could not fail, if it could not.
+pub(super) fn cause(rules: &[Rule], progress: &[Progress], index: usize, view: &View<'_>) -> Option<String> {
+    let varied = |index: usize| progress.get(index).is_none_or(Progress::has_varied);
+    if varied(index) {
+        return None;
+    }
+    match limited(rules.get(index)?, view)? {
+        Limited::Axis(axis) => {
+            let others = || view.memory.axes().iter().filter(|other| *other != axis);
+            let limits_used = |(index, rule)| matches!(limited(rule, view), Some(Limited::Axis(other)) if varied(index) || is_used(other, view));
+            let is_odd = !view.machine.has_axis(axis) || !rules.iter().enumerate().any(limits_used);
+            let is_idle = !is_used(axis, view) && others().any(|other| is_used(other, view));
+            (is_idle && is_odd).then(|| format!("axis {axis} is never used in this run"))
+        }
+        Limited::Dac(number) => {
+            let is_other = |channel| matches!(channel, Channel::Dac(other) if other != number);
+            let is_odd = is_only_other(view, is_other, Channel::Dac(number));
+            is_odd.then(|| format!("DAC {number} is never written in this run"))
+        }
+        Limited::Pwm(number) => {
+            let is_other = |channel| matches!(channel, Channel::Pwm(other) if other != number);
+            let is_odd = is_only_other(view, is_other, Channel::Pwm(number));
+            is_odd.then(|| format!("PWM channel {number} is never written in this run"))
+        }
+        Limited::Bit(bit) => idle_bit(bit, view),
+    }
+}
+
+/// Returns the part of the board that an expectation of the whole run limits.
+fn limited(rule: &Rule, view: &View<'_>) -> Option<Limited> {
+    let (Trigger::Always { .. }, Action::Expect(Expectation { predicate, .. })) =
+        (&rule.trigger, &rule.action)
+    else {
+        return None;
+    };
+    let Predicate::Value { subject: Subject::Item(item, _), relation, number, .. } = predicate else {
+        return None;
+    };
+    if let Some(bit) = item.bit() {
+        return Some(Limited::Bit(bit));
+    }
+    let is_limit = !matches!(relation, Relation::Equal | Relation::Different) && *number != 0.0;
+    is_limit.then(|| of_item(*item, view)).flatten()
+}
+
+fn of_item(item: Item, view: &View<'_>) -> Option<Limited> {
+    match item.kind() {
+        "dest" | "pos" | "out" | "vel" | "load" => {
+            view.memory.axes().iter().find(|axis| axis.index() == item.index()).map(Limited::Axis)
+        }
+        "dac" => Some(Limited::Dac(item.index())),
+        "pwm" => Some(Limited::Pwm(item.index())),
+        _ => None,
+    }
+}
+
+/// Returns whether a program has prepared or moved an axis.
+fn is_used(axis: AxisId, view: &View<'_>) -> bool {
+    let memory = view.memory;
+    memory.axis(axis, Chan::ENABLE) != 0
+        || memory.axis(axis, Chan::OUTPUT_MODE) != 0
+        || memory.axis(axis, Chan::DEST) != 0.0
+        || memory.axis(axis, Chan::POSITION) != 0.0
+}
+
+/// Returns whether the machine file names outputs of a kind, but not this one.
+fn is_only_other(view: &View<'_>, is_other: impl Fn(Channel) -> bool, this: Channel) -> bool {
+    let named = view.machine.outputs();
+    named.iter().any(|channel| is_other(*channel)) && !named.contains(&this)
+}
+
+/// Returns the reason why a bit keeps its level, whatever the programs do.
+fn idle_bit(bit: Bit, view: &View<'_>) -> Option<String> {
+    let Some(range) = range_of(view.io, bit) else {
+        return Some(format!("nothing is connected to bit {bit}"));
+    };
+    let pins = &view.io.pins;
+    let is_idle = range.direction == BitDirection::Input && !pins.is_driven(bit) && !pins.is_described(bit);
+    is_idle.then(|| format!("bit {bit} is an input that nothing drives"))
+}
