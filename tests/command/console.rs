@@ -283,7 +283,7 @@ fn answers_of_the_pc_are_scripted() {
     let arguments = ["--host", "pc.txt", "--answer", "msgbox=yes", "--answer", "request.14=-3", "a.c"];
     let output = console("console-answers", &files, &arguments, "");
     assert_eq!(output.stdout, "pressed 7\npressed 6\n#500 = 2.25\nM3: -3\n");
-    let shown = "cc67: message box: Tool in place? (no)\ncc67: message box: Tool in place? (yes)\n\
+    let shown = "cc67: message box: Tool in place? (no, 7)\ncc67: message box: Tool in place? (yes, 6)\n\
                  cc67: get G-code variables from 500\ncc67: M code 3\ncc67: request 14 is answered -3\n";
     assert_eq!(output.stderr, shown);
     let output = console("console-answers-bad", &[("pc.txt", "\nmsgbox\n")], &["--host", "pc.txt"], "");

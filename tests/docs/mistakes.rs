@@ -36,6 +36,7 @@ const WITHOUT_LINE: &[&str] = &[
     "two_files_open_for_writing",
     "two_threads_move_one_axis",
     "user_data_beyond_its_end_in_a_loop",
+    "yes_no_box_of_a_function_compared_with_1",
 ];
 
 /// A mistake as its file has it.

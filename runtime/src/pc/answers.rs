@@ -225,10 +225,9 @@ fn button(text: &str) -> Option<i32> {
     named.map(|(_, number)| *number).or_else(|| text.parse().ok())
 }
 
-/// The name of a button.
-pub(super) fn button_name(number: i32) -> String {
-    let named = BUTTONS.iter().find(|(_, other)| *other == number);
-    named.map_or_else(|| number.to_string(), |(name, _)| (*name).to_owned())
+/// The name of a button, if it has one.
+pub(super) fn button_name(number: i32) -> Option<&'static str> {
+    BUTTONS.iter().find(|(_, other)| *other == number).map(|(name, _)| *name)
 }
 
 #[cfg(test)]

@@ -32,6 +32,14 @@ impl OpenBox {
         Self::Message { text, buttons }
     }
 
+    /// Returns whether it has more than one button.
+    pub(super) const fn has_choice(&self) -> bool {
+        match self {
+            Self::Message { buttons, .. } => buttons.len() > 1,
+            Self::Input { .. } => true,
+        }
+    }
+
     /// Returns the line that is shown when it opens.
     pub(super) fn shown(&self) -> String {
         match self {

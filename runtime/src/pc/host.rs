@@ -371,7 +371,8 @@ fn string(memory: &GuestMemory, offset: i32) -> String {
 /// Buttons of a message box.
 const BUTTONS: i32 = 0xf;
 
-/// Shows a box and presses the button that was named for it, or its first one that continues the program the program.
+/// Shows a box and presses the button that was named for it, or its first one that continues the program. The line says
+/// which button it was, unless there is only one.
 fn message_box(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, [offset, flags, _]: [i32; 3]) {
     let text = string(context.memory, offset);
     let default = match flags & BUTTONS {
@@ -381,20 +382,23 @@ fn message_box(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, [o
         _ => 1,
     };
     let named = host.answers.boxes.press();
-    let answer = named.map_or(String::new(), |button| format!(" ({})", answers::button_name(button)));
+    let pressed = named.unwrap_or(default);
+    let has_choice = OpenBox::message(String::new(), flags).has_choice();
+    let answer = match answers::button_name(pressed) {
+        _ if named.is_none() && !has_choice => String::new(),
+        Some(name) => format!(" ({name}, {pressed})"),
+        None => format!(" ({pressed})"),
+    };
     say(out, context, format!("message box: {text}{answer}"));
-    context.memory.set(data(3), named.unwrap_or(default));
+    context.memory.set(data(3), pressed);
 }
 
 /// Shows a prompt and types the number that was named for it, or 0.
 fn input_box(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, offset: i32) {
     let prompt = string(context.memory, offset);
-    let (answer, typed) = match host.answers.boxes.type_in() {
-        Some(None) => (" (cancel)".to_owned(), None),
-        Some(Some(number)) => (format!(" ({number})"), Some(number)),
-        None => (String::new(), Some(0.0)),
-    };
-    say(out, context, format!("input box: {prompt}{answer}"));
+    let typed = host.answers.boxes.type_in().unwrap_or(Some(0.0));
+    let answer = typed.map_or_else(|| "cancel".to_owned(), |number| number.to_string());
+    say(out, context, format!("input box: {prompt} ({answer})"));
     context.memory.set(data(2), typed.unwrap_or(0.0).to_bits().cast_signed());
     context.memory.set(data(3), i32::from(typed.is_none()));
 }
@@ -509,12 +513,23 @@ mod tests {
         let mut bench = TestBench::new();
         let buffer = bench.memory.get(GATHER_BUFFER);
         bench.memory.poke_bytes(buffer.offset(400), b"go on?\0").expect("mapped");
-        for (flags, pressed) in [(0, 1), (1, 1), (2, 5), (3, 6), (4, 6), (5, 4)] {
+        let boxes = [
+            (0, 1, ""),
+            (1, 1, " (ok, 1)"),
+            (2, 5, " (ignore, 5)"),
+            (3, 6, " (yes, 6)"),
+            (4, 6, " (yes, 6)"),
+            (5, 4, " (retry, 4)"),
+        ];
+        for (flags, pressed, shown) in boxes {
             assert_eq!(ask(&mut bench, 15, &[100, flags, 0]), DONE);
             assert_eq!(bench.memory.get(data(3)), pressed);
+            let told: Vec<_> = bench.kernel.parts.out.take_events();
+            assert_eq!(told[0].kind, EventKind::Host(format!("message box: go on?{shown}")));
         }
+        ask(&mut bench, 29, &[100]);
         let told: Vec<_> = bench.kernel.parts.out.take_events();
-        assert_eq!(told[0].kind, EventKind::Host("message box: go on?".to_owned()));
+        assert_eq!(told[0].kind, EventKind::Host("input box: go on? (0)".to_owned()));
     }
 
     #[test]

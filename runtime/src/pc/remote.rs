@@ -357,7 +357,10 @@ mod tests {
         let (mut server, mut board) = board();
         board.gather[1000] = u32::from_le_bytes(*b"go o");
         board.gather[1001] = u32::from_le_bytes(*b"n?\0\0");
-        assert_eq!(ask(&mut server, &mut board, &[15, 1000, 4]), (0, vec!["message box: go on?".to_owned()]));
+        assert_eq!(
+            ask(&mut server, &mut board, &[15, 1000, 4]),
+            (0, vec!["message box: go on? (yes, 6)".to_owned()])
+        );
         assert_eq!(board.data[103], 6, "Yes");
     }
 

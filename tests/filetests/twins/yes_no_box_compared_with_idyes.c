@@ -1,5 +1,5 @@
 //@ prints: yes
-//@ says: message box: Is the tool clamped?
+//@ says: message box: Is the tool clamped? (yes, 6)
 #include "KMotionDef.h"
 
 int MsgBox(char *text, int flags)
