@@ -118,6 +118,47 @@ fn missing_tests_and_expectations_are_reported() {
 }
 
 #[test]
+fn a_first_line_that_is_not_the_first_is_reported() {
+    let program = format!("// home.c - homes\n// cc67: run --for 2\n{COUNT}");
+    let files = [("home.c", program.as_str()), ("blank.c", "//cc67: run\nmain() {}\n")];
+    let scratch = folder("head-below", &files);
+    let below = "cc67: home.c:2: `// cc67: …` counts in the first line only: move it there\n";
+    let blank = "cc67: blank.c:1: a first line that says how a program is run begins with `// cc67: `\n";
+    let output = test(&scratch, &["."]);
+    assert!(output.stderr.contains(below) && output.stderr.contains(blank), "{}", output.stderr);
+    for command in ["run", "check"] {
+        let output = cc67(&scratch, [command, "home.c"]);
+        assert_eq!((output.code, output.stderr.as_str()), (0, below), "{command}");
+    }
+    // A line that only tells of it is none, and what is in the first line counts.
+    let text = "// cc67: run\n// cc67: run is what the first line begins with\nmain() {}\n";
+    let other = "// The first line may be `cc67: run`.\n// as in // cc67: run\nmain() {}\n";
+    let scratch =
+        folder("head-told", &[("a.c", text), ("b.c", other), ("b.expected", ""), ("a.expected", "")]);
+    let output = test(&scratch, &["."]);
+    assert_eq!((output.stdout.as_str(), output.stderr.as_str()), ("2 passed, 0 failed\n", ""));
+}
+
+#[test]
+fn every_program_of_a_folder_is_checked() {
+    let files = [
+        ("a.c", "#include \"KMotionDef.h\"\n#include \"axes.c\"\nmain() { if (ch0->Enable = 0) Use(1); }\n"),
+        ("axes.c", "void Use(int axis) { DisableAxis(axis); } // domain(), main\n"),
+        ("sub/b.c", "// cc67: part of a.c\n#include \"KMotionDef.h\"\nvoid main (void) { Jogg(0, 5.0); }\n"),
+        ("empty/notes.txt", "main()\n"),
+    ];
+    let scratch = folder("check-folder", &files);
+    let output = cc67(&scratch, ["check", ".", "--message-format", "short"]);
+    let lines: Vec<_> = output.stderr.lines().filter_map(|line| line.split(": ").next()).collect();
+    assert_eq!((output.code, lines), (1, vec!["a.c:3:14", "sub/b.c:3:20"]), "{}", output.stderr);
+    let output = cc67(&scratch, ["check", "empty"]);
+    let none = "cc67: no programs in empty: a program is a .c file with a function `main`\n";
+    assert_eq!((output.code, output.stderr.as_str()), (2, none));
+    let examples = cc67(harness::root(), ["check", "c-programs"]);
+    assert_eq!((examples.code, examples.stderr.as_str()), (0, ""));
+}
+
+#[test]
 fn a_program_that_does_not_compile_fails_with_its_messages() {
     let output = test(&folder("errors", &[("a.c", "main() { x = 1; }\n"), ("a.expected", "")]), &["a.c"]);
     assert_eq!(output.code, 1);

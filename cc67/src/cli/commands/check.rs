@@ -16,7 +16,7 @@ use crate::cli::args::compiler::SourceArguments;
 use crate::cli::args::program::{ProgramFile, assign, names_thread};
 use crate::cli::args::sidecars::{Head, Project, within};
 use crate::cli::io::exit::Exit;
-use crate::cli::io::input::read;
+use crate::cli::io::input::{is_source, read, sources_below};
 use crate::cli::io::output;
 use crate::cli::report::diagnostics;
 use compiler::driver::{SharingProgram, advise};
@@ -28,7 +28,7 @@ use compiler::target::Target;
 /// Arguments of `cc67 check`.
 #[derive(Debug, Args)]
 pub(super) struct CheckArguments {
-    /// Programs to check; `N:FILE` is the program of thread N, and all of these are checked as running together [default: the programs of
+    /// Programs to check, or folders with programs; `N:FILE` is the program of thread N, and all of these are checked as running together [default: the programs of
     /// cc67.toml]
     #[arg(value_name = "[N:]FILE")]
     files: Vec<OsString>,
@@ -87,16 +87,41 @@ impl CheckArguments {
             let programs = assign(&files)?;
             return Ok((programs.iter().map(|program| program.path.clone()).collect(), vec![programs]));
         }
-        let paths: Vec<PathBuf> = files.into_iter().map(PathBuf::from).collect();
+        let mut paths = Vec::new();
+        for path in files.into_iter().map(PathBuf::from) {
+            if path.is_dir() { add_programs(&path, &mut paths)? } else { paths.push(path) }
+        }
         let groups = paths.iter().filter_map(|path| group_of(path).transpose()).collect::<Result<_>>()?;
         Ok((paths, groups))
     }
 }
 
+/// Adds the programs of a folder and of those in it.
+fn add_programs(folder: &Path, paths: &mut Vec<PathBuf>) -> Result<()> {
+    let before = paths.len();
+    for path in sources_below(folder)? {
+        if has_main(&String::from_utf8_lossy(&read(&path)?)) {
+            paths.push(path.strip_prefix(".").map_or(path.clone(), Path::to_owned));
+        }
+    }
+    if paths.len() == before {
+        bail!("no programs in {}: a program is a .c file with a function `main`", folder.display());
+    }
+    Ok(())
+}
+
+/// Returns whether a text has the word `main` before a parenthesis, as files that programs include do not.
+fn has_main(text: &str) -> bool {
+    let is_word = |character: char| character.is_ascii_alphanumeric() || character == '_';
+    text.match_indices("main").any(|(at, word)| {
+        let rest = text.get(at + word.len()..).unwrap_or_default();
+        !text.get(..at).unwrap_or_default().ends_with(is_word) && rest.trim_start().starts_with('(')
+    })
+}
+
 /// A program and those that its first line says run beside it; `None` if it is no source.
 fn group_of(path: &Path) -> Result<Option<Vec<ProgramFile>>> {
-    let is_source = path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("c"));
-    if !is_source || !path.is_file() {
+    if !is_source(path) || !path.is_file() {
         return Ok(None);
     }
     let also = match Head::of(path)? {

@@ -6,9 +6,21 @@ use anyhow::{Context, Result, bail};
 
 use super::words::split;
 use crate::cli::io::input::read;
+use crate::cli::io::terminal;
 
 /// The beginning of a program's first line that says how it is run.
 const HEAD: &str = "// cc67: ";
+
+/// The lines in which one that should be the first is looked for.
+const SEARCHED: usize = 20;
+
+/// Returns whether a line is a comment with the words of a first line, however it is written.
+fn is_like(line: &str) -> bool {
+    let line = line.trim_start_matches('\u{feff}').trim_start();
+    let comment = ["//", "/*"].into_iter().find_map(|mark| line.strip_prefix(mark)).map(str::trim_start);
+    let words = comment.and_then(|comment| comment.strip_prefix("cc67:")).unwrap_or_default();
+    matches!(words.split_whitespace().next(), Some("run" | "part"))
+}
 
 /// The first line of a program.
 #[derive(Debug, PartialEq, Eq)]
@@ -28,9 +40,21 @@ impl Head {
     /// It is not understood, or cannot be read.
     pub(crate) fn of(path: &Path) -> Result<Self> {
         let text = read(path)?;
-        let line = text.split(|byte| *byte == b'\n').next().unwrap_or_default();
-        let line = String::from_utf8_lossy(line);
-        Self::parse(line.trim_end()).with_context(|| format!("{}, line 1", path.display()))
+        let lines: Vec<_> =
+            text.split(|byte| *byte == b'\n').take(SEARCHED).map(String::from_utf8_lossy).collect();
+        let first = lines.first().map_or("", |line| line.trim_start_matches('\u{feff}').trim_end());
+        let head = Self::parse(first).with_context(|| format!("{}, line 1", path.display()))?;
+        if head == Self::None
+            && let Some(index) = lines.iter().position(|line| is_like(line))
+        {
+            let name = path.strip_prefix(".").unwrap_or(path);
+            let place = format!("{}:{}", name.display(), index + 1);
+            terminal::note(&match index {
+                0 => format!("{place}: a first line that says how a program is run begins with `{HEAD}`"),
+                _ => format!("{place}: `{HEAD}…` counts in the first line only: move it there"),
+            });
+        }
+        Ok(head)
     }
 
     /// Parses a first line.
@@ -85,6 +109,16 @@ mod tests {
             "// cc67: run --stim \"at 1s bit 8 = 1\" also '2:a b.c'",
             r#"run ["--stim", "at 1s bit 8 = 1"] also ["2:a b.c"]"#,
         );
+        for (line, expect) in [
+            ("// cc67: run --for 2", true),
+            ("  //cc67: run", true),
+            ("/* cc67: part of a.c */", true),
+            ("// as in cc67: run", false),
+            ("// cc67: runs it", false),
+            ("cc67: run", false),
+        ] {
+            assert_eq!(is_like(line), expect, "{line}");
+        }
         check("// cc67: part of relay.c", "Part");
         check("// cc67: run also", "no program after `also`");
         check(

@@ -1,12 +1,11 @@
 //! Test programs, and the options of each.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 
 use crate::cli::args::sidecars::{Head, Project, SIDECARS};
-use crate::cli::io::input::read;
+use crate::cli::io::input::{read, sources_below};
 
 /// A program with the console it should show.
 #[derive(Debug)]
@@ -61,20 +60,12 @@ pub(super) fn find(paths: &[PathBuf]) -> Result<Vec<Case>> {
 
 /// Adds the tests of a folder and of those in it.
 fn search(folder: &Path, cases: &mut Vec<Case>) -> Result<()> {
-    let entries = fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
-    let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
-    paths.sort();
-    for path in paths {
-        // A link to a folder may lead back here.
-        if path.is_dir() && !path.is_symlink() {
-            search(&path, cases)?;
-        } else if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("c")) {
-            let head = Head::of(&path)?;
-            let is_test = matches!(head, Head::Run { .. })
-                || matches!(head, Head::None) && path.with_extension("expected").exists();
-            if is_test {
-                cases.push(case(&path, head)?);
-            }
+    for path in sources_below(folder)? {
+        let head = Head::of(&path)?;
+        let is_test = matches!(head, Head::Run { .. })
+            || matches!(head, Head::None) && path.with_extension("expected").exists();
+        if is_test {
+            cases.push(case(&path, head)?);
         }
     }
     Ok(())
