@@ -162,6 +162,7 @@ fn config(files: Option<PathBuf>, machine: Option<&Path>) -> Result<Config, Stri
             .map_err(|error| format!("cannot read {}: {error}", path.display()))?;
         config.machine_file = MachineFile::parse(&text)
             .map_err(|error| format!("{}:{}:{}: {error}", path.display(), error.line, error.column))?;
+        config.machine_file.set_name(path);
     }
     Ok(config)
 }

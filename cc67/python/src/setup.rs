@@ -108,6 +108,7 @@ fn boot(path: &Path) -> PyResult<BootedFirmware> {
 fn machine_file(board: &'static TargetBoard, name: &str, folder: &Path, text: &str) -> PyResult<MachineFile> {
     let file = MachineFile::parse_for(board, text);
     let mut file = file.map_err(|error| input(format!("{name}:{}:{}: {error}", error.line, error.column)))?;
+    file.set_name(Path::new(name));
     file.beside(folder);
     Ok(file)
 }

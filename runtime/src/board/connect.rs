@@ -1,5 +1,7 @@
 //! Connects what a machine file describes to the board's parts.
 
+use std::sync::Arc;
+
 use kmotiondef::variables::{KANALOG_PRESENT, SNAP_AMP_PRESENT};
 use kmotiondef::{AxisId, Cycles};
 use vm::memory::GuestMemory;
@@ -9,7 +11,7 @@ use crate::firmware::parts::Parts;
 use crate::io::konnect::Port;
 use crate::machine::description::{Axis, Connection, Encoder, Model};
 use crate::machine::wiring::Wiring;
-use crate::machine::{Mechanics, Plant, connect_snapamp};
+use crate::machine::{Mechanics, Notes, Plant, connect_snapamp};
 use crate::out::Message;
 use crate::views::Typed;
 use crate::world::outside::wire::Wire;
@@ -28,11 +30,14 @@ pub(crate) fn install(parts: &mut Parts, machine: &MachineFile) {
         connected.loads[spindle.axis] = Plant::new(&load);
     }
     connected.mechanics = Mechanics::new(&machine.axes, &machine.connected);
+    connected.notes = Arc::new(Notes::new(machine.name.clone(), &machine.axes, &machine.connected));
     for (bit, axis, place) in connected.mechanics.places() {
         let travel = machine.axes[axis.index()].travel;
         if let Some((side, end)) = place.beyond(&travel) {
             let place = place.to_string();
-            out.remark(Cycles::default(), Message::SwitchUnreachable { bit, axis, place, side, end });
+            let source = connected.notes.contact(bit).unwrap_or_default();
+            let key = connected.notes.key(axis, side);
+            out.remark(Cycles::default(), Message::SwitchUnreachable { bit, axis, place, source, end, key });
         }
     }
     connected.needs_enable = machine.boards.has_kstep && machine.boards.respect_enable;

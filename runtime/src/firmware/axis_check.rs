@@ -17,6 +17,7 @@ use enabling::loop_input;
 
 use super::calls::{EndedWait, Jogged, SmallMove};
 use super::parts::Parts;
+use crate::machine::OtherUnits;
 use crate::machine::description::Condition;
 use crate::out::{Message, Speaker};
 use crate::servo::CallPlace;
@@ -55,6 +56,14 @@ fn limit_of_other(parts: &Parts, memory: &GuestMemory, function: Function, axis:
     let WatchedLimit { end, bit, .. } = watched_limits(memory, axis).into_iter().find(is_others)?;
     let other = mechanics.owners(bit).next()?;
     Some(Message::LimitOfOther { function, axis, end, bit, other })
+}
+
+/// A unit of the machine file in which the axis cannot be moved: it would cross its travel within a second.
+fn units_differ(parts: &Parts, memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
+    let OtherUnits { units, place, field, unit, travel } = parts.machine.notes.other_units(memory, axis)?;
+    let speed = f64::from(memory.axis(axis, Chan::VEL));
+    let travel = travel.filter(|travel| speed > *travel)?;
+    Some(Message::UnitsDiffer { function, axis, units, place, speed, unit, travel, field })
 }
 
 /// A limit switch that the machine has at the other end.
@@ -132,8 +141,21 @@ pub(crate) fn jogs(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, speed: 
     };
     let of_axis = |bit: &Bit| parts.machine.mechanics.contact(*bit).is_some_and(|(owner, ..)| owner == axis);
     if let Some(bit) = last_bit.filter(of_axis) {
-        parts.out.diagnose(caller, Message::JogEnded { axis, speed, bit });
+        let switch = described_switch(parts, axis, bit);
+        parts.out.diagnose(caller, Message::JogEnded { axis, speed, bit, switch });
     }
+}
+
+/// The switch of an axis as the machine file has it, and the place of the axis.
+fn described_switch(parts: &Parts, axis: AxisId, bit: Bit) -> String {
+    let Some((_, Some(place), active)) = parts.machine.mechanics.contact(bit) else {
+        return "is the switch inverted?".to_owned();
+    };
+    let source = parts.machine.notes.contact(bit).unwrap_or_default();
+    let (active, load) = (u8::from(active), parts.machine.table(axis));
+    format!(
+        "its switch is {active} {place} ({source}), and the axis is at {load:.0} (is the switch inverted, or at the other end?)"
+    )
 }
 
 /// A switch that only axes can press which rest, watched while another axis moves that has switches of its own.
@@ -199,6 +221,7 @@ pub(crate) fn moved(parts: &mut Parts, caller: &Caller<'_>, function: Function, 
         output_wraps(memory, function, axis),
         limit_at_other_end(parts, memory, function, axis),
         limit_of_other(parts, memory, function, axis),
+        units_differ(parts, memory, function, axis),
     ];
     for message in messages.into_iter().flatten() {
         parts.out.diagnose(caller, message);

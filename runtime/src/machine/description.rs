@@ -1,5 +1,6 @@
 //! The machine as a machine file describes it: loads, switches, probes, sources, a spindle, wires.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use kmotiondef::{AxisId, Bit};
@@ -91,9 +92,20 @@ impl fmt::Display for Channel {
 /// The unit of an axis that has no other.
 const COUNTS: &str = "counts";
 
+/// The place where a machine is described.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeyPlace {
+    /// A line of the machine file, from 1.
+    Line(usize),
+    /// An option that sets a key.
+    Option,
+}
+
 /// One axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
+    /// The keys that describe it, with the last place of each.
+    pub keys: BTreeMap<String, KeyPlace>,
     /// The user's name for the axis.
     pub name: String,
     /// The motion model of its load.
@@ -127,6 +139,7 @@ impl Axis {
 impl Default for Axis {
     fn default() -> Self {
         Self {
+            keys: BTreeMap::new(),
             name: String::new(),
             model: Model::Follow,
             units: COUNTS.to_owned(),
@@ -289,6 +302,8 @@ pub struct Switch {
     pub when: Condition,
     /// The level there.
     pub active: bool,
+    /// The place of its description.
+    pub place: KeyPlace,
 }
 
 /// A probe that touches a surface.
@@ -300,6 +315,8 @@ pub struct Probe {
     pub axis: AxisId,
     /// The range in which it touches.
     pub touches: Condition,
+    /// The place of its description.
+    pub place: KeyPlace,
 }
 
 /// An encoder that is turned by hand.

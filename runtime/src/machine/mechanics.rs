@@ -109,8 +109,6 @@ pub(crate) struct Mechanics {
     racked: Option<Racked>,
     /// Inputs that a stimulus has taken from their switches.
     held: Vec<Bit>,
-    /// The axes that are described.
-    axes: Vec<AxisId>,
     /// True if there is any such equipment.
     is_any: bool,
 }
@@ -161,7 +159,6 @@ impl Mechanics {
             gantries,
             racked: None,
             held: Vec::new(),
-            axes: AxisId::all().filter(|axis| axes[axis.index()] != Axis::default()).collect(),
             is_any,
         }
     }
@@ -318,8 +315,8 @@ impl Machine {
 
     /// Returns whether the machine file describes an axis, or something on it.
     pub(crate) fn has_axis(&self, axis: AxisId) -> bool {
-        let Mechanics { axes, gantries, spindles, .. } = &self.mechanics;
-        axes.contains(&axis)
+        let Mechanics { gantries, spindles, .. } = &self.mechanics;
+        self.notes.has_axis(axis)
             || self.mechanics.has_contacts(axis)
             || gantries.iter().any(|gantry| gantry.axes.contains(&axis))
             || spindles.iter().any(|turning| turning.spindle.axis == axis)

@@ -8,6 +8,7 @@ pub(crate) mod description;
 mod lines;
 mod mechanics;
 mod motor;
+mod notes;
 pub(crate) mod plant;
 mod pulses;
 mod table;
@@ -16,6 +17,7 @@ mod tests;
 pub(crate) mod wiring;
 
 use std::ops::{Index, IndexMut};
+use std::sync::Arc;
 
 use kmotiondef::{Axes, AxisId, Bit, Cycles};
 use vm::memory::GuestMemory;
@@ -26,6 +28,7 @@ pub(crate) use description::Channel;
 pub(crate) use lines::Lines;
 pub(crate) use mechanics::{LateRead, Mechanics, Racked};
 pub(crate) use motor::Applied;
+pub(crate) use notes::{Notes, OtherUnits};
 pub(crate) use plant::{COUNTS_PER_TICK, Drive, Plant};
 pub(crate) use pulses::{MissedPulse, Pulses};
 
@@ -105,6 +108,8 @@ pub(crate) struct Machine {
     /// The connections of encoders and motors.
     pub(crate) wiring: Wiring,
     pub(crate) mechanics: Mechanics,
+    /// The places of its description.
+    pub(crate) notes: Arc<Notes>,
     /// The pulses at inputs.
     pub(crate) pulses: Pulses,
     /// Devices on the board's lines.

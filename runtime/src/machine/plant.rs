@@ -256,6 +256,11 @@ impl Plant {
         self.stopped_at.take()
     }
 
+    /// Its hard stops.
+    pub(crate) const fn ends(&self) -> (f64, f64) {
+        (self.build.min, self.build.max)
+    }
+
     /// Another constant load pulls at the motor.
     pub(super) fn pull(&mut self, speed: f64) {
         self.build.motor.load_with(speed);

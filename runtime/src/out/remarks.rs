@@ -429,8 +429,8 @@ messages! {
     SpindleCounts { counts: f32, real: f64, hint: &'static str } = "spindle-counts", Warning, [once],
         "ConfigureSpindle: {counts} counts per revolution, but the encoder of the spindle has {real}{hint}, so speeds and threads are wrong by that factor";
     /// A switch or probe of the machine file is beyond the end of the travel.
-    SwitchUnreachable { bit: Bit, axis: AxisId, place: String, side: &'static str, end: f64 } = "switch-unreachable", Warning, [per bit],
-        "the machine file has a switch or probe on bit {bit} that is active {place}, but the travel of axis {axis} ends at {side} = {end}: it is never reached";
+    SwitchUnreachable { bit: Bit, axis: AxisId, place: String, source: String, end: f64, key: String } = "switch-unreachable", Warning, [per bit],
+        "the switch or probe on bit {bit} ({source}) is active {place}, but the travel of axis {axis} ends at {end} ({key}): it is never reached";
     /// An analog input of a stimulus has a few counts, where volts are probably meant.
     FewCounts { channel: usize, value: f64, volts: f64 } = "few-counts", Warning, [per channel],
         "adc {channel} = {value} is a number of counts, {volts:.3} V: write {value}V for volts";
@@ -465,8 +465,11 @@ messages! {
     GantryRacks { axis: AxisId, other: AxisId, apart: f64, most: f64 } = "gantry-racks", Warning, [per axis],
         "the sides of a gantry, axes {axis} and {other}, are {apart:.1} units apart, and it bears {most}: move both together (MasterAxis of axis {other} = {axis}, SlaveGain = 1)";
     /// A load is moved against the end of its travel.
-    HardStop { axis: AxisId, place: f64, effect: &'static str } = "hard-stop", Warning, [per axis],
-        "axis {axis} runs into the end of its travel at {place}: {effect}";
+    HardStop { axis: AxisId, place: f64, key: String, effect: String } = "hard-stop", Warning, [per axis],
+        "axis {axis} runs into the end of its travel at {place} ({key}): {effect}";
+    /// The machine file gives a unit to an axis that a program moves in steps or counts, far too fast for its travel.
+    UnitsDiffer { function: Function, axis: AxisId, units: String, place: String, speed: f64, unit: &'static str, travel: f64, field: &'static str } = "units-differ", Warning, [per axis],
+        "{function}: axis {axis} can move at {speed} {unit} per second ({field} is 1), and its travel in the machine file is {travel} units: units = \"{units}\" ({place}) is only a name. Min, max, start and the places of switches are in the units of the program, here {unit}";
     /// An approach has a time constant of many seconds.
     LongTau { function: Function, axis: AxisId, tau: f64 } = "long-tau", Hint, [per axis],
         "{function}: axis {axis} approaches its target with a time constant of {tau} s, so it takes {tau} s for two thirds of the way: Tau is in seconds";
@@ -498,8 +501,8 @@ messages! {
     WatchesOther { axis: AxisId, bit: Bit, other: AxisId } = "watches-other", Warning, [per axis],
         "Jog({axis}, 0): the thread has watched bit {bit} on the way, but that is a switch of axis {other}, which rests: watch the switch of axis {axis}";
     /// A jog is stopped before the axis has moved.
-    JogEnded { axis: AxisId, speed: f64, bit: Bit } = "jog-ended", Hint, [per axis],
-        "Jog({axis}, 0): axis {axis} has not moved since Jog({axis}, {speed}): bit {bit} was already as the program waited for (is the switch inverted?)";
+    JogEnded { axis: AxisId, speed: f64, bit: Bit, switch: String } = "jog-ended", Hint, [per axis],
+        "Jog({axis}, 0): axis {axis} has not moved since Jog({axis}, {speed}): bit {bit} was already as the program waited for: {switch}";
     /// An axis cannot follow because its output is at its limit.
     OutputLimit { axis: AxisId, most: f32 } = "output-limit", Warning, [per axis],
         "axis {axis} cannot follow: its output is at MaxOutput = {most}; lower Vel or Accel, or raise MaxOutput";

@@ -47,8 +47,8 @@ use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, Bit};
 use vm::memory::GuestMemory;
 
-use crate::machine::Racked;
 use crate::machine::description::Gantry;
+use crate::machine::{OtherUnits, Racked};
 use crate::out::Message;
 use crate::servo::cache::Change;
 use crate::servo::plan::Input;
@@ -238,7 +238,15 @@ fn note_stopped(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, place: 
     } else {
         "its motor pushes against the stop"
     };
-    tick.remark_on_axis(memory, axis, Message::HardStop { axis, place, effect });
+    let plant = &tick.machine.loads[axis];
+    let key = tick.machine.notes.key(axis, if place == plant.ends().0 { "min" } else { "max" });
+    let effect = match tick.machine.notes.other_units(memory, axis) {
+        Some(OtherUnits { units, place, unit, .. }) => {
+            format!("{effect}; min, max and start are in {unit}, not in {units} ({place})")
+        }
+        None => effect.to_owned(),
+    };
+    tick.remark_on_axis(memory, axis, Message::HardStop { axis, place, key, effect });
 }
 
 /// The destination of an enabled axis was written: whether a motor could follow that.

@@ -1,5 +1,5 @@
 //@ args: --machine parts/slow_motor.toml --set axis.0.max=2000
-//@ says: thread 1 at motor_against_the_end_of_its_travel.c:17:5 in `main`: axis 0 runs into the end of its travel at 2000: its motor pushes against the stop
+//@ says: thread 1 at motor_against_the_end_of_its_travel.c:17:5 in `main`: axis 0 runs into the end of its travel at 2000 (--set axis.0.max): its motor pushes against the stop
 #include "KMotionDef.h"
 
 main()

@@ -1,5 +1,5 @@
 //@ args: --set axis.0.max=5000
-//@ says: thread 1 at stepper_beyond_the_end_of_its_travel.c:13:5 in `main`: axis 0 runs into the end of its travel at 5000: a stepper loses its steps there
+//@ says: thread 1 at stepper_beyond_the_end_of_its_travel.c:13:5 in `main`: axis 0 runs into the end of its travel at 5000 (--set axis.0.max): a stepper loses its steps there
 #include "KMotionDef.h"
 
 main()

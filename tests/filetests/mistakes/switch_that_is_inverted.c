@@ -1,5 +1,5 @@
 //@ args: --machine parts/ends.toml
-//@ says: thread 1 at switch_that_is_inverted.c:17:5 in `main`: Jog(0, 0): axis 0 has not moved since Jog(0, -1000): bit 136 was already as the program waited for (is the switch inverted?)
+//@ says: thread 1 at switch_that_is_inverted.c:17:5 in `main`: Jog(0, 0): axis 0 has not moved since Jog(0, -1000): bit 136 was already as the program waited for: its switch is 1 at ≤ -3000 (ends.toml:5), and the axis is at 0 (is the switch inverted, or at the other end?)
 #include "KMotionDef.h"
 
 main()

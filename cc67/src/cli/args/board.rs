@@ -216,6 +216,7 @@ impl BoardArguments {
         let mut machine = MachineFile::parse_for(board, &text).map_err(|error| {
             anyhow::anyhow!("{}:{}:{}: {error}", path.display(), error.line, error.column)
         })?;
+        machine.set_name(path);
         machine.beside(path.parent().unwrap_or(Path::new("")));
         Ok(machine)
     }

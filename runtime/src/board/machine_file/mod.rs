@@ -11,14 +11,15 @@ mod tables;
 
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::Arc;
 
 use kmotiondef::boards::TargetBoard;
 use kmotiondef::{Axes, Bit};
 
 pub use crate::machine::Connected;
 pub use crate::machine::description::{
-    Analog, AnalogSource, Axis, Channel, Condition, Connection, Encoder, Gantry, Handwheel, Index, Model,
-    Motor, Probe, Spindle, SpindleDrive, Spring, Switch, Travel, Wire,
+    Analog, AnalogSource, Axis, Channel, Condition, Connection, Encoder, Gantry, Handwheel, Index, KeyPlace,
+    Model, Motor, Probe, Spindle, SpindleDrive, Spring, Switch, Travel, Wire,
 };
 use crate::out::{REMARKS, RemarkRow};
 use crate::pc::Answers;
@@ -32,6 +33,8 @@ pub(crate) const NS_PER_INSTRUCTION: f64 = 5.0;
 pub struct MachineFile {
     /// The board that it is for.
     pub board: &'static TargetBoard,
+    /// The name of the file in messages, if it has one.
+    pub name: Option<Arc<str>>,
     /// The axes, those that the board lacks included.
     pub axes: [Axis; Axes::MAX],
     /// The equipment that is connected to the board, without the loads of the axes.
@@ -60,6 +63,7 @@ impl Default for MachineFile {
     fn default() -> Self {
         Self {
             board: TargetBoard::default_board(),
+            name: None,
             axes: std::array::from_fn(|_| Axis::default()),
             connected: Connected::default(),
             wires: Vec::new(),
@@ -192,8 +196,13 @@ impl MachineFile {
     /// As [`parse`](Self::parse).
     pub fn parse_for(board: &'static TargetBoard, text: &str) -> Result<Self, MachineFileError> {
         let mut machine = Self { board, ..Self::default() };
-        tables::apply(&mut machine, text)?;
+        tables::apply(&mut machine, text, false)?;
         Ok(machine)
+    }
+
+    /// Takes the name of its file, without the folder, for messages.
+    pub fn set_name(&mut self, path: &Path) {
+        self.name = path.file_name().map(|name| name.to_string_lossy().into());
     }
 
     /// Takes names of files that do not begin at a root as relative to `folder`, the one of the machine file.
@@ -225,7 +234,7 @@ impl MachineFile {
         let is_toml = toml::de::DeTable::parse(&plain).is_ok();
         let text = if is_toml { plain } else { format!("{key} = {value:?}") };
         let mut changed = self.clone();
-        tables::apply(&mut changed, &text)?;
+        tables::apply(&mut changed, &text, true)?;
         *self = changed;
         Ok(())
     }

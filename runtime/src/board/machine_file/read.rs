@@ -7,7 +7,7 @@ use strsim::levenshtein;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::MachineFileError;
+use super::{KeyPlace, MachineFileError};
 
 /// Something wrong at an offset of the text.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ impl Wrong {
         let before = text.get(..self.offset).unwrap_or(text);
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         MachineFileError {
-            line: before.matches('\n').count() + 1,
+            line: line(text, self.offset),
             column: before[line_start..].chars().count() + 1,
             message: self.message,
         }
@@ -35,34 +35,52 @@ impl Wrong {
 
 pub(super) type Read<T> = Result<T, Wrong>;
 
+/// The line of an offset, from 1.
+fn line(text: &str, offset: usize) -> usize {
+    text.get(..offset).unwrap_or(text).matches('\n').count() + 1
+}
+
+/// The text that is read, and the board that the machine is for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Source<'a> {
+    /// The text of a machine file; `None` of a key that an option sets.
+    pub(super) text: Option<&'a str>,
+    pub(super) board: &'static TargetBoard,
+}
+
+impl Source<'_> {
+    fn place(self, offset: usize) -> KeyPlace {
+        self.text.map_or(KeyPlace::Option, |text| KeyPlace::Line(line(text, offset)))
+    }
+}
+
 /// A table, with what a user calls it.
 #[derive(Clone, Debug)]
 pub(super) struct Table<'a> {
     pub(super) name: String,
     pub(super) offset: usize,
     entries: &'a DeTable<'a>,
-    /// The board that the machine is for.
-    board: &'static TargetBoard,
+    from: Source<'a>,
 }
 
 impl<'a> Table<'a> {
-    pub(super) fn new(
-        name: &str,
-        offset: usize,
-        entries: &'a DeTable<'a>,
-        board: &'static TargetBoard,
-    ) -> Self {
-        Self { name: name.to_owned(), offset, entries, board }
+    pub(super) fn new(name: &str, offset: usize, entries: &'a DeTable<'a>, from: Source<'a>) -> Self {
+        Self { name: name.to_owned(), offset, entries, from }
+    }
+
+    /// Returns its place.
+    pub(super) fn place(&self) -> KeyPlace {
+        self.from.place(self.offset)
     }
 
     /// Its keys with their values.
     pub(super) fn entries(&self) -> impl Iterator<Item = (Key<'a>, Value<'a>)> {
-        let (name, board) = (self.name.clone(), self.board);
+        let (name, from) = (self.name.clone(), self.from);
         self.entries.iter().map(move |(key, value)| {
             let text = key.get_ref().as_ref();
             let path = if name.is_empty() { text.to_owned() } else { format!("{name}.{text}") };
-            let key = Key { text, offset: key.span().start, table: name.clone(), board };
-            (key, Value { path, source: value, board })
+            let key = Key { text, offset: key.span().start, table: name.clone(), from };
+            (key, Value { path, source: value, from })
         })
     }
 
@@ -77,10 +95,15 @@ pub(super) struct Key<'a> {
     pub(super) text: &'a str,
     offset: usize,
     table: String,
-    board: &'static TargetBoard,
+    from: Source<'a>,
 }
 
 impl Key<'_> {
+    /// Returns its place.
+    pub(super) fn place(&self) -> KeyPlace {
+        self.from.place(self.offset)
+    }
+
     /// It is none of those that exist.
     pub(super) fn is_unknown(&self, known: &[&str]) -> Wrong {
         let place = if self.table.is_empty() { String::new() } else { format!(" in `{}`", self.table) };
@@ -94,7 +117,7 @@ impl Key<'_> {
 
     /// The axis it numbers.
     pub(super) fn axis(&self) -> Read<AxisId> {
-        let axes = self.board.axes;
+        let axes = self.from.board.axes;
         let number = self.text.parse().ok().and_then(|number| axes.get(number));
         let wrong = || format!("`{}` is not an axis (0-{})", self.text, axes.last());
         number.ok_or_else(|| Wrong::new(self.offset, wrong()))
@@ -106,7 +129,7 @@ impl Key<'_> {
 pub(super) struct Value<'a> {
     pub(super) path: String,
     source: &'a Spanned<DeValue<'a>>,
-    board: &'static TargetBoard,
+    from: Source<'a>,
 }
 
 impl<'a> Value<'a> {
@@ -208,7 +231,7 @@ impl<'a> Value<'a> {
 
     /// The board that the machine is for.
     pub(super) const fn board(&self) -> &'static TargetBoard {
-        self.board
+        self.from.board
     }
 
     /// An axis number.
@@ -216,8 +239,8 @@ impl<'a> Value<'a> {
         let number = self
             .parsed()
             .filter(|number| number.fract() == 0.0)
-            .and_then(|number| self.board.axes.get(number as i32));
-        number.ok_or_else(|| self.is_wrong(&format!("an axis, 0 to {}", self.board.axes.last())))
+            .and_then(|number| self.from.board.axes.get(number as i32));
+        number.ok_or_else(|| self.is_wrong(&format!("an axis, 0 to {}", self.from.board.axes.last())))
     }
 
     /// A bit that something outside can drive.
@@ -236,7 +259,7 @@ impl<'a> Value<'a> {
         let number =
             self.parsed().filter(|number| number.fract() == 0.0).and_then(|number| Bit::new(number as i32));
         let bit = number.ok_or_else(|| self.is_wrong("a bit number, 0 to 2047"))?;
-        match self.board.bit_range(bit) {
+        match self.from.board.bit_range(bit) {
             Some(range) if goes(range.direction) => Ok(bit),
             Some(range) => {
                 let text = format!("`{}` must be {what}, not bit {bit} ({})", self.path, range.name);
@@ -255,7 +278,7 @@ impl<'a> Value<'a> {
                 .map(|(index, source)| Value {
                     path: format!("{}[{index}]", self.path),
                     source,
-                    board: self.board,
+                    from: self.from,
                 })
                 .collect()),
             _ => Err(self.is_wrong("an array in [brackets]")),
@@ -266,7 +289,7 @@ impl<'a> Value<'a> {
     pub(super) fn table(&self) -> Read<Table<'a>> {
         match self.source.get_ref() {
             DeValue::Table(entries) => {
-                Ok(Table::new(&self.path, self.source.span().start, entries, self.board))
+                Ok(Table::new(&self.path, self.source.span().start, entries, self.from))
             }
             DeValue::Array(_) => Err(self.is_wrong(&format!("one table, `[{}]`", self.path))),
             _ => Err(self.is_wrong("a table")),

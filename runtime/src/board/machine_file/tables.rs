@@ -3,7 +3,7 @@
 use kmotiondef::{AxisId, Bit};
 use toml::de::DeTable;
 
-use super::read::{Read, Table, Value, Wrong, keys};
+use super::read::{Read, Source, Table, Value, Wrong, keys};
 use super::{
     Analog, AnalogSource, Axis, Channel, Condition, Encoder, Gantry, Handwheel, Index, MachineFile,
     MachineFileError, Model, Probe, Spindle, SpindleDrive, Spring, Switch, Travel, Wire,
@@ -12,13 +12,15 @@ use super::{boards, events, pc};
 use crate::out::REMARKS;
 
 /// Applies the settings of a text to a machine.
-pub(super) fn apply(machine: &mut MachineFile, text: &str) -> Result<(), MachineFileError> {
+/// Of a text that is an option, places have no line.
+pub(super) fn apply(machine: &mut MachineFile, text: &str, is_option: bool) -> Result<(), MachineFileError> {
     let table = DeTable::parse(text).map_err(|error| {
         let offset = error.span().map_or(0, |span| span.start);
         Wrong::new(offset, error.message()).in_text(text)
     })?;
     let mut statements = Vec::new();
-    let root = root(machine, &mut statements, &Table::new("", 0, table.get_ref(), machine.board));
+    let from = Source { text: (!is_option).then_some(text), board: machine.board };
+    let root = root(machine, &mut statements, &Table::new("", 0, table.get_ref(), from));
     root.map_err(|wrong| wrong.in_text(text))?;
     machine.stimulus.rules.extend(events::rules(statements, text)?);
     Ok(())
@@ -70,6 +72,7 @@ fn axes(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
 }
 
 fn axis(axis: &mut Axis, table: &Table<'_>) -> Read<()> {
+    axis.keys.extend(table.entries().map(|(key, _)| (key.text.to_owned(), key.place())));
     keys!(table, |key, value| {
         "name" => value.text()?.clone_into(&mut axis.name);
         "model" => axis.model = value.choice(Model::NAMED)?;
@@ -199,6 +202,7 @@ fn switch(table: &Table<'_>) -> Read<Switch> {
         axis: axis.ok_or_else(|| table.is_missing("axis"))?,
         when: when.ok_or_else(|| table.is_missing("when"))?,
         active,
+        place: table.place(),
     })
 }
 
@@ -230,7 +234,7 @@ fn probe(table: &Table<'_>) -> Read<Probe> {
     });
     let (axis, at) = surface.ok_or_else(|| table.is_missing("surface"))?;
     let touches = if above { Condition::AtLeast(at) } else { Condition::AtMost(at) };
-    Ok(Probe { bit: bit.ok_or_else(|| table.is_missing("bit"))?, axis, touches })
+    Ok(Probe { bit: bit.ok_or_else(|| table.is_missing("bit"))?, axis, touches, place: table.place() })
 }
 
 fn place(table: &Table<'_>) -> Read<(AxisId, f64)> {
