@@ -10,7 +10,7 @@ use super::expectation::Look;
 use super::plans::Due;
 use super::player::Player;
 use super::vacuous;
-use super::{Action, Condition, Expectation, Predicate, Trigger};
+use super::{Action, Condition, Expectation, Predicate, Rule, Sense, Trigger};
 use crate::out::{EventKind, Message};
 use crate::world::WorldAccess;
 use crate::world::trace::View;
@@ -25,6 +25,8 @@ pub(super) struct Progress {
     pub(super) was_so: bool,
     /// True if the text it expects was printed: since the condition, where there is one.
     pub(super) said: bool,
+    /// Its text as a line had it, where only upper and lower case differ.
+    pub(super) near: Option<String>,
     /// True if it has acted or checked something.
     pub(super) happened: bool,
     /// The state that its action has found, where it has changed nothing, and whether it ever has.
@@ -64,6 +66,7 @@ impl Player {
     /// A line has come: which expectations have their text, of the statements that were there.
     pub(super) fn note_text(&mut self, line: &str, at: Cycles, known: usize) {
         for (rule, progress) in self.rules.iter().zip(&mut self.progress).take(known) {
+            note_case(rule, progress, line);
             let Action::Expect(expectation) = &rule.action else { continue };
             let is_in_time = match &rule.trigger {
                 Trigger::Within { limit, .. } => {
@@ -184,7 +187,9 @@ impl Player {
                 }
                 _ => String::new(),
             };
-            let text = format!("{place}: at {at} s {text}{within}");
+            let near = self.progress[index].near.as_deref().filter(|_| expectation.sense == Sense::Is);
+            let near = near.map_or(String::new(), |near| format!(" (one contains \"{near}\")"));
+            let text = format!("{place}: at {at} s {text}{near}{within}");
             access.out.tell(context.now, EventKind::Unmet(text));
             self.progress[index].told = true;
         }
@@ -224,6 +229,21 @@ impl Player {
             }
         }
     }
+}
+
+/// Notes the text of a line that differs only in upper and lower case from what a statement waits for or expects.
+fn note_case(rule: &Rule, progress: &mut Progress, line: &str) {
+    let wanted = match (&rule.trigger.condition(), &rule.action) {
+        (Some(Condition::Printed(text)), _) => Some(text.as_str()),
+        (_, Action::Expect(expectation)) => expectation.printed(),
+        _ => None,
+    };
+    let Some(wanted) = wanted.filter(|wanted| !wanted.is_empty() && progress.near.is_none()) else { return };
+    let mut starts = line.char_indices().map(|(at, _)| at);
+    let near = starts.find_map(|at| {
+        line.get(at..at + wanted.len()).filter(|near| near.eq_ignore_ascii_case(wanted) && *near != wanted)
+    });
+    progress.near = near.map(str::to_owned);
 }
 
 /// Seconds as short as they are exact to the nanosecond.

@@ -75,6 +75,11 @@ impl<'a> View<'a> {
         Self { machine, io, tick_start, memory }
     }
 
+    /// When the present tick began.
+    pub(in crate::world) const fn tick_start(&self) -> Cycles {
+        self.tick_start
+    }
+
     /// The value of an item.
     #[must_use]
     pub fn item(&self, item: Item) -> f64 {
