@@ -56,7 +56,7 @@ main()
     if (c == 200) n++;
     if (u > 5) n--;
     if (p < last) *p++ = d;
-    *p++;
+    p++;
     FPGA(0x100) = n;
     c = FPGA(0x101);
     text[0] = 'a';

@@ -154,6 +154,10 @@ macro_rules! for_each_lint {
             ReturnedLocal = "returned-local", On, pass returned_local;
             /// A function changes only its own copies of its arguments.
             ParameterCopy = "parameter-copy", On, pass parameter_copy;
+            /// A structure is copied, and values are stored in the copy, which nothing reads.
+            UnusedCopy = "unused-copy", On, pass unused_copy;
+            /// A variable counts a loop of `main`, and nothing sets it back when the program starts again.
+            KeptCounter = "kept-counter", On, pass kept_counter;
             /// A text is stored in an array that is too small for it.
             TextOverflow = "text-overflow", On, pass text_overflow;
             /// One side of `&&` or `||` is a number other than 0 and 1.
@@ -182,6 +186,8 @@ macro_rules! for_each_lint {
             AbsoluteTime = "absolute-time", On, pass absolute_time;
             /// An analog input, which is read in counts, is compared with a number of volts.
             AdcCounts = "adc-counts", On, pass adc_counts;
+            /// An analog output, which is written in counts, is given a number of volts.
+            DacCounts = "dac-counts", On;
             /// A recording is read as soon as it has begun.
             GatherEarly = "gather-early", On, pass gather_early;
             /// An answer of the PC or a result of another thread is read before it can be there.

@@ -1,24 +1,31 @@
 //! Accesses beyond the end of an array.
 //!
 //! Only whole objects count: after a member array comes the next member, which programs reach on purpose. A variable
-//! index is followed through the simplest loops, where every iteration is known.
+//! index is followed through the simplest loops, where every iteration is known, and into the parameters of functions.
+
+use std::collections::BTreeMap;
 
 use super::program::{AnalysedProgram, PERSIST};
 use super::user_data_index;
 use super::walk::{Extent, Walk};
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::{BinaryOp, CompareOp};
+use crate::source::Span;
 use crate::ty::TypeId;
 use crate::typed::{
-    ExprId, ExprKind, Function, LocalId, LoopTest, PlaceId, PlaceKind, Stmt, StmtKind, SymbolId,
+    Callee, Expr, ExprId, ExprKind, Function, LocalId, LoopTest, PlaceId, PlaceKind, Stmt, StmtKind, SymbolId,
 };
 
 /// Reports loads and stores outside arrays, at constant indexes and in loops that count.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
+    let reached = reached(program);
     for function in program.whole_functions() {
-        let search = Search { program, function };
+        let search = Search { program, function, reached: &reached };
         for place in function.exprs.values().flat_map(|expr| accesses(function, &expr.kind)) {
             sink.report_if(search.finding(place, None));
+        }
+        for expr in function.exprs.values() {
+            search.call(expr, None, sink);
         }
         search.loops(&function.body, sink);
         function.each_stmt(&mut |stmt| match &stmt.kind {
@@ -63,9 +70,38 @@ struct Counter {
     last: i64,
 }
 
+/// An argument of a call: its value in the first iteration of a loop around the call, and in the last.
+#[derive(Clone, Copy)]
+struct Passed {
+    /// The parameter.
+    local: LocalId,
+    first: i64,
+    last: i64,
+    call: Span,
+}
+
+/// A function of the program, and the places that it always reaches, each by the value of a parameter.
+struct Reached<'a> {
+    function: &'a Function,
+    places: Vec<(LocalId, PlaceId)>,
+}
+
+/// The functions of a program that always reach an element by the value of a parameter.
+fn reached<'a>(program: &AnalysedProgram<'a>) -> BTreeMap<SymbolId, Reached<'a>> {
+    let nothing = BTreeMap::new();
+    let functions = program.whole_functions().filter(|function| !function.parameters.is_empty());
+    let reached = functions.filter_map(|function| {
+        let search = Search { program, function, reached: &nothing };
+        let places = search.reached();
+        (!places.is_empty()).then_some((function.symbol, Reached { function, places }))
+    });
+    reached.collect()
+}
+
 struct Search<'a> {
     program: &'a AnalysedProgram<'a>,
     function: &'a Function,
+    reached: &'a BTreeMap<SymbolId, Reached<'a>>,
 }
 
 impl Search<'_> {
@@ -112,6 +148,49 @@ impl Search<'_> {
         Some(Counter { local, first: *first, last: last - (last - first) % step })
     }
 
+    /// The places that a call of the function always reaches, each by the value of a parameter that never changes.
+    fn reached(&self) -> Vec<(LocalId, PlaceId)> {
+        let body = &self.function.body;
+        let always = body.iter().take_while(|stmt| is_plain(std::slice::from_ref(stmt))).count();
+        let parameters: Vec<_> =
+            self.function.parameters.iter().copied().filter(|local| !self.changes(body, *local)).collect();
+        let mut places = Vec::new();
+        Walk { function: self.function, extent: Extent::Always }.stmts(&body[..always], &mut |expr| {
+            for place in accesses(self.function, &self.function.exprs[expr].kind) {
+                let depends = |local: &LocalId| {
+                    self.target(place, None).is_none() && self.target(place, Some((*local, 0))).is_some()
+                };
+                places.extend(parameters.iter().copied().filter(depends).map(|local| (local, place)));
+            }
+        });
+        places
+    }
+
+    /// Reports accesses of a called function outside an array, by its arguments.
+    fn call(&self, expr: &Expr, counter: Option<Counter>, sink: &mut Sink) {
+        let ExprKind::Call(call) = &expr.kind else { return };
+        let Callee::Symbol(callee) = call.callee else { return };
+        let Some(Reached { function, places }) = self.reached.get(&callee) else { return };
+        let callee = Search { function, ..*self };
+        for (local, place) in places {
+            let at = function.parameters.iter().position(|parameter| parameter == local);
+            let Some(argument) = at.and_then(|at| call.arguments.get(at)) else { continue };
+            let known = |value: fn(&Counter) -> i64| {
+                self.number(*argument, counter.as_ref().map(|counter| (counter.local, value(counter))))
+            };
+            let (Some(first), Some(last)) = (known(|counter| counter.first), known(|counter| counter.last))
+            else {
+                continue;
+            };
+            // A constant is looked at without a loop.
+            if counter.is_some() && first == last {
+                continue;
+            }
+            let passed = Passed { local: *local, first, last, call: expr.span };
+            sink.report_if(callee.finding_of_call(*place, passed));
+        }
+    }
+
     /// The local of a place that is all of one which only this function can change.
     fn register(&self, place: PlaceId) -> Option<LocalId> {
         match self.function.places[place].kind {
@@ -150,6 +229,7 @@ impl Search<'_> {
             for place in accesses(self.function, &self.function.exprs[expr].kind) {
                 sink.report_if(self.finding(place, Some(counter)));
             }
+            self.call(&self.function.exprs[expr], Some(counter), sink);
         });
     }
 
@@ -163,20 +243,7 @@ impl Search<'_> {
         if let Some(finding) = self.user_data(object, place, from, to).filter(|_| counter.is_some()) {
             return Some(finding);
         }
-        let (name, ty) = self.named(object)?;
-        let types = &self.program.unit.types;
-        let (element, length) = types.array(ty)?;
-        let element = i64::from(types.size_of(element.ty)?.max(1));
-        let size = i64::from(types.size_of(self.function.places[place].ty)?.max(1));
-        let end = element * i64::from(length?);
-        let wrong = [to, from].into_iter().find(|at| *at < 0 || at + size > end)?;
-        // Where an access begins inside, what it lacks is behind the end.
-        let index = if wrong < 0 { wrong } else { wrong.max(end) }.div_euclid(element);
-        let message = format!("`{name}` has no element {index}");
-        let has =
-            length?.checked_sub(1).map_or("it has none".to_owned(), |last| format!("it has 0 to {last}"));
-        let finding =
-            Diagnostic::warning(Lint::ArrayBounds, self.function.places[place].span, message).at(has);
+        let (finding, wrong) = self.outside(place, object, [to, from])?;
         Some(match counter {
             None => finding,
             Some(Counter { local, first, last }) => {
@@ -185,6 +252,39 @@ impl Search<'_> {
                 finding.note(format!("`{name}` is {value} in the {iteration} iteration of the loop"))
             }
         })
+    }
+
+    /// The message for an access to `place` in a call.
+    fn finding_of_call(&self, place: PlaceId, passed: Passed) -> Option<Diagnostic> {
+        let Passed { local, first, last, call } = passed;
+        let (object, from) = self.target(place, Some((local, first)))?;
+        let (_, to) = self.target(place, Some((local, last)))?;
+        let (finding, wrong) = self.outside(place, object, [to, from])?;
+        let name = &self.function.locals[local].name;
+        Some(if first == last {
+            finding.label(call, format!("`{name}` is {first} in this call"))
+        } else {
+            let (value, iteration) = if wrong == to { (last, "last") } else { (first, "first") };
+            finding.label(call, format!("`{name}` is {value} in the {iteration} iteration of this loop"))
+        })
+    }
+
+    /// The message for an access at one of two bytes of an object, if it is outside of it, and that byte.
+    fn outside(&self, place: PlaceId, object: Object, at: [i64; 2]) -> Option<(Diagnostic, i64)> {
+        let (name, ty) = self.named(object)?;
+        let types = &self.program.unit.types;
+        let (element, length) = types.array(ty)?;
+        let element = i64::from(types.size_of(element.ty)?.max(1));
+        let size = i64::from(types.size_of(self.function.places[place].ty)?.max(1));
+        let end = element * i64::from(length?);
+        let wrong = at.into_iter().find(|at| *at < 0 || at + size > end)?;
+        // Where an access begins inside, what it lacks is behind the end.
+        let index = if wrong < 0 { wrong } else { wrong.max(end) }.div_euclid(element);
+        let message = format!("`{name}` has no element {index}");
+        let has =
+            length?.checked_sub(1).map_or("it has none".to_owned(), |last| format!("it has 0 to {last}"));
+        let span = self.function.places[place].span;
+        Some((Diagnostic::warning(Lint::ArrayBounds, span, message).at(has), wrong))
     }
 
     /// The message for a loop that goes from an element of `persist.UserData` to one that it does not have.

@@ -1,5 +1,7 @@
 //! `if (MsgBox(text, MB_YESNO) == 1)`: the button *Yes* is `IDYES`, 6, and *No* is not 0.
 
+use std::collections::BTreeMap;
+
 use super::program::AnalysedProgram;
 use super::user_data_type::element;
 use crate::diag::{Diagnostic, Lint, Sink};
@@ -49,42 +51,126 @@ const BUTTONS: [Buttons; 6] = [
 
 /// Reports answers that are compared with a number of no button, and those that are tested like a truth.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
-    for function in program.functions().filter(|function| shows_a_box(program, function)) {
+    let askers = program.functions().filter_map(|function| {
+        let buttons = posted(program, function).filter(|_| returns_answer(program, function))?;
+        Some((function.symbol, buttons))
+    });
+    let search = Search { program, askers: askers.collect() };
+    program.functions().for_each(|function| search.function(function, sink));
+}
+
+struct Search<'p, 'a> {
+    program: &'p AnalysedProgram<'a>,
+    /// Functions of the program that show a box and return its answer.
+    askers: BTreeMap<SymbolId, Buttons>,
+}
+
+impl Search<'_, '_> {
+    fn function(&self, function: &Function, sink: &mut Sink) {
+        if !self.shows_a_box(function) {
+            return;
+        }
         for expr in function.exprs.values() {
             let tested = match expr.kind {
                 ExprKind::Compare(op @ (CompareOp::Equal | CompareOp::NotEqual), a, b) => {
                     let ExprKind::Int(number) = function.exprs[b].kind else { continue };
-                    answer(program, function, a)
+                    self.answer(function, a)
                         .filter(|buttons| !buttons.answers.contains(&number))
                         .map(|buttons| compared(buttons, expr.span, op == CompareOp::NotEqual, number))
                 }
-                ExprKind::Unary(UnaryOp::Not, value) => truth(program, function, value, false),
+                ExprKind::Unary(UnaryOp::Not, value) => self.truth(function, value, false),
                 ExprKind::And(a, b) | ExprKind::Or(a, b) => {
-                    sink.report_if(truth(program, function, a, true));
-                    truth(program, function, b, true)
+                    sink.report_if(self.truth(function, a, true));
+                    self.truth(function, b, true)
                 }
-                ExprKind::Conditional(value, ..) => truth(program, function, value, true),
+                ExprKind::Conditional(value, ..) => self.truth(function, value, true),
                 _ => None,
             };
             sink.report_if(tested);
         }
         function.each_stmt(&mut |stmt| match &stmt.kind {
-            StmtKind::If { condition, .. } => sink.report_if(truth(program, function, *condition, true)),
+            StmtKind::If { condition, .. } => sink.report_if(self.truth(function, *condition, true)),
             StmtKind::Loop { condition: Some(condition), .. } => {
-                sink.report_if(truth(program, function, *condition, true));
+                sink.report_if(self.truth(function, *condition, true));
             }
             _ => {}
         });
     }
-}
 
-/// Returns whether a function calls one that shows a box, or asks for one in the mailbox.
-fn shows_a_box(program: &AnalysedProgram<'_>, function: &Function) -> bool {
-    function.exprs.values().any(|expr| match &expr.kind {
-        ExprKind::Call(call) => asked(program, function, call).is_some(),
-        ExprKind::Assign(place, _) => element(program, function, *place) == Some(FLAGS),
-        _ => false,
-    })
+    /// Returns whether a function calls one that shows a box, or asks for one in the mailbox.
+    fn shows_a_box(&self, function: &Function) -> bool {
+        function.exprs.values().any(|expr| match &expr.kind {
+            ExprKind::Call(call) => self.asked(function, call).is_some(),
+            ExprKind::Assign(place, _) => element(self.program, function, *place) == Some(FLAGS),
+            _ => false,
+        })
+    }
+
+    /// An answer in place of a condition: no button has the number 0.
+    fn truth(&self, function: &Function, value: ExprId, result: bool) -> Option<Diagnostic> {
+        let buttons = self.answer(function, value).filter(|buttons| buttons.answers.len() > 1)?;
+        let Buttons { flag, names, .. } = buttons;
+        let message = format!("a box with the buttons of `{flag}` never answers 0");
+        Some(
+            Diagnostic::warning(Lint::BoxAnswer, function.exprs[value].span, message)
+                .at(format!("so this is always {result}"))
+                .help(format!("compare with {names}")),
+        )
+    }
+
+    /// The buttons of the box whose answer a value is.
+    fn answer(&self, function: &Function, value: ExprId) -> Option<Buttons> {
+        match &function.exprs[value].kind {
+            ExprKind::Call(call) => self.asked(function, call),
+            ExprKind::Load(place) => match function.places[*place].kind {
+                PlaceKind::Local(local, 0) => self.stored(function, local),
+                _ if element(self.program, function, *place) == Some(ANSWER) => {
+                    posted(self.program, function)
+                }
+                _ => None,
+            },
+            ExprKind::Convert(inner) => self.answer(function, *inner),
+            _ => None,
+        }
+    }
+
+    /// The buttons of a call, by its flags.
+    fn asked(&self, function: &Function, call: &Call) -> Option<Buttons> {
+        let Callee::Symbol(callee) = call.callee else { return None };
+        if let Some(buttons) = self.askers.get(&callee) {
+            return Some(*buttons);
+        }
+        let name = self.program.name(callee).to_lowercase();
+        let is_box = name.contains("msgbox") || name.contains("messagebox");
+        let flags =
+            call.arguments.iter().rev().find_map(|argument| match function.exprs[*argument].kind {
+                ExprKind::Int(number) => Some(number),
+                _ => None,
+            })?;
+        (is_box && hands_on(self.program, callee)).then(|| buttons(flags)).flatten()
+    }
+
+    /// The buttons of the only box whose answer is stored in a variable.
+    fn stored(&self, function: &Function, wanted: LocalId) -> Option<Buttons> {
+        let is_it = |place: PlaceId| matches!(function.places[place].kind, PlaceKind::Local(local, _) if local == wanted);
+        let mut found = None;
+        for expr in function.exprs.values() {
+            match &expr.kind {
+                ExprKind::Update(update) if is_it(update.place) => return None,
+                ExprKind::Address(place) if is_it(*place) => return None,
+                ExprKind::Assign(place, value) if is_it(*place) => {
+                    let ExprKind::Call(call) = &function.exprs[*value].kind else { return None };
+                    let asked = self.asked(function, call)?;
+                    if found.is_some_and(|found: Buttons| found.value != asked.value) {
+                        return None;
+                    }
+                    found = Some(asked);
+                }
+                _ => {}
+            }
+        }
+        found
+    }
 }
 
 fn compared(buttons: Buttons, span: Span, result: bool, number: i64) -> Diagnostic {
@@ -98,47 +184,16 @@ fn compared(buttons: Buttons, span: Span, result: bool, number: i64) -> Diagnost
     .help(format!("it answers {names}"))
 }
 
-/// An answer in place of a condition: no button has the number 0.
-fn truth(
-    program: &AnalysedProgram<'_>,
-    function: &Function,
-    value: ExprId,
-    result: bool,
-) -> Option<Diagnostic> {
-    let buttons = answer(program, function, value).filter(|buttons| buttons.answers.len() > 1)?;
-    let Buttons { flag, names, .. } = buttons;
-    let message = format!("a box with the buttons of `{flag}` never answers 0");
-    Some(
-        Diagnostic::warning(Lint::BoxAnswer, function.exprs[value].span, message)
-            .at(format!("so this is always {result}"))
-            .help(format!("compare with {names}")),
-    )
-}
-
-/// The buttons of the box whose answer a value is.
-fn answer(program: &AnalysedProgram<'_>, function: &Function, value: ExprId) -> Option<Buttons> {
-    match &function.exprs[value].kind {
-        ExprKind::Call(call) => asked(program, function, call),
-        ExprKind::Load(place) => match function.places[*place].kind {
-            PlaceKind::Local(local, 0) => stored(program, function, local),
-            _ if element(program, function, *place) == Some(ANSWER) => posted(program, function),
-            _ => None,
-        },
-        ExprKind::Convert(inner) => answer(program, function, *inner),
-        _ => None,
-    }
-}
-
-/// The buttons of a call, by its flags.
-fn asked(program: &AnalysedProgram<'_>, function: &Function, call: &Call) -> Option<Buttons> {
-    let Callee::Symbol(callee) = call.callee else { return None };
-    let name = program.name(callee).to_lowercase();
-    let is_box = name.contains("msgbox") || name.contains("messagebox");
-    let flags = call.arguments.iter().rev().find_map(|argument| match function.exprs[*argument].kind {
-        ExprKind::Int(number) => Some(number),
-        _ => None,
-    })?;
-    (is_box && hands_on(program, callee)).then(|| buttons(flags)).flatten()
+/// Returns whether a function returns the mailbox's answer.
+fn returns_answer(program: &AnalysedProgram<'_>, function: &Function) -> bool {
+    let mut returns = Vec::new();
+    function.each_stmt(&mut |stmt| {
+        if let StmtKind::Return(Some(value)) = stmt.kind {
+            returns.push(matches!(function.exprs[value].kind, ExprKind::Load(place)
+                if element(program, function, place) == Some(ANSWER)));
+        }
+    });
+    !returns.is_empty() && returns.into_iter().all(|is_answer| is_answer)
 }
 
 /// Returns whether a function returns an answer as it is; one of the program may make another value of it.
@@ -151,29 +206,6 @@ fn hands_on(program: &AnalysedProgram<'_>, callee: SymbolId) -> bool {
         }
     });
     is_answer
-}
-
-/// The buttons of the only box whose answer is stored in a variable.
-fn stored(program: &AnalysedProgram<'_>, function: &Function, wanted: LocalId) -> Option<Buttons> {
-    let is_it =
-        |place: PlaceId| matches!(function.places[place].kind, PlaceKind::Local(local, _) if local == wanted);
-    let mut found = None;
-    for expr in function.exprs.values() {
-        match &expr.kind {
-            ExprKind::Update(update) if is_it(update.place) => return None,
-            ExprKind::Address(place) if is_it(*place) => return None,
-            ExprKind::Assign(place, value) if is_it(*place) => {
-                let ExprKind::Call(call) = &function.exprs[*value].kind else { return None };
-                let asked = asked(program, function, call)?;
-                if found.is_some_and(|found: Buttons| found.value != asked.value) {
-                    return None;
-                }
-                found = Some(asked);
-            }
-            _ => {}
-        }
-    }
-    found
 }
 
 /// The buttons of the only box that a function asks for in the mailbox.

@@ -1,6 +1,8 @@
 //! Comparisons whose result the types decide, `unsigned >= 0`, `char == 200`, or the function, `ReadBit(3) == 5`; pairs
 //! of which one is always true, `x != 1 || x != 2`, or false, `x < 1 && x > 2`.
 
+use std::collections::BTreeMap;
+
 use kmotiondef::firmware::row_named;
 use kmotiondef::function::Polled;
 
@@ -10,11 +12,12 @@ use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::CompareOp;
 use crate::source::ExpansionId;
 use crate::ty::{TypeId, Types};
-use crate::typed::{Expr, ExprId, ExprKind, Function, PlaceKind};
+use crate::typed::{Expr, ExprId, ExprKind, Function, LocalId, PlaceKind};
 
 /// Reports comparisons with a constant that no value of the other side's type decides differently.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
+        let narrow = narrow_variables(function);
         for expr in function.exprs.values() {
             sink.report_if(pair(program, function, expr));
             let ExprKind::Compare(op, a, b) = expr.kind else { continue };
@@ -25,7 +28,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
             };
             let Some((op, value, number)) = sides else { continue };
             let Some(Range { of, least, most, help }) =
-                answer(program, function, value).or_else(|| range(program, function, value))
+                answer(program, function, value).or_else(|| range(program, function, value, number, &narrow))
             else {
                 continue;
             };
@@ -161,7 +164,28 @@ fn answer(program: &AnalysedProgram<'_>, function: &Function, value: ExprId) -> 
 }
 
 /// The type of a value before C widens it, and its range.
-fn range(program: &AnalysedProgram<'_>, function: &Function, mut value: ExprId) -> Option<Range> {
+fn range(
+    program: &AnalysedProgram<'_>,
+    function: &Function,
+    value: ExprId,
+    number: i64,
+    narrow: &BTreeMap<LocalId, TypeId>,
+) -> Option<Range> {
+    let value = unwidened(function, value);
+    let variable = register(function, value).and_then(|local| narrow.get(&local).copied());
+    let ty = variable.unwrap_or(function.exprs[value].ty);
+    let (least, most) = range_of(ty)?;
+    let is_byte = matches!(ty, Types::CHAR | Types::SIGNED_CHAR) && (0..=0xff).contains(&number);
+    let help = match (is_byte, variable) {
+        (true, None) => "use an `unsigned char`",
+        (true, Some(_)) => "mask the value where it is stored: `& 0xff`",
+        (false, _) => "use an `int`",
+    };
+    Some(Range { of: program.spell(ty), least, most, help })
+}
+
+/// A value without the conversions that widen it.
+fn unwidened(function: &Function, mut value: ExprId) -> ExprId {
     let is_plain = |ty: TypeId| ty.is_integer() && !ty.is_long_long();
     while let ExprKind::Convert(inner) = function.exprs[value].kind
         && is_plain(function.exprs[inner].ty)
@@ -170,9 +194,34 @@ fn range(program: &AnalysedProgram<'_>, function: &Function, mut value: ExprId) 
     {
         value = inner;
     }
-    let ty = function.exprs[value].ty;
-    let (least, most) = range_of(ty)?;
-    Some(Range { of: program.spell(ty), least, most, help: "use an `int`" })
+    value
+}
+
+/// The variable that a value is read from, if only this function can change it.
+fn register(function: &Function, value: ExprId) -> Option<LocalId> {
+    let ExprKind::Load(place) = function.exprs[value].kind else { return None };
+    match function.places[place].kind {
+        PlaceKind::Local(local, 0) if !function.locals[local].in_memory => Some(local),
+        _ => None,
+    }
+}
+
+/// The variables of type `int` in which only values of one signed type of 8 bits are stored, each with the type.
+fn narrow_variables(function: &Function) -> BTreeMap<LocalId, TypeId> {
+    let mut types: BTreeMap<LocalId, Option<TypeId>> =
+        function.parameters.iter().map(|&parameter| (parameter, None)).collect();
+    for expr in function.exprs.values() {
+        let (place, ty) = match &expr.kind {
+            ExprKind::Update(update) => (update.place, None),
+            ExprKind::Assign(place, value) => (*place, Some(function.exprs[unwidened(function, *value)].ty)),
+            _ => continue,
+        };
+        let PlaceKind::Local(local, _) = function.places[place].kind else { continue };
+        let is_byte = |ty: &TypeId| matches!(*ty, Types::CHAR | Types::SIGNED_CHAR);
+        let ty = ty.filter(|ty| is_byte(ty) && function.locals[local].ty == Types::INT);
+        types.entry(local).and_modify(|only| *only = only.filter(|only| Some(*only) == ty)).or_insert(ty);
+    }
+    types.into_iter().filter_map(|(local, ty)| Some((local, ty?))).collect()
 }
 
 /// The range of a type that is narrower than `int`, or unsigned.

@@ -1,4 +1,4 @@
-//! The locals that every way to a place of a function has stored in.
+//! The locals that every path to a position in a function has stored in, or has read before.
 
 use cranelift_entity::EntityRef;
 
@@ -9,41 +9,81 @@ use crate::typed::LocalId;
 pub(super) enum Flow {
     /// Not reachable: every fact holds.
     Unreachable,
-    /// The locals that hold a value, one bit each.
-    Stored(Vec<u64>),
+    Reachable {
+        /// Hold a value on every path.
+        stored: LocalSet,
+        /// Were read on every path before they had a value.
+        read: LocalSet,
+    },
 }
 
 impl Flow {
     /// The start of a function: nothing holds a value.
     pub(super) const fn start() -> Self {
-        Self::Stored(Vec::new())
+        Self::Reachable { stored: LocalSet(Vec::new()), read: LocalSet(Vec::new()) }
     }
 
-    pub(super) fn insert(&mut self, local: LocalId) {
-        let Self::Stored(words) = self else { return };
-        let (word, bit) = position(local);
-        if words.len() <= word {
-            words.resize(word + 1, 0);
+    pub(super) fn store(&mut self, local: LocalId) {
+        if let Self::Reachable { stored, .. } = self {
+            stored.insert(local);
         }
-        words[word] |= bit;
     }
 
-    pub(super) fn contains(&self, local: LocalId) -> bool {
-        let Self::Stored(words) = self else { return true };
-        let (word, bit) = position(local);
-        words.get(word).is_some_and(|word| word & bit != 0)
+    /// Notes a read of a local without a value.
+    pub(super) fn read(&mut self, local: LocalId) {
+        if let Self::Reachable { read, .. } = self {
+            read.insert(local);
+        }
     }
 
-    /// Merges another path to the same point: only what both have assigned is certain.
+    pub(super) fn is_stored(&self, local: LocalId) -> bool {
+        match self {
+            Self::Unreachable => true,
+            Self::Reachable { stored, .. } => stored.contains(local),
+        }
+    }
+
+    pub(super) fn is_read(&self, local: LocalId) -> bool {
+        match self {
+            Self::Unreachable => true,
+            Self::Reachable { read, .. } => read.contains(local),
+        }
+    }
+
+    /// Merges another path to the same point: a fact is certain if it holds on both.
     pub(super) fn join(&mut self, other: &Self) {
         match (&mut *self, other) {
             (_, Self::Unreachable) => {}
-            (Self::Unreachable, Self::Stored(_)) => *self = other.clone(),
-            (Self::Stored(words), Self::Stored(others)) => {
-                words.truncate(others.len());
-                words.iter_mut().zip(others).for_each(|(word, other)| *word &= other);
+            (Self::Unreachable, Self::Reachable { .. }) => *self = other.clone(),
+            (Self::Reachable { stored, read }, Self::Reachable { stored: other, read: other_read }) => {
+                stored.intersect(other);
+                read.intersect(other_read);
             }
         }
+    }
+}
+
+/// A set of locals, one bit each.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct LocalSet(Vec<u64>);
+
+impl LocalSet {
+    fn insert(&mut self, local: LocalId) {
+        let (word, bit) = position(local);
+        if self.0.len() <= word {
+            self.0.resize(word + 1, 0);
+        }
+        self.0[word] |= bit;
+    }
+
+    fn contains(&self, local: LocalId) -> bool {
+        let (word, bit) = position(local);
+        self.0.get(word).is_some_and(|word| word & bit != 0)
+    }
+
+    fn intersect(&mut self, other: &Self) {
+        self.0.truncate(other.0.len());
+        self.0.iter_mut().zip(&other.0).for_each(|(word, other)| *word &= other);
     }
 }
 
@@ -60,16 +100,26 @@ mod tests {
     fn only_variables_stored_on_every_path_count_as_initialised() {
         let [a, b] = [3, 200].map(LocalId::new);
         let mut left = Flow::start();
-        left.insert(a);
+        left.store(a);
         let mut right = left.clone();
-        right.insert(b);
+        right.store(b);
         let mut meeting = Flow::Unreachable;
-        assert!(meeting.contains(b));
+        assert!(meeting.is_stored(b));
         meeting.join(&right);
         assert_eq!(meeting, right);
         meeting.join(&left);
-        assert!(meeting.contains(a) && !meeting.contains(b));
+        assert!(meeting.is_stored(a) && !meeting.is_stored(b));
         meeting.join(&Flow::Unreachable);
-        assert!(meeting.contains(a));
+        assert!(meeting.is_stored(a));
+    }
+
+    #[test]
+    fn a_read_is_certain_if_it_is_on_every_path() {
+        let a = LocalId::new(0);
+        let mut left = Flow::start();
+        left.read(a);
+        assert!(left.is_read(a) && !left.is_stored(a));
+        left.join(&Flow::start());
+        assert!(!left.is_read(a));
     }
 }

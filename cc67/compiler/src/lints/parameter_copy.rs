@@ -18,14 +18,19 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
         let name = program.name(function.symbol);
         let message = format!("`{name}` has no effect: it changes only its own copies of {names}");
         let first = &function.locals[changed[0]];
-        let star = format!("{} *{}", program.spell(first.ty), first.name).replace("* *", "**");
+        let help = if program.unit.types.is_pointer(first.ty) {
+            format!("`*{}` is what it points to", first.name)
+        } else {
+            let star = format!("{} *{}", program.spell(first.ty), first.name);
+            format!(
+                "take addresses, as in `{star}`, store in `*{}`, and call it with `&` before the variables",
+                first.name
+            )
+        };
         sink.report(
             Diagnostic::warning(Lint::ParameterCopy, function.span, message)
                 .at("arguments are copied in a call")
-                .help(format!(
-                    "take addresses, as in `{star}`, store in `*{}`, and call it with `&` before the variables",
-                    first.name
-                )),
+                .help(help),
         );
     }
 }
@@ -34,11 +39,16 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
 fn changed(function: &Function) -> Option<Vec<LocalId>> {
     let mut is_idle = true;
     function.each_stmt(&mut |stmt| {
-        is_idle &= !matches!(
-            stmt.kind,
+        is_idle &= match stmt.kind {
             // A loop may be there to take time.
-            StmtKind::Loop { .. } | StmtKind::Return(Some(_)) | StmtKind::Goto(_) | StmtKind::GotoAddress(_)
-        );
+            StmtKind::Loop { .. }
+            | StmtKind::Return(Some(_))
+            | StmtKind::Goto(_)
+            | StmtKind::GotoAddress(_) => false,
+            // `*p++;` is `unused-value`.
+            StmtKind::Expr(expr) => !matches!(function.exprs[expr].kind, ExprKind::Load(_)),
+            _ => true,
+        };
     });
     let mut changed = Vec::new();
     Walk { function, extent: Extent::All }.stmts(&function.body, &mut |expr| {

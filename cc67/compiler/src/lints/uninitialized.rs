@@ -1,9 +1,10 @@
 //! Reads of locals in which nothing was stored.
 //!
-//! Certain is a read if no store comes before it in the text, and none after it in a loop
-//! around both. Possible is one that some path reaches without a store; which paths are taken
-//! is not known, so that many of these are false alarms. Functions with labels are left out.
-//! Locals in memory are, too: their address may have been passed on.
+//! A read is certain to find no value if no store comes before it in the text, and every path to
+//! a later store, in a loop around both, leads over a read. A read is doubtful if some path
+//! reaches it without a store; which paths are taken is not known, so that many of these are
+//! false alarms. Functions with labels are left out. Locals in memory are, too: their address may
+//! have been passed on.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -31,6 +32,7 @@ fn search(function: &Function, sink: &mut Sink) {
     let mut search = Search {
         function,
         stored: BTreeSet::new(),
+        stored_unread: BTreeSet::new(),
         suspects: BTreeMap::new(),
         flow: Flow::start(),
         doubtful: BTreeMap::new(),
@@ -68,6 +70,8 @@ struct Search<'a> {
     function: &'a Function,
     /// Locals whose store was met in the text so far.
     stored: BTreeSet<LocalId>,
+    /// Locals with a store that some path reaches without a read of the local.
+    stored_unread: BTreeSet<LocalId>,
     /// Locals that were read first, and where.
     suspects: BTreeMap<LocalId, Span>,
     /// The locals that every path to the current position has stored in.
@@ -207,11 +211,12 @@ impl Search<'_> {
         }
     }
 
-    /// Analyses the body of a loop: a local stored later in the body may be read earlier in the next iteration.
+    /// Analyses the body of a loop: a local that is stored in later in the body may be read earlier in the next
+    /// iteration, unless the path to that store leads over a read.
     fn in_loop(&mut self, body: impl FnOnce(&mut Self)) {
         let known: BTreeSet<_> = self.suspects.keys().copied().collect();
         body(self);
-        let stored = &self.stored;
+        let stored = &self.stored_unread;
         self.suspects.retain(|local, _| known.contains(local) || !stored.contains(local));
     }
 
@@ -302,8 +307,9 @@ impl Search<'_> {
         let span = self.function.places[place].span;
         if !self.stored.contains(&local) {
             self.suspects.entry(local).or_insert(span);
+            self.flow.read(local);
         }
-        if !self.flow.contains(local) {
+        if !self.flow.is_stored(local) {
             self.doubtful.entry(local).or_insert(span);
         }
     }
@@ -333,12 +339,15 @@ impl Search<'_> {
     /// Leaves a place without a value that had none before an update.
     fn update(&mut self, place: PlaceId) {
         if let PlaceKind::Local(local, _) = self.function.places[place].kind {
-            self.flow.insert(local);
+            self.flow.store(local);
         }
     }
 
     fn stored_in(&mut self, local: LocalId) {
         self.stored.insert(local);
-        self.flow.insert(local);
+        if !self.flow.is_read(local) {
+            self.stored_unread.insert(local);
+        }
+        self.flow.store(local);
     }
 }

@@ -8,6 +8,7 @@ use super::program::AnalysedProgram;
 use crate::ast::{Expression, ExpressionKind, UnaryOperator};
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::BinaryOperator;
+use crate::source::Span;
 use crate::typed::{ExprKind, StmtKind};
 
 /// Reports calls of functions that only answer a question, as statements.
@@ -37,6 +38,11 @@ fn only_answers(name: &str) -> bool {
 
 /// The message for an expression statement whose value is not used; `is_function` if it only names one.
 pub(crate) fn finding(expression: &Expression, is_function: bool) -> Option<Diagnostic> {
+    if let ExpressionKind::Unary(UnaryOperator::Dereference, pointer) = &expression.kind
+        && let ExpressionKind::Increment { is_increment, is_prefix: false, .. } = pointer.kind
+    {
+        return Some(moved_pointer(expression.span, is_increment));
+    }
     if has_effect(expression) {
         return None;
     }
@@ -53,6 +59,15 @@ pub(crate) fn finding(expression: &Expression, is_function: bool) -> Option<Diag
         }
         _ => diagnostic.at("the value is dropped"),
     })
+}
+
+/// The message for `*p++;`, which moves the pointer and not what it points to.
+fn moved_pointer(span: Span, is_increment: bool) -> Diagnostic {
+    let operator = if is_increment { "++" } else { "--" };
+    let message = "this moves the pointer; the value that it points to stays the same";
+    Diagnostic::warning(Lint::UnusedValue, span, message)
+        .at("the value is read and dropped")
+        .help(format!("`(*p){operator}` changes the value; `p{operator}` alone moves the pointer"))
 }
 
 /// The message for `first, last` where only `first` has an effect: `x = 0,25` stores 0.
@@ -102,7 +117,6 @@ fn has_effect(expression: &Expression) -> bool {
         ExpressionKind::Conditional { then, otherwise, .. } => {
             then.as_deref().is_some_and(has_effect) || has_effect(otherwise)
         }
-        // `*p++;` is how some people write `p++;`.
         ExpressionKind::Cast(_, inner) | ExpressionKind::Unary(UnaryOperator::Dereference, inner) => {
             has_effect(inner)
         }

@@ -10,9 +10,10 @@ use super::program::{AnalysedProgram, PERSIST};
 use super::user_data_index;
 use super::walk::{Extent, Walk};
 use crate::diag::{Diagnostic, Lint, Sink};
+use crate::operators::BinaryOp;
 use crate::source::Span;
 use crate::ty::{TypeId, Types};
-use crate::typed::{ExprId, ExprKind, Function, PlaceId, PlaceKind};
+use crate::typed::{ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind};
 
 /// Elements in which the PC stores a `float`: offset, factor, speed and limit of constant surface speed.
 const PC_FLOATS: std::ops::RangeInclusive<i32> = 111..=114;
@@ -45,11 +46,12 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     let stores = stores(program, sink);
     overlaps(program, &stores, sink);
     for function in program.functions() {
+        let elements = Elements::of(program, function);
         let walk = Walk { function, extent: Extent::All };
         walk.stmts(&function.body, &mut |expr| {
-            sink.report_if(integer_bits(program, function, expr, &stores));
+            sink.report_if(integer_bits(&elements, expr, &stores));
             for (value, use_of) in uses(program, function, expr) {
-                let Some(element) = integer_load(program, function, value) else { continue };
+                let Some(element) = elements.integer_load(value) else { continue };
                 let stored = stores.get(&element).copied().unwrap_or_default();
                 let span = function.exprs[value].span;
                 let message = format!("`persist.UserData[{element}]` is read as an integer");
@@ -97,14 +99,14 @@ fn overlaps(program: &AnalysedProgram<'_>, stores: &BTreeMap<i32, Stores>, sink:
 
 /// Reports an element that is read as a floating-point number where the program only stores small integers.
 fn integer_bits(
-    program: &AnalysedProgram<'_>,
-    function: &Function,
+    elements: &Elements<'_, '_>,
     expr: ExprId,
     stores: &BTreeMap<i32, Stores>,
 ) -> Option<Diagnostic> {
+    let Elements { program, function, .. } = *elements;
     let ExprKind::Load(place) = function.exprs[expr].kind else { return None };
     let ty = function.places[place].ty;
-    let element = element(program, function, place).filter(|_| ty.is_floating())?;
+    let element = elements.element(place).filter(|_| ty.is_floating())?;
     let stored = stores.get(&element).filter(|stored| !stored.has_more && stored.floating.is_none())?;
     let (place, value) = stored.small?;
     // The PC answers in the mailbox, and other functions may have told it to store something else.
@@ -150,13 +152,14 @@ fn uses(program: &AnalysedProgram<'_>, function: &Function, expr: ExprId) -> Vec
 fn stores(program: &AnalysedProgram<'_>, sink: &mut Sink) -> BTreeMap<i32, Stores> {
     let mut stores: BTreeMap<i32, Stores> = BTreeMap::new();
     for function in program.functions() {
+        let elements = Elements::of(program, function);
         Walk { function, extent: Extent::All }.stmts(&function.body, &mut |expr| {
             let (place, value) = match &function.exprs[expr].kind {
                 ExprKind::Assign(place, value) => (*place, small(function, *value)),
                 ExprKind::Update(update) => (update.place, None),
                 _ => return,
             };
-            let Some(element) = element(program, function, place) else { return };
+            let Some(element) = elements.element(place) else { return };
             let (ty, span) = (function.places[place].ty, function.exprs[expr].span);
             let is_double = ty == Types::DOUBLE;
             if is_double && MAILBOX.contains(&element) {
@@ -205,18 +208,96 @@ fn mailbox(element: i32, span: Span) -> Diagnostic {
         .help("use elements outside 100 to 107: `double` index 50 is element 100")
 }
 
-/// The element that is read as an integer.
-fn integer_load(program: &AnalysedProgram<'_>, function: &Function, value: ExprId) -> Option<i32> {
+/// The elements that a function reaches, also through pointers such as `double *d = (double *)persist.UserData;`.
+struct Elements<'p, 'a> {
+    program: &'p AnalysedProgram<'a>,
+    function: &'a Function,
+    /// The byte of `persist` to which a variable always points.
+    pointers: BTreeMap<LocalId, i32>,
+}
+
+impl<'p, 'a> Elements<'p, 'a> {
+    fn of(program: &'p AnalysedProgram<'a>, function: &'a Function) -> Self {
+        let mut pointers: BTreeMap<LocalId, Option<i32>> =
+            function.parameters.iter().map(|&parameter| (parameter, None)).collect();
+        let local = |place: PlaceId| match function.places[place].kind {
+            PlaceKind::Local(local, _) => Some(local),
+            _ => None,
+        };
+        for expr in function.exprs.values() {
+            let (local, value) = match &expr.kind {
+                ExprKind::Update(update) => (local(update.place), None),
+                ExprKind::Assign(place, value) => (local(*place), address(program, function, *value)),
+                _ => continue,
+            };
+            if let Some(local) = local {
+                pointers.entry(local).and_modify(|only| *only = None).or_insert(value);
+            }
+        }
+        let is_in_memory = |local: LocalId| function.locals[local].in_memory;
+        let pointers = pointers
+            .into_iter()
+            .filter_map(|(local, byte)| Some((local, byte?)))
+            .filter(|(local, _)| !is_in_memory(*local))
+            .collect();
+        Self { program, function, pointers }
+    }
+
+    /// The element at which a place begins.
+    fn element(&self, place: PlaceId) -> Option<i32> {
+        let PlaceKind::Pointer(pointer, offset) = self.function.places[place].kind else {
+            return element(self.program, self.function, place);
+        };
+        self.pointed(pointer).and_then(|byte| element_at(byte.checked_add(offset)?))
+    }
+
+    fn pointed(&self, pointer: ExprId) -> Option<i32> {
+        match self.function.exprs[pointer].kind {
+            ExprKind::Convert(inner) => self.pointed(inner),
+            ExprKind::Binary(BinaryOp::Add, base, bytes) => match self.function.exprs[bytes].kind {
+                ExprKind::Int(bytes) => self.pointed(base)?.checked_add(bytes.try_into().ok()?),
+                _ => None,
+            },
+            ExprKind::Load(place) => match self.function.places[place].kind {
+                PlaceKind::Local(local, 0) => self.pointers.get(&local).copied(),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// The element that is read as an integer.
+    fn integer_load(&self, value: ExprId) -> Option<i32> {
+        match self.function.exprs[value].kind {
+            ExprKind::Load(place) if self.function.places[place].ty == Types::INT => self.element(place),
+            _ => None,
+        }
+    }
+}
+
+/// The byte of `persist` whose address an expression is.
+fn address(program: &AnalysedProgram<'_>, function: &Function, value: ExprId) -> Option<i32> {
     match function.exprs[value].kind {
-        ExprKind::Load(place) if function.places[place].ty == Types::INT => element(program, function, place),
+        ExprKind::Convert(inner) => address(program, function, inner),
+        ExprKind::Address(place) => match function.places[place].kind {
+            PlaceKind::Symbol(symbol, byte) if program.name(symbol) == PERSIST => Some(byte),
+            _ => None,
+        },
         _ => None,
     }
 }
 
 /// The element of `persist.UserData` at which a place begins.
 pub(super) fn element(program: &AnalysedProgram<'_>, function: &Function, place: PlaceId) -> Option<i32> {
-    let PlaceKind::Symbol(symbol, offset) = function.places[place].kind else { return None };
+    match function.places[place].kind {
+        PlaceKind::Symbol(symbol, byte) if program.name(symbol) == PERSIST => element_at(byte),
+        _ => None,
+    }
+}
+
+/// The element that begins at a byte of `persist`.
+fn element_at(byte: i32) -> Option<i32> {
     let (first, end) = user_data_index::range();
-    let is_inside = (first..end).contains(&offset) && (offset - first) % ELEMENT == 0;
-    (program.name(symbol) == PERSIST && is_inside).then(|| (offset - first) / ELEMENT)
+    let is_element = (first..end).contains(&byte) && (byte - first) % ELEMENT == 0;
+    is_element.then(|| (byte - first) / ELEMENT)
 }

@@ -20,6 +20,10 @@ const DAC_BITS: i64 = 0xfff;
 /// The encoding of 0 in such a word.
 const DAC_ZERO: i64 = 2048;
 
+/// The range of an analog output in volts: constants beyond it are counts.
+const VOLTS: i64 = 10;
+const COUNTS_PER_VOLT: f64 = 204.8;
+
 /// A constant that is computed as the macro `DAC` does: `(value - 2048) & 0xfff`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DacWord {
@@ -40,6 +44,9 @@ impl DacWord {
     /// The message where it is stored.
     pub(crate) fn finding(self, span: Span) -> Option<Diagnostic> {
         let value = self.value;
+        if self.is_cut && value != 0 && value.abs() <= VOLTS {
+            return Some(volts(value, span));
+        }
         if !self.is_cut || (-DAC_ZERO..DAC_ZERO).contains(&value) {
             return None;
         }
@@ -50,6 +57,16 @@ impl DacWord {
                 .at(format!("the output has 12 bits and is set to {wrapped}")),
         )
     }
+}
+
+/// The message for a number of counts that looks like volts.
+fn volts(value: i64, span: Span) -> Diagnostic {
+    let counts = libm::round(value as f64 * COUNTS_PER_VOLT);
+    let message = format!("`DAC` takes a number of counts, and {value} counts are almost nothing");
+    Diagnostic::warning(Lint::DacCounts, span, message)
+        .at("this looks like volts")
+        .note("10 V are 2047 counts on a Kanalog")
+        .help(format!("write {counts} for {value} V"))
 }
 
 /// Reports calls with constants that are cut.
