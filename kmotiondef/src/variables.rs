@@ -14,7 +14,7 @@ use crate::limits::{N_CHANNELS, N_USER_DATA_VARS, VERSION};
 use crate::place::Place;
 use crate::start::Start::{self, Address, Double, Each, Fields, Float, Int, Text, Words, Zero};
 use crate::start::Stored;
-use crate::structs::{Chan, Gather, ParametricCoeff, Persist, Spindle, TripCoeff};
+use crate::structs::{Chan, Gather, ParametricCoeff, Persist, Spindle, StructureField, TripCoeff};
 
 /// A firmware variable.
 #[derive(Clone, Copy, Debug)]
@@ -128,9 +128,24 @@ pub fn cell_name(address: GuestAddr, size: u32) -> String {
         };
     }
     match variable_around(address) {
+        Some(variable) if variable.name == CHAN_NAME => field_of_axis(address.get() - variable.address.get()),
         Some(variable) if variable.address == address => variable.name.to_owned(),
         Some(variable) => format!("{} + {}", variable.name, address.get() - variable.address.get()),
         None => address.to_string(),
+    }
+}
+
+/// The name of the array of axes.
+const CHAN_NAME: &str = "chan";
+
+/// The name of the field of an axis at a byte of the array of axes.
+fn field_of_axis(byte: u32) -> String {
+    let (axis, offset) = (byte / Chan::STRUCTURE.size, byte % Chan::STRUCTURE.size);
+    let is_around = |field: &&StructureField| (field.offset..field.offset + field.size).contains(&offset);
+    match Chan::STRUCTURE.fields.iter().find(is_around) {
+        Some(field) if field.offset == offset => format!("chan[{axis}].{}", field.name),
+        Some(field) => format!("chan[{axis}].{} + {}", field.name, offset - field.offset),
+        None => format!("chan[{axis}] + {offset}"),
     }
 }
 

@@ -98,6 +98,13 @@ impl Kernel {
         }
     }
 
+    /// Returns whether the function at an address takes a lock, if it is free.
+    pub(crate) fn takes_lock(&self, address: GuestAddr) -> bool {
+        self.row(address).is_some_and(|row| {
+            matches!(row.attributes.polls, Some(Polled::Lock)) || row.name == Function::TestAndSet.name()
+        })
+    }
+
     fn call_later(&mut self, number: usize, caller: &mut Caller<'_>) -> Answer {
         let function = &LATER_FUNCTIONS[number];
         if caller.woken.is_none() {

@@ -65,6 +65,6 @@ pub use out::{Event, EventKind, Message, OtherPlace, REMARKS, Remark, RemarkRow,
 pub use pc::directory::Directory;
 pub use pc::disk::{FileAnswer, FileServer, ServedFile};
 pub use pc::files::{FILE_BYTES, FileError, HostFiles, NoFiles, Overlay};
-pub use pc::{ANSWERS_HELP, AnswerError, Answers, OpenBox, RemoteBoard, RequestServer};
+pub use pc::{ANSWERS_HELP, AnswerError, Answers, OpenBox, RemoteBoard, RequestServer, is_request};
 pub use world::attached::DeviceSpec;
 pub use world::{stimulus, trace};

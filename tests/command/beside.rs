@@ -95,3 +95,52 @@ fn first_programs_run_to_their_end_before_the_others_start() {
     let output = cc67(&scratch, ["run", "--first", "a.c", "--first", "b.c", "c.c", "d.c"]);
     assert_eq!((output.stdout.as_str(), output.stderr.as_str(), output.code), ("a\nb\nc\nd\n", "", 0));
 }
+
+#[test]
+fn commands_that_compile_find_the_included_files_of_a_project() {
+    let scratch = Scratch::new("project-include");
+    fs::create_dir_all(scratch.path().join("inc")).expect("a folder");
+    scratch.write("cc67.toml", "include = [\"inc\"]\nprograms = [\"1:a.c\", \"2:b.c\"]\n");
+    scratch.write("inc/shared.h", "#define READY persist.UserData[20]\n");
+    scratch.write("a.c", "#include \"KMotionDef.h\"\n#include \"shared.h\"\nmain() { READY = 1; }\n");
+    scratch.write(
+        "b.c",
+        "#include \"KMotionDef.h\"\n#include \"shared.h\"\nmain() { while (!READY) WaitNextTimeSlice(); printf(\"ready\\n\"); }\n",
+    );
+    for words in [&["check"][..], &["check", "a.c"], &["build", "a.c"], &["cycles", "a.c"]] {
+        let output = cc67(&scratch, words);
+        assert_eq!((output.code, output.stderr.as_str()), (0, ""), "{words:?}");
+    }
+    let output = cc67(&scratch, ["run"]);
+    assert_eq!((output.code, output.stdout.as_str()), (0, "ready\n"), "{}", output.stderr);
+}
+
+#[test]
+fn a_file_that_a_checked_program_includes_is_not_checked_as_one() {
+    let scratch = Scratch::new("check-part");
+    scratch.write("part.c", "void Ready(void) { persist.UserData[20] = 1; }\n");
+    scratch.write("a.c", "#include \"KMotionDef.h\"\n#include \"part.c\"\nmain() { Ready(); }\n");
+    let output = cc67(&scratch, ["check", "a.c", "part.c"]);
+    assert_eq!(
+        (output.code, output.stderr.as_str()),
+        (0, "cc67: part.c is a part of a.c, which is checked\n")
+    );
+    let output = cc67(&scratch, ["check", "part.c"]);
+    assert_eq!(output.code, 1);
+    assert!(output.stderr.contains("it is included by a.c"), "{}", output.stderr);
+}
+
+#[test]
+fn first_programs_that_are_shorter_than_a_tick_may_start_late() {
+    let scratch = Scratch::new("first-late");
+    scratch.write("init.c", "#include \"KMotionDef.h\"\nmain() { persist.UserData[5] = 7; }\n");
+    scratch.write("a.c", "#include \"KMotionDef.h\"\nmain() { printf(\"%d\\n\", persist.UserData[5]); }\n");
+    for schedule in [&[][..], &["--schedule", "start7+1"], &["--schedule", "start7+20"]] {
+        let output = cc67(&scratch, [&["run", "--first", "7:init.c", "a.c"], schedule].concat());
+        assert_eq!(
+            (output.code, output.stdout.as_str(), output.stderr.as_str()),
+            (0, "7\n", ""),
+            "{schedule:?}"
+        );
+    }
+}

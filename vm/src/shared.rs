@@ -46,6 +46,14 @@ impl Program {
         self.ops().iter().any(|op| op.operand::<Addr>(Name::Addr).is_some_and(|Addr(at)| at == cell))
     }
 
+    /// The firmware functions that the program calls by address.
+    pub fn firmware_calls(&self) -> impl Iterator<Item = GuestAddr> {
+        self.ops().iter().filter_map(|op| match op {
+            Op::CallFw { addr, .. } => Some(GuestAddr::new(addr.0)),
+            _ => None,
+        })
+    }
+
     /// The shared cells of constant address that the program changes by a load and a store: what another thread stores
     /// in between is lost.
     #[must_use]

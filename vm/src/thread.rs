@@ -75,6 +75,8 @@ pub struct Threads {
     is_pausing: bool,
     /// The threads that have ever had a slice.
     ran: ThreadSet,
+    /// The starts of each thread so far.
+    starts: [u32; ThreadId::MAX as usize],
 }
 
 impl Default for Threads {
@@ -93,6 +95,7 @@ impl Threads {
             running: None,
             is_pausing: false,
             ran: ThreadSet::default(),
+            starts: [0; ThreadId::MAX as usize],
         }
     }
 
@@ -122,7 +125,14 @@ impl Threads {
         }
         slot.state = ThreadState::Active(Progress::Fresh);
         slot.debt = Cycles::new(0);
+        self.starts[thread.index()] = self.starts[thread.index()].wrapping_add(1);
         Ok(())
+    }
+
+    /// The number of starts of each thread so far.
+    #[must_use]
+    pub const fn starts(&self) -> [u32; ThreadId::MAX as usize] {
+        self.starts
     }
 
     /// Takes `thread` out of the rotation, keeping where it was; no effect unless it is active.

@@ -327,12 +327,14 @@ impl<E: Engine> Board<E> {
     }
 
     /// Two threads that have run bytecode and change the same cell by a load and a store, and the name of the cell; only
-    /// cells whose address is written in the programs are found.
+    /// cells whose address is written in the programs are found. Programs that take locks are left out, as they may hold one then.
     #[must_use]
     pub fn contended_cell(&self) -> Option<(ThreadId, ThreadId, String)> {
         let ran = ThreadId::all().filter(|thread| self.machine.ran().contains(*thread));
-        let programs = ran.filter_map(|thread| Some((thread, self.machine.program(thread)?.updated_cells())));
-        let programs: Vec<_> = programs.collect();
+        let takes_lock = |address| self.machine.firmware().takes_lock(address);
+        let programs = ran.filter_map(|thread| Some((thread, self.machine.program(thread)?)));
+        let programs = programs.filter(|(_, program)| !program.firmware_calls().any(takes_lock));
+        let programs: Vec<_> = programs.map(|(thread, program)| (thread, program.updated_cells())).collect();
         let mut pairs = programs
             .iter()
             .enumerate()

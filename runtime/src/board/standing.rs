@@ -17,7 +17,7 @@ use vm::wake::Wake;
 use super::Board;
 use crate::firmware::calls::Repeated;
 use crate::io::bits::{bit_state, range_of};
-use crate::servo::coordinated::system;
+use crate::servo::coordinated::{rate, system};
 use crate::servo::independent::{has_motion, state};
 use crate::servo::profile::Mode;
 use crate::views::Typed;
@@ -143,6 +143,8 @@ pub enum Reason {
     FeedHold,
     /// It belongs to a path that is executed.
     OnPath,
+    /// It belongs to a path that waits for more segments.
+    PathStarves,
     /// A limit switch that is watched is active.
     Limit(Bit),
     /// It approaches a place, which has no end.
@@ -157,6 +159,9 @@ impl fmt::Display for Reason {
             Self::NoLimits(field) => write!(f, "its {field} is 0"),
             Self::FeedHold => f.write_str("feedhold"),
             Self::OnPath => f.write_str("it follows a path"),
+            Self::PathStarves => f.write_str(
+                "its path has used up its segments and waits for more, as CS0_Flushed is 0: set it to 1 after the last segment",
+            ),
             Self::Approaches => f.write_str("MoveExp has no end, so CheckDone stays 0"),
             Self::Limit(bit) => write!(f, "its limit switch, bit {bit}, is active"),
         }
@@ -291,7 +296,10 @@ impl<E: Engine> Board<E> {
             drives_nothing.then_some(Reason::DrivesNothing),
             lacking.map(|(name, _)| Reason::NoLimits(name)),
             is_held.then_some(Reason::FeedHold),
-            (is_member && !memory.get(COORD_SYSTEM0).is_null()).then_some(Reason::OnPath),
+            (is_member && !memory.get(COORD_SYSTEM0).is_null()).then_some(match rate::starves(memory, 0.0) {
+                true => Reason::PathStarves,
+                false => Reason::OnPath,
+            }),
             self.machine.firmware().active_limit(memory, axis).map(Reason::Limit),
         ]
         .into_iter()

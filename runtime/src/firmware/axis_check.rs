@@ -15,11 +15,11 @@ use vm::memory::GuestMemory;
 
 use enabling::loop_input;
 
-use super::calls::{EndedWait, Jogged, SmallMove};
+use super::calls::{EndedWait, Jogged, Shift, SmallMove};
 use super::parts::Parts;
 use crate::machine::OtherUnits;
 use crate::machine::description::Condition;
-use crate::out::{Message, Speaker};
+use crate::out::{Message, OtherPlace, Speaker};
 use crate::servo::CallPlace;
 use crate::servo::coordinated::system::is_member;
 use crate::servo::independent::{has_motion, is_exponential};
@@ -32,7 +32,29 @@ pub(crate) fn enabled(parts: &mut Parts, caller: &Caller<'_>, function: Function
     for message in messages {
         parts.out.diagnose(caller, message);
     }
-    parts.calls.motions.enabled(axis, connection(caller.memory, axis));
+    let motions = &mut parts.calls.motions;
+    motions.enabled(axis, connection(caller.memory, axis));
+    if loop_input(caller.memory, axis).is_none() {
+        motions.goes_on_from(axis, dest, caller.thread, caller.at);
+    }
+}
+
+/// A program disables an axis, perhaps in the middle of a move.
+pub(crate) fn disables(parts: &mut Parts, memory: &GuestMemory, axis: AxisId) {
+    let is_move = memory.axis(axis, Chan::LAST_MOTION_TYPE) == LastMotion::Move.get();
+    if memory.axis(axis, Chan::ENABLE) != 0 && is_move && has_motion(memory, axis) {
+        parts.calls.motions.cut(axis, memory.axis(axis, Chan::DEST));
+    }
+}
+
+/// A move to a place, after the zero of the axis has shifted.
+pub(crate) fn shifted(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId) {
+    if let Some(Shift { from, to, thread, at }) = parts.calls.motions.take_shift(axis) {
+        let other = OtherPlace { thread, at };
+        parts
+            .out
+            .diagnose(caller, Message::ZeroShifted { function, axis, from, to, shift: from - to, other });
+    }
 }
 
 /// Mode and channels of an axis, by name: what should not change while it is enabled.
@@ -115,6 +137,7 @@ fn advice(memory: &GuestMemory, axis: AxisId, rest: f64) -> String {
 /// A thread begins a jog, or ends one: whether a switch of the axis was as the thread waited for before it has moved.
 pub(crate) fn jogs(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, speed: f64) {
     const MOVED: f64 = 1.0;
+    parts.calls.motions.is_found(axis);
     let Some(thread) = caller.thread else { return };
     let dest = caller.memory.axis(axis, Chan::DEST);
     let wait = parts.calls.waits.of(thread);
@@ -172,6 +195,7 @@ fn watches_other(parts: &Parts, memory: &GuestMemory, axis: AxisId, bit: Bit) ->
 /// A thread zeroes an axis: whether it is the one that it has moved to its switch.
 pub(crate) fn zeroes(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId) {
     const MOVED: f64 = 1.0;
+    parts.calls.motions.is_found(axis);
     let Some(thread) = caller.thread else { return };
     let is_away = |homed: AxisId| caller.memory.axis(homed, Chan::DEST).abs() > MOVED;
     parts.calls.motions.zeroes(thread, axis, caller.at, is_away);

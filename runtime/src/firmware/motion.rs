@@ -130,6 +130,7 @@ pub(crate) fn disable_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32
     };
     axis_check::ends_path(parts, caller, Function::DisableAxis, axis);
     replaced::ends(parts, caller, axis, Function::DisableAxis);
+    axis_check::disables(parts, caller.memory, axis);
     switching::switch_off(&mut parts.servo, &mut parts.machine, caller.memory, axis);
     hold::abort_if_member(caller.memory, axis);
 }
@@ -319,6 +320,9 @@ fn begins(
     float_bits::notice(parts, caller, function, request.target);
     let way = target - caller.memory.axis(axis, Chan::DEST);
     axis_check::moved(parts, caller, function, axis);
+    if !request.is_relative {
+        axis_check::shifted(parts, caller, function, axis);
+    }
     if request.target.is_finite() {
         axis_check::goes(parts, caller, function, axis, way.abs());
         axis_check::planned(parts, caller, function, axis, way.abs());

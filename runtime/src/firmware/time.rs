@@ -19,7 +19,7 @@ const CYCLES_PER_SECOND: f64 = Cycles::PER_SECOND.get() as f64;
 /// The cycles that a delay spends while it passes (costs.md section 3).
 const WITHIN: Cycles = Cycles::new(124);
 
-/// Seconds that are probably milliseconds, as for the warning `milliseconds`.
+/// Seconds that are probably milliseconds, as for the warning `milliseconds`, unless they are whole minutes.
 const LONG: f64 = 100.0;
 
 /// Seconds since power-up, to 20 ns.
@@ -47,7 +47,7 @@ pub(crate) fn wait_until(parts: &mut Parts, caller: &mut Caller<'_>, time: f64) 
 
 /// Waits this many seconds. The call-back cannot wait: it spends the time.
 pub(crate) fn delay_sec(parts: &mut Parts, caller: &mut Caller<'_>, seconds: f64) -> Outcome<()> {
-    if seconds >= LONG && seconds.is_finite() && caller.woken.is_none() {
+    if seconds >= LONG && seconds.is_finite() && seconds % 60.0 != 0.0 && caller.woken.is_none() {
         parts.out.diagnose(caller, Message::LongDelay { function: Function::Delay_sec, seconds });
     }
     float_bits::notice(parts, caller, Function::Delay_sec, seconds);

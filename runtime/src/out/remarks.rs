@@ -151,6 +151,7 @@ impl Message {
             | Self::RaceRelays { other }
             | Self::OrderEarly { other, .. }
             | Self::MoveCut { other, .. }
+            | Self::ZeroShifted { other, .. }
             | Self::LockOrder { other, .. } => Some(*other),
             _ => None,
         }
@@ -269,6 +270,9 @@ messages! {
     /// A thread disables an axis after a delay that is too short for its move.
     MoveEnded { function: Function, axis: AxisId, dest: f64, earlier: f64 } = "move-ended", Warning, [per axis],
         "{function}: axis {axis} is at {dest:.0} on its way to {earlier}, and its motion ends here at once: wait with `while (!CheckDone({axis}));` first";
+    /// An axis was disabled on its way, and enabled as if it were at another place.
+    ZeroShifted { function: Function, axis: AxisId, from: f64, to: f64, shift: f64, other: OtherPlace } = "zero-shifted", Warning, [per axis],
+        "{function}: axis {axis} was disabled on its way, at {from:.0}, and enabled with Dest = {to:.0} by {other}: its zero has shifted by {shift:.0}, and so has every target since. Enable it with EnableAxisDest({axis}, ch{axis}->Dest), or home it again";
     /// A path starts while one of its axes is disabled.
     PathDisabled { } = "path-disabled", Warning, [once],
         "a path is started, but an axis of the coordinate system is disabled, so nothing moves: enable all axes named in DefineCoordSystem";

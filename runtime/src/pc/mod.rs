@@ -17,6 +17,7 @@ pub use boxes::OpenBox;
 pub(crate) use downloads::Downloads;
 pub(crate) use link::{Arrival, ByteLink};
 pub use remote::{RemoteBoard, RequestServer};
+pub use requests::is_request;
 
 use kmotiondef::Cycles;
 

@@ -128,6 +128,15 @@ const REQUESTS: &[(i32, &str, Shown, PcAction)] = &[
     (55, "rapid override", Elsewhere, Override(Rate::Rapid, Change::By)),
 ];
 
+/// Returns whether a text shows a request that the PC knows.
+#[must_use]
+pub fn is_request(text: &str) -> bool {
+    let is_named = |name: &str| {
+        text.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with([' ', ':']))
+    };
+    REQUESTS.iter().any(|(_, name, ..)| is_named(name))
+}
+
 /// Returns the text by which a request is shown, by its number and first parameter; `None` if its effect shows more.
 pub(super) fn shown(code: i32, parameter: i32) -> Option<String> {
     let Some((_, name, shown, _)) = REQUESTS.iter().find(|(number, ..)| *number == code) else {

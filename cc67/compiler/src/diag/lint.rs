@@ -156,8 +156,10 @@ macro_rules! for_each_lint {
             ParameterCopy = "parameter-copy", On, pass parameter_copy;
             /// A structure is copied, and values are stored in the copy, which nothing reads.
             UnusedCopy = "unused-copy", On, pass unused_copy;
-            /// A variable counts a loop of `main`, and nothing sets it back when the program starts again.
+            /// A variable counts a loop of `main` from its initial value, and nothing sets it back when the program starts again.
             KeptCounter = "kept-counter", On, pass kept_counter;
+            /// The position of an axis without an input is read.
+            StalePosition = "stale-position", On, pass stale_position;
             /// A text is stored in an array that is too small for it.
             TextOverflow = "text-overflow", On, pass text_overflow;
             /// One side of `&&` or `||` is a number other than 0 and 1.

@@ -115,6 +115,12 @@ pub struct Compilation {
 }
 
 impl Compilation {
+    /// Returns the names of the programs beside a source without `main` that include it.
+    #[must_use]
+    pub fn included_by(&self) -> &[String] {
+        &self.included_by
+    }
+
     /// A compilation that ends before the text is read.
     fn refused(path: &Path, error: Diagnostic) -> Self {
         let mut sink = Sink::new();

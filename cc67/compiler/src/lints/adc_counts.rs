@@ -6,7 +6,7 @@ use super::format::called_firmware;
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::BinaryOp;
-use crate::typed::{ExprId, ExprKind, Function as TypedFunction, PlaceId, PlaceKind};
+use crate::typed::{Expr, ExprId, ExprKind, Function as TypedFunction, PlaceId, PlaceKind};
 
 /// The function that reads an analog input, in counts from -2048 to 2047.
 const READ: &str = Function::ReadADC.name();
@@ -21,14 +21,18 @@ const VOLTS: f64 = 10.0;
 /// Reports comparisons of an analog input with constants that look like volts.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
-        for expr in function.exprs.values() {
-            let ExprKind::Compare(_, a, b) = expr.kind else { continue };
-            let Some((name, constant)) =
-                compared(program, function, a, b).or_else(|| compared(program, function, b, a))
-            else {
+        let compared = |expr: &Expr| {
+            let ExprKind::Compare(_, a, b) = expr.kind else { return None };
+            let (name, constant) =
+                compared(program, function, a, b).or_else(|| compared(program, function, b, a))?;
+            Some((name, constant, volts(function, constant)?))
+        };
+        let found: Vec<_> = function.exprs.values().filter_map(compared).collect();
+        for &(name, constant, volts) in &found {
+            // A pair of limits around 0 is a dead band.
+            if found.iter().any(|(.., other)| *other == -volts) {
                 continue;
-            };
-            let Some(volts) = volts(function, constant) else { continue };
+            }
             let message = format!("`{name}` is a number of counts, and {volts} counts are almost nothing");
             let counts = libm::round(volts * 204.8);
             sink.report(

@@ -54,7 +54,8 @@ fn counter(program: &AnalysedProgram<'_>, function: &Function, condition: ExprId
     };
     let ExprKind::Load(place) = function.exprs[value].kind else { return None };
     let symbol = symbol(function, place)?;
-    let is_own = !matches!(program.unit.symbols[symbol].definition, Definition::None);
+    // A value that is written down is relied on.
+    let is_own = matches!(program.unit.symbols[symbol].definition, Definition::Data(_));
     (is_own && matches!(function.exprs[end].kind, ExprKind::Int(_))).then_some(symbol)
 }
 

@@ -49,6 +49,7 @@ mod self_comparison;
 mod shadow;
 mod slow_callback;
 mod stack_size;
+mod stale_position;
 mod text_comparison;
 mod text_overflow;
 mod uninitialized;

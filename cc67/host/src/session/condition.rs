@@ -101,6 +101,10 @@ impl WaitCondition {
             if before.ends_with('&') && !before.ends_with("&&") {
                 return true;
             }
+            // The macro may stand for anything.
+            if before.ends_with("define") {
+                return true;
+            }
         }
         false
     }

@@ -223,7 +223,7 @@ fn lock_words(owner: Option<Owner>) -> String {
 /// Describes the wait of a thread that polls nothing.
 fn plain_wait(state: Standing) -> Option<String> {
     match state {
-        Standing::Until(time) => Some(format!("{:.3} s", seconds(time))),
+        Standing::Until(time) => Some(format!("the time {:.3} s", seconds(time))),
         Standing::Slice => Some("its next slice".to_owned()),
         Standing::Call => Some("the board: a lock, room for its text, or the PC".to_owned()),
         Standing::Computing | Standing::Paused | Standing::Idle => None,

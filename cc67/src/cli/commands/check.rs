@@ -3,7 +3,7 @@
 //! Programs that run together are compared: those of a command line that names threads, a program and those of its first
 //! line, the programs of a project file.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::iter::once;
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ use crate::cli::args::program::{ProgramFile, assign, names_thread};
 use crate::cli::args::sidecars::{Head, Project, within};
 use crate::cli::io::exit::Exit;
 use crate::cli::io::input::{is_source, read, sources_below};
-use crate::cli::io::output;
+use crate::cli::io::{output, terminal};
 use crate::cli::report::diagnostics;
 use compiler::driver::{SharingProgram, advise};
 use compiler::image;
@@ -49,6 +49,11 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<Exit> {
     for path in &programs {
         let text = read(path)?;
         let mut compilation = compiler::compile(path, text, &options, &Disk);
+        if let Some(program) = compilation.included_by().iter().find(|name| is_beside(path, name, &programs))
+        {
+            terminal::note(&format!("{} is a part of {program}, which is checked", path.display()));
+            continue;
+        }
         // Which thread it would run in makes no difference to what can be wrong.
         let thread = ThreadId::all().next().context("the board has threads")?;
         let linked = compilation.link(thread, &options);
@@ -67,7 +72,17 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<Exit> {
     Ok(if has_errors { Exit::Failure } else { Exit::Success })
 }
 
+/// Returns whether the file of that name in the folder of `path` is among the programs.
+fn is_beside(path: &Path, name: &str, programs: &[PathBuf]) -> bool {
+    programs.iter().any(|program| *program == path.with_file_name(name))
+}
+
 impl CheckArguments {
+    /// The first file that is named, with its thread.
+    pub(super) fn first(&self) -> Option<&OsStr> {
+        self.files.first().map(OsString::as_os_str)
+    }
+
     /// The files to check, and the programs that run together.
     fn programs(&self) -> Result<(Vec<PathBuf>, Vec<Vec<ProgramFile>>)> {
         let of_project = || -> Result<Vec<OsString>> {

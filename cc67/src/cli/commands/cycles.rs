@@ -1,5 +1,6 @@
 //! `cc67 cycles`: what the processor's code costs.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
@@ -63,6 +64,11 @@ pub(super) fn cycles(arguments: &CyclesArguments) -> Result<Exit> {
 }
 
 impl CyclesArguments {
+    /// The first file that is named.
+    pub(super) fn first(&self) -> Option<&OsStr> {
+        self.files.first().map(|path| path.as_os_str())
+    }
+
     /// The program of the sources; `None` after errors.
     fn build(&self) -> Result<Option<Inspection>> {
         let options = self.compiler.resolve(Target::C67x, Timing::VENDOR)?;

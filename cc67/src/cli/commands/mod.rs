@@ -30,7 +30,7 @@ mod serve;
 mod shell;
 mod test;
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -42,7 +42,7 @@ use compiler::words::suggest;
 
 use self::deferred::Deferred;
 use super::args::board::canonical_words;
-use super::args::sidecars::Sidecars;
+use super::args::sidecars::{Project, Sidecars};
 use super::io::exit::Exit;
 use super::io::{output, stack, terminal};
 
@@ -213,7 +213,14 @@ fn command(arguments: Vec<OsString>) -> ExitCode {
     if asks_for_version_in_full(&words) {
         return output::print(&doctor::version()).map_or(Exit::WrongInput, |()| Exit::Success).into();
     }
-    let arguments = match Arguments::try_parse_from(&words) {
+    let (words, parsed) = match Arguments::try_parse_from(&words) {
+        Err(error) if let Some(words) = with_programs_of_project(&error, &words) => {
+            let parsed = Arguments::try_parse_from(&words);
+            (words, parsed)
+        }
+        parsed => (words, parsed),
+    };
+    let arguments = match parsed {
         Ok(arguments) => match arguments.with_sidecars(&words) {
             Ok(arguments) => arguments,
             Err(error) => {
@@ -243,6 +250,14 @@ fn command(arguments: Vec<OsString>) -> ExitCode {
         .into()
 }
 
+/// Returns the words of a command that runs programs and names none, with those of the project file.
+fn with_programs_of_project(error: &clap::Error, words: &[OsString]) -> Option<Vec<OsString>> {
+    let is_without = error.kind() == ErrorKind::MissingRequiredArgument
+        && ["run", "live", "debug"].iter().any(|name| words.get(1).is_some_and(|word| word == name));
+    let project = is_without.then(|| Project::above(Path::new(""))).and_then(Result::ok).flatten()?;
+    (!project.programs().is_empty()).then(|| [words, project.programs()].concat())
+}
+
 /// Returns whether the arguments are `--version` and `--verbose`, in either order.
 fn asks_for_version_in_full(words: &[OsString]) -> bool {
     let [_, options @ ..] = words else { return false };
@@ -267,6 +282,9 @@ impl Arguments {
             Some(Command::Live(arguments)) => ("live", arguments.with_sidecars()),
             Some(Command::Debug(arguments)) => ("debug", arguments.with_sidecars()),
             Some(Command::Test(_)) => ("test", None),
+            Some(Command::Check(_)) => ("check", None),
+            Some(Command::Build(_)) => ("build", None),
+            Some(Command::Cycles(_)) => ("cycles", None),
             _ => return Ok(self),
         };
         let (sidecars, line) = match (programs, &self.command) {
@@ -276,6 +294,9 @@ impl Arguments {
                 (sidecars, line)
             }
             (None, Some(Command::Test(arguments))) => (Sidecars::from(arguments.of_project()?), None),
+            (None, Some(Command::Check(arguments))) => (of_sources(name, arguments.first())?, None),
+            (None, Some(Command::Build(arguments))) => (of_sources(name, arguments.first())?, None),
+            (None, Some(Command::Cycles(arguments))) => (of_sources(name, arguments.first())?, None),
             (None, _) => return Ok(self),
         };
         if sidecars.is_empty() {
@@ -294,6 +315,11 @@ impl Arguments {
         line.iter().for_each(|line| terminal::note(line));
         Ok(arguments)
     }
+}
+
+/// Returns the options of the project file with which a subcommand compiles sources.
+fn of_sources(subcommand: &str, first: Option<&OsStr>) -> Result<Sidecars> {
+    Sidecars::of_sources(first, |option| knows(subcommand, option))
 }
 
 /// Returns whether a subcommand has an option, by its long or short name.

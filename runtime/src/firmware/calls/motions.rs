@@ -64,6 +64,25 @@ pub(crate) struct SmallMove {
     pub(crate) way: f64,
 }
 
+/// The place at which an axis was disabled in the middle of a move, and what became of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Cut {
+    /// Dest then.
+    At(f64),
+    Shifted(Shift),
+}
+
+/// An axis was enabled as if it were at another place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Shift {
+    /// Dest when it was disabled, and with which it was enabled.
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+    /// The call that enabled it.
+    pub(crate) thread: Option<ThreadId>,
+    pub(crate) at: CodeAddr,
+}
+
 /// The history of one thread.
 #[derive(Clone, Copy, Debug, Default)]
 struct Thread {
@@ -94,6 +113,7 @@ pub(crate) struct Motions {
     ways: [f64; Axes::MAX],
     /// The first move of each axis if that and all others are of a few counts; nothing after any other motion.
     small: [Small; Axes::MAX],
+    cut: [Option<Cut>; Axes::MAX],
 }
 
 /// The common property of the moves of an axis.
@@ -145,6 +165,42 @@ impl Motions {
     /// Returns the distance of the last move of an axis.
     pub(crate) fn way(&self, axis: AxisId) -> f64 {
         self.ways[axis.index()]
+    }
+
+    /// An axis is disabled at a destination, in the middle of a move.
+    pub(crate) fn cut(&mut self, axis: AxisId, dest: f64) {
+        self.cut[axis.index()] = Some(Cut::At(dest));
+    }
+
+    /// An axis without a position of its own is enabled at a destination.
+    pub(crate) fn goes_on_from(
+        &mut self,
+        axis: AxisId,
+        to: f64,
+        thread: Option<ThreadId>,
+        at: Option<CodeAddr>,
+    ) {
+        const NEAR: f64 = 1.0;
+        let Some(Cut::At(from)) = self.cut[axis.index()] else { return };
+        let at = at.filter(|_| (from - to).abs() > NEAR);
+        self.cut[axis.index()] = at.map(|at| Cut::Shifted(Shift { from, to, thread, at }));
+    }
+
+    /// An axis gets a new zero, or is on its way to one.
+    pub(crate) fn is_found(&mut self, axis: AxisId) {
+        self.cut[axis.index()] = None;
+    }
+
+    /// The shift of the zero of an axis, once.
+    pub(crate) fn take_shift(&mut self, axis: AxisId) -> Option<Shift> {
+        let cut = &mut self.cut[axis.index()];
+        match *cut {
+            Some(Cut::Shifted(shift)) => {
+                *cut = None;
+                Some(shift)
+            }
+            Some(Cut::At(_)) | None => None,
+        }
     }
 
     /// A jog begins, or ends for `None`; the one before.

@@ -97,14 +97,22 @@ pub(crate) fn ramp(memory: &mut GuestMemory) {
     }
 }
 
+/// Returns whether a path at the rate `now` has to stop for want of segments: more may come, as `CS0_Flushed` is 0.
+pub(crate) fn starves(memory: &GuestMemory, now: f64) -> bool {
+    let desired = memory.get(CS0_TIME_BASE_DESIRED);
+    let position = memory.get(CS0_TIME_EXECUTED) + memory.get(CS0_T);
+    let stopping = f64::from(memory.get(CS0_NOM_DECEL_2TB2)) * now * now;
+    let ahead = memory.get(CS0_TIME_DOWNLOADED) - position;
+    memory.get(CS0_FLUSHED) == 0 && desired > 0.0 && now >= 0.0 && ahead - RESERVE < stopping
+}
+
 /// Returns the rate that the ramp may aim at: standstill as soon as the rest of the data is needed for stopping.
 fn aim_within_data(memory: &GuestMemory, now: f64) -> f64 {
     let desired = memory.get(CS0_TIME_BASE_DESIRED);
     let position = memory.get(CS0_TIME_EXECUTED) + memory.get(CS0_T);
     let stopping = f64::from(memory.get(CS0_NOM_DECEL_2TB2)) * now * now;
     let lost = memory.get(CS0_TIME_LOST);
-    let ahead = memory.get(CS0_TIME_DOWNLOADED) - position;
-    let starves = memory.get(CS0_FLUSHED) == 0 && desired > 0.0 && now >= 0.0 && ahead - RESERVE < stopping;
+    let starves = starves(memory, now);
     let has_wrapped = memory.get(PARAMETRIC_INDEX_WRAPPED) != 0;
     let starves_behind = has_wrapped && desired < 0.0 && now <= 0.0 && position - lost - RESERVE < stopping;
     if starves || starves_behind { 0.0 } else { desired }

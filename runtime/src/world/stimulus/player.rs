@@ -34,6 +34,8 @@ pub(crate) struct Player {
     active: ThreadSet,
     /// The bits whose levels statements have changed.
     moved: Vec<Bit>,
+    /// The starts of each thread at the end of the last tick.
+    starts: [u32; ThreadId::MAX as usize],
     /// True if the last tick had nothing that a statement could wait for: no thread is active any more.
     is_idle: bool,
 }
@@ -49,6 +51,7 @@ impl Player {
             sent: VecDeque::new(),
             active: ThreadSet::EMPTY,
             moved: Vec::new(),
+            starts: [0; ThreadId::MAX as usize],
             is_idle: false,
         }
     }
@@ -229,20 +232,28 @@ impl Player {
 
     fn watch_threads(&mut self, context: &TickContext<'_>) {
         let before = std::mem::replace(&mut self.active, context.threads.active());
-        let after = self.active;
-        if before == after {
+        let starts_before = std::mem::replace(&mut self.starts, context.threads.starts());
+        let (after, starts) = (self.active, self.starts);
+        if before == after && starts_before == starts {
             return;
         }
-        for thread in ThreadId::all().filter(|&thread| before.contains(thread) != after.contains(thread)) {
-            let is_active = after.contains(thread);
-            self.happened(context.now, |condition| match condition {
-                Condition::Starts(named) => is_active && *named == thread,
-                Condition::Ends(named) => !is_active && *named == thread,
-                Condition::Bit(..)
-                | Condition::Printed(_)
-                | Condition::UartSent(_)
-                | Condition::Becomes(_) => false,
-            });
+        for thread in ThreadId::all() {
+            let (was_active, is_active) = (before.contains(thread), after.contains(thread));
+            // A short program starts and ends within a tick.
+            let has_passed =
+                !was_active && !is_active && starts_before[thread.index()] != starts[thread.index()];
+            if has_passed || !was_active && is_active {
+                self.happened(
+                    context.now,
+                    |condition| matches!(condition, Condition::Starts(named) if *named == thread),
+                );
+            }
+            if has_passed || was_active && !is_active {
+                self.happened(
+                    context.now,
+                    |condition| matches!(condition, Condition::Ends(named) if *named == thread),
+                );
+            }
         }
     }
 

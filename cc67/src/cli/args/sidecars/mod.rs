@@ -109,6 +109,16 @@ impl Sidecars {
         Ok(sidecars)
     }
 
+    /// Returns the options with which a project's sources are compiled: folders of included files, and the board.
+    ///
+    /// # Errors
+    /// What is wrong with the project file.
+    pub(crate) fn of_sources(first: Option<&OsStr>, knows: impl Fn(&str) -> bool) -> Result<Self> {
+        let file = first.map(file_of).unwrap_or_default();
+        let project = Project::above(file.parent().unwrap_or(Path::new("")))?;
+        Ok(project.map(|project| project.common_options(knows)).unwrap_or_default().into())
+    }
+
     /// Returns whether there is nothing.
     pub(crate) fn is_empty(&self) -> bool {
         self.options.is_empty() && self.also.is_empty()

@@ -48,7 +48,7 @@ pub(crate) struct Project {
     /// Its path.
     pub(crate) path: PathBuf,
     /// Options of every command.
-    common: Vec<OsString>,
+    common: Vec<[OsString; 2]>,
     /// The options of each command, as keys and values.
     of_commands: BTreeMap<String, Vec<(String, Vec<OsString>)>>,
     /// The programs of the threads, which `cc67 check` compares.
@@ -107,7 +107,7 @@ impl Project {
                 for value in
                     values.ok_or_else(|| wrong(at, format!("`{name}` must be a text, or several")))?
                 {
-                    project.common.extend([OsString::from(option), value]);
+                    project.common.push([OsString::from(option), value]);
                 }
             } else if COMMANDS.contains(&name) {
                 let DeValue::Table(table) = value.get_ref() else {
@@ -145,7 +145,13 @@ impl Project {
     /// All options for a command.
     pub(crate) fn options(&self, command: &str) -> Vec<OsString> {
         let own = self.of_commands.get(command).into_iter().flatten();
-        self.common.iter().cloned().chain(own.flat_map(|(_, words)| words.clone())).collect()
+        self.common.iter().flatten().cloned().chain(own.flat_map(|(_, words)| words.clone())).collect()
+    }
+
+    /// The options of every command that one knows.
+    pub(super) fn common_options(&self, knows: impl Fn(&str) -> bool) -> Vec<OsString> {
+        let is_known = |[option, _]: &&[OsString; 2]| option.to_str().is_some_and(&knows);
+        self.common.iter().filter(is_known).flatten().cloned().collect()
     }
 
     /// The programs of the threads, `[N:]FILE` each.
@@ -164,7 +170,7 @@ impl Project {
         let words = |options: Vec<&(String, Vec<OsString>)>| {
             options.into_iter().flat_map(|(_, words)| words.clone()).collect::<Vec<_>>()
         };
-        (words(known), self.common.iter().cloned().chain(words(others)).collect())
+        (words(known), self.common.iter().flatten().cloned().chain(words(others)).collect())
     }
 }
 

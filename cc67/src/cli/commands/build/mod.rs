@@ -2,6 +2,7 @@
 
 mod names;
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
@@ -136,6 +137,11 @@ pub(super) fn build(arguments: &BuildArguments) -> Result<Exit> {
 }
 
 impl BuildArguments {
+    /// The first file that is named.
+    pub(super) fn first(&self) -> Option<&OsStr> {
+        self.files.first().map(|path| path.as_os_str())
+    }
+
     fn target(&self) -> Target {
         self.target.named().unwrap_or(Target::C67x)
     }

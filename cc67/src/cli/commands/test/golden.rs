@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use runtime::is_request;
+
 /// The output of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Shown {
@@ -38,12 +40,13 @@ const CUT_OFF: &[&str] = &["cc67: still running after ", "cc67: at the end, afte
 
 impl Shown {
     /// Returns the parts that a person should review before they become the expected output: traps, remarks, unmet
-    /// expectations, and faults that the board prints on the console. Threads that have not ended are none of these.
+    /// expectations, and faults that the board prints on the console. Threads that have not ended and requests to the PC are none of these.
     pub(super) fn doubts(&self) -> String {
         let (console, notes) = self.golden.split_at(self.golden.len() - self.notes().len());
         let faults = console.lines().filter(|line| FAULTS.iter().any(|fault| line.contains(fault)));
         let is_end = |line: &str| {
             CUT_OFF.iter().any(|words| line.starts_with(words))
+                || line.strip_prefix("cc67: ").is_some_and(is_request)
                 || line.starts_with("---- notes")
                 || line == "---- exit 4"
         };
@@ -107,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn faults_are_doubtful_and_endless_threads_are_not() {
+    fn faults_are_doubtful_and_endless_threads_and_requests_are_not() {
         let doubts = |stdout: &str, stderr: &str, code| {
             shown(stdout.as_bytes(), stderr.as_bytes(), Some(code)).doubts()
         };
@@ -115,6 +118,8 @@ mod tests {
             doubts("ready\n", "cc67: still running after 60 s of board time; `--for SECONDS`\n", 4),
             ""
         );
+        let requests = "cc67: message box: ready?\ncc67: set G-code variables from 5063\n";
+        assert_eq!(doubts("ready\n", requests, 0), "");
         let fault = "Following Error Disabled Axis:0\n";
         assert_eq!(doubts(&format!("ready\n{fault}"), "", 0), fault);
         assert_eq!(doubts("", "cc67: thread 1 stopped\n", 3), "cc67: thread 1 stopped\n---- exit 3\n");
