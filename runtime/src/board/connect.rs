@@ -23,6 +23,7 @@ pub(crate) fn install(parts: &mut Parts, machine: &MachineFile) {
         connected.loads[axis] = Plant::new(&machine.axes[axis.index()]);
     }
     connected.wiring = Wiring::new(&machine.axes);
+    machine.connected.encoders.iter().for_each(|wheel| connected.wiring.turn_by_hand(wheel.channel));
     for spindle in &machine.connected.spindles {
         // The load of that axis counts as its encoder does.
         let connection = Connection { encoder: Encoder::Connected, ..Connection::default() };

@@ -28,7 +28,7 @@ use crate::io::bits::bit_state;
 use crate::machine::{COUNTS_PER_TICK, Channel, Drive};
 use crate::out::{Event, EventKind, Message, Remark, Request, Speaker};
 use crate::pc::{Pc, host};
-use crate::servo::{driven, wired};
+use crate::servo::{driven, input, plan, wired};
 use crate::views::{AxisView, Typed};
 use crate::world::stimulus::{Asker, Stimulus};
 use crate::world::{Moment, trace};
@@ -272,7 +272,8 @@ impl Surroundings {
             pc.disk.slice(&mut context);
             host::slice(&mut pc.host, out, &mut context);
         }
-        self.parts.machine.drive(&self.parts.io, context.memory, now);
+        let Parts { machine, io, out, .. } = &mut self.parts;
+        machine.drive(io, out, context.memory, now);
         self.move_loads(instant);
         self.parts.machine.signal(&mut self.parts.io, now);
         self.show(instant);
@@ -384,10 +385,8 @@ impl Surroundings {
             };
             let gain = f64::from(chan.get(Chan::INPUT_GAIN0));
             let last = chan.get(Chan::LAST_ENC);
-            let turned_by = self.parts.machine.wiring.turns(instant.memory, axis);
-            let Some(turned_by) = turned_by else { continue };
-            let turned_gain = f64::from(instant.memory.axis(turned_by, Chan::INPUT_GAIN0));
-            let count = self.parts.machine.loads[turned_by].encoder(turned_gain);
+            let Some(encoder) = plan::encoder(instant.memory, &self.parts.machine.wiring, axis) else { continue };
+            let count = input::register(&encoder, &mut self.parts.machine.loads);
             if instant.encoders[channel] != count.cast_unsigned() {
                 instant.encoders[channel] = count.cast_unsigned();
                 self.parts.io.encoders.count(channel, count, &mut self.parts.io.pins, instant.now);

@@ -16,6 +16,7 @@ use super::wiring::dac_value;
 use super::{Channel, Loads, Machine};
 use crate::io::Io;
 use crate::io::bits::bit_state;
+use crate::out::Out;
 use crate::views::Typed;
 use chips::kanalog::conversion;
 
@@ -166,6 +167,12 @@ impl Mechanics {
     /// Returns whether an axis trips a switch or carries a probe.
     pub(crate) fn has_contacts(&self, axis: AxisId) -> bool {
         self.contacts.iter().any(|contact| contact.axis == axis)
+    }
+
+    /// Returns whether an axis trips something, or an analog input follows it.
+    pub(super) fn sees(&self, axis: AxisId) -> bool {
+        let follows = |analog: &Analog| matches!(analog.source, AnalogSource::Follows { axis: seen, .. } if seen == axis);
+        self.has_contacts(axis) || self.analog.iter().any(follows)
     }
 
     /// Returns the contact on a bit: its axis, the range in which it is closed (`None` if it closes once in a
@@ -341,25 +348,32 @@ impl Machine {
     /// Moves all that depends on time and on outputs other than those of the axes; returns whether the next tick moves
     /// something, too.
     #[inline]
-    pub(crate) fn drive(&mut self, io: &Io, memory: &GuestMemory, now: Cycles) -> bool {
-        self.mechanics.is_any && self.turn(io, memory, now)
+    pub(crate) fn drive(&mut self, io: &Io, out: &mut Out, memory: &GuestMemory, now: Cycles) -> bool {
+        self.mechanics.is_any && self.turn(io, out, memory, now)
     }
 
-    fn turn(&mut self, io: &Io, memory: &GuestMemory, now: Cycles) -> bool {
+    fn turn(&mut self, io: &Io, out: &mut Out, memory: &GuestMemory, now: Cycles) -> bool {
         let time = now.get() as f64 / Cycles::PER_SECOND.get() as f64;
-        self.turn_handwheels(memory, time);
+        self.turn_handwheels(out, memory, now);
         self.turn_spindles(io, memory);
         self.mechanics.goes_on(time)
     }
 
-    fn turn_handwheels(&mut self, memory: &GuestMemory, time: f64) {
-        for wheel in &self.mechanics.handwheels {
-            let Some(axis) = memory.axes().get(wheel.channel as i32) else { continue };
-            let gain = f64::from(memory.axis(axis, Chan::INPUT_GAIN0));
-            let turned: f64 =
-                wheel.moves.iter().map(|turn| turned(turn, time) - turned(turn, time - TIMEBASE)).sum();
-            if turned != 0.0 {
-                self.loads.push(axis, turned * gain);
+    fn turn_handwheels(&mut self, out: &mut Out, memory: &GuestMemory, now: Cycles) {
+        let time = now.get() as f64 / Cycles::PER_SECOND.get() as f64;
+        let way = |turn: &[f64; 3]| turned(turn, time) - turned(turn, time - TIMEBASE);
+        let ends =
+            |&[start, _, duration]: &[f64; 3]| (time - TIMEBASE..time).contains(&(start + duration));
+        for index in 0..self.mechanics.handwheels.len() {
+            let wheel = &self.mechanics.handwheels[index];
+            let input = wheel.channel;
+            let counts: f64 = wheel.moves.iter().map(way).sum();
+            let has_ended = wheel.moves.iter().any(ends);
+            if counts != 0.0 {
+                self.turn_encoder(memory, out, input, counts, now);
+            }
+            if has_ended {
+                self.check_read(memory, out, input, now);
             }
         }
     }

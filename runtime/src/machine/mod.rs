@@ -5,6 +5,7 @@
 
 pub(crate) mod attached;
 pub(crate) mod description;
+mod hand;
 mod lines;
 mod mechanics;
 mod motor;
@@ -38,7 +39,7 @@ use crate::io::changes;
 use crate::io::konnect::KonnectBoard;
 use crate::io::snapamp::SnapAmps;
 use crate::machine::attached::{Attached, Outside};
-use crate::machine::wiring::Wiring;
+use crate::machine::wiring::{ENCODERS, Wiring};
 use crate::out::{EventKind, Message, Out};
 use chips::changes::BitChange;
 use chips::pins::Pins;
@@ -54,6 +55,9 @@ const FIRST_OPTOS: [i32; 2] = [72, 104];
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Loads {
     plants: [Plant; Axes::MAX],
+    /// The counts of encoders that are turned by hand, and whether there are any.
+    by_hand: [f64; ENCODERS],
+    has_hands: bool,
     /// True if something other than the servo has moved a load since the servo last asked.
     is_pushed: bool,
 }
@@ -63,6 +67,23 @@ impl Loads {
     pub(crate) fn push(&mut self, axis: AxisId, units: f64) {
         self[axis].push(units);
         self.is_pushed = true;
+    }
+
+    /// A hand turns the encoder on an input.
+    fn turn(&mut self, input: usize, counts: f64) {
+        self.by_hand[input] += counts;
+        self.has_hands = true;
+        self.is_pushed = true;
+    }
+
+    /// The register of an encoder that is turned by hand.
+    #[inline(always)]
+    pub(crate) fn by_hand(&self, input: Option<u32>) -> i8 {
+        if !self.has_hands {
+            return 0;
+        }
+        let counts = input.and_then(|input| self.by_hand.get(input as usize));
+        counts.map_or(0, |counts| libm::floor(counts + 0.5) as i64 as i8)
     }
 
     /// Another constant load pulls at the motor of an axis.

@@ -188,18 +188,31 @@ impl Plant {
         }
     }
 
+    /// Position units of a count of the encoder that the load turns, if there is one; `gain` is the axis' input gain.
+    #[inline(always)]
+    pub(crate) fn unit(&self, gain: f64) -> Option<f64> {
+        match self.build.encoder {
+            Scale::Axis => Some(gain),
+            Scale::Units(units) => Some(units),
+            Scale::Absent => None,
+        }
+    }
+
     /// The register of the encoder that the load turns; `gain` is the axis' input gain.
     #[inline(always)]
     pub(crate) fn encoder(&mut self, gain: f64) -> i8 {
-        let gain = match self.build.encoder {
-            Scale::Axis => gain,
-            Scale::Units(units) => units,
-            Scale::Absent => return 0,
-        };
+        let Some(gain) = self.unit(gain) else { return 0 };
         let counter = &mut self.counter;
         if self.load != counter.counted || gain != counter.gain {
             counter.count(self.load, gain);
         }
+        counter.register as i8
+    }
+
+    /// The load turns the encoder no longer: its register stays, and counts from here on if the load turns it again.
+    pub(crate) fn hold_encoder(&mut self) -> i8 {
+        let counter = &mut self.counter;
+        (counter.counted, counter.base, counter.base_count) = (self.load, self.load, counter.register);
         counter.register as i8
     }
 
@@ -264,6 +277,11 @@ impl Plant {
     /// Another constant load pulls at the motor.
     pub(super) fn pull(&mut self, speed: f64) {
         self.build.motor.load_with(speed);
+    }
+
+    /// Returns whether the board's outputs move it now.
+    pub(crate) fn is_driven(&self) -> bool {
+        self.build.model != Model::None && self.drive != Drive::None
     }
 
     /// Returns whether it has a motor that the board's outputs drive.

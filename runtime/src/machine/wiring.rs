@@ -3,13 +3,13 @@
 //! A machine file may say both. What it leaves open is taken from the program: the load of an axis follows the axis,
 //! whatever output it uses. The encoder of a load with a motor is on the input of its own number.
 
-use kmotiondef::modes::OutputMode;
+use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::DAC_BUFFER;
 use kmotiondef::{Axes, AxisId};
 use vm::memory::GuestMemory;
 
-use super::description::{Axis, Channel, Model};
+use super::description::{Axis, Channel, Encoder, Model};
 use crate::views::Typed;
 use chips::stepgen::generator_of;
 
@@ -26,6 +26,11 @@ pub(crate) struct Wiring {
     inputs: [Option<usize>; Axes::MAX],
     /// The output that drives each motor, if the machine file names it.
     drives: [Option<Channel>; Axes::MAX],
+    /// Axes whose encoder the machine file describes, and those that it describes without one.
+    has_encoder: [bool; Axes::MAX],
+    has_none: [bool; Axes::MAX],
+    /// Inputs with an encoder that a stimulus or the machine file turns.
+    by_hand: [bool; ENCODERS],
 }
 
 impl Wiring {
@@ -36,6 +41,9 @@ impl Wiring {
             let by_number = (axis.model == Model::Motor).then_some(index);
             wiring.inputs[index] = axis.connection.input.or(by_number);
             wiring.drives[index] = axis.connection.drive;
+            wiring.has_none[index] = axis.connection.encoder == Encoder::Absent;
+            wiring.has_encoder[index] = !wiring.has_none[index]
+                && (wiring.inputs[index].is_some() || axis.connection.encoder == Encoder::Connected);
         }
         wiring
     }
@@ -79,8 +87,61 @@ impl Wiring {
         // An axis without a motor watches somebody else's encoder.
         let watches = channel != i32::from(axis.get())
             && memory.axis(axis, Chan::OUTPUT_MODE) == OutputMode::None.get();
-        if watches { memory.axes().get(channel) } else { Some(axis) }
+        if watches {
+            memory.axes().get(channel).filter(|other| self.input(*other).is_none())
+        } else {
+            Some(axis)
+        }
     }
+
+    /// An encoder on this input is turned by hand.
+    pub(crate) fn turn_by_hand(&mut self, input: usize) {
+        self.by_hand[input] = true;
+    }
+
+    /// Returns whether the encoder on the input that an axis reads is turned by hand.
+    pub(crate) fn reads_hand(&self, memory: &GuestMemory, axis: AxisId) -> bool {
+        let input = usize::try_from(memory.axis(axis, Chan::INPUT_CHAN0)).ok();
+        input.is_some_and(|input| self.by_hand.get(input) == Some(&true))
+    }
+
+    /// Returns whether a hand turns the encoder that an axis reads, and no load.
+    pub(crate) fn is_hand_alone(&self, memory: &GuestMemory, axis: AxisId) -> bool {
+        self.reads_hand(memory, axis)
+            && self.shaft(memory, memory.axis(axis, Chan::INPUT_CHAN0) as usize).is_none()
+    }
+
+    /// Returns whether the machine file describes the encoder of an axis.
+    pub(crate) fn describes_encoder(&self, axis: AxisId) -> bool {
+        self.has_encoder[axis.index()]
+    }
+
+    /// The axis whose load turns with the encoder on an input when that is turned from outside.
+    ///
+    /// It is the one that the machine file connects there, or an axis that has its own encoder there. A load that nobody
+    /// has described, whose axis goes without an encoder, leaves its input to a hand wheel.
+    pub(crate) fn shaft(&self, memory: &GuestMemory, input: usize) -> Option<AxisId> {
+        let axes = || memory.axes().iter();
+        if let Some(axis) = axes().find(|axis| self.input(*axis) == Some(input)) {
+            return Some(axis).filter(|axis| !self.has_none[axis.index()]);
+        }
+        let has_motor = |axis: AxisId| memory.axis(axis, Chan::OUTPUT_MODE) != OutputMode::None.get();
+        let own = memory.axes().get(input as i32);
+        let other = axes().find(|axis| Some(*axis) != own && has_motor(*axis) && reads(memory, *axis, input));
+        let axis = other.or(own).filter(|axis| self.input(*axis).is_none() && !self.has_none[axis.index()])?;
+        if other.is_some() || self.has_encoder[axis.index()] || !has_motor(axis) {
+            return Some(axis);
+        }
+        let is_loop = !OutputMode::is_open_loop(OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE)));
+        let is_others = || axes().any(|other| other != axis && reads(memory, other, input));
+        (reads(memory, axis, input) && (is_loop || !is_others())).then_some(axis)
+    }
+}
+
+/// Returns whether an axis reads the encoder on an input.
+pub(crate) fn reads(memory: &GuestMemory, axis: AxisId, input: usize) -> bool {
+    memory.axis(axis, Chan::INPUT_MODE) == InputMode::Encoder.get()
+        && usize::try_from(memory.axis(axis, Chan::INPUT_CHAN0)) == Ok(input)
 }
 
 /// The step generator that an output channel names: a Kogna has sixteen, of which the first eight have pins here.

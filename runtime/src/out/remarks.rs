@@ -237,6 +237,12 @@ messages! {
     /// A stimulus takes an input from the switch that drives it.
     SwitchOverridden { bit: Bit, axis: AxisId } = "switch-overridden", Hint, [per bit],
         "the stimulus overrides the switch of axis {axis} on bit {bit}, until `release bit {bit}`";
+    /// An encoder is turned from outside, and by the load that the machine file connects to the same input.
+    EncoderTurnedTwice { input: usize, axis: AxisId } = "encoder-turned-twice", Warning, [per input],
+        "encoder {input} is turned by hand, and by the load of axis {axis} as well, which the machine file connects to the same input: give the hand wheel an input of its own, or set `encoder = false` in `[axis.{axis}]`";
+    /// An encoder is turned from outside, but no axis reads its input.
+    EncoderUnread { input: usize } = "encoder-unread", Warning, [per input],
+        "encoder {input} has been turned, but no axis reads its input, so nothing counts it: set InputMode = ENCODER_MODE and InputChan0 = {input} of an axis";
     /// A program makes a pin an output although a switch, a probe or a wire drives it.
     OutputAgainstInput { bit: Bit } = "output-against-input", Warning, [per bit],
         "SetBitDirection({bit}, 1): the machine drives bit {bit}, so two outputs drive the same pin, and the program can no longer read the input";

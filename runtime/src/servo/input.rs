@@ -7,7 +7,7 @@ use kmotiondef::structs::Chan;
 use kmotiondef::variables::RESOLVER_FACTOR;
 use vm::memory::GuestMemory;
 
-use super::plan::Input;
+use super::plan::{Encoder, Input};
 use crate::io::kanalog::conversion;
 use crate::machine::Loads;
 use crate::views::{AxisView, Typed};
@@ -24,6 +24,17 @@ pub(crate) fn measure(input: Input, loads: &mut Loads, memory: &mut GuestMemory,
     }
 }
 
+/// The register of an encoder: the counts of the load that turns it, and those of a hand.
+#[inline(always)]
+pub(crate) fn register(encoder: &Encoder, loads: &mut Loads) -> i8 {
+    let by_load = match encoder.turned_by {
+        Some(axis) if encoder.is_held => loads[axis].hold_encoder(),
+        Some(axis) => loads[axis].encoder(encoder.turned_gain),
+        None => 0,
+    };
+    by_load.wrapping_add(loads.by_hand(encoder.channel))
+}
+
 /// Adds what the encoder's register has counted since the last tick. Reports the channel and register of one that has
 /// counted.
 #[inline(always)]
@@ -34,7 +45,7 @@ pub(crate) fn count(
     axis: AxisId,
 ) -> Option<(usize, i8)> {
     let Input::Encoder(encoder) = input else { return None };
-    let count = loads[encoder.turned_by].encoder(encoder.turned_gain);
+    let count = register(encoder, loads);
     let moved = count.wrapping_sub(chan.get(Chan::LAST_ENC));
     if moved == 0 {
         return None;

@@ -23,7 +23,7 @@ mod interrupt;
 pub(crate) mod limits;
 pub(crate) mod moves;
 mod output;
-mod plan;
+pub(crate) mod plan;
 pub(crate) mod planning;
 pub(crate) mod profile;
 #[cfg(test)]
@@ -68,7 +68,7 @@ const KSTEP_ENABLE: i32 = 45;
 ///
 /// `is_touched` says whether anybody may have written to on-chip RAM since the last.
 pub(crate) fn tick(tick: &mut Tick<'_>, memory: &mut GuestMemory, is_touched: bool) -> bool {
-    let is_driven = tick.machine.drive(tick.io, memory, tick.now);
+    let is_driven = tick.machine.drive(tick.io, tick.out, memory, tick.now);
     let turned = spindle::measure(memory);
     let stepped = tick.io.stepgens.is_driven() && run_generators(tick, memory);
     notice_pushes(tick);

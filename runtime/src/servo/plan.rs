@@ -32,10 +32,12 @@ pub(crate) struct Encoder {
     pub(crate) gain: f64,
     /// Its channel, if there is one of that number.
     pub(crate) channel: Option<u32>,
-    /// The axis whose load turns it.
-    pub(crate) turned_by: AxisId,
+    /// The axis whose load turns it; `None` if only a hand does.
+    pub(crate) turned_by: Option<AxisId>,
     /// That axis' position units of a count.
     pub(crate) turned_gain: f64,
+    /// True if the input was left to a hand: the load of that axis turns it no longer.
+    pub(crate) is_held: bool,
 }
 
 /// A filter's coefficients.
@@ -92,7 +94,7 @@ impl AxisPlan {
     /// both name.
     pub(super) fn is_coupled(&self, axis: AxisId) -> bool {
         self.is_slave
-            || matches!(self.input, Input::Encoder(encoder) if encoder.turned_by != axis)
+            || matches!(self.input, Input::Encoder(encoder) if encoder.turned_by != Some(axis))
             || OutputMode::has_generator(self.mode)
     }
 
@@ -142,13 +144,19 @@ fn input(memory: &mut GuestMemory, wiring: &Wiring, axis: AxisId) -> Input {
     }
 }
 
-fn encoder(memory: &mut GuestMemory, wiring: &Wiring, axis: AxisId) -> Option<Encoder> {
-    let turned_by = wiring.turns(memory, axis)?;
+/// The encoder that an axis reads, if there is one at its input.
+pub(crate) fn encoder(memory: &mut GuestMemory, wiring: &Wiring, axis: AxisId) -> Option<Encoder> {
+    let turned_by = wiring.turns(memory, axis);
+    if turned_by.is_none() && !wiring.reads_hand(memory, axis) {
+        return None;
+    }
+    let is_held = wiring.is_hand_alone(memory, axis);
     let chan = AxisView::of(memory, axis);
     let gain = f64::from(chan.get(Chan::INPUT_GAIN0));
     let channel = chan.get(Chan::INPUT_CHAN0);
-    let turned_gain = f64::from(AxisView::of(memory, turned_by).get(Chan::INPUT_GAIN0));
-    Some(Encoder { gain, channel: u32::try_from(channel).ok(), turned_by, turned_gain })
+    let turned_gain =
+        turned_by.map_or(gain, |axis| f64::from(AxisView::of(memory, axis).get(Chan::INPUT_GAIN0)));
+    Some(Encoder { gain, channel: u32::try_from(channel).ok(), turned_by, turned_gain, is_held })
 }
 
 #[inline(always)]

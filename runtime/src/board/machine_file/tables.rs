@@ -249,7 +249,7 @@ fn place(table: &Table<'_>) -> Read<(AxisId, f64)> {
 fn handwheel(table: &Table<'_>) -> Read<Handwheel> {
     let (mut channel, mut moves) = (None, Vec::new());
     keys!(table, |key, value| {
-        "channel" => channel = Some(value.whole(7)? as usize);
+        "channel" => channel = Some(value.whole(15)? as usize);
         "moves" => moves = value.array()?.iter().map(turn).collect::<Read<_>>()?;
     });
     Ok(Handwheel { channel: channel.ok_or_else(|| table.is_missing("channel"))?, moves })

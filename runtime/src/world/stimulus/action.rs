@@ -183,9 +183,10 @@ actions! {
         does mechanics::load_spindle;
         written { "spindle N load = PART" => mechanics::read_load_spindle }
     }
-    /// Turns the encoder of an axis by counts, over a time.
-    Turn(axis: AxisId, counts: f64, over: Cycles) {
+    /// Turns the encoder on an input by counts, over a time.
+    Turn(input: usize, counts: f64, over: Cycles) {
         does mechanics::turn;
+        announces mechanics::announce_turn;
         written { "encoder N moves COUNTS" => mechanics::read_turn }
         keys { "encoder" => Form::Each("encoder {key} moves {value}") }
     }

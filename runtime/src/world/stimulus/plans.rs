@@ -2,12 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, Bit, Cycles};
 use vm::firmware::TickContext;
 
 use super::wave::Wave;
-use crate::views::Typed;
 use crate::world::WorldAccess;
 use chips::kanalog::{ADC_CHANNELS, conversion};
 
@@ -27,15 +25,24 @@ pub(super) enum Due {
     Check,
 }
 
-/// An encoder on its way.
+/// Something that moves for a time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Moved {
+    /// The encoder on an input, by counts.
+    Encoder(usize),
+    /// The load of an axis, by units.
+    Load(AxisId),
+}
+
+/// A motion on its way.
 #[derive(Clone, Copy, Debug)]
 struct Turning {
-    axis: AxisId,
-    counts: f64,
+    moved: Moved,
+    way: f64,
     begun: Cycles,
     over: Cycles,
-    /// Counts already turned.
-    turned: f64,
+    /// The way already done.
+    done: f64,
 }
 
 /// All that continues by itself.
@@ -90,9 +97,9 @@ impl Plans {
         wave.is_some_and(|(wave, begun)| !wave.is_over(now - *begun))
     }
 
-    /// An encoder begins to turn.
-    pub(crate) fn begin_turn(&mut self, axis: AxisId, counts: f64, over: Cycles, now: Cycles) {
-        self.turning.push(Turning { axis, counts, begun: now, over, turned: 0.0 });
+    /// An encoder or a load begins to move.
+    pub(crate) fn begin_turn(&mut self, moved: Moved, way: f64, over: Cycles, now: Cycles) {
+        self.turning.push(Turning { moved, way, begun: now, over, done: 0.0 });
     }
 
     /// Leaves out what is farthest in the future if too much is planned; whether it is.
@@ -148,10 +155,18 @@ impl Plans {
             let elapsed = context.now - turning.begun;
             let part =
                 if elapsed < turning.over { elapsed.get() as f64 / turning.over.get() as f64 } else { 1.0 };
-            let step = turning.counts * part - turning.turned;
-            turning.turned += step;
-            let gain = f64::from(context.memory.axis(turning.axis, Chan::INPUT_GAIN0));
-            access.machine.loads.push(turning.axis, step * gain);
+            let step = turning.way * part - turning.done;
+            turning.done += step;
+            match turning.moved {
+                Moved::Load(axis) => access.machine.loads.push(axis, step),
+                Moved::Encoder(input) => {
+                    let WorldAccess { machine, out, now, .. } = &mut *access;
+                    machine.turn_encoder(context.memory, out, input, step, *now);
+                    if part >= 1.0 {
+                        machine.check_read(context.memory, out, input, *now);
+                    }
+                }
+            }
         }
         self.turning.retain(|turning| context.now - turning.begun < turning.over);
     }

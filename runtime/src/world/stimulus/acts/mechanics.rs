@@ -1,10 +1,13 @@
 //! Loads that are pushed and encoders that are turned, or fail.
 
 use kmotiondef::structs::Chan;
-use kmotiondef::{Axes, AxisId, Cycles};
+use kmotiondef::{AxisId, Cycles};
+use vm::memory::GuestMemory;
 
 use crate::machine::COUNTS_PER_TICK;
 use crate::views::Typed;
+use crate::world::WorldAccess;
+use crate::world::stimulus::plans::Moved;
 use crate::world::stimulus::reader::StatementReader;
 use crate::world::stimulus::scene::Scene;
 use crate::world::stimulus::tokens::Mistake;
@@ -19,12 +22,13 @@ pub(crate) fn read_push(reader: &mut StatementReader<'_>) -> Result<(AxisId, f64
 /// Moves a load at once, or as fast as an encoder can be read.
 pub(crate) fn push(scene: &mut Scene<'_, '_, '_>, axis: AxisId, units: f64) {
     let gain = f64::from(scene.context.memory.axis(axis, Chan::INPUT_GAIN0));
-    let ticks = (units / gain / COUNTS_PER_TICK).abs().ceil();
-    if gain == 0.0 || ticks <= 1.0 {
+    let unit = scene.access.machine.loads[axis].unit(gain).unwrap_or(gain);
+    let ticks = (units / unit / COUNTS_PER_TICK).abs().ceil();
+    if unit == 0.0 || ticks <= 1.0 {
         return scene.access.machine.loads.push(axis, units);
     }
     let over = Cycles::new((ticks as i64).saturating_mul(Cycles::PER_TICK.get()));
-    turn(scene, axis, units / gain, over);
+    scene.plans.begin_turn(Moved::Load(axis), units, over, scene.context.now);
 }
 
 pub(crate) fn read_pull(reader: &mut StatementReader<'_>) -> Result<(AxisId, f64), Mistake> {
@@ -57,23 +61,24 @@ pub(crate) fn load_spindle(scene: &mut Scene<'_, '_, '_>, axis: AxisId, load: f6
     scene.access.machine.mechanics.load_spindle(axis, load);
 }
 
-pub(crate) fn read_turn(reader: &mut StatementReader<'_>) -> Result<(AxisId, f64, Cycles), Mistake> {
-    let column = reader.column();
-    let channel = encoder(reader)?;
-    let axis = Axes::default()
-        .get(channel as i32)
-        .ok_or_else(|| (column, "only encoders 0 to 7 can be moved".to_owned()))?;
+pub(crate) fn read_turn(reader: &mut StatementReader<'_>) -> Result<(usize, f64, Cycles), Mistake> {
+    let input = encoder(reader)?;
     reader.expect("moves")?;
     let counts = reader.number("a number of counts")?;
-    Ok((axis, counts, if reader.accept("in") { reader.time()? } else { Cycles::default() }))
+    Ok((input, counts, if reader.accept("in") { reader.time()? } else { Cycles::default() }))
 }
 
 fn encoder(reader: &mut StatementReader<'_>) -> Result<usize, Mistake> {
     reader.below("an encoder input from 0 to 15", CHANNELS)
 }
 
-pub(crate) fn turn(scene: &mut Scene<'_, '_, '_>, axis: AxisId, counts: f64, over: Cycles) {
-    scene.plans.begin_turn(axis, counts, over, scene.context.now);
+pub(crate) fn turn(scene: &mut Scene<'_, '_, '_>, input: usize, counts: f64, over: Cycles) {
+    scene.plans.begin_turn(Moved::Encoder(input), counts, over, scene.context.now);
+}
+
+/// The encoder is there from the beginning.
+pub(crate) fn announce_turn(input: &usize, access: &mut WorldAccess<'_>, _: &mut GuestMemory) {
+    access.machine.wiring.turn_by_hand(*input);
 }
 
 pub(crate) fn read_fail(reader: &mut StatementReader<'_>) -> Result<(usize,), Mistake> {

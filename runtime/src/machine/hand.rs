@@ -1,0 +1,56 @@
+//! Encoders that are turned from outside: hand wheels, and shafts that somebody turns.
+//!
+//! A count is a count of the input, whatever the axis that reads it makes of it. With the encoder turns the load that is
+//! on the same shaft, if there is one.
+
+use kmotiondef::modes::InputMode;
+use kmotiondef::structs::Chan;
+use kmotiondef::{AxisId, Cycles};
+use vm::memory::GuestMemory;
+
+use super::Machine;
+use super::wiring::reads;
+use crate::out::{Message, Out};
+use crate::views::Typed;
+
+impl Machine {
+    /// Turns the encoder on an input by counts.
+    pub(crate) fn turn_encoder(
+        &mut self,
+        memory: &GuestMemory,
+        out: &mut Out,
+        input: usize,
+        counts: f64,
+        now: Cycles,
+    ) {
+        let shaft = self.wiring.shaft(memory, input);
+        let unit = shaft.and_then(|axis| {
+            let gain = f64::from(memory.axis(axis, Chan::INPUT_GAIN0));
+            Some((axis, self.loads[axis].unit(gain)?))
+        });
+        match unit {
+            Some((axis, unit)) => {
+                self.loads.push(axis, counts * unit);
+                let is_twice = self.loads[axis].is_driven() && !reads(memory, axis, input);
+                if is_twice && self.wiring.describes_encoder(axis) {
+                    out.remark(now, Message::EncoderTurnedTwice { input, axis });
+                }
+            }
+            None => self.loads.turn(input, counts),
+        }
+    }
+
+    /// Reports an encoder that has been turned although nothing reads it.
+    pub(crate) fn check_read(&self, memory: &GuestMemory, out: &mut Out, input: usize, now: Cycles) {
+        // Switches, sources and devices see the load that turns with it.
+        let is_seen = |axis: AxisId| {
+            let mode = memory.axis(axis, Chan::INPUT_MODE);
+            self.has_mechanics() && self.mechanics.sees(axis)
+                || ![InputMode::Encoder.get(), InputMode::None.get()].contains(&mode)
+        };
+        let is_read = memory.axes().iter().any(|axis| reads(memory, axis, input));
+        if !is_read && !self.wiring.shaft(memory, input).is_some_and(is_seen) {
+            out.remark(now, Message::EncoderUnread { input });
+        }
+    }
+}
