@@ -18,6 +18,7 @@ mod polling;
 mod released;
 mod session;
 mod snapshots;
+mod surroundings;
 mod targets;
 mod threads;
 mod transcripts;

@@ -385,7 +385,9 @@ impl Surroundings {
             };
             let gain = f64::from(chan.get(Chan::INPUT_GAIN0));
             let last = chan.get(Chan::LAST_ENC);
-            let Some(encoder) = plan::encoder(instant.memory, &self.parts.machine.wiring, axis) else { continue };
+            let Some(encoder) = plan::encoder(instant.memory, &self.parts.machine.wiring, axis) else {
+                continue;
+            };
             let count = input::register(&encoder, &mut self.parts.machine.loads);
             if instant.encoders[channel] != count.cast_unsigned() {
                 instant.encoders[channel] = count.cast_unsigned();

@@ -13,7 +13,7 @@ use kmotiondef::{AxisId, Bit, Field};
 use vm::firmware::Caller;
 use vm::memory::GuestMemory;
 
-use enabling::loop_input;
+use enabling::{limit_active, loop_input};
 
 use super::calls::{EndedWait, Jogged, Shift, SmallMove};
 use super::parts::Parts;
@@ -119,7 +119,8 @@ pub(crate) fn arrived(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId) {
     let (dest, position) = (memory.axis(axis, Chan::DEST), memory.axis(axis, Chan::POSITION));
     let rest = (dest - position).abs();
     let is_far = rest > FAR && rest > parts.calls.motions.way(axis) / 2.0;
-    if is_far && loop_input(memory, axis).is_some() {
+    let settles = parts.servo.axes[axis.index()].settles(rest);
+    if is_far && !settles && loop_input(memory, axis).is_some() {
         let advice = advice(memory, axis, rest);
         parts.out.diagnose(caller, Message::NotThere { axis, position, dest, advice });
     }
@@ -246,6 +247,7 @@ pub(crate) fn moved(parts: &mut Parts, caller: &Caller<'_>, function: Function, 
         limit_at_other_end(parts, memory, function, axis),
         limit_of_other(parts, memory, function, axis),
         units_differ(parts, memory, function, axis),
+        limit_active(parts, memory, function, axis),
     ];
     for message in messages.into_iter().flatten() {
         parts.out.diagnose(caller, message);
@@ -369,8 +371,9 @@ const STAYS: &str = "its output stays 0 and its motor does not move";
 fn no_gain(memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
     let mode =
         OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE)).filter(|mode| *mode != OutputMode::None)?;
-    let (field, effect) = zero_of_output(memory, axis, mode)
-        .or_else(|| if OutputMode::is_open_loop(Some(mode)) { None } else { zero_of_loop(memory, axis) })?;
+    let (field, effect) = zero_of_output(memory, axis, mode).or_else(|| {
+        if OutputMode::is_open_loop(Some(mode)) { None } else { zero_of_loop(memory, axis, mode) }
+    })?;
     Some(Message::NoGain { function, axis, field, effect })
 }
 
@@ -391,15 +394,26 @@ fn zero_of_output(memory: &GuestMemory, axis: AxisId, mode: OutputMode) -> Optio
 }
 
 /// A setting of 0 of a closed loop.
-fn zero_of_loop(memory: &GuestMemory, axis: AxisId) -> Option<Zero> {
-    let is_zero = |field: Field<f32>| memory.axis(axis, field) == 0.0;
+fn zero_of_loop(memory: &GuestMemory, axis: AxisId, mode: OutputMode) -> Option<Zero> {
+    // Steps follow the command, to which the loop only adds its output: without that they are those of an open loop.
+    let has_steps = matches!(mode, OutputMode::ClosedLoopStepDir | OutputMode::ClosedLoopMicrostep);
+    let output = if has_steps { None } else { zero_of_compensation(memory, axis) };
+    output.or_else(|| zero_of_feedback(memory, axis))
+}
+
+/// Returns whether a gain of an axis is 0.
+fn is_zero(memory: &GuestMemory, axis: AxisId, field: Field<f32>) -> bool {
+    memory.axis(axis, field) == 0.0
+}
+
+/// A setting of 0 that keeps the output at 0.
+fn zero_of_compensation(memory: &GuestMemory, axis: AxisId) -> Option<Zero> {
+    let is_zero = |field| is_zero(memory, axis, field);
     let blocks = |filter: usize| {
         let filter = chan(axis).field(Chan::IIR.element(filter));
         [Iir::B0, Iir::B1, Iir::B2].into_iter().all(|field| memory.get(filter.field(field)) == 0.0)
     };
     let has_no_forward = is_zero(Chan::FF_VEL) && is_zero(Chan::FF_ACCEL);
-    let input = memory.axis(axis, Chan::INPUT_MODE);
-    let is_encoder = input == InputMode::Encoder.get();
     if [Chan::P, Chan::I, Chan::D].into_iter().all(is_zero) && has_no_forward {
         Some(("P, I, D, FFVel and FFAccel", STAYS))
     } else if is_zero(Chan::MAX_OUTPUT) {
@@ -410,7 +424,18 @@ fn zero_of_loop(memory: &GuestMemory, axis: AxisId) -> Option<Zero> {
         Some(("iir[2].B0, B1 and B2", STAYS))
     } else if has_no_forward && (blocks(0) || blocks(1)) {
         Some(("iir[0] or iir[1].B0, B1 and B2", STAYS))
-    } else if is_encoder && is_zero(Chan::INPUT_GAIN0) {
+    } else {
+        None
+    }
+}
+
+/// A setting of 0 that leaves the position or the integrator without effect.
+fn zero_of_feedback(memory: &GuestMemory, axis: AxisId) -> Option<Zero> {
+    let is_zero = |field| is_zero(memory, axis, field);
+    let has_no_forward = is_zero(Chan::FF_VEL) && is_zero(Chan::FF_ACCEL);
+    let input = memory.axis(axis, Chan::INPUT_MODE);
+    let is_encoder = input == InputMode::Encoder.get();
+    if is_encoder && is_zero(Chan::INPUT_GAIN0) {
         Some(("InputGain0", "its Position never changes"))
     } else if input == InputMode::None.get() && has_no_forward {
         Some(("InputMode", "its Position never changes (ENCODER_MODE is 1)"))

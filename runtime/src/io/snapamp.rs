@@ -179,6 +179,25 @@ impl SnapAmps {
         now < board.sides[pair % 4 / 2].off_until
     }
 
+    /// The board of an amplifier's channel whose bridges are off, and why.
+    pub(crate) fn cause(&self, channel: i32, now: Cycles) -> Option<(usize, String)> {
+        let pair = usize::try_from(channel).ok()?.checked_sub(8)?;
+        let (number, index) = (pair / 4, pair % 4 / 2);
+        let board = self.0.get(number).filter(|board| board.is_present)?;
+        let (side, name) = (&board.sides[index], ["A", "B"][index]);
+        let level = board.written[PEAK_LIMIT + index] & 0xf;
+        let why = if level < FIRST_LEVEL {
+            format!("the peak current limit of side {name}, {level}, is below {FIRST_LEVEL} (2 A)")
+        } else if board.is_over(index) {
+            format!("{} A on side {name} exceed its peak current limit", side.amps.abs())
+        } else if now < side.off_until {
+            format!("a fault of side {name} lasts for 0.25 s after its limit was set or exceeded")
+        } else {
+            return None;
+        };
+        Some((number, why))
+    }
+
     /// Returns whether a board is on the bus.
     #[inline]
     pub(crate) fn is_present(&self) -> bool {

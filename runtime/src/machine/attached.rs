@@ -66,6 +66,11 @@ pub(crate) trait Attached: Debug + Send + Copied {
         let _ = (now, outside);
     }
 
+    /// The input that it drives, if there is one.
+    fn drives(&self) -> Option<Bit> {
+        None
+    }
+
     /// Returns whether it takes every edge of a bit; otherwise one level a tick is enough.
     fn watches(&self, bit: Bit) -> bool {
         let _ = bit;

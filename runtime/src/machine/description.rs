@@ -129,6 +129,11 @@ pub struct Axis {
 }
 
 impl Axis {
+    /// Returns whether its encoder counts so that the position follows the command, whatever the gain.
+    pub(crate) fn follows_gain(&self) -> bool {
+        (self.connection.encoder, self.model) == (Encoder::Auto, Model::Follow)
+    }
+
     /// Returns its name and its unit; empty if they were not given.
     pub(crate) fn names(&self) -> (String, String) {
         let units = if self.units == COUNTS { String::new() } else { self.units.clone() };

@@ -108,8 +108,9 @@ pub(crate) struct Mechanics {
     gantries: Vec<Gantry>,
     /// A gantry whose sides are too far apart.
     racked: Option<Racked>,
-    /// Inputs that a stimulus has taken from their switches.
+    /// Inputs that a stimulus has taken from their switches, and analog inputs from their sources.
     held: Vec<Bit>,
+    held_analog: Vec<usize>,
     /// True if there is any such equipment.
     is_any: bool,
 }
@@ -160,6 +161,7 @@ impl Mechanics {
             gantries,
             racked: None,
             held: Vec::new(),
+            held_analog: Vec::new(),
             is_any,
         }
     }
@@ -248,6 +250,15 @@ impl Mechanics {
         self.analog.iter().any(|analog| analog.channel == channel)
     }
 
+    /// Takes an analog input from its source; whether it has one that has driven it so far.
+    pub(crate) fn hold_analog(&mut self, channel: usize) -> bool {
+        let is_new = self.has_source(channel) && !self.held_analog.contains(&channel);
+        if is_new {
+            self.held_analog.push(channel);
+        }
+        is_new
+    }
+
     /// Gives an input back to its switch.
     pub(crate) fn let_go(&mut self, bit: Bit) {
         self.held.retain(|held| *held != bit);
@@ -260,7 +271,10 @@ impl Mechanics {
         self.spindles.iter().any(|spindle| spindle.speed != 0.0)
             || self.handwheels.iter().any(turns)
             || self.tables.iter().any(Table::is_moving)
-            || self.analog.iter().any(|analog| matches!(analog.source, AnalogSource::Sine { .. }))
+            || self.analog.iter().any(|analog| {
+                matches!(analog.source, AnalogSource::Sine { .. })
+                    && !self.held_analog.contains(&analog.channel)
+            })
     }
 }
 
@@ -362,8 +376,7 @@ impl Machine {
     fn turn_handwheels(&mut self, out: &mut Out, memory: &GuestMemory, now: Cycles) {
         let time = now.get() as f64 / Cycles::PER_SECOND.get() as f64;
         let way = |turn: &[f64; 3]| turned(turn, time) - turned(turn, time - TIMEBASE);
-        let ends =
-            |&[start, _, duration]: &[f64; 3]| (time - TIMEBASE..time).contains(&(start + duration));
+        let ends = |&[start, _, duration]: &[f64; 3]| (time - TIMEBASE..time).contains(&(start + duration));
         for index in 0..self.mechanics.handwheels.len() {
             let wheel = &self.mechanics.handwheels[index];
             let input = wheel.channel;
@@ -437,7 +450,9 @@ impl Machine {
             set(io, contact.bit, level, now);
         }
         let time = now.get() as f64 / Cycles::PER_SECOND.get() as f64;
-        for analog in &mechanics.analog {
+        for analog in
+            mechanics.analog.iter().filter(|analog| !mechanics.held_analog.contains(&analog.channel))
+        {
             let value = match analog.source {
                 AnalogSource::Value(value) => value,
                 AnalogSource::Sine { mean, amp, hz } => {

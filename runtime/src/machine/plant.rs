@@ -60,10 +60,10 @@ enum Scale {
 
 impl Scale {
     fn of(axis: &Axis) -> Self {
-        match (axis.connection.encoder, axis.model) {
-            (Encoder::Auto, Model::Follow) => Self::Axis,
-            (Encoder::Auto | Encoder::Connected, _) => Self::Units(1.0 / axis.counts_per_unit),
-            (Encoder::Absent, _) => Self::Absent,
+        match axis.connection.encoder {
+            Encoder::Auto | Encoder::Connected if axis.follows_gain() => Self::Axis,
+            Encoder::Auto | Encoder::Connected => Self::Units(1.0 / axis.counts_per_unit),
+            Encoder::Absent => Self::Absent,
         }
     }
 }
@@ -277,6 +277,17 @@ impl Plant {
     /// Another constant load pulls at the motor.
     pub(super) fn pull(&mut self, speed: f64) {
         self.build.motor.load_with(speed);
+    }
+
+    /// The rest of its way to the command of its axis, if it goes there whatever the output is.
+    pub(crate) fn rest(&self) -> Option<f64> {
+        match self.drive {
+            Drive::Steps(command) => Some(command - self.steps.reached),
+            Drive::Loop(command, _) if self.build.model == Model::Follow => {
+                Some(command - (self.load + self.shift))
+            }
+            Drive::None | Drive::Loop(..) | Drive::Open(_) | Drive::Vector(..) => None,
+        }
     }
 
     /// Returns whether the board's outputs move it now.

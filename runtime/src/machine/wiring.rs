@@ -128,7 +128,8 @@ impl Wiring {
         let has_motor = |axis: AxisId| memory.axis(axis, Chan::OUTPUT_MODE) != OutputMode::None.get();
         let own = memory.axes().get(input as i32);
         let other = axes().find(|axis| Some(*axis) != own && has_motor(*axis) && reads(memory, *axis, input));
-        let axis = other.or(own).filter(|axis| self.input(*axis).is_none() && !self.has_none[axis.index()])?;
+        let axis =
+            other.or(own).filter(|axis| self.input(*axis).is_none() && !self.has_none[axis.index()])?;
         if other.is_some() || self.has_encoder[axis.index()] || !has_motor(axis) {
             return Some(axis);
         }

@@ -235,8 +235,11 @@ messages! {
     BitUnused { function: Function, bit: Bit } = "bit-unused", Warning, [per bit],
         "{function}({bit}): nothing is connected to bit {bit}: it reads 0 and cannot be written";
     /// A stimulus takes an input from the switch that drives it.
-    SwitchOverridden { bit: Bit, axis: AxisId } = "switch-overridden", Hint, [per bit],
-        "the stimulus overrides the switch of axis {axis} on bit {bit}, until `release bit {bit}`";
+    SwitchOverridden { bit: Bit, axis: AxisId, span: String } = "switch-overridden", Hint, [per bit],
+        "the stimulus overrides the switch of axis {axis} on bit {bit}{span}";
+    /// A stimulus takes an analog input from the source of the machine file.
+    SourceOverridden { channel: usize } = "source-overridden", Hint, [per channel],
+        "the stimulus overrides `[[adc]]` of the machine file on analog input {channel} from now on";
     /// An encoder is turned from outside, and by the load that the machine file connects to the same input.
     EncoderTurnedTwice { input: usize, axis: AxisId } = "encoder-turned-twice", Warning, [per input],
         "encoder {input} is turned by hand, and by the load of axis {axis} as well, which the machine file connects to the same input: give the hand wheel an input of its own, or set `encoder = false` in `[axis.{axis}]`";
@@ -396,6 +399,12 @@ messages! {
     /// The position of a closed loop does not react, because its output has stayed too small.
     WeakOutput { axis: AxisId, output: f64, most: f32, p: f32 } = "weak-output", Warning, [per axis],
         "axis {axis} has not moved since it was enabled: its output has only come to {output:.1} of {most} (MaxOutput), which is too little to move its motor: raise P (now {p}) or FFVel";
+    /// A SnapAmp has switched its bridges off, so the axis does not follow.
+    BridgesOff { axis: AxisId, board: usize, cause: String } = "bridges-off", Warning, [per axis],
+        "axis {axis} does not follow its Dest because SnapAmp {board} holds its bridges off: {cause}";
+    /// The position moves farther than commanded, because its scale is wrong.
+    ScaleWrong { axis: AxisId, ratio: f64, gain: f32, right: f64 } = "scale-wrong", Warning, [per axis],
+        "axis {axis}: its Position moves {ratio:.2} times as far as its Dest: InputGain0 = {gain} does not fit the counts of the encoder, {right:.3} does";
     /// An axis does not move although its output drives it.
     NoResponse { axis: AxisId, output: f32 } = "no-response", Warning, [per axis],
         "axis {axis} has not moved since it was enabled, although its output is {output:.0}: check that OutputChan0 and InputChan0 name its amplifier and its encoder";

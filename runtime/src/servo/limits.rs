@@ -14,6 +14,8 @@ use super::stop::Tells;
 use super::switching::switch_off;
 use crate::io::Io;
 use crate::io::bits::bit_state;
+use crate::machine::Channel;
+use crate::machine::wiring::channel_of;
 use crate::out::{Message, Out};
 use crate::views::{AxisView, Typed};
 
@@ -90,7 +92,12 @@ pub(crate) fn check(
     }
     let plan = tick.servo.cache.plan(axis);
     if command.is_some_and(|command| follows_badly(&mut AxisView::of(memory, axis), plan, command)) {
-        if let Some(message) = cause(memory, axis, &tick.servo.axes[axis.index()]) {
+        let own = tick.servo.axes[axis.index()];
+        let known = amplifier_off(tick, memory, axis);
+        let known = known.or_else(|| scale(tick, memory, axis, &own));
+        // An axis at the end of its travel cannot follow, and that has been said.
+        if let Some(message) = known.or_else(|| cause(tick, memory, axis, &own)).filter(|_| !own.has_stopped)
+        {
             tick.remark_on_axis(memory, axis, message);
         }
         tell(tick, &format!("Following Error Disabled Axis:{axis}"));
@@ -100,8 +107,40 @@ pub(crate) fn check(
     memory.axis(axis, Chan::ENABLE) != 0
 }
 
+/// An amplifier that has switched itself off.
+fn amplifier_off(tick: &Tick<'_>, memory: &GuestMemory, axis: AxisId) -> Option<Message> {
+    let Some(Channel::Pwm(channel)) = channel_of(memory, axis) else { return None };
+    let (board, cause) = tick.io.snapamps.cause(channel as i32, tick.now)?;
+    Some(Message::BridgesOff { axis, board, cause })
+}
+
+/// A scale or sign of the position that does not fit the motion of a load that goes where it is commanded: there the
+/// output says nothing.
+fn scale(tick: &Tick<'_>, memory: &GuestMemory, axis: AxisId, own: &AxisMemory) -> Option<Message> {
+    /// Commanded units from which the motion shows it.
+    const ENOUGH: f64 = 20.0;
+    /// The part of the error by which the load itself may lag.
+    const LAG: f64 = 0.2;
+    /// A part of the way that counts as motion, and a difference of scales.
+    const LEAST: f64 = 0.02;
+    const DIFFERENCE: f64 = 0.1;
+    let error = memory.axis(axis, Chan::LAST_FOLLOWING_ERROR);
+    let is_encoder = memory.axis(axis, Chan::INPUT_MODE) == InputMode::Encoder.get();
+    let rest = tick.machine.loads[axis].rest()?;
+    if !is_encoder || rest.abs() > LAG * error.abs() || own.commanded < ENOUGH {
+        return None;
+    }
+    let ratio = own.followed / own.commanded;
+    if ratio < -LEAST {
+        return Some(Message::RunsAway { axis });
+    }
+    let gain = memory.axis(axis, Chan::INPUT_GAIN0);
+    let is_wrong = ratio > LEAST && (ratio - 1.0).abs() > DIFFERENCE;
+    is_wrong.then(|| Message::ScaleWrong { axis, ratio, gain, right: f64::from(gain) / ratio })
+}
+
 /// Returns the cause of an excessive following error, as far as the servo has seen it since the axis was enabled.
-fn cause(memory: &GuestMemory, axis: AxisId, own: &AxisMemory) -> Option<Message> {
+fn cause(tick: &Tick<'_>, memory: &GuestMemory, axis: AxisId, own: &AxisMemory) -> Option<Message> {
     /// A part of the error that disables the axis.
     const SWINGS: f64 = 0.3;
     /// Changes that no motion needs.
@@ -116,7 +155,8 @@ fn cause(memory: &GuestMemory, axis: AxisId, own: &AxisMemory) -> Option<Message
         return None;
     }
     if response < 0.0 {
-        return Some(Message::RunsAway { axis });
+        let is_driven = tick.machine.loads[axis].rest().is_none();
+        return is_driven.then_some(Message::RunsAway { axis });
     }
     if response == 0.0 {
         // Less than a count of the output moves nothing, and hardly any amplifier moves its motor at a few.

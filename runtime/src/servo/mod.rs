@@ -246,6 +246,7 @@ fn note_stopped(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, place: 
         }
         None => effect.to_owned(),
     };
+    tick.servo.axes[axis.index()].has_stopped = true;
     tick.remark_on_axis(memory, axis, Message::HardStop { axis, place, key, effect });
 }
 
@@ -333,8 +334,8 @@ fn put_out(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, command:
     } else {
         let moved = chan.get(Chan::POSITION) - chan.get(Chan::LAST_POSITION);
         own.response += f64::from(chan.get(Chan::OUTPUT)) * moved;
-        own.moved = moved;
         let error = command - chan.get(Chan::POSITION);
+        own.note_way(moved);
         if error * f64::from(own.velocity) < 0.0 && error.abs() > own.ahead {
             own.ahead = error.abs();
         }

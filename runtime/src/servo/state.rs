@@ -9,6 +9,7 @@ use super::cache::Cache;
 use super::coordinated::{Coordinated, path, system};
 use super::moves::Planner;
 use super::stop::StopRequest;
+use super::trajectory::TICKS_PER_SECOND;
 use super::{independent, recorder};
 use crate::io::Io;
 use crate::machine::Machine;
@@ -27,6 +28,13 @@ pub(crate) struct AxisMemory {
     /// Sum of output times motion since the axis was enabled: above 0 if the output moves the position in its own
     /// direction.
     pub(super) response: f64,
+    /// The way of the destination since the axis was enabled, and that of the position in the same direction.
+    pub(super) commanded: f64,
+    pub(super) followed: f64,
+    /// Speed of the position in units per tick, over some ticks, whatever its direction.
+    pub(super) speed: f64,
+    /// True if its load has run into a hard stop since it was enabled.
+    pub(super) has_stopped: bool,
     /// The farthest that the position has been ahead of a destination that moves.
     pub(super) ahead: f64,
     /// Changes of the output from one half of its range to the other, in one tick each.
@@ -47,6 +55,25 @@ impl AxisMemory {
     /// Rests at `dest`, so that no velocity is seen.
     pub(crate) fn rest(dest: f64) -> Self {
         Self { dest, knows_dest: true, ..Self::default() }
+    }
+
+    /// The position has moved in this tick.
+    #[inline(always)]
+    pub(super) fn note_way(&mut self, moved: f64) {
+        /// The part of a tick in the average of the speed.
+        const WEIGHT: f64 = 1.0 / 64.0;
+        self.moved = moved;
+        if self.velocity != 0.0 {
+            self.commanded += f64::from(self.velocity.abs()) / TICKS_PER_SECOND;
+            self.followed += moved * f64::from(self.velocity.signum());
+        }
+        self.speed += (moved.abs() - self.speed) * WEIGHT;
+    }
+
+    /// Returns whether a position that is `rest` away from its destination is on its way, as fast as for that way in a
+    /// second.
+    pub(crate) fn settles(&self, rest: f64) -> bool {
+        self.speed * TICKS_PER_SECOND > rest
     }
 }
 

@@ -1,7 +1,7 @@
 //@ args: --machine parts/pressed.toml --stim parts/pressed.stim
 //@ prints: 1 at 0.1 s
 //@ prints: 0 at 0.3 s
-//@ prints: 5 changes, 1 at the end
+//@ prints: 4 changes, 0 at the end
 //@ says: the stimulus overrides the switch of axis 0 on bit 136, until `release bit 136`
 #include "KMotionDef.h"
 

@@ -9,6 +9,7 @@ use super::{
     MachineFileError, Model, Probe, Spindle, SpindleDrive, Spring, Switch, Travel, Wire,
 };
 use super::{boards, events, pc};
+use crate::machine::wiring::Wiring;
 use crate::out::REMARKS;
 
 /// Applies the settings of a text to a machine.
@@ -31,7 +32,7 @@ fn root(machine: &mut MachineFile, statements: &mut Vec<(usize, String)>, table:
         "axis" => axes(machine, &value.numbered()?)?;
         "switch" => machine.connected.switches.extend(each(&value, switch)?);
         "probe" => machine.connected.probes.extend(each(&value, probe)?);
-        "encoder" => machine.connected.encoders.extend(each(&value, handwheel)?);
+        "encoder" => handwheels(&mut machine.connected.encoders, &value)?;
         "adc" => machine.connected.analog.extend(each(&value, analog)?);
         "wire" => machine.wires.extend(each(&value, wire)?);
         "event" => statements.extend(events::events(&value)?);
@@ -66,9 +67,27 @@ fn each<T>(value: &Value<'_>, read: impl Fn(&Table<'_>) -> Read<T>) -> Read<Vec<
 
 fn axes(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
     for (key, value) in table.entries() {
-        axis(&mut machine.axes[key.axis()?.index()], &value.table()?)?;
+        let (number, table) = (key.axis()?, value.table()?);
+        axis(&mut machine.axes[number.index()], &table)?;
+        one_encoder(machine, number, &table)?;
     }
     Ok(())
+}
+
+/// Refuses a second encoder on an input.
+fn one_encoder(machine: &MachineFile, axis: AxisId, table: &Table<'_>) -> Read<()> {
+    let wiring = Wiring::new(&machine.axes);
+    let Some(input) = wiring.input(axis) else { return Ok(()) };
+    let Some(other) = AxisId::all().find(|other| *other != axis && wiring.input(*other) == Some(input))
+    else {
+        return Ok(());
+    };
+    let text = format!(
+        "`{}`: encoder input {input} has the encoder of axis {other} already (that of a motor is on the input of its \
+         number, unless `encoder = {{ input = N }}` says otherwise)",
+        table.name
+    );
+    Err(Wrong::new(table.offset, text))
 }
 
 fn axis(axis: &mut Axis, table: &Table<'_>) -> Read<()> {
@@ -104,6 +123,15 @@ fn axis(axis: &mut Axis, table: &Table<'_>) -> Read<()> {
         "rotor_phase" => axis.rotor.phase = value.number()?;
         "index" => axis.index = Some(index(&value.table()?)?);
     });
+    let counts = table.entries().find(|(key, _)| key.text == "counts_per_unit");
+    if let Some((_, value)) = counts.filter(|_| axis.follows_gain()) {
+        let text = format!(
+            "`{}` has no effect: the encoder counts as InputGain0 of the program wants it; set `encoder = true`, with \
+             which it has a scale of its own",
+            value.path
+        );
+        return Err(Wrong::new(value.offset(), text));
+    }
     let Travel { min, max, .. } = axis.travel;
     if min > max {
         let text = format!("`{}`: min {min} exceeds max {max}", table.name);
@@ -244,6 +272,20 @@ fn place(table: &Table<'_>) -> Read<(AxisId, f64)> {
         "at" => at = Some(value.number()?);
     });
     Ok((axis.ok_or_else(|| table.is_missing("axis"))?, at.ok_or_else(|| table.is_missing("at"))?))
+}
+
+fn handwheels(wheels: &mut Vec<Handwheel>, value: &Value<'_>) -> Read<()> {
+    for wheel in each(value, handwheel)? {
+        if wheels.iter().any(|other| other.channel == wheel.channel) {
+            let text = format!(
+                "`encoder`: channel {} has two tables; one of them has all its `moves`",
+                wheel.channel
+            );
+            return Err(Wrong::new(value.offset(), text));
+        }
+        wheels.push(wheel);
+    }
+    Ok(())
 }
 
 fn handwheel(table: &Table<'_>) -> Read<Handwheel> {

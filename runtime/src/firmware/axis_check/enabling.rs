@@ -63,7 +63,12 @@ fn limit_fields(memory: &GuestMemory, function: Function, axis: AxisId) -> Optio
 }
 
 /// A limit switch that counts as active although its axis is not there, or nothing is connected to its input.
-fn limit_active(parts: &Parts, memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
+pub(super) fn limit_active(
+    parts: &Parts,
+    memory: &GuestMemory,
+    function: Function,
+    axis: AxisId,
+) -> Option<Message> {
     let is_idle = |limit: &WatchedLimit| {
         let (level, is_input) = bit_state(&parts.io, memory, limit.bit);
         let is_pressed = match parts.machine.mechanics.contact(limit.bit) {
@@ -120,9 +125,14 @@ fn wrong_output(parts: &Parts, memory: &GuestMemory, function: Function, axis: A
     (channel != wired).then_some(Message::WrongOutput { function, axis, channel, wired })
 }
 
-/// A PWM channel on which nothing is: a machine with a Kanalog has amplifiers with analog inputs.
+/// A PWM channel on which nothing is: a machine with a Kanalog or a SnapAmp has its amplifiers there. One that the
+/// machine file connects to the channel is an external bridge.
 fn no_amplifier(parts: &Parts, memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
     let Some(Channel::Pwm(channel)) = channel_of(memory, axis) else { return None };
+    let is_described = |axis: AxisId| parts.machine.wiring.drive(axis) == Some(Channel::Pwm(channel));
+    if WITHOUT_AMPLIFIER.contains(&channel) && memory.axes().iter().any(is_described) {
+        return None;
+    }
     let has_motor = parts.machine.loads[axis].has_motor();
     if has_motor && !WITHOUT_AMPLIFIER.contains(&channel) && !parts.io.snapamps.is_present() {
         return Some(Message::NoSnapAmp { function, axis, channel });
@@ -131,7 +141,8 @@ fn no_amplifier(parts: &Parts, memory: &GuestMemory, function: Function, axis: A
     // A motor that needs currents in several coils is not driven by the pins of a KFLOP.
     let mode = OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE));
     let has_coils = mode != Some(OutputMode::DcServo) && has_motor;
-    (WITHOUT_AMPLIFIER.contains(&channel) && (has_kanalog || has_coils)).then_some(Message::NoAmplifier {
+    let has_other = has_kanalog || parts.io.snapamps.is_present();
+    (WITHOUT_AMPLIFIER.contains(&channel) && (has_other || has_coils)).then_some(Message::NoAmplifier {
         function,
         axis,
         channel,

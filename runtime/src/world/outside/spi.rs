@@ -88,6 +88,10 @@ fn number(text: &str) -> Option<u32> {
 }
 
 impl Attached for Spi {
+    fn drives(&self) -> Option<Bit> {
+        Some(self.out)
+    }
+
     fn edge(&mut self, change: BitChange, outside: &mut Outside<'_>) {
         if Some(change.bit) == self.input {
             self.input_level = change.level;

@@ -42,6 +42,10 @@ impl Wire {
 }
 
 impl Attached for Wire {
+    fn drives(&self) -> Option<Bit> {
+        Some(self.to)
+    }
+
     fn edge(&mut self, change: BitChange, outside: &mut Outside<'_>) {
         if change.bit != self.from {
             return;

@@ -60,9 +60,26 @@ pub(crate) fn read_pulse(reader: &mut StatementReader<'_>) -> Result<(Bit, Cycle
 
 pub(crate) fn pulse(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) {
     let level = level(scene, bit);
+    let gives_back = takes(scene, bit, duration);
     set(scene, bit, !level);
+    end(scene, bit, duration, level, gives_back);
+}
+
+/// Takes an input from its switch for a time, unless an earlier action has taken it; whether it has.
+fn takes(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) -> bool {
+    let is_switch = scene.access.machine.mechanics.contact(bit).is_some();
+    let is_taken = is_switch && !scene.access.machine.mechanics.is_held(bit);
+    if is_taken {
+        let ms = 1e3 * duration.get() as f64 / Cycles::PER_SECOND.get() as f64;
+        hold(scene.access, bit, &format!(" for {ms} ms"));
+    }
+    is_taken
+}
+
+/// An action of some duration ends: the input goes back to its switch, or to a level.
+fn end(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles, level: bool, gives_back: bool) {
     let end = scene.context.now + duration;
-    if scene.access.machine.mechanics.contact(bit).is_some() {
+    if gives_back {
         scene.plans.release(end, bit);
     } else {
         scene.plans.level(end, bit, level);
@@ -87,15 +104,20 @@ pub(crate) fn let_go(access: &mut WorldAccess<'_>, bit: Bit) -> bool {
     access.machine.mechanics.contact(bit).is_some()
 }
 
-/// When a contact that bounces inverts its level, as parts of the time that it takes.
+/// When a contact that bounces inverts its level, as parts of the time that it takes. A switch drives its input again
+/// at the end.
 const BOUNCES: [f64; 4] = [0.12, 0.3, 0.55, 1.0];
 
 pub(crate) fn bounce(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) {
     let old = level(scene, bit);
+    let gives_back = takes(scene, bit, duration);
     set(scene, bit, !old);
     for (index, part) in BOUNCES.into_iter().enumerate() {
         let after = Cycles::new((duration.get() as f64 * part) as i64);
         scene.plans.level(scene.context.now + after, bit, (index % 2 == 0) == old);
+    }
+    if gives_back {
+        scene.plans.release(scene.context.now + duration, bit);
     }
 }
 
@@ -125,6 +147,9 @@ pub(crate) fn adc(scene: &mut Scene<'_, '_, '_>, channel: usize, wave: Wave) {
     {
         let (now, volts) = (scene.context.now, value / COUNTS_PER_VOLT);
         scene.access.out.remark(now, Message::FewCounts { channel, value, volts });
+    }
+    if scene.access.machine.mechanics.hold_analog(channel) {
+        scene.access.out.remark(scene.context.now, Message::SourceOverridden { channel });
     }
     scene.plans.begin_wave(channel, wave, scene.context.now);
 }
@@ -206,17 +231,17 @@ pub(crate) fn drive(access: &mut WorldAccess<'_>, context: &mut TickContext<'_>,
     if is_memory(bit) {
         access.lines().write(context.memory, bit, level);
     } else {
-        hold(access, bit);
+        hold(access, bit, &format!(", until `release bit {bit}`"));
         access.lines().drive(bit, level);
     }
 }
 
-/// An action overrides a switch on the same input until it is released.
-fn hold(access: &mut WorldAccess<'_>, bit: Bit) {
+/// An action overrides a switch on the same input, for a time or until it is released.
+fn hold(access: &mut WorldAccess<'_>, bit: Bit, span: &str) {
     if let Some((axis, ..)) = access.machine.mechanics.contact(bit)
         && access.machine.mechanics.hold(bit)
     {
         let now = access.lines().now;
-        access.out.remark(now, Message::SwitchOverridden { bit, axis });
+        access.out.remark(now, Message::SwitchOverridden { bit, axis, span: span.to_owned() });
     }
 }

@@ -39,10 +39,17 @@ pub(crate) fn attach(scene: &mut Scene<'_, '_, '_>, device: DeviceSpec) {
     }
 }
 
-/// A device on an analog input is on a Kanalog.
-pub(crate) fn announce_device(device: &DeviceSpec, _: &mut WorldAccess<'_>, memory: &mut GuestMemory) {
-    if device.settings.iter().any(|(key, _)| KANALOG_SETTINGS.contains(&key.as_str())) {
+/// The inputs that a device will drive are not left open until then; one on an analog input is on a Kanalog.
+pub(crate) fn announce_device(device: &DeviceSpec, access: &mut WorldAccess<'_>, memory: &mut GuestMemory) {
+    if let Some(bit) = device.build().ok().and_then(|device| device.drives()) {
+        access.io.pins.declare(bit);
+    }
+    let is_analog = |(key, _): &&(String, String)| KANALOG_SETTINGS.contains(&key.as_str());
+    for (_, channel) in device.settings.iter().filter(is_analog) {
         memory.set(KANALOG_PRESENT, 1);
+        if let Ok(channel) = channel.parse() {
+            access.io.kanalog.connect(channel);
+        }
     }
 }
 
