@@ -123,15 +123,6 @@ fn axis(axis: &mut Axis, table: &Table<'_>) -> Read<()> {
         "rotor_phase" => axis.rotor.phase = value.number()?;
         "index" => axis.index = Some(index(&value.table()?)?);
     });
-    let counts = table.entries().find(|(key, _)| key.text == "counts_per_unit");
-    if let Some((_, value)) = counts.filter(|_| axis.follows_gain()) {
-        let text = format!(
-            "`{}` has no effect: the encoder counts as InputGain0 of the program wants it; set `encoder = true`, with \
-             which it has a scale of its own",
-            value.path
-        );
-        return Err(Wrong::new(value.offset(), text));
-    }
     let Travel { min, max, .. } = axis.travel;
     if min > max {
         let text = format!("`{}`: min {min} exceeds max {max}", table.name);

@@ -185,16 +185,12 @@ fn mistakes_are_named_with_their_place() {
             "2:10: `encoder[0].moves[0]` must be [start in seconds, counts, duration in seconds], not a value of type array",
         ),
         (
-            "[axis.0]\nmax = 8\ncounts_per_unit = 2",
-            "3:19: `axis.0.counts_per_unit` has no effect: the encoder counts as InputGain0 of the program wants it; set `encoder = true`, with which it has a scale of its own",
-        ),
-        (
             "[axis.0]\nmodel = \"motor\"\n[axis.1]\nencoder = { input = 0 }",
             "3:1: `axis.1`: encoder input 0 has the encoder of axis 0 already (that of a motor is on the input of its number, unless `encoder = { input = N }` says otherwise)",
         ),
         (
             "[[encoder]]\nchannel = 3\n[[encoder]]\nchannel = 3",
-            "1:3: `encoder`: channel 3 has two tables; one of them has all its `moves`",
+            "1:1: `encoder`: channel 3 has two tables; one of them has all its `moves`",
         ),
         (
             "[[axis]]\nkind = 1",
