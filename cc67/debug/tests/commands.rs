@@ -383,7 +383,7 @@ fn words_of_gdb() {
          #0  ADDRESS in main () at a.c:13
          Id   State       Frame
          * 1    running     main () at a.c:13
-         2    waiting     main () at b.c:7, waits for 0.010 s
+         2    waiting     main () at b.c:7, waits for the time 0.010 s
          tick 4, 0.000360 s
          Undefined command: \"jump\".  Try \"help\".
          No breakpoints specified.",

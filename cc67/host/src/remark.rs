@@ -73,7 +73,9 @@ pub fn words(remark: &Remark, programs: &[DebugInfo]) -> String {
     let who = who(remark, programs);
     if let Some(other) = remark.message.other() {
         let text = remark.message.to_string().replace(&other.to_string(), &place_of(other, programs));
-        return format!("{who} {text}");
+        // Most go on after the place; others begin with the function.
+        let mark = if text.starts_with(char::is_uppercase) { ":" } else { "" };
+        return format!("{who}{mark} {text}");
     }
     match &remark.message {
         // A sentence about the reader.
