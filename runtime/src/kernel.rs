@@ -22,7 +22,7 @@ use vm::scheduler::Turn;
 use vm::trap::{Trap, TrapKind};
 
 use crate::commands::Scripts;
-use crate::firmware::calls::{Calls, HeldLock, SmallMove, WrongWait, WrongZero};
+use crate::firmware::calls::{Calls, HeldLock, Overlap, SmallMove, WrongWait, WrongZero};
 use crate::firmware::dispatch::{Answer, HANDLERS, signatures};
 use crate::firmware::later::{self, Callee, Callees, LATER_FUNCTIONS};
 use crate::firmware::level::ModelledBoard;
@@ -200,6 +200,10 @@ impl Kernel {
         }
         for WrongWait { thread, asked, moving, at } in calls.motions.wrong_waits() {
             let message = Message::WaitsForOther { asked, moving };
+            out.remark_of(context.now, Speaker::Thread(thread), at, message);
+        }
+        for Overlap { thread, function, axis, moving, at } in calls.motions.unasked_overlaps() {
+            let message = Message::NotWaitedFor { function, axis, moving };
             out.remark_of(context.now, Speaker::Thread(thread), at, message);
         }
         for WrongZero { thread, axis, homed, at } in calls.motions.wrong_zeros() {

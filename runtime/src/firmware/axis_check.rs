@@ -15,7 +15,7 @@ use vm::memory::GuestMemory;
 
 use enabling::{limit_active, loop_input};
 
-use super::calls::{EndedWait, Jogged, Shift, SmallMove};
+use super::calls::{EndedWait, Jogged, Overlap, Shift, SmallMove};
 use super::parts::Parts;
 use crate::machine::OtherUnits;
 use crate::machine::description::Condition;
@@ -256,6 +256,11 @@ pub(crate) fn moved(parts: &mut Parts, caller: &Caller<'_>, function: Function, 
         parts.calls.motions.goes_on(axis);
     }
     let Some(thread) = caller.thread else { return };
+    let is_on_its_way = |axis| {
+        has_motion(memory, axis) && memory.axis(axis, Chan::LAST_MOTION_TYPE) == LastMotion::Move.get()
+    };
+    let overlap = Overlap { thread, function, axis, moving: axis, at: caller.at };
+    parts.calls.motions.overlaps(overlap, is_on_its_way);
     let before = parts.calls.motions.moves(thread, axis);
     if let Some(other) = before.filter(|_| has_motion(caller.memory, axis)) {
         parts.out.diagnose(caller, Message::OtherThreadMoves { function, axis, other });

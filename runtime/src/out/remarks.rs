@@ -372,6 +372,9 @@ messages! {
     /// A thread waits for another axis than the one that it moves.
     WaitsForOther { asked: AxisId, moving: AxisId } = "waits-for-other", Warning, [per moving],
         "CheckDone({asked}) asks about axis {asked}, but the thread moves axis {moving}, for which it never waits";
+    /// A thread waits for one of the axes that it moves and continues while another one, for which nobody ever waits, still moves.
+    NotWaitedFor { function: Function, axis: AxisId, moving: AxisId } = "not-waited-for", Warning, [per moving],
+        "{function}: axis {axis} begins to move while axis {moving} is still on its way, and no program ever waits for that one: wait with `while (!CheckDone({moving}));` too";
     /// An index pulse has passed between two reads of its bit.
     IndexMissed { bit: Bit, axis: AxisId, width: f64, step: f64 } = "index-missed", Warning, [per bit],
         "ReadBit({bit}): an index pulse of axis {axis} has passed between two reads: it is {width} units wide, and the axis moves {step:.1} units from read to read";

@@ -55,7 +55,12 @@ fn block(
             let (Some(previous), [odd, after @ ..]) = (before.last(), rest) else { continue };
             let axis = previous.axis;
             let own = [before, after].concat();
-            let next = after.first();
+            // More than one line in a row may name the old axis, but not a block.
+            let others = after.iter().take_while(|next| next.axis == odd.axis).count();
+            let next = after.get(others);
+            if others + 1 >= BLOCK {
+                continue;
+            }
             // At the end of a block the field is set a second time, or it is a block of its own that begins.
             let is_inside = next.is_some_and(|next| next.axis == axis);
             let is_repeated = || {

@@ -1,6 +1,6 @@
 //! `persist.UserData[100] = PC_COMM_MSG; if (persist.UserData[103] == IDYES)`: the PC has not answered yet; and
 //! `StartThread(2); x = persist.UserData[10];`: the other thread has not run yet. A parameter that is stored after its
-//! request is a related mistake.
+//! request, and a request that replaces another one, are related mistakes.
 //!
 //! Only what follows in a straight line is looked at; a loop, or a call that may wait, ends it.
 
@@ -14,7 +14,7 @@ use super::user_data_type::element;
 use super::walk::{Extent, Walk};
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::Span;
-use crate::typed::{ExprId, ExprKind, Function, Stmt, StmtKind};
+use crate::typed::{Call, Callee, ExprId, ExprKind, Function, Stmt, StmtKind, SymbolId};
 
 /// The element with the code of a request, and those of its parameters and answers.
 const CODE: i32 = 100;
@@ -47,6 +47,10 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
             }
         });
     }
+    let kinds: BTreeMap<_, _> = program
+        .functions()
+        .filter_map(|function| Some((function.symbol, kind_of(program, function)?)))
+        .collect();
     for function in program.functions() {
         let mut own = BTreeMap::new();
         all_stores(program, function, &mut own);
@@ -56,6 +60,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
             all: &stores,
             own,
             loads: &loads,
+            kinds: &kinds,
             since: None,
             prints: false,
             findings: Vec::new(),
@@ -63,6 +68,35 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
         scan.stmts(&function.body);
         scan.findings.into_iter().for_each(|finding| sink.report(finding));
     }
+}
+
+/// A function of the program that lets no time pass.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// It only computes, stores or prints.
+    Instant,
+    /// It sends a request to the PC, and does not wait for it.
+    Posts,
+}
+
+/// The kind of a function; `None` if time may pass in it.
+fn kind_of(program: &AnalysedProgram<'_>, function: &Function) -> Option<Kind> {
+    let mut has_loop = false;
+    function
+        .each_stmt(&mut |stmt| has_loop |= matches!(stmt.kind, StmtKind::Loop { .. } | StmtKind::Goto(_)));
+    let is_instant =
+        |call: &Call| called_firmware(program.unit, call).is_some_and(|name| INSTANT.contains(&name));
+    if has_loop || !function.calls().all(|(_, call)| is_instant(call)) {
+        return None;
+    }
+    let mut posts = false;
+    Walk { function, extent: Extent::Always }.stmts(&function.body, &mut |expr| {
+        if let ExprKind::Assign(place, value) = function.exprs[expr].kind {
+            posts |= element(program, function, place) == Some(CODE)
+                && !matches!(function.exprs[value].kind, ExprKind::Int(..=0));
+        }
+    });
+    Some(if posts { Kind::Posts } else { Kind::Instant })
 }
 
 /// The values that are stored in elements of `persist.UserData`: constants, or `None`.
@@ -102,6 +136,8 @@ struct Scan<'a> {
     own: Stores,
     /// The number of loads of each element in the program.
     loads: &'a BTreeMap<i32, u32>,
+    /// The functions of the program that let no time pass.
+    kinds: &'a BTreeMap<SymbolId, Kind>,
     since: Option<Since>,
     /// True in an expression that prints.
     prints: bool,
@@ -160,11 +196,17 @@ impl Scan<'_> {
                     self.since = Some(Since::Started(span));
                 }
                 Some(name) if INSTANT.contains(&name) => {}
-                _ => self.since = None,
+                _ => match self.kind(call) {
+                    Some(Kind::Instant) => {}
+                    Some(Kind::Posts) => self.posts(span),
+                    None => self.since = None,
+                },
             },
             ExprKind::Assign(place, value) if element(program, function, *place) == Some(CODE) => {
-                let is_request = !matches!(function.exprs[*value].kind, ExprKind::Int(..=0));
-                self.since = is_request.then_some(Since::Posted(span));
+                match function.exprs[*value].kind {
+                    ExprKind::Int(..=0) => self.since = None,
+                    _ => self.posts(span),
+                }
             }
             ExprKind::Assign(place, _) => {
                 let stored = element(program, function, *place).filter(|element| MAILBOX.contains(element));
@@ -189,6 +231,22 @@ impl Scan<'_> {
         }
     }
 
+    /// The kind of a called function of the program.
+    fn kind(&self, call: &Call) -> Option<Kind> {
+        match call.callee {
+            Callee::Symbol(callee) => self.kinds.get(&callee).copied(),
+            Callee::Pointer(_) => None,
+        }
+    }
+
+    /// A request is posted.
+    fn posts(&mut self, span: Span) {
+        if let Some(Since::Posted(request)) = self.since {
+            self.findings.push(replaced(span, request));
+        }
+        self.since = Some(Since::Posted(span));
+    }
+
     /// Returns whether the PC stores its answer in an element, which the function itself at most sets to 0.
     fn is_answer(&self, element: i32) -> bool {
         let only_clears = |stores: &Vec<Option<i64>>| stores.iter().all(|value| *value == Some(0));
@@ -207,6 +265,13 @@ impl Scan<'_> {
         let is_printed = || self.prints && self.loads.get(&element) == Some(&1);
         !MAILBOX.contains(&element) && self.all.get(&element).map_or_else(is_printed, clears)
     }
+}
+
+fn replaced(span: Span, request: Span) -> Diagnostic {
+    Diagnostic::warning(Lint::EarlyAnswer, span, "this request to the PC replaces one that it has not read")
+        .at("the PC looks every 0.1 s")
+        .label(request, "this request is lost")
+        .help("wait in between: `while (persist.UserData[100] > 0) WaitNextTimeSlice();`")
 }
 
 fn unanswered(element: i32, span: Span, request: Span) -> Diagnostic {

@@ -18,7 +18,7 @@ use crate::io::kanalog::Group;
 pub(crate) use globals::Globals;
 pub(crate) use heap::Heap;
 pub(crate) use locks::{HeldLock, Locks};
-pub(crate) use motions::{EndedWait, Jogged, Motions, Shift, SmallMove, WrongWait, WrongZero};
+pub(crate) use motions::{EndedWait, Jogged, Motions, Overlap, Shift, SmallMove, WrongWait, WrongZero};
 pub(crate) use notices::{Called, Commanded, Named, Notices};
 pub(crate) use reading::Reading;
 pub(crate) use serial::SerialService;

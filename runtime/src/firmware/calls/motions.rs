@@ -83,12 +83,25 @@ pub(crate) struct Shift {
     pub(crate) at: CodeAddr,
 }
 
+/// A motion that began while another axis moved, for which its thread had not waited.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Overlap {
+    pub(crate) thread: ThreadId,
+    pub(crate) function: Function,
+    pub(crate) axis: AxisId,
+    /// The axis that still moved.
+    pub(crate) moving: AxisId,
+    pub(crate) at: Option<CodeAddr>,
+}
+
 /// The history of one thread.
 #[derive(Clone, Copy, Debug, Default)]
 struct Thread {
     /// Axes that it has moved, and axes that it has found in motion; a bit for each.
     moved: u16,
     in_motion: u16,
+    /// Axes that it has moved and that still moved when it had waited for another one; a bit for each.
+    left_behind: u16,
     /// True if it has found a path under way.
     path_in_motion: bool,
     /// Axes that it has moved to their switches and not zeroed since; a bit for each.
@@ -114,6 +127,10 @@ pub(crate) struct Motions {
     /// The first move of each axis if that and all others are of a few counts; nothing after any other motion.
     small: [Small; Axes::MAX],
     cut: [Option<Cut>; Axes::MAX],
+    /// The axes that any thread has asked about; a bit for each.
+    asked: u16,
+    /// The first motion that began while an axis still moved.
+    overlaps: [Option<Overlap>; Axes::MAX],
 }
 
 /// The common property of the moves of an axis.
@@ -239,7 +256,13 @@ impl Motions {
         is_moving: impl Fn(AxisId) -> bool,
     ) {
         let mover = self.movers[axis.index()];
+        self.asked |= bit(axis);
         let own = &mut self.threads[thread.index()];
+        own.left_behind &= !bit(axis);
+        if done != 0 && own.in_motion & bit(axis) != 0 {
+            let others = AxisId::all().filter(|other| own.moved & bit(*other) != 0 && is_moving(*other));
+            own.left_behind = others.fold(own.left_behind, |all, other| all | bit(other));
+        }
         own.wrong_wait.take_if(|wait| wait.moving == axis);
         own.ended_wait.take_if(|wait| wait.axis == Some(axis));
         let was_in_motion = own.in_motion & bit(axis) != 0;
@@ -252,6 +275,22 @@ impl Motions {
         if was_in_motion && done < 0 {
             own.ended_wait = Some(EndedWait { thread, axis: Some(axis), at });
         }
+    }
+
+    /// A thread begins a motion of an axis; `is_on_its_way` says which axes are moving to a place.
+    pub(crate) fn overlaps(&mut self, overlap: Overlap, is_on_its_way: impl Fn(AxisId) -> bool) {
+        let own = &mut self.threads[overlap.thread.index()];
+        own.left_behind &= !bit(overlap.axis);
+        let left_behind = own.left_behind;
+        for moving in AxisId::all().filter(|moving| left_behind & bit(*moving) != 0 && is_on_its_way(*moving))
+        {
+            self.overlaps[moving.index()].get_or_insert(Overlap { moving, ..overlap });
+        }
+    }
+
+    /// The motions that began while an axis still moved that nobody ever asks about.
+    pub(crate) fn unasked_overlaps(&self) -> impl Iterator<Item = Overlap> + '_ {
+        self.overlaps.iter().flatten().copied().filter(|overlap| self.asked & bit(overlap.moving) == 0)
     }
 
     /// A thread asks whether the path has ended, and is told `done`.
