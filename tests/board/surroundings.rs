@@ -87,6 +87,17 @@ fn a_hand_wheel_has_the_input_of_a_stepper_without_an_encoder() {
 }
 
 #[test]
+fn the_number_of_an_axis_names_its_encoder_where_no_axis_reads_that_input() {
+    let program = "main() { ch3->InputMode = ENCODER_MODE; ch3->InputChan0 = 0; ch3->OutputMode = NO_OUTPUT_MODE;\n\
+                   ch0->InputMode = NO_INPUT_MODE; Delay_sec(0.7); printf(\"%g\\n\", ch3->Position); }";
+    let machine = "[axis.3]\nmodel = \"none\"\nencoder = { input = 0 }\n[axis.0]\nencoder = false\n";
+    for number in [0, 3] {
+        let stimulus = format!("at 0.1s encoder {number} moves 40 in 0.4s");
+        assert_eq!(shows("axis-number", program, machine, &stimulus), "40\n", "encoder {number}");
+    }
+}
+
+#[test]
 fn an_encoder_that_a_hand_and_a_described_load_turn_is_reported() {
     let program = HAND_WHEEL.replace("INPUT;", "NO_INPUT_MODE;");
     let machine = "[axis.0]\nencoder = true";

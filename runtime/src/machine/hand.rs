@@ -9,7 +9,7 @@ use kmotiondef::{AxisId, Cycles};
 use vm::memory::GuestMemory;
 
 use super::Machine;
-use super::wiring::reads;
+use super::wiring::{ENCODERS, reads};
 use crate::out::{Message, Out};
 use crate::views::Typed;
 
@@ -23,6 +23,7 @@ impl Machine {
         counts: f64,
         now: Cycles,
     ) {
+        let input = self.turned_input(memory, input);
         let shaft = self.wiring.shaft(memory, input);
         let unit = shaft.and_then(|axis| {
             let gain = f64::from(memory.axis(axis, Chan::INPUT_GAIN0));
@@ -40,8 +41,20 @@ impl Machine {
         }
     }
 
+    /// The input that `encoder N` names: that of the number, or that of the axis of the number if nothing reads the first.
+    fn turned_input(&self, memory: &GuestMemory, number: usize) -> usize {
+        let is_read = memory.axes().iter().any(|axis| reads(memory, axis, number));
+        let axis = memory.axes().get(number as i32).filter(|_| !is_read);
+        let of_axis = axis.and_then(|axis| {
+            let read = (0..ENCODERS).find(|input| reads(memory, axis, *input));
+            read.or_else(|| self.wiring.input(axis))
+        });
+        of_axis.unwrap_or(number)
+    }
+
     /// Reports an encoder that has been turned although nothing reads it.
     pub(crate) fn check_read(&self, memory: &GuestMemory, out: &mut Out, input: usize, now: Cycles) {
+        let input = self.turned_input(memory, input);
         // Switches, sources and devices see the load that turns with it.
         let is_seen = |axis: AxisId| {
             let mode = memory.axis(axis, Chan::INPUT_MODE);
