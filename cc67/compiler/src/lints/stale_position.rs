@@ -7,7 +7,7 @@ use kmotiondef::structs::Chan;
 
 use super::program::{AnalysedProgram, CHANNELS, axis_of_pointer};
 use crate::diag::{Diagnostic, Lint, Sink};
-use crate::typed::{Callee, ExprKind, Function, PlaceId, PlaceKind, SymbolId};
+use crate::typed::{Call, Callee, ExprId, ExprKind, Function, PlaceId, PlaceKind, SymbolId};
 
 /// Reports reads of `Position` of an axis to which the program gives no input.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
@@ -16,8 +16,12 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
         return;
     }
     for function in program.functions() {
-        for expr in function.exprs.values() {
+        let passed = passed(function);
+        for (id, expr) in function.exprs.iter() {
             let ExprKind::Load(place) = expr.kind else { continue };
+            if passed.contains(&id) {
+                continue;
+            }
             let Some(Axis::Number(axis)) = axis_of(program, function, place, POSITION) else { continue };
             if !without.contains(&axis) {
                 continue;
@@ -31,6 +35,20 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
             );
         }
     }
+}
+
+/// The arguments of calls: whoever prints a position, or enables an axis at it, asks nothing of it.
+fn passed(function: &Function) -> BTreeSet<ExprId> {
+    let unconverted = |mut expr: ExprId| {
+        while let ExprKind::Convert(inner) = function.exprs[expr].kind {
+            expr = inner;
+        }
+        expr
+    };
+    let arguments = |call: &Call| -> Vec<ExprId> {
+        call.arguments.iter().chain(call.variable.iter().flatten()).copied().map(unconverted).collect()
+    };
+    function.calls().flat_map(|(_, call)| arguments(call)).collect()
 }
 
 const POSITION: i32 = Chan::POSITION.offset().cast_signed();
