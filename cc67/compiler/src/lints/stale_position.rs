@@ -17,7 +17,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
     for function in program.functions() {
         let passed = passed(function);
-        for (id, expr) in function.exprs.iter() {
+        for (id, expr) in &function.exprs {
             let ExprKind::Load(place) = expr.kind else { continue };
             if passed.contains(&id) {
                 continue;
