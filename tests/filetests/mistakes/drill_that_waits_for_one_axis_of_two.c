@@ -1,6 +1,5 @@
-//@ args: run
 //@ says: Move: axis 2 begins to move while axis 1 is still on its way, and no program ever waits for that one
-//@ says: drill_that_waits_for_one_axis_of_two.c:26:5
+//@ says: drill_that_waits_for_one_axis_of_two.c:25:5
 #include "KMotionDef.h"
 
 void Setup(int axis, float speed)

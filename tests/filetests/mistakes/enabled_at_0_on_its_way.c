@@ -1,7 +1,6 @@
-//@ args: run
 //@ says: Move: axis 0 was disabled on its way, at 
-//@ says: and enabled with Dest = 0 by thread 1 at enabled_at_0_on_its_way.c:19:5
-//@ says: enabled_at_0_on_its_way.c:20:5
+//@ says: and enabled with Dest = 0 by thread 1 at enabled_at_0_on_its_way.c:18:5
+//@ says: enabled_at_0_on_its_way.c:19:5
 #include "KMotionDef.h"
 
 main()

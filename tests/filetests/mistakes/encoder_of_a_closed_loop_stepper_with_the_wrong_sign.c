@@ -8,7 +8,7 @@ main()
     ch0->InputMode = ENCODER_MODE;
     ch0->OutputMode = CL_STEP_DIR_MODE;
     ch0->InputGain0 = -1;
-    ch0->P = 0.1;
+    ch0->P = 0.001;
     ch0->MaxFollowingError = 1000;
     ch0->Vel = 5000;
     ch0->Accel = 50000;

@@ -1,6 +1,6 @@
 //@ args: --set axis.0.encoder=true --set axis.0.counts_per_unit=4
 //@ prints: Following Error Disabled Axis:0
-//@ says: thread 1 at encoder_with_4_counts_for_a_unit.c:20:5 in `main`: axis 0: its Position moves 4.00 times as far as its Dest: InputGain0 = 1 does not fit the counts of the encoder, 0.250 does
+//@ says: thread 1 at encoder_with_4_counts_for_a_unit.c:19:5 in `main`: axis 0: its Position moves 4.00 times as far as its Dest: InputGain0 = 1 does not fit the counts of the encoder, 0.250 does
 #include "KMotionDef.h"
 
 main()
@@ -8,8 +8,7 @@ main()
     ch0->InputMode = ENCODER_MODE;
     ch0->OutputMode = CL_STEP_DIR_MODE;
     ch0->InputGain0 = 1;
-    ch0->P = 20;
-    ch0->FFVel = 1;
+    ch0->P = 0.001;
     ch0->MaxErr = 500;
     ch0->MaxOutput = 50000;
     ch0->MaxFollowingError = 2000;

@@ -1,4 +1,3 @@
-//@ args: run
 // The drill moves when both axes have arrived; an axis that jogs goes on, and one that is waited for later may still move.
 #include "KMotionDef.h"
 

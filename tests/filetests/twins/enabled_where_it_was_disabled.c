@@ -1,4 +1,3 @@
-//@ args: run
 // An axis that was disabled on its way is enabled where it is, or homed again; a relative move needs no zero.
 #include "KMotionDef.h"
 
