@@ -15,8 +15,9 @@ const READ: &str = Function::ReadADC.name();
 const WORDS: &str = "ADC_BufferIn";
 const ZERO: i64 = 2048;
 
-/// The range of an analog input in volts: constants beyond it are counts.
-const VOLTS: f64 = 10.0;
+/// The range of analog inputs and outputs in volts: constants beyond it are counts.
+pub(super) const VOLTS: f64 = 10.0;
+pub(super) const COUNTS_PER_VOLT: f64 = 204.8;
 
 /// Reports comparisons of an analog input with constants that look like volts.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
@@ -34,7 +35,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
                 continue;
             }
             let message = format!("`{name}` is a number of counts, and {volts} counts are almost nothing");
-            let counts = libm::round(volts * 204.8);
+            let counts = libm::round(volts * COUNTS_PER_VOLT);
             sink.report(
                 Diagnostic::warning(Lint::AdcCounts, function.exprs[constant].span, message)
                     .at("this looks like volts")

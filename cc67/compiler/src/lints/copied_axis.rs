@@ -2,12 +2,10 @@
 //!
 //! The block never sets that field of its own axis, so the line is not one of two that belong together.
 
-use kmotiondef::structs::Chan;
-
-use super::program::{AnalysedProgram, CHANNELS, axis_of_pointer};
+use super::program::{AnalysedProgram, AxisField};
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::Span;
-use crate::typed::{ExprKind, Function, PlaceKind, Stmt, StmtKind};
+use crate::typed::{ExprKind, Function, Stmt, StmtKind};
 
 /// A field of an axis that a statement sets.
 #[derive(Clone, Copy)]
@@ -98,17 +96,6 @@ fn setting(program: &AnalysedProgram<'_>, function: &Function, stmt: &Stmt) -> O
     let StmtKind::Expr(expr) = stmt.kind else { return None };
     let ExprKind::Assign(place, _) = function.exprs[expr].kind else { return None };
     let span = function.exprs[expr].span;
-    let (axis, field) = match function.places[place].kind {
-        PlaceKind::Pointer(pointer, field) => {
-            let ExprKind::Load(pointer) = function.exprs[pointer].kind else { return None };
-            let PlaceKind::Symbol(symbol, 0) = function.places[pointer].kind else { return None };
-            (axis_of_pointer(program.name(symbol))?, field)
-        }
-        PlaceKind::Symbol(symbol, offset) if program.name(symbol) == CHANNELS => {
-            let size = Chan::STRUCTURE.size.cast_signed();
-            (offset.div_euclid(size).try_into().ok()?, offset.rem_euclid(size))
-        }
-        _ => return None,
-    };
-    Some(Setting { axis, field: field.try_into().ok()?, span, place: function.places[place].span })
+    let AxisField { axis, field } = program.axis_field(function, place)?;
+    Some(Setting { axis, field, span, place: function.places[place].span })
 }

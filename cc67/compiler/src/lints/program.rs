@@ -1,10 +1,12 @@
 //! The input of lints: the finished typed tree and the names of the board.
 
+use kmotiondef::structs::Chan;
+
 use crate::firmware::FirmwareNames;
 use crate::names::Names;
 use crate::source::SourceMap;
 use crate::ty::TypeId;
-use crate::typed::{Function, SymbolId, Unit};
+use crate::typed::{ExprKind, Function, PlaceId, PlaceKind, SymbolId, Unit};
 
 /// The structure with elements for programs and the PC.
 pub(super) const PERSIST: &str = "persist";
@@ -14,6 +16,13 @@ pub(super) const CHANNELS: &str = "chan";
 /// The number of the axis to which a variable of the board points, such as `ch3`.
 pub(super) fn axis_of_pointer(name: &str) -> Option<u32> {
     name.strip_prefix("ch")?.parse().ok()
+}
+
+/// The field of an axis that a place is: `ch3->Vel`, `chan[3].Vel`.
+pub(super) struct AxisField {
+    pub(super) axis: u32,
+    /// Bytes from the start of `CHAN`.
+    pub(super) field: u32,
 }
 
 /// A program after analysis.
@@ -48,6 +57,23 @@ impl<'a> AnalysedProgram<'a> {
     /// The name of a symbol.
     pub(super) fn name(&self, symbol: SymbolId) -> &'a str {
         &self.unit.symbols[symbol].name
+    }
+
+    /// The field of an axis that a place is, if the axis is named by its number.
+    pub(super) fn axis_field(&self, function: &Function, place: PlaceId) -> Option<AxisField> {
+        let (axis, field) = match function.places[place].kind {
+            PlaceKind::Pointer(pointer, field) => {
+                let ExprKind::Load(pointer) = function.exprs[pointer].kind else { return None };
+                let PlaceKind::Symbol(symbol, 0) = function.places[pointer].kind else { return None };
+                (axis_of_pointer(self.name(symbol))?, field)
+            }
+            PlaceKind::Symbol(symbol, offset) if self.name(symbol) == CHANNELS => {
+                let size = Chan::STRUCTURE.size.cast_signed();
+                (offset.div_euclid(size).try_into().ok()?, offset.rem_euclid(size))
+            }
+            _ => return None,
+        };
+        Some(AxisField { axis, field: field.try_into().ok()? })
     }
 
     /// A type as C spells it.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use kmotiondef::modes::InputMode;
 use kmotiondef::structs::Chan;
 
-use super::program::{AnalysedProgram, CHANNELS, axis_of_pointer};
+use super::program::{AnalysedProgram, AxisField};
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::{Call, Callee, ExprId, ExprKind, Function, PlaceId, PlaceKind, SymbolId};
 
@@ -22,7 +22,9 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
             if passed.contains(&id) {
                 continue;
             }
-            let Some(Axis::Number(axis)) = axis_of(program, function, place, POSITION) else { continue };
+            let Some(AxisField { axis, field: POSITION }) = program.axis_field(function, place) else {
+                continue;
+            };
             if !without.contains(&axis) {
                 continue;
             }
@@ -51,35 +53,14 @@ fn passed(function: &Function) -> BTreeSet<ExprId> {
     function.calls().flat_map(|(_, call)| arguments(call)).collect()
 }
 
-const POSITION: i32 = Chan::POSITION.offset().cast_signed();
-const INPUT_MODE: i32 = Chan::INPUT_MODE.offset().cast_signed();
+const POSITION: u32 = Chan::POSITION.offset();
+const INPUT_MODE: u32 = Chan::INPUT_MODE.offset();
 
-/// The axis that a place belongs to.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Axis {
-    Number(u32),
-    /// One that a pointer names.
-    Pointed,
-}
-
-/// The axis of a place that is a field at `offset`.
-fn axis_of(program: &AnalysedProgram<'_>, function: &Function, place: PlaceId, offset: i32) -> Option<Axis> {
-    match function.places[place].kind {
-        PlaceKind::Pointer(pointer, at) if at == offset => {
-            let ExprKind::Load(pointer) = function.exprs[pointer].kind else { return None };
-            match function.places[pointer].kind {
-                PlaceKind::Symbol(symbol, 0) => axis_of_pointer(program.name(symbol)).map(Axis::Number),
-                PlaceKind::Local(..) => Some(Axis::Pointed),
-                _ => None,
-            }
-        }
-        PlaceKind::Symbol(symbol, at) if program.name(symbol) == CHANNELS => {
-            let size = Chan::STRUCTURE.size.cast_signed();
-            let axis = at.div_euclid(size).try_into().ok()?;
-            (at.rem_euclid(size) == offset).then_some(Axis::Number(axis))
-        }
-        _ => None,
-    }
+/// Returns whether a place is the input mode of an axis that a variable points to.
+fn is_pointed_mode(function: &Function, place: PlaceId) -> bool {
+    let PlaceKind::Pointer(pointer, field) = function.places[place].kind else { return false };
+    let ExprKind::Load(pointer) = function.exprs[pointer].kind else { return false };
+    u32::try_from(field) == Ok(INPUT_MODE) && matches!(function.places[pointer].kind, PlaceKind::Local(..))
 }
 
 /// The axes whose only input mode in the program is none, set by number or in a function that is called with their number.
@@ -89,14 +70,17 @@ fn axes_without_input(program: &AnalysedProgram<'_>) -> BTreeSet<u32> {
     for function in program.functions() {
         for expr in function.exprs.values() {
             let ExprKind::Assign(place, value) = expr.kind else { continue };
-            let Some(axis) = axis_of(program, function, place, INPUT_MODE) else { continue };
+            let named = program.axis_field(function, place).filter(|named| named.field == INPUT_MODE);
+            if named.is_none() && !is_pointed_mode(function, place) {
+                continue;
+            }
             if !matches!(function.exprs[value].kind, ExprKind::Int(mode) if mode == i64::from(InputMode::None.get()))
             {
                 return BTreeSet::new();
             }
-            match axis {
-                Axis::Number(axis) => _ = without.insert(axis),
-                Axis::Pointed => _ = setters.insert(function.symbol),
+            match named {
+                Some(AxisField { axis, .. }) => _ = without.insert(axis),
+                None => _ = setters.insert(function.symbol),
             }
         }
     }

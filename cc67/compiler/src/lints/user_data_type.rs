@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use super::format::literal_format;
 use super::program::{AnalysedProgram, PERSIST};
 use super::user_data_index;
+use super::value_range::single_stores;
 use super::walk::{Extent, Walk};
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::BinaryOp;
@@ -218,28 +219,7 @@ struct Elements<'p, 'a> {
 
 impl<'p, 'a> Elements<'p, 'a> {
     fn of(program: &'p AnalysedProgram<'a>, function: &'a Function) -> Self {
-        let mut pointers: BTreeMap<LocalId, Option<i32>> =
-            function.parameters.iter().map(|&parameter| (parameter, None)).collect();
-        let local = |place: PlaceId| match function.places[place].kind {
-            PlaceKind::Local(local, _) => Some(local),
-            _ => None,
-        };
-        for expr in function.exprs.values() {
-            let (local, value) = match &expr.kind {
-                ExprKind::Update(update) => (local(update.place), None),
-                ExprKind::Assign(place, value) => (local(*place), address(program, function, *value)),
-                _ => continue,
-            };
-            if let Some(local) = local {
-                pointers.entry(local).and_modify(|only| *only = None).or_insert(value);
-            }
-        }
-        let is_in_memory = |local: LocalId| function.locals[local].in_memory;
-        let pointers = pointers
-            .into_iter()
-            .filter_map(|(local, byte)| Some((local, byte?)))
-            .filter(|(local, _)| !is_in_memory(*local))
-            .collect();
+        let pointers = single_stores(function, |value| address(program, function, value));
         Self { program, function, pointers }
     }
 

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use kmotiondef::ctype::Role;
 use kmotiondef::firmware::row_named;
 
+use super::adc_counts::{COUNTS_PER_VOLT, VOLTS};
 use super::program::{AnalysedProgram, PERSIST};
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::BinaryOp;
@@ -19,10 +20,6 @@ const DAC_BITS: i64 = 0xfff;
 
 /// The encoding of 0 in such a word.
 const DAC_ZERO: i64 = 2048;
-
-/// The range of an analog output in volts: constants beyond it are counts.
-const VOLTS: i64 = 10;
-const COUNTS_PER_VOLT: f64 = 204.8;
 
 /// A constant that is computed as the macro `DAC` does: `(value - 2048) & 0xfff`.
 #[derive(Clone, Copy, Debug)]
@@ -44,7 +41,7 @@ impl DacWord {
     /// The message where it is stored.
     pub(crate) fn finding(self, span: Span) -> Option<Diagnostic> {
         let value = self.value;
-        if self.is_cut && value != 0 && value.abs() <= VOLTS {
+        if self.is_cut && value != 0 && value.abs() as f64 <= VOLTS {
             return Some(volts(value, span));
         }
         if !self.is_cut || (-DAC_ZERO..DAC_ZERO).contains(&value) {
@@ -177,16 +174,24 @@ fn plain(function: &Function, mut expr: ExprId) -> &ExprKind {
 
 /// The variables into which one constant is stored, and nothing else, each with it.
 pub(super) fn single_values(function: &Function) -> BTreeMap<LocalId, i64> {
+    single_stores(function, |value| constant(function, value))
+}
+
+/// The variables into which one value is stored, and nothing else, each with what `known` makes of it.
+pub(super) fn single_stores<T>(
+    function: &Function,
+    known: impl Fn(ExprId) -> Option<T>,
+) -> BTreeMap<LocalId, T> {
     let stored = |place: PlaceId| match function.places[place].kind {
         PlaceKind::Local(local, _) => Some(local),
         _ => None,
     };
-    let mut values: BTreeMap<LocalId, Option<i64>> =
+    let mut values: BTreeMap<LocalId, Option<T>> =
         function.parameters.iter().map(|&parameter| (parameter, None)).collect();
     for expr in function.exprs.values() {
         let (local, value) = match &expr.kind {
             ExprKind::Update(update) => (stored(update.place), None),
-            ExprKind::Assign(place, value) => (stored(*place), constant(function, *value)),
+            ExprKind::Assign(place, value) => (stored(*place), known(*value)),
             _ => continue,
         };
         if let Some(local) = local {

@@ -112,7 +112,7 @@ impl Sidecars {
     /// Returns the options with which a project's sources are compiled: folders of included files, and the board.
     ///
     /// # Errors
-    /// What is wrong with the project file.
+    /// The project file has a mistake.
     pub(crate) fn of_sources(first: Option<&OsStr>, knows: impl Fn(&str) -> bool) -> Result<Self> {
         let file = first.map(file_of).unwrap_or_default();
         let project = Project::above(file.parent().unwrap_or(Path::new("")))?;
