@@ -52,6 +52,10 @@ fn options_that_a_booted_board_does_not_support_are_named() {
         assert_refused(&cc67(&scratch, all), &format!("`{name}` does not work with `--boot`"));
     };
     refused(&["--engine", "bytecode"], "--engine");
+    refused(&["--board-faults"], "--board-faults");
+    refused(&["--timing", "fast"], "--timing");
+    refused(&["--wait-states", "none"], "--wait-states");
+    refused(&["--target", "sim"], "--target sim");
     let compare = ["compare", "--boot", "x.out", "--flash", "x", "hello.c"];
     assert_refused(&cc67(&scratch, compare), "`--flash` does not work with `cc67 compare`");
     let test = cc67(&scratch, ["compare", "hello.c"]);

@@ -105,6 +105,7 @@ impl Setup {
     ) -> Result<Option<Self>> {
         if let Some(address) = &board.controller.on {
             board.refuse_with_controller()?;
+            compiler.refuse_with("--on")?;
             let connection = controller::connect(address, board.controller.yes)?;
             let firmware = controller::firmware(&connection, compiler.resolve()?.firmware, compiler)?;
             let setup = Self::compiled(started, board, compiler, CodeFor::Controller(firmware))?;
@@ -113,6 +114,7 @@ impl Setup {
         }
         let Some(file) = &board.boot else { return Self::of_model(started, board, compiler) };
         board.refuse_with_boot()?;
+        compiler.refuse_with("--boot")?;
         Self::of_firmware(started, board, compiler, &boot(file)?)
     }
 

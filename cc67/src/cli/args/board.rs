@@ -157,10 +157,16 @@ impl BoardArguments {
 
     /// Refuses an option that a firmware file does not know.
     pub(crate) fn refuse_with_boot(&self) -> Result<()> {
-        ensure!(self.engine.is_none(), "`--engine` does not work with `--boot`");
-        ensure!(self.form == RunForm::default(), "`--as` does not work with `--boot`");
-        ensure!(!self.races, "`--races` does not work with `--boot`");
-        ensure!(self.schedule.is_none(), "`--schedule` does not work with `--boot`");
+        let refused = [
+            ("--engine", self.engine.is_some()),
+            ("--as", self.form != RunForm::default()),
+            ("--races", self.races),
+            ("--schedule", self.schedule.is_some()),
+            ("--board-faults", self.board_faults),
+        ];
+        for (option, is_given) in refused {
+            ensure!(!is_given, "`{option}` does not work with `--boot`");
+        }
         Ok(())
     }
 

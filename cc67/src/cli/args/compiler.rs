@@ -207,6 +207,19 @@ impl CompilerArguments {
         self.source.resolve(self.target().unwrap_or_default(), self.timing())
     }
 
+    /// Refuses an option that only a modelled board knows, where `other` names another one.
+    pub(crate) fn refuse_with(&self, other: &str) -> Result<()> {
+        let refused = [
+            ("--timing", self.timing != TimedCode::default()),
+            ("--wait-states", self.wait_states.is_some()),
+            ("--target sim", self.target.named() == Some(Target::Sim)),
+        ];
+        for (option, is_given) in refused {
+            ensure!(!is_given, "`{option}` does not work with `{other}`");
+        }
+        Ok(())
+    }
+
     /// Returns whether the options say which firmware programs are linked against.
     pub(crate) const fn names_firmware(&self) -> bool {
         self.source.board.is_some() || self.source.firmware.is_some()
