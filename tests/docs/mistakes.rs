@@ -25,6 +25,7 @@ const WITHOUT_LINE: &[&str] = &[
     "float_expected_as_an_integer",
     "gantry_moved_on_one_side",
     "jog_that_nobody_stops",
+    "limit_of_a_position_without_an_input",
     "limit_of_an_axis_that_is_not_used",
     "lines_of_two_threads_mixed",
     "path_smoothed_with_no_time_constant",

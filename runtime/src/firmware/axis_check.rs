@@ -182,10 +182,16 @@ fn described_switch(parts: &Parts, axis: AxisId, bit: Bit) -> String {
     )
 }
 
-/// A switch that only axes can press which rest, watched while another axis moves that has switches of its own.
+/// A switch that only axes can press which rest, watched while another axis moves: one that has switches of its own, or
+/// the only one of them that is in use.
 fn watches_other(parts: &Parts, memory: &GuestMemory, axis: AxisId, bit: Bit) -> Option<Message> {
     let mechanics = &parts.machine.mechanics;
-    let other = mechanics.owners(bit).next().filter(|_| mechanics.has_contacts(axis))?;
+    let is_unused =
+        |owner| memory.axis(owner, Chan::ENABLE) == 0 && memory.axis(owner, Chan::OUTPUT_MODE) == 0;
+    let other = mechanics.owners(bit).next()?;
+    if !mechanics.has_contacts(axis) && !is_unused(other) {
+        return None;
+    }
     let rests = |owner: AxisId| {
         let is_slave = memory.axis(owner, Chan::MASTER_AXIS) == i32::from(axis.get());
         owner != axis && !is_slave && !has_motion(memory, owner)

@@ -62,6 +62,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
             loads: &loads,
             kinds: &kinds,
             since: None,
+            late: None,
             prints: false,
             findings: Vec::new(),
         };
@@ -124,6 +125,8 @@ fn all_stores(program: &AnalysedProgram<'_>, function: &Function, stores: &mut S
 enum Since {
     /// A request to the PC.
     Posted(Span),
+    /// A request to the PC, which it may have read.
+    Delayed(Span),
     /// The start of a thread.
     Started(Span),
 }
@@ -139,6 +142,8 @@ struct Scan<'a> {
     /// The functions of the program that let no time pass.
     kinds: &'a BTreeMap<SymbolId, Kind>,
     since: Option<Since>,
+    /// What is wrong if no other request comes next.
+    late: Option<Diagnostic>,
     /// True in an expression that prints.
     prints: bool,
     findings: Vec<Diagnostic>,
@@ -159,7 +164,16 @@ impl Scan<'_> {
                     self.stmts(otherwise);
                     self.since = self.since.and(after);
                 }
-                StmtKind::Loop { body, .. } | StmtKind::Switch { body, .. } => {
+                StmtKind::Loop { condition, body, .. } => {
+                    // That the loop waits for the request decides what came before.
+                    if let Some(condition) = condition.filter(|_| self.late.is_some()) {
+                        self.expr(condition);
+                    }
+                    self.since = None;
+                    self.stmts(body);
+                    self.since = None;
+                }
+                StmtKind::Switch { body, .. } => {
                     self.since = None;
                     self.stmts(body);
                     self.since = None;
@@ -196,6 +210,7 @@ impl Scan<'_> {
                     self.since = Some(Since::Started(span));
                 }
                 Some(name) if INSTANT.contains(&name) => {}
+                Some(name) if name == FirmwareFunction::Delay_sec.name() => self.delay(),
                 _ => match self.kind(call) {
                     Some(Kind::Instant) => {}
                     Some(Kind::Posts) => self.posts(span),
@@ -203,6 +218,7 @@ impl Scan<'_> {
                 },
             },
             ExprKind::Assign(place, value) if element(program, function, *place) == Some(CODE) => {
+                self.late = None;
                 match function.exprs[*value].kind {
                     ExprKind::Int(..=0) => self.since = None,
                     _ => self.posts(span),
@@ -210,13 +226,22 @@ impl Scan<'_> {
             }
             ExprKind::Assign(place, _) => {
                 let stored = element(program, function, *place).filter(|element| MAILBOX.contains(element));
-                if let (Some(Since::Posted(request)), Some(element)) = (self.since, stored) {
-                    self.findings.push(too_late(element, span, request));
-                    self.since = None;
+                match (self.since, stored) {
+                    (Some(Since::Posted(request)), Some(element)) => {
+                        self.findings.push(too_late(element, span, request));
+                        self.since = None;
+                    }
+                    (Some(Since::Delayed(request)), Some(element)) if self.late.is_none() => {
+                        self.late = Some(too_late(element, span, request));
+                    }
+                    _ => {}
                 }
             }
             ExprKind::Load(place) => match (self.since, element(program, function, *place)) {
-                (Some(_), Some(CODE)) => self.since = None,
+                (_, Some(CODE)) => {
+                    self.findings.extend(self.late.take());
+                    self.since = None;
+                }
                 (Some(Since::Posted(request)), Some(element)) if self.is_answer(element) => {
                     self.findings.push(unanswered(element, span, request));
                     self.since = None;
@@ -237,6 +262,15 @@ impl Scan<'_> {
             Callee::Symbol(callee) => self.kinds.get(&callee).copied(),
             Callee::Pointer(_) => None,
         }
+    }
+
+    /// Time passes, in which the PC may have read a request: what is stored then are parameters of the next one, or too
+    /// late.
+    fn delay(&mut self) {
+        self.since = match self.since {
+            Some(Since::Posted(request) | Since::Delayed(request)) => Some(Since::Delayed(request)),
+            _ => None,
+        };
     }
 
     /// A request is posted.

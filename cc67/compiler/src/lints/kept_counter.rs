@@ -2,12 +2,11 @@
 //!
 //! A variable of the program gets its first value when the program is loaded, not when it is started.
 
-use std::collections::BTreeSet;
-
+use super::changes::{Changes, symbol};
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::CompareOp;
-use crate::typed::{Definition, ExprId, ExprKind, Function, PlaceId, PlaceKind, StmtKind, SymbolId};
+use crate::typed::{Definition, ExprId, ExprKind, Function, StmtKind, SymbolId};
 
 /// Reports loops of `main` that end by counting a variable of the program that nothing sets.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
@@ -57,39 +56,4 @@ fn counter(program: &AnalysedProgram<'_>, function: &Function, condition: ExprId
     // A value that is written down is relied on.
     let is_own = matches!(program.unit.symbols[symbol].definition, Definition::Data(_));
     (is_own && matches!(function.exprs[end].kind, ExprKind::Int(_))).then_some(symbol)
-}
-
-fn symbol(function: &Function, place: PlaceId) -> Option<SymbolId> {
-    match function.places[place].kind {
-        PlaceKind::Symbol(symbol, 0) => Some(symbol),
-        _ => None,
-    }
-}
-
-/// The variables that a program changes.
-#[derive(Default)]
-struct Changes {
-    /// By adding or subtracting.
-    counted: BTreeSet<SymbolId>,
-    /// By storing a value, or through their address.
-    set: BTreeSet<SymbolId>,
-}
-
-impl Changes {
-    fn of(program: &AnalysedProgram<'_>) -> Self {
-        let mut changes = Self::default();
-        for function in program.functions() {
-            for expr in function.exprs.values() {
-                match &expr.kind {
-                    ExprKind::Update(update) => changes.counted.extend(symbol(function, update.place)),
-                    ExprKind::Assign(place, _)
-                    | ExprKind::Address(place)
-                    | ExprKind::Clear(place)
-                    | ExprKind::Copy { to: place, .. } => changes.set.extend(symbol(function, *place)),
-                    _ => {}
-                }
-            }
-        }
-        changes
-    }
 }

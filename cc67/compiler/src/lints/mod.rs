@@ -5,6 +5,7 @@
 //! anyway is reported there.
 
 mod call_graph;
+mod changes;
 mod flow;
 mod program;
 mod used_values;

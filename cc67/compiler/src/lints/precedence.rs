@@ -4,12 +4,18 @@ use crate::ast::{Expression, ExpressionKind, UnaryOperator};
 use crate::diag::{Diagnostic, Lint};
 use crate::operators::{BinaryOperator, CompareOp, OperatorMeaning};
 
-/// The finding in a condition, whose parts joined by `&&` and `||` are checked one by one.
+/// The finding in a condition, whose parts, joined, compared or negated, are checked one by one.
 pub(crate) fn finding(condition: &Expression) -> Option<Diagnostic> {
-    let ExpressionKind::Binary(operator, left, right) = &condition.kind else { return None };
+    let (operator, left, right) = match &condition.kind {
+        ExpressionKind::Unary(UnaryOperator::Not, operand) => return finding(operand),
+        ExpressionKind::Binary(operator, left, right) => (operator, left, right),
+        _ => return None,
+    };
     match operator.meaning() {
         OperatorMeaning::Logical(_) => finding(left).or_else(|| finding(right)),
-        OperatorMeaning::Compare(_) => chain(condition, *operator, left, right),
+        OperatorMeaning::Compare(_) => {
+            chain(condition, *operator, left, right).or_else(|| finding(left)).or_else(|| finding(right))
+        }
         OperatorMeaning::Bitwise(_) => mask(*operator, left, right),
         OperatorMeaning::Arithmetic(_) | OperatorMeaning::Shift(_) => None,
     }

@@ -311,7 +311,7 @@ impl Player {
         idle.map(|(rule, progress)| {
             let near = || progress.near.as_ref().map(|near| format!(" (a line contains \"{near}\")"));
             let reason = unchanged_level(rule, progress, view).or_else(|| other_reading(rule, view));
-            let reason = reason.or_else(near).or_else(|| milliseconds(rule, view.tick_start()));
+            let reason = reason.or_else(near).or_else(|| too_late(rule, view.tick_start()));
             format!("{}: {}{}", rule.place, rule.trigger, reason.unwrap_or_default())
         })
         .collect()
@@ -354,15 +354,17 @@ fn unchanged_level(rule: &Rule, progress: &Progress, view: &View<'_>) -> Option<
     }
 }
 
-/// The remedy for a moment that is so late that its number was probably meant as one of milliseconds.
-fn milliseconds(rule: &Rule, end: Cycles) -> Option<String> {
+/// The end of a run that was over before the moment of a statement, and a remedy where that was probably meant in
+/// milliseconds.
+fn too_late(rule: &Rule, end: Cycles) -> Option<String> {
     const LONG: f64 = 10.0;
     const MS: f64 = 1000.0;
     let Trigger::At(time) = rule.trigger else { return None };
     let seconds = |time: Cycles| time.get() as f64 / Cycles::PER_SECOND.get() as f64;
     let number = seconds(time);
     let is_likely = number >= LONG && number.fract() == 0.0 && number / MS <= seconds(end);
-    is_likely.then(|| format!(", but the run ended at {:.3} s (milliseconds are `{number}ms`)", seconds(end)))
+    let remedy = if is_likely { format!(" (milliseconds are `{number}ms`)") } else { String::new() };
+    (time > end).then(|| format!(", but the run ended at {:.3} s{remedy}", seconds(end)))
 }
 
 /// The form in which the element of `persist.UserData` has the number that a statement waits for in another one.

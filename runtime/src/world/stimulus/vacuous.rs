@@ -23,6 +23,8 @@ use crate::world::trace::{Item, View};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Limited {
     Axis(AxisId),
+    /// The position that an axis reads.
+    Position(AxisId),
     Dac(usize),
     Pwm(usize),
     Bit(Bit),
@@ -35,9 +37,13 @@ pub(super) fn cause(rules: &[Rule], progress: &[Progress], index: usize, view: &
         return None;
     }
     match limited(rules.get(index)?, view)? {
-        Limited::Axis(axis) => {
+        Limited::Position(axis) if is_used(axis, view) && view.memory.axis(axis, Chan::INPUT_MODE) == 0 => {
+            let others = "`dest` is its target, `load` the place of its load";
+            Some(format!("axis {axis} has no input and stays at position 0 ({others})"))
+        }
+        Limited::Axis(axis) | Limited::Position(axis) => {
             let others = || view.memory.axes().iter().filter(|other| *other != axis);
-            let limits_used = |(index, rule)| matches!(limited(rule, view), Some(Limited::Axis(other)) if varied(index) || is_used(other, view));
+            let limits_used = |(index, rule)| matches!(limited(rule, view), Some(Limited::Axis(other) | Limited::Position(other)) if varied(index) || is_used(other, view));
             let is_odd = !view.machine.has_axis(axis) || !rules.iter().enumerate().any(limits_used);
             let is_idle = !is_used(axis, view) && others().any(|other| is_used(other, view));
             (is_idle && is_odd).then(|| format!("axis {axis} is never used in this run"))
@@ -75,13 +81,16 @@ fn limited(rule: &Rule, view: &View<'_>) -> Option<Limited> {
 
 fn of_item(item: Item, view: &View<'_>) -> Option<Limited> {
     match item.kind() {
-        "dest" | "pos" | "out" | "vel" | "load" => {
-            view.memory.axes().iter().find(|axis| axis.index() == item.index()).map(Limited::Axis)
-        }
+        "pos" => axis_of(item, view).map(Limited::Position),
+        "dest" | "out" | "vel" | "load" => axis_of(item, view).map(Limited::Axis),
         "dac" => Some(Limited::Dac(item.index())),
         "pwm" => Some(Limited::Pwm(item.index())),
         _ => None,
     }
+}
+
+fn axis_of(item: Item, view: &View<'_>) -> Option<AxisId> {
+    view.memory.axes().iter().find(|axis| axis.index() == item.index())
 }
 
 /// Returns whether a program has prepared or moved an axis.

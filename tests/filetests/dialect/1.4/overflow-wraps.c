@@ -15,7 +15,7 @@ enum { SUM = 2147483647 + 1, PRODUCT = 1000000 * 1000000 };
 
 main()
 {
-    printf("%d %d %d %d\n", most + one, least - one, million * million, -least);
+    printf("%d %d %d %d\n", most + one, least - one, million * million, -least); //~ overflow
     printf("%d %d %d %d\n", sum, difference, product, negated);
     switch (most + one) {
     case 2147483647 + 1: printf("%d\n", SUM == sum && PRODUCT == product); //~ overflow

@@ -18,8 +18,14 @@ const SEARCHED: usize = 20;
 fn is_like(line: &str) -> bool {
     let line = line.trim_start_matches('\u{feff}').trim_start();
     let comment = ["//", "/*"].into_iter().find_map(|mark| line.strip_prefix(mark)).map(str::trim_start);
-    let words = comment.and_then(|comment| comment.strip_prefix("cc67:")).unwrap_or_default();
-    matches!(words.split_whitespace().next(), Some("run" | "part"))
+    let Some(words) = comment.and_then(|comment| comment.strip_prefix("cc67")) else { return false };
+    let (words, has_colon) = words.strip_prefix(':').map_or((words, false), |words| (words, true));
+    let mut words = words.split_whitespace();
+    match words.next() {
+        Some("run") => has_colon || words.any(|word| word.starts_with("--")),
+        Some("part") => has_colon,
+        _ => false,
+    }
 }
 
 /// The first line of a program.
@@ -115,6 +121,8 @@ mod tests {
             ("/* cc67: part of a.c */", true),
             ("// as in cc67: run", false),
             ("// cc67: runs it", false),
+            ("// cc67 run --machine mill.toml", true),
+            ("// cc67 run says more", false),
             ("cc67: run", false),
         ] {
             assert_eq!(is_like(line), expect, "{line}");
