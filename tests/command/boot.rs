@@ -58,6 +58,8 @@ fn options_that_a_booted_board_does_not_support_are_named() {
     refused(&["--target", "sim"], "--target sim");
     let compare = ["compare", "--boot", "x.out", "--flash", "x", "hello.c"];
     assert_refused(&cc67(&scratch, compare), "`--flash` does not work with `cc67 compare`");
+    let compare = cc67(&scratch, ["compare", "--boot", "x.out", "--board-faults", "hello.c"]);
+    assert!(compare.stderr.contains("cannot read x.out"), "{}", compare.stderr);
     let test = cc67(&scratch, ["compare", "hello.c"]);
     assert_refused(&test, "needs `--boot FILE`");
 }

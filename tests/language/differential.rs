@@ -218,7 +218,7 @@ fn agree(seeds: &[u64], what: &str, found: &str, expected: &str) {
     panic!("seeds {wrong:?} of {seeds:?}, {what}: {found:?} instead of {expected:?}");
 }
 
-/// What a program prints alone.
+/// The console of a program that runs alone.
 struct Alone {
     /// As bytecode.
     plain: String,

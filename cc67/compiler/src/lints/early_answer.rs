@@ -142,7 +142,7 @@ struct Scan<'a> {
     /// The functions of the program that let no time pass.
     kinds: &'a BTreeMap<SymbolId, Kind>,
     since: Option<Since>,
-    /// What is wrong if no other request comes next.
+    /// Reported unless another request comes next.
     late: Option<Diagnostic>,
     /// True in an expression that prints.
     prints: bool,

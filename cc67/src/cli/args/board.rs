@@ -157,12 +157,18 @@ impl BoardArguments {
 
     /// Refuses an option that a firmware file does not know.
     pub(crate) fn refuse_with_boot(&self) -> Result<()> {
+        self.refuse_beside_boot()?;
+        ensure!(!self.board_faults, "`--board-faults` does not work with `--boot`");
+        Ok(())
+    }
+
+    /// Refuses an option that has no meaning where the model runs beside a firmware file, either.
+    pub(crate) fn refuse_beside_boot(&self) -> Result<()> {
         let refused = [
             ("--engine", self.engine.is_some()),
             ("--as", self.form != RunForm::default()),
             ("--races", self.races),
             ("--schedule", self.schedule.is_some()),
-            ("--board-faults", self.board_faults),
         ];
         for (option, is_given) in refused {
             ensure!(!is_given, "`{option}` does not work with `--boot`");

@@ -142,7 +142,7 @@ impl CompareArguments {
         if self.board.pc.has_flash() {
             bail!("`--flash` does not work with `cc67 compare`: a flash file belongs to one board");
         }
-        if self.board.controller.on.is_some() { Ok(()) } else { self.board.refuse_with_boot() }
+        if self.board.controller.on.is_some() { Ok(()) } else { self.board.refuse_beside_boot() }
     }
 
     fn ticks(&self) -> Ticks {
