@@ -54,8 +54,11 @@ fn options_that_a_booted_board_does_not_support_are_named() {
     refused(&["--engine", "bytecode"], "--engine");
     refused(&["--board-faults"], "--board-faults");
     refused(&["--timing", "fast"], "--timing");
-    refused(&["--wait-states", "none"], "--wait-states");
     refused(&["--target", "sim"], "--target sim");
+    let on = |option: &[&str]| cc67(&scratch, [&["run", "--on", "usb:nosuch", "hello.c"], option].concat());
+    for (option, value) in [("--timing", "fast"), ("--wait-states", "none"), ("--target", "sim")] {
+        assert_refused(&on(&[option, value]), "does not work with `--on`");
+    }
     let compare = ["compare", "--boot", "x.out", "--flash", "x", "hello.c"];
     assert_refused(&cc67(&scratch, compare), "`--flash` does not work with `cc67 compare`");
     let compare = cc67(&scratch, ["compare", "--boot", "x.out", "--board-faults", "hello.c"]);

@@ -9,6 +9,8 @@ use std::thread;
 
 use harness::{Output, Scratch, cc67, cc67_with_input};
 
+use super::boot::firmware;
+
 /// Prints, and writes to a file, what options change.
 const PROGRAM: &str = include_str!("options/p.c");
 
@@ -144,7 +146,7 @@ const SAMPLES: &[(&str, &[&str], &[&str])] = &[
     ("--engine", &["--engine=dsp"], &[]),
     ("--board-faults", &["--board-faults"], &["--stim=at 0.05s bit 136 = 1"]),
     ("--timing", &["--timing=fast"], &[]),
-    ("--wait-states", &["--wait-states=none"], &[]),
+    ("--wait-states", &["--wait-states=io9"], &[]),
     ("--target", &["--target=c67x"], &[]),
     ("build --target", &["--target=sim"], &[]),
 ];
@@ -167,6 +169,13 @@ const THE_SAME: &[(&str, &str)] = &[
     ("debug --force", "it matters to a controller; `command/controller.rs` tests it"),
     ("console --force", "it matters to a controller; `command/controller.rs` tests it"),
     ("test --jobs", "the results are the same with any number of processes"),
+];
+
+/// Options that leave the program of the trials the same on a firmware file, too.
+const THE_SAME_ON_A_FILE: &[(&str, &str)] = &[
+    ("--verbose", "its remarks are of the modelled firmware"),
+    ("-R", "its remarks are of the modelled firmware"),
+    ("--target", "programs of a firmware file are for the processor anyway"),
 ];
 
 /// The result of a run.
@@ -236,17 +245,17 @@ fn idle(command: (&str, &[&str], &str), option: &str) -> Option<String> {
     (without == with).then(|| format!("{name}: it changes nothing and is not refused"))
 }
 
-#[test]
-fn every_option_of_every_command_changes_something_or_is_refused() {
+/// Returns what is wrong with the options of commands, except those that leave everything the same.
+fn wrong(commands: &[(&str, &[&str], &str)], least: usize, the_same: &[(&str, &str)]) -> Vec<String> {
     let mut trials = Vec::new();
-    for command in COMMANDS {
+    for command in commands {
         for option in options_of(command.0) {
-            if row(THE_SAME, |row| row.0, command.0, &option).is_none() {
+            if row(the_same, |row| row.0, command.0, &option).is_none() {
                 trials.push((*command, option));
             }
         }
     }
-    assert!(trials.len() > 150, "only {} options", trials.len());
+    assert!(trials.len() > least, "only {} options", trials.len());
     let (next, wrong) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     thread::scope(|scope| {
         for _ in 0..thread::available_parallelism().map_or(2, usize::from) {
@@ -257,7 +266,21 @@ fn every_option_of_every_command_changes_something_or_is_refused() {
             });
         }
     });
-    let wrong = wrong.into_inner().expect("no trial panics");
+    wrong.into_inner().expect("no trial panics")
+}
+
+#[test]
+fn every_option_of_every_command_changes_something_or_is_refused() {
+    let wrong = wrong(COMMANDS, 150, THE_SAME);
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_option_changes_something_on_a_firmware_file_too_or_is_refused() {
+    let Some(file) = firmware() else { return };
+    let words = ["p.c", "--boot", &file, "--for", "0.15"];
+    let the_same = [THE_SAME, THE_SAME_ON_A_FILE].concat();
+    let wrong = wrong(&[("run", &words, "")], 40, &the_same);
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 

@@ -75,7 +75,7 @@ impl CodeFor {
     fn options(&self, compiler: &CompilerArguments) -> Result<Options> {
         match self {
             Self::Engine(engine) => engine.options(compiler),
-            Self::Firmware(firmware) => Ok(firmware.options(compiler.resolve()?)),
+            Self::Firmware(firmware) => compiler.for_firmware(firmware),
             Self::Controller(firmware) => {
                 let options = compiler.resolve()?;
                 Ok(Options { target: CodeTarget::C67x, firmware: firmware.clone(), ..options })
@@ -105,7 +105,7 @@ impl Setup {
     ) -> Result<Option<Self>> {
         if let Some(address) = &board.controller.on {
             board.refuse_with_controller()?;
-            compiler.refuse_with("--on")?;
+            compiler.refuse_with_controller()?;
             let connection = controller::connect(address, board.controller.yes)?;
             let firmware = controller::firmware(&connection, compiler.resolve()?.firmware, compiler)?;
             let setup = Self::compiled(started, board, compiler, CodeFor::Controller(firmware))?;
@@ -395,14 +395,16 @@ impl<'a> From<&'a Vec<OsString>> for Started<'a> {
 
 /// Returns a stimulus that starts each program after the one before it has ended, and the others after the last.
 fn one_after_the_other(before: &[ProgramFile], others: &[ProgramFile]) -> Result<Stimulus> {
-    let mut text = String::new();
+    let mut all = Stimulus::default();
     for (index, program) in before.iter().enumerate() {
         let next = before.get(index + 1).map_or(others, std::slice::from_ref);
-        for other in next {
-            text.push_str(&format!("once thread {} ends start thread {}\n", program.thread, other.thread));
-        }
+        let start = |other: &ProgramFile| {
+            format!("once thread {} ends start thread {}\n", program.thread, other.thread)
+        };
+        let text: String = next.iter().map(start).collect();
+        all.extend(Stimulus::parse(&text, &program.path.to_string_lossy())?);
     }
-    Ok(Stimulus::parse(&text, "--first")?)
+    Ok(all)
 }
 
 /// The programs of files to load and of those that a stimulus may load; `None` if one has errors.

@@ -121,6 +121,12 @@ impl<A: ExternalHardware> BootedBoard<A> {
         self.hardware.forgives = whether;
     }
 
+    /// Sets how many cycles the processor waits for a register or for flash; none by default. The firmware programs the bus
+    /// of the FPGA and the flash so that a board waits 44 (`dsp-board.md` 11); recordings with waits count the timer, too.
+    pub const fn set_register_waits(&mut self, cycles: u32) {
+        self.hardware.register_waits = cycles;
+    }
+
     /// Cycles of waiting loops that were skipped.
     #[must_use]
     pub const fn skipped(&self) -> u64 {

@@ -29,6 +29,8 @@ pub(super) struct Hardware<A = ()> {
     pub(super) first_look: Option<u64>,
     /// True if an unmapped address reads 0 and takes writes, as on a board; otherwise an access ends the run.
     pub(super) forgives: bool,
+    /// Cycles that the processor waits at an access to anything but RAM, as in the recordings with waits.
+    pub(super) register_waits: u32,
     /// Accesses of devices, but for looks at an empty link.
     pub(super) touches: u64,
 }
@@ -43,6 +45,7 @@ impl<A> Default for Hardware<A> {
             chip: Chip::default(),
             first_look: None,
             forgives: false,
+            register_waits: 0,
             touches: 0,
         }
     }
@@ -51,16 +54,18 @@ impl<A> Default for Hardware<A> {
 impl<A: ExternalHardware> Hardware<A> {
     /// Connects external hardware.
     pub(super) fn connect<B: ExternalHardware>(self, external: Option<B>, now: u64) -> Hardware<B> {
-        let Self { memory, timer, window, control, chip, first_look, forgives, touches } = self;
+        let Self { memory, timer, window, control, chip, first_look, forgives, register_waits, touches } =
+            self;
         let window = window.connect(external, now);
-        Hardware { memory, timer, window, control, chip, first_look, forgives, touches }
+        Hardware { memory, timer, window, control, chip, first_look, forgives, register_waits, touches }
     }
 
     #[cold]
     fn load(&mut self, addr: u32, bytes: u32, clock: &mut Clock) -> Result<u32, TrapKind> {
         let now = clock.cycle();
+        clock.stall(u64::from(self.register_waits));
         if let Some(offset) = inside(addr, FPGA.base.get(), FPGA.size) {
-            return Ok(self.look(offset, bytes, clock));
+            return Ok(self.look(offset, bytes, now, clock));
         }
         self.touches += 1;
         if let Some(offset) = inside(addr, TIMER, TIMER_SIZE) {
@@ -86,9 +91,9 @@ impl<A: ExternalHardware> Hardware<A> {
     }
 
     /// Reads a register of the FPGA. At the first look at the link the processor stops: the board is ready.
-    fn look(&mut self, offset: u32, bytes: u32, clock: &mut Clock) -> u32 {
+    fn look(&mut self, offset: u32, bytes: u32, now: u64, clock: &mut Clock) -> u32 {
         let (looks, touches) = (self.window.link.looks(), self.window.touches());
-        let value = self.window.read(offset, bytes, clock.cycle());
+        let value = self.window.read(offset, bytes, now);
         self.touches += self.window.touches() - touches;
         if self.first_look.is_none() && self.window.link.looks() != looks {
             self.first_look = Some(clock.cycle());
@@ -100,6 +105,7 @@ impl<A: ExternalHardware> Hardware<A> {
     #[cold]
     fn store(&mut self, addr: u32, bytes: u32, value: u32, clock: &mut Clock) -> Result<(), TrapKind> {
         let now = clock.cycle();
+        clock.stall(u64::from(self.register_waits));
         self.touches += 1;
         if let Some(offset) = inside(addr, FPGA.base.get(), FPGA.size) {
             self.window.write(offset, bytes, value, now);

@@ -48,9 +48,9 @@ fn written_by(board: &mut Released, command: &str, row: &Json, found: &mut Vec<S
     let is_first = command.starts_with("Enable");
     let expect =
         if is_first { of_registers(row, writes(&row["at_enable"])) } else { writes(&row["at_disable"]) };
-    board.accesses();
+    drop(board.writes());
     board.command(command);
-    let mut written = board.accesses().writes;
+    let mut written = board.writes();
     if is_first {
         written.truncate(expect.len());
     } else {
@@ -88,7 +88,7 @@ fn check_generator(
     before: f64,
     found: &mut Vec<String>,
 ) -> f64 {
-    let (written, expect) = (board.accesses().writes, writes(&values["writes"]));
+    let (written, expect) = (board.writes(), writes(&values["writes"]));
     let generator = board.peek("OutputChan0") as usize & 7;
     let (steps, per_second) = board.board.steps(generator);
     let tick = per_second / 2e8 * 18_000.0;
@@ -120,7 +120,7 @@ pub(super) fn differences(row: &Json, board: &Released) -> Vec<String> {
     let mut per_tick = 0.0;
     for (tick, values) in list(&row["rows"]).iter().enumerate() {
         board.reach_match();
-        board.accesses();
+        drop(board.writes());
         board.poke("Dest", number(&values["Dest"]));
         board.interrupt();
         let place = format!("tick {tick}");
@@ -134,7 +134,7 @@ pub(super) fn differences(row: &Json, board: &Released) -> Vec<String> {
             per_tick = check_generator(&mut board, &place, values, per_tick, &mut found);
             continue;
         }
-        let (written, expect) = (board.accesses().writes, of_registers(row, writes(&values["writes"])));
+        let (written, expect) = (board.writes(), of_registers(row, writes(&values["writes"])));
         if written != expect {
             found.push(format!("{place}: writes {written:?}, recorded {expect:?}"));
         }

@@ -155,7 +155,7 @@ impl Core {
         count: &mut dyn FnMut(&M, u32, i64, &State),
     ) -> Halt {
         self.border = Border::Next;
-        self.state.clock.deadline = until;
+        self.state.clock.set_end(until);
         self.count_to_border(memory, count)
     }
 
@@ -235,7 +235,7 @@ impl Core {
     pub fn run_until<M: Memory>(&mut self, memory: &mut M, until: u64) -> Halt {
         self.border = Border::Next;
         self.idle.forget();
-        self.state.clock.deadline = until;
+        self.state.clock.set_end(until);
         self.run_to_border(memory)
     }
 
@@ -342,7 +342,7 @@ impl Core {
 
     /// A branch has gone back: a loop that changes nothing is skipped up to the next border.
     fn went_back<M: Memory>(&mut self, memory: &M) {
-        match self.idle.arrive(self.state.pc, self.state.clock.cycle) {
+        match self.idle.arrive(self.state.pc, self.state.cycle()) {
             Arrival::Pass => {}
             Arrival::Look => self.idle.look(self.state.picture(), self.packets, memory.touches()),
             Arrival::Again => self.skip_iterations(memory),
@@ -470,9 +470,7 @@ impl Border {
             }
             Self::Slice => None,
             Self::Next => Some(Halt::Preempted),
-            Self::Interrupt(until) => {
-                (is_interruptible || state.clock.cycle >= until).then_some(Halt::Preempted)
-            }
+            Self::Interrupt(until) => (is_interruptible || state.cycle() >= until).then_some(Halt::Preempted),
         }
     }
 }

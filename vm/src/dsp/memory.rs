@@ -9,17 +9,30 @@ use crate::trap::TrapKind;
 /// An access that makes the processor wait takes its time off what is left.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Clock {
-    /// Cycles of packets since the start.
+    /// Cycles of packets since the start: those by which results land.
     pub(super) cycle: u64,
-    /// The cycle in which nothing is left.
+    /// The cycle of packets in which nothing is left.
     pub(super) deadline: u64,
+    /// Cycles since the start that the processor waited for memory.
+    pub(super) stalled: u64,
 }
 
 impl Clock {
-    /// Cycles of packets since the start.
+    /// Cycles since the start.
     #[must_use]
     pub const fn cycle(&self) -> u64 {
-        self.cycle
+        self.cycle + self.stalled
+    }
+
+    /// Lets the processor wait: time passes, and results in flight wait with it.
+    pub const fn stall(&mut self, cycles: u64) {
+        self.stalled += cycles;
+        self.deadline = self.deadline.wrapping_sub(cycles);
+    }
+
+    /// Sets the cycle since the start in which nothing is left.
+    pub(super) const fn set_end(&mut self, end: u64) {
+        self.deadline = end.wrapping_sub(self.stalled);
     }
 
     /// Cycles left; below zero when more were spent.

@@ -157,7 +157,7 @@ impl State {
     /// Cycles since the start.
     #[must_use]
     pub const fn cycle(&self) -> u64 {
-        self.clock.cycle
+        self.clock.cycle()
     }
 
     /// Reports whether the processor would take an interrupt before the next packet.
@@ -187,7 +187,7 @@ impl State {
             (delay, mask, values, target)
         });
         Picture {
-            cycle: self.clock.cycle,
+            cycle: self.cycle(),
             pc: self.pc,
             regs,
             control: self.control,

@@ -2,6 +2,7 @@
 
 mod faults;
 mod flat;
+mod stalls;
 mod stops;
 mod translated;
 mod vectors;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use anyhow::{Context, Result, bail, ensure};
 use clap::{Args, ValueEnum};
 
+use cc67_host::BootedFirmware;
 use compiler::diag::levels::Levels;
 use compiler::firmware::{Firmware, FirmwareFile};
 use compiler::link::SectionAddresses;
@@ -72,8 +73,8 @@ pub(crate) struct CompilerArguments {
     /// Code whose execution time the board counts
     #[arg(long, value_name = "CODE", value_enum, default_value_t, help_heading = heading::EXPERTS)]
     timing: TimedCode,
-    /// Memory waits of the processor: none, io44 (44 cycles for a register access), io44_sd20 (also 20 for 32 bits of
-    /// SDRAM), or a number of cycles for SDRAM
+    /// Memory waits of the processor: none, io44 (44 cycles for a register access; the default but with --boot), io44_sd20
+    /// (also 20 for 32 bits of SDRAM), or a number of cycles for SDRAM
     #[arg(long, value_name = "WAITS", value_parser = wait_states, help_heading = heading::EXPERTS)]
     wait_states: Option<WaitStates>,
     #[command(flatten)]
@@ -207,11 +208,27 @@ impl CompilerArguments {
         self.source.resolve(self.target().unwrap_or_default(), self.timing())
     }
 
-    /// Refuses an option that only a modelled board knows, where `other` names another one.
+    /// Returns how sources are compiled for a firmware file.
+    pub(crate) fn for_firmware(&self, firmware: &BootedFirmware) -> Result<Options> {
+        let options = firmware.options(self.resolve()?);
+        let Some(waits) = self.wait_states else { return Ok(options) };
+        ensure!(
+            waits.sdram == 0,
+            "`--wait-states` of SDRAM do not work with `--boot`, which counts those of registers"
+        );
+        Ok(Options { timing: Timing::Vendor(waits), ..options })
+    }
+
+    /// Refuses an option that a connected controller does not know.
+    pub(crate) fn refuse_with_controller(&self) -> Result<()> {
+        ensure!(self.wait_states.is_none(), "`--wait-states` does not work with `--on`");
+        self.refuse_with("--on")
+    }
+
+    /// Refuses an option that only a modelled firmware knows, where `other` names another one.
     pub(crate) fn refuse_with(&self, other: &str) -> Result<()> {
         let refused = [
             ("--timing", self.timing != TimedCode::default()),
-            ("--wait-states", self.wait_states.is_some()),
             ("--target sim", self.target.named() == Some(Target::Sim)),
         ];
         for (option, is_given) in refused {

@@ -112,8 +112,8 @@ impl<A: ExternalHardware> BootedBoard<A> {
 
     /// A reset: everything but flash and link as at power-up.
     pub(super) fn restart(&mut self) {
-        let Hardware { memory, window, forgives, .. } = std::mem::take(&mut self.hardware);
-        self.hardware = Hardware { memory, window, forgives, ..Hardware::default() };
+        let Hardware { memory, window, forgives, register_waits, .. } = std::mem::take(&mut self.hardware);
+        self.hardware = Hardware { memory, window, forgives, register_waits, ..Hardware::default() };
         self.hardware.window.reset();
         let memory = &mut self.hardware.memory;
         for region in [IRAM, SDRAM] {

@@ -187,7 +187,7 @@ impl Renaming {
             }
         }
         if self.held > 0 {
-            state.shadow = state.cycle() + u64::from(self.held);
+            state.shadow = state.clock.cycle + u64::from(self.held);
         }
     }
 }

@@ -32,6 +32,7 @@ impl BootedTarget {
     pub(crate) fn begin(firmware: &BootedFirmware, setup: Setup) -> Result<Self, HostError> {
         let Setup {
             mut config,
+            options,
             programs,
             offered,
             values,
@@ -44,6 +45,7 @@ impl BootedTarget {
         let failed = |error: &dyn std::fmt::Display| HostError::Firmware(error.to_string());
         let mut board = firmware.board(config.flash.as_deref())?;
         board.skip_waits(config.machine.shortcuts);
+        board.set_register_waits(options.timing.wait_states().map_or(0, |waits| waits.register));
         let mut beginning = Beginning { board, loaded: Default::default() };
         beginning.store(&values)?;
         for program in &programs {

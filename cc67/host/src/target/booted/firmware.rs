@@ -7,6 +7,7 @@ use boot::{BootedBoard, BootedSnapshot, FirmwareFile, FlashError, Halted};
 use compiler::Options;
 use compiler::firmware::{Firmware, FirmwareFile as Symbols};
 use compiler::target::Target as CodeTarget;
+use kmotiondef::timing::{Timing, WaitStates};
 
 /// The reason for which a firmware file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -61,10 +62,12 @@ impl BootedFirmware {
         Self::new(&bytes)
     }
 
-    /// Returns the options for programs of this firmware: for the processor, against its symbols.
+    /// Returns the options for programs of this firmware: for the processor, against its symbols, in the time that its
+    /// instructions take with memory that never waits.
     #[must_use]
     pub fn options(&self, options: Options) -> Options {
-        Options { target: CodeTarget::C67x, firmware: self.symbols.clone(), ..options }
+        let timing = Timing::Vendor(WaitStates::NONE);
+        Options { target: CodeTarget::C67x, firmware: self.symbols.clone(), timing, ..options }
     }
 
     /// A board on which the firmware is ready, started from what its flash holds if that is given.
