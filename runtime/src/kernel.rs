@@ -111,7 +111,7 @@ impl Kernel {
             caller.spend(function.cost);
         }
         if let Some(thread) = caller.thread {
-            self.parts.calls.waits.act(thread, caller.now());
+            self.parts.calls.waits.act(thread, caller.now(), None);
         }
         (function.handler)(&mut self.parts, caller)
     }
@@ -162,7 +162,9 @@ impl Kernel {
         match (caller.thread, *polls) {
             (Some(thread), Some(state)) => calls.look(thread, state, caller),
             // An engine may compute the pure ones without asking the firmware.
-            (Some(thread), None) if !is_pure => calls.act(thread, caller.now()),
+            (Some(thread), None) if !is_pure => {
+                calls.act(thread, caller.now(), Some(&FIRMWARE_FUNCTIONS[number]));
+            }
             (Some(_) | None, _) => {}
         }
         if *drives_axis && let Some(axis) = caller.memory.axes().get(caller.arguments.get(0)) {
@@ -179,7 +181,7 @@ impl Kernel {
         note_overruns(&mut self.parts, context, AFTER_USER_DATA);
         let Parts { out, machine, io, calls, races, pc, .. } = &mut self.parts;
         let held = String::from_utf8_lossy(out.console.held()).into_owned();
-        if !held.is_empty() {
+        if !held.is_empty() && !calls.notices.has_cut_text {
             let (thread, at) = calls.notices.last_print;
             out.remark_of(context.now, thread.into(), at, Message::UnfinishedLine { text: held });
         }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use kmotiondef::variables::cell_name;
 use kmotiondef::{Bit, CodeAddr};
 use runtime::debug::{DebugInfo, SourcePlace};
 use runtime::{Event, EventKind, Message, OtherPlace, Remark, Severity, Speaker};
@@ -134,8 +135,17 @@ fn describe_trap(trap: &Trap, programs: &[DebugInfo]) -> String {
     let place = source(trap.at, programs).unwrap_or_else(|| trap.at.to_string());
     let nearby = address(&trap.kind)
         .and_then(|address| programs.iter().find_map(|debug| debug.describe(address)))
+        .or_else(|| odd_element(&trap.kind))
         .map_or(String::new(), |nearby| format!(" ({nearby})"));
     format!("{who} at {place}: {}{nearby}", trap.kind)
+}
+
+/// The elements of `persist.UserData` in which a `double` cannot be.
+fn odd_element(kind: &TrapKind) -> Option<String> {
+    let TrapKind::Misaligned { addr, size: 8, .. } = *kind else { return None };
+    let name = cell_name(addr, 8);
+    name.starts_with("persist.UserData")
+        .then(|| format!("{name}; a `double` takes an even element and the next"))
 }
 
 /// The data address that a trap is about.

@@ -50,6 +50,7 @@ pub(crate) fn install(parts: &mut Parts, machine: &MachineFile) {
     }
     for &bit in &machine.idle_high {
         io.pins.idle_high(bit);
+        connected.pulses.idle_high(bit);
     }
     pc.disk.latency = Cycles::new((machine.pc.disk_latency_s * Cycles::PER_SECOND.get() as f64) as i64);
     out.hints = machine.hints;

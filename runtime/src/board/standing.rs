@@ -46,8 +46,8 @@ pub enum Standing {
     Until(Cycles),
     /// It waits for its next slice.
     Slice,
-    /// It waits in a call that only the board can end: for a lock, for room in the console's queue, for the PC.
-    Call,
+    /// It waits in a call that only the board can end: of this function, as long as the words say.
+    Call(&'static str, &'static str),
     /// Another thread has paused it, or it has paused itself.
     Paused,
     /// It was resumed without ever having been started, and does nothing.
@@ -180,7 +180,12 @@ impl<E: Engine> Board<E> {
             ThreadState::Active(Progress::Fresh | Progress::Going) => Standing::Computing,
             ThreadState::Active(Progress::Waiting(Wake::At(time))) => Standing::Until(time),
             ThreadState::Active(Progress::Waiting(Wake::NextSlice)) => Standing::Slice,
-            ThreadState::Active(Progress::Waiting(Wake::Retry)) => Standing::Call,
+            ThreadState::Active(Progress::Waiting(Wake::Retry)) => {
+                let called = self.machine.firmware().parts.calls.waits.of(thread).called;
+                let (name, waits) =
+                    called.map_or(("the firmware", None), |row| (row.name, row.attributes.waits));
+                Standing::Call(name, waits.unwrap_or("until the board ends the call"))
+            }
             ThreadState::Active(Progress::Idle) => Standing::Idle,
             ThreadState::Paused(_) => Standing::Paused,
             ThreadState::Empty | ThreadState::Ready | ThreadState::Faulted(_) => return None,

@@ -16,7 +16,7 @@ use super::float_bits;
 use super::parts::Parts;
 use super::string::text;
 use crate::firmware::dispatch::Varargs;
-use crate::out::Message;
+use crate::out::{LINE_LIMIT, Message};
 use crate::text::{Arguments, Scanned, Sink, format_counted, scan};
 
 /// Longest string a `%s` reads.
@@ -133,6 +133,14 @@ pub(crate) fn spend_queueing(caller: &mut Caller<'_>, text: &[u8]) {
     caller.spend(Cycles::new(QUEUED_CHARACTER * text.len() as i64));
 }
 
+/// Reports a text of which a call sends only a part.
+pub(crate) fn note_cut(parts: &mut Parts, caller: &Caller<'_>, function: Function, text: &[u8]) {
+    if text.len() > MAX_STRING {
+        parts.calls.notices.has_cut_text = true;
+        parts.out.diagnose(caller, Message::TextCut { function, size: text.len() });
+    }
+}
+
 /// Returns the part of a text that one call may print: at most 128 characters, and nothing after a zero byte.
 pub(crate) fn cut(text: &[u8]) -> &[u8] {
     let text = &text[..text.len().min(MAX_STRING)];
@@ -177,6 +185,11 @@ pub(crate) fn printf(
     }
     let text = formatted(parts, caller, pattern, arguments)?;
     float_bits::notice_text(parts, caller, Function::printf, &text);
+    note_cut(parts, caller, Function::printf, &text);
+    let longest = cut(&text).split(|&byte| byte == b'\n').map(<[u8]>::len).max().unwrap_or_default();
+    if longest > LINE_LIMIT && text.len() <= MAX_STRING {
+        parts.out.diagnose(caller, Message::LongLine { size: longest });
+    }
     if text.is_empty() {
         costs::spend(caller, costs::NOTHING_PRINTED);
     }

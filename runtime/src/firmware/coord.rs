@@ -2,6 +2,7 @@
 
 use kmotiondef::AxisId;
 use kmotiondef::firmware::Function;
+use kmotiondef::modes::LastMotion;
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::CS0_STOPPING_STATE;
 use vm::firmware::{Caller, Outcome, Wake};
@@ -14,6 +15,7 @@ use crate::out::Message;
 use crate::servo::coordinated::feedhold::HoldState;
 use crate::servo::coordinated::system::{assign, first_disabled, members};
 use crate::servo::coordinated::{buffer, feedhold, rate, system};
+use crate::servo::independent::has_motion;
 use crate::servo::{hold, moves, planning};
 use crate::views::Typed;
 
@@ -86,6 +88,20 @@ pub(crate) fn check_done_buf(parts: &mut Parts, caller: &mut Caller<'_>) -> i32 
     done
 }
 
+/// Reports axes that a feedhold does not stop on their way to a target.
+fn note_others(parts: &mut Parts, caller: &Caller<'_>) {
+    let memory = &*caller.memory;
+    let goes_on = |axis: &AxisId| {
+        let is_move = memory.axis(*axis, Chan::LAST_MOTION_TYPE) == LastMotion::Move.get();
+        is_move && has_motion(memory, *axis) && !system::is_member(memory, *axis)
+    };
+    for axis in memory.axes().iter().filter(goes_on) {
+        let target = memory.axis(axis, Chan::LAST_MOTION_DEST);
+        let function = Function::StopCoordinatedMotion;
+        parts.out.diagnose(caller, Message::StopLeaves { function, axis, target });
+    }
+}
+
 /// Begins a feedhold. The board computes it in slices of the caller: one to begin, one for each axis that moves by
 /// itself; the others run on meanwhile. Only a thread can wait for them.
 pub(crate) fn stop_coordinated_motion(parts: &mut Parts, caller: &mut Caller<'_>) -> Outcome<()> {
@@ -114,6 +130,7 @@ pub(crate) fn stop_coordinated_motion(parts: &mut Parts, caller: &mut Caller<'_>
             if !hold::may_stop(caller.memory) {
                 return Outcome::Done(());
             }
+            note_others(parts, caller);
             feedhold::note_time(caller.memory);
             costs::spend(caller, costs::BEFORE_A_WAIT - Function::StopCoordinatedMotion.row().cost.get());
             parts.calls.keep(caller, Continuation::Stop(None));

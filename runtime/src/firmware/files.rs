@@ -5,6 +5,7 @@
 //! `read_disk_buffer`, and each line that is taken asks for the next. `FILE` is an int and the board keeps no table: one
 //! handle stands for the file open for reading, one for the file open for writing.
 
+use kmotiondef::firmware::Function;
 use kmotiondef::limits::MAX_READ_DISK_LENGTH;
 use kmotiondef::variables::{READ_DISK_BUFFER, READ_DISK_BUFFER_STATUS};
 use kmotiondef::{Cycles, GuestAddr};
@@ -12,7 +13,7 @@ use vm::firmware::{Caller, Outcome, Wake};
 use vm::trap::TrapKind;
 
 use super::calls::Continuation;
-use super::console::{converted, cut, formatted, put, resumed, spend_queueing};
+use super::console::{converted, cut, formatted, note_cut, put, resumed, spend_queueing};
 use super::parts::Parts;
 use super::string::text;
 use crate::firmware::dispatch::Varargs;
@@ -167,6 +168,7 @@ pub(crate) fn fprintf(
         return Ok(outcome);
     }
     let text = formatted(parts, caller, pattern, arguments)?;
+    note_cut(parts, caller, Function::fprintf, &text);
     let line = printed(DiskRequest::Write, cut(&text))?;
     spend_queueing(caller, cut(&text));
     caller.spend(Cycles::new(55 * cut(&text).len() as i64));

@@ -17,7 +17,7 @@ use crate::io::kanalog::Group;
 use crate::io::kogna::INPUTS;
 use crate::io::remark_on;
 use crate::io::{bits, kanalog};
-use crate::machine::{Channel, LateRead, MissedPulse};
+use crate::machine::{Channel, LateRead, MissedPulse, ReadNotice};
 use crate::out::Message;
 use crate::servo::wired::driver;
 use crate::views::Typed;
@@ -207,9 +207,14 @@ pub(crate) fn read_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) -> 
         let LateRead { axis, ms, step } = late;
         parts.out.diagnose(caller, Message::ReadLate { bit, axis, ms, step });
     }
-    if let Some(missed) = parts.machine.pulses.read(bit, caller.at, level, caller.now()) {
-        let MissedPulse { width_ms, gap_ms } = missed;
-        parts.out.diagnose(caller, Message::PulseMissed { bit, width_ms, gap_ms });
+    if let Some(notice) = parts.machine.pulses.read(bit, caller.at, level, caller.now()) {
+        let message = match notice {
+            ReadNotice::Missed(MissedPulse { width_ms, gap_ms }) => {
+                Message::PulseMissed { bit, width_ms, gap_ms }
+            }
+            ReadNotice::Late { ms } => Message::SeenLate { bit, ms },
+        };
+        parts.out.diagnose(caller, message);
     }
     if let Some(assist) = &mut parts.world.assist {
         assist.polled(bit, Asker { thread: caller.thread, at: caller.at });

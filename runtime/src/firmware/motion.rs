@@ -174,16 +174,26 @@ fn may_move(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Func
             parts.out.diagnose(caller, Message::NoOutput { function, axis });
         }
     }
-    for slave in
-        memory.axes().iter().filter(|&slave| memory.axis(slave, Chan::MASTER_AXIS) == i32::from(axis.get()))
-    {
-        if slave != axis && memory.axis(slave, Chan::ENABLE) == 0 {
+    check_slaves(parts, caller, axis, function);
+    may
+}
+
+/// Reports axes that do not follow a motion of their master, or that are moved while it moves.
+fn check_slaves(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Function) {
+    let memory = &*caller.memory;
+    let master_of = |slave| memory.axes().get(memory.axis(slave, Chan::MASTER_AXIS)).filter(|&m| m != slave);
+    for slave in memory.axes().iter().filter(|&slave| master_of(slave) == Some(axis)) {
+        if memory.axis(slave, Chan::ENABLE) == 0 {
             parts.out.diagnose(caller, Message::SlaveDisabled { axis: slave, master: axis });
-        } else if slave != axis && memory.axis(slave, Chan::SLAVE_GAIN) == 0.0 {
+        } else if memory.axis(slave, Chan::SLAVE_GAIN) == 0.0 {
             parts.out.diagnose(caller, Message::NoSlaveGain { axis: slave, master: axis });
+        } else if has_motion(memory, slave) {
+            parts.out.diagnose(caller, Message::SlaveMoves { function, axis: slave, master: axis });
         }
     }
-    may
+    if let Some(master) = master_of(axis).filter(|&master| has_motion(memory, master)) {
+        parts.out.diagnose(caller, Message::SlaveMoves { function, axis, master });
+    }
 }
 
 /// Returns whether an axis is beyond a soft limit and a call would move it further out: the board refuses that silently

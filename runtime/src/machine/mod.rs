@@ -31,7 +31,7 @@ pub(crate) use mechanics::{LateRead, Mechanics, Racked};
 pub(crate) use motor::Applied;
 pub(crate) use notes::{Notes, OtherUnits};
 pub(crate) use plant::{COUNTS_PER_TICK, Drive, Plant};
-pub(crate) use pulses::{MissedPulse, Pulses};
+pub(crate) use pulses::{MissedPulse, Pulses, ReadNotice};
 
 use crate::io::Io;
 use crate::io::bits::bit_state;

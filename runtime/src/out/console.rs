@@ -7,8 +7,8 @@ use std::collections::VecDeque;
 
 use kmotiondef::limits::MAX_NSTRINGS;
 
-/// Characters that are held at most.
-const HELD_LIMIT: usize = 125;
+/// Characters of a line that are held at most.
+pub(crate) const LINE_LIMIT: usize = 125;
 /// Strings the queue takes; a queue whose two indices are equal is empty, so one place stays free.
 const QUEUE_LIMIT: usize = MAX_NSTRINGS - 1;
 
@@ -33,7 +33,7 @@ impl Console {
         }
         let mut rest = text;
         while let Some((&byte, tail)) = rest.split_first() {
-            if byte == b'\n' || self.held.len() == HELD_LIMIT {
+            if byte == b'\n' || self.held.len() == LINE_LIMIT {
                 if self.queue.len() == QUEUE_LIMIT {
                     break;
                 }

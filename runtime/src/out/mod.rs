@@ -14,7 +14,7 @@ use kmotiondef::{CodeAddr, Cycles, ThreadId};
 use vm::firmware::Caller;
 use vm::trap::Trap;
 
-pub(crate) use console::Console;
+pub(crate) use console::{Console, LINE_LIMIT};
 pub use record::Record;
 pub(crate) use remarks::LOST_AT;
 pub use remarks::{Message, OtherPlace, REMARKS, Remark, RemarkRow, Severity, Speaker};

@@ -432,6 +432,12 @@ messages! {
     /// An axis follows another one with a gain of zero.
     NoSlaveGain { axis: AxisId, master: AxisId } = "no-slave-gain", Warning, [per axis],
         "axis {axis} has MasterAxis = {master} and SlaveGain = 0, so it does not follow: set SlaveGain, mostly to 1";
+    /// An axis that follows another one and that other one move at the same time by calls of their own.
+    SlaveMoves { function: Function, axis: AxisId, master: AxisId } = "slave-moves", Warning, [per axis],
+        "{function}: axis {axis} follows axis {master} (MasterAxis), but not while it executes a motion of its own: what axis {master} moves until then is lost to it; wait for the end of one motion before the other";
+    /// A feedhold leaves an axis moving that is not in the coordinate system.
+    StopLeaves { function: Function, axis: AxisId, target: f64 } = "stop-leaves", Hint, [per axis],
+        "{function}: axis {axis} is not in the coordinate system, so it goes on to {target:.0}: name it in DefineCoordSystem, or stop it with Jog({axis}, 0)";
     /// A feed rate override is far more than the usual.
     OverrideFactor { function: Function, value: f32, percent: f64 } = "override-factor", Warning, [once],
         "{function}({value}): 1 is the programmed speed, so this is {percent:.0} %";
@@ -441,6 +447,9 @@ messages! {
     /// A pulse at an input has come and gone between two reads of a program that polls it.
     PulseMissed { bit: Bit, width_ms: f64, gap_ms: f64 } = "pulse-missed", Hint, [per bit],
         "ReadBit({bit}): a pulse of {width_ms:.1} ms at this input has come and gone in the {gap_ms:.0} ms since the read before, and nobody saw it: read more often, or make the pulse longer";
+    /// An input that a loop has watched has fallen while the loop waited for something else.
+    SeenLate { bit: Bit, ms: f64 } = "seen-late", Hint, [per bit],
+        "ReadBit({bit}): this input went off {ms:.0} ms ago, and the loop that read it all the time before was waiting for something else: what has to stop a machine at once needs a loop, or a thread, that does nothing else";
     /// A move begins while an earlier one, which the thread has given some time, is under way.
     MoveCut { function: Function, axis: AxisId, dest: f64, earlier: f64, target: f64, other: OtherPlace } = "move-cut", Warning, [per axis],
         "calls {function} for axis {axis}, which is at {dest:.0} on its way to {earlier:.0} (by {other}): it goes to {target:.0} from here and never arrives at {earlier:.0}. Wait for it with `while (!CheckDone({axis}));`";
@@ -540,6 +549,12 @@ messages! {
     /// A call names a PWM output that does not exist.
     NoSuchPwm { function: Function, channel: i32 } = "no-such-pwm", Warning, [per channel],
         "{function}({channel}, …): no such channel (0-15)";
+    /// A call prints more characters than the board takes from one.
+    TextCut { function: Function, size: usize } = "text-cut", Warning, [once],
+        "{function}: this text has {size} characters, and the board takes 128 of a call: the rest is lost, and the end of the line with it; print it with several calls";
+    /// A line is longer than the board's lines.
+    LongLine { size: usize } = "long-line", Hint, [once],
+        "a line of the console has 125 characters at most, so this one of {size} arrives as two";
     /// A program ends with a line of text that has no newline.
     UnfinishedLine { text: String } = "unfinished-line", Hint, [once],
         "the text `{text}` has no newline: the board keeps it, and the PC never receives it";

@@ -97,6 +97,10 @@ impl Sema<'_> {
                     .note("the vendor's compiler reports an undefined symbol")
                     .help(match stand_in(spelling) {
                         Some(other) => format!("`{other}` is in the firmware"),
+                        None if spelling == Function::abs.name() => format!(
+                            "declare it, `{prototype};`, for an `int`; for a `double` write `{}`",
+                            Function::fast_fabs.name()
+                        ),
                         None => format!("declare it, `{prototype};`, or define a function of your own"),
                     }),
                 (false, true) => finding

@@ -76,6 +76,18 @@ impl WaitCondition {
         (!is_call && !text.contains('(')).then_some(&rest[..end])
     }
 
+    /// The right side of its comparison, if that is all it has and computes something.
+    pub(super) fn right_side(&self) -> Option<&str> {
+        let text = &self.0;
+        if ["&&", "||", "(", "->"].iter().any(|other| text.contains(other)) {
+            return None;
+        }
+        let (left, right) = text.split_once(['<', '>', '=', '!'])?;
+        let right = right.trim_start_matches('=').trim();
+        let is_plain = right.parse::<f64>().is_ok() || right.contains(['<', '>', '=', '!']);
+        (!left.is_empty() && !is_plain).then_some(right)
+    }
+
     /// Returns whether a text stores to a variable, or passes its address on.
     pub(super) fn writes(text: &str, name: &str) -> bool {
         let base = name.split(['[', '.', '-']).next().unwrap_or(name);
@@ -175,6 +187,20 @@ mod tests {
         check("while (!CheckDone(0)) ;", 1, Some(("!CheckDone(0)", None)));
         check("while (1)\n  x++;", 2, None);
         check("x++;", 1, None);
+    }
+
+    #[test]
+    fn the_right_side_of_a_comparison_is_shown_where_it_computes() {
+        for (text, expect) in [
+            ("Spindle.TrueSpeedRPS < 0.95 * RPM", Some("0.95 * RPM")),
+            ("a >= b", Some("b")),
+            ("a != 3", None),
+            ("!a", None),
+            ("a < b && c < d", None),
+            ("a", None),
+        ] {
+            assert_eq!(WaitCondition(text.to_owned()).right_side(), expect, "{text}");
+        }
     }
 
     #[test]

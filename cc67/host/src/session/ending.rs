@@ -148,7 +148,7 @@ impl<T: Target> Session<T> {
             Standing::Paused => "paused",
             Standing::Idle => "idle: it was resumed before it was started",
             Standing::Computing if waits_for.is_empty() => "computing",
-            Standing::Computing | Standing::Until(_) | Standing::Slice | Standing::Call => "waiting",
+            Standing::Computing | Standing::Until(_) | Standing::Slice | Standing::Call(..) => "waiting",
         };
         if waits_for.is_empty() {
             waits_for.extend(plain_wait(state));
@@ -184,8 +184,14 @@ impl<T: Target> Session<T> {
         let text = source_text(&program.path, &call.file)?;
         let condition = WaitCondition::around(&text, call.line?)?;
         let Some(name) = condition.operand() else { return Some(format!("`{}`", condition.text())) };
-        let value = self.watch(&format!("{thread}:{name}")).map(|watch| self.value(&watch));
-        let value = value.map_or(String::new(), |value| format!(" (now {})", number(value)));
+        let value_of = |expression: &str| {
+            let watch = self.watch(&format!("{thread}:{expression}")).ok()?;
+            Some(number(self.value(&watch)))
+        };
+        let unit = if name == TRUE_SPEED { " turns a second" } else { "" };
+        let value = value_of(name).map_or(String::new(), |value| format!(" (now {value}{unit})"));
+        let right = condition.right_side().and_then(value_of);
+        let right = right.map_or(String::new(), |value| format!(", where the right side is {value}"));
         let main = source_text(&program.path, &program.name()).unwrap_or_default();
         let is_written = [&text, &main].iter().any(|text| WaitCondition::writes(text, name));
         let unwritten = match () {
@@ -195,12 +201,13 @@ impl<T: Target> Session<T> {
             () if is_written => "",
             () => ", which nothing writes,",
         };
-        Some(format!("`{name}`{value}{unwritten} in `{}`", condition.text()))
+        Some(format!("`{name}`{value}{unwritten} in `{}`{right}", condition.text()))
     }
 }
 
 /// The variable in which the firmware measures a spindle.
 const SPINDLE: &str = "Spindle.";
+const TRUE_SPEED: &str = "Spindle.TrueSpeedRPS";
 
 /// The text of a source file that an image names, which may be relative to the program.
 fn source_text(program: &Path, file: &str) -> Option<String> {
@@ -225,7 +232,7 @@ fn plain_wait(state: Standing) -> Option<String> {
     match state {
         Standing::Until(time) => Some(format!("the time {:.3} s", seconds(time))),
         Standing::Slice => Some("its next slice".to_owned()),
-        Standing::Call => Some("the board: a lock, room for its text, or the PC".to_owned()),
+        Standing::Call(function, waits) => Some(format!("{function}, which waits {waits}")),
         Standing::Computing | Standing::Paused | Standing::Idle => None,
     }
 }

@@ -16,7 +16,7 @@ use crate::cli::args::compiler::SourceArguments;
 use crate::cli::args::program::{ProgramFile, assign, names_thread};
 use crate::cli::args::sidecars::{Head, Project, within};
 use crate::cli::io::exit::Exit;
-use crate::cli::io::input::{is_source, read, sources_below};
+use crate::cli::io::input::{files_below, is_source, read};
 use crate::cli::io::{output, terminal};
 use crate::cli::report::diagnostics;
 use compiler::driver::{SharingProgram, advise};
@@ -114,7 +114,7 @@ impl CheckArguments {
 /// Adds the programs of a folder and of those in it.
 fn add_programs(folder: &Path, paths: &mut Vec<PathBuf>) -> Result<()> {
     let before = paths.len();
-    for path in sources_below(folder)? {
+    for path in files_below(folder, "c")? {
         if has_main(&String::from_utf8_lossy(&read(&path)?)) {
             paths.push(path.strip_prefix(".").map_or(path.clone(), Path::to_owned));
         }

@@ -20,24 +20,28 @@ pub(crate) fn cannot_read(path: &Path, error: &io::Error) -> anyhow::Error {
     anyhow!("cannot read {}: {}", path.display(), reason(error))
 }
 
-/// Returns the C files of a folder and of those in it, in the order of names.
-pub(crate) fn sources_below(folder: &Path) -> Result<Vec<PathBuf>> {
+/// Returns the files with a suffix in a folder and in those in it, in the order of names.
+pub(crate) fn files_below(folder: &Path, suffix: &str) -> Result<Vec<PathBuf>> {
     let entries = fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
     let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
     paths.sort();
-    let mut sources = Vec::new();
+    let mut files = Vec::new();
     for path in paths {
         // A link to a folder may lead back here.
         if path.is_dir() && !path.is_symlink() {
-            sources.extend(sources_below(&path)?);
-        } else if is_source(&path) {
-            sources.push(path);
+            files.extend(files_below(&path, suffix)?);
+        } else if has_suffix(&path, suffix) {
+            files.push(path);
         }
     }
-    Ok(sources)
+    Ok(files)
 }
 
 /// Returns whether a file is C, by its name.
 pub(crate) fn is_source(path: &Path) -> bool {
-    path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("c"))
+    has_suffix(path, "c")
+}
+
+fn has_suffix(path: &Path, suffix: &str) -> bool {
+    path.extension().is_some_and(|own| own.eq_ignore_ascii_case(suffix))
 }

@@ -77,6 +77,8 @@ pub(crate) struct Notices {
     moves: [Option<Called>; Axes::MAX],
     /// The last call that printed.
     pub(crate) last_print: (Option<ThreadId>, Option<CodeAddr>),
+    /// True if a call printed more than the board takes from one, so that lines end elsewhere.
+    pub(crate) has_cut_text: bool,
     /// The thread that has begun a line of text and not ended it.
     line_of: Option<ThreadId>,
     /// The call-back in the last tick.
@@ -92,6 +94,7 @@ impl Default for Notices {
             due: NEVER,
             moves: Default::default(),
             last_print: (None, None),
+            has_cut_text: false,
             line_of: None,
             call_back: GuestAddr::NULL,
             objects: std::array::from_fn(|_| Arc::from([])),

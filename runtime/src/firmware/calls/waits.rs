@@ -2,6 +2,7 @@
 //!
 //! A thread waits as long as it calls nothing but functions that look or let time pass. Any other call ends the wait.
 
+use kmotiondef::firmware::FirmwareFunction;
 use kmotiondef::function::Polled;
 use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, ThreadId};
 use vm::firmware::Caller;
@@ -53,6 +54,8 @@ pub(crate) struct Wait {
     pub(crate) last_bit: Option<Bit>,
     /// The calls since its beginning.
     pub(crate) calls: Vec<Repeated>,
+    /// The function of the firmware's table that it has called before its beginning.
+    pub(crate) called: Option<&'static FirmwareFunction>,
 }
 
 /// The waits of all threads, and the axes that programs have commanded.
@@ -88,9 +91,10 @@ impl Waits {
         }
     }
 
-    /// A thread does anything else.
-    pub(crate) fn act(&mut self, thread: ThreadId, now: Cycles) {
+    /// A thread does anything else: it calls a function, which the firmware's table has.
+    pub(crate) fn act(&mut self, thread: ThreadId, now: Cycles, called: Option<&'static FirmwareFunction>) {
         let wait = &mut self.threads[thread.index()];
+        wait.called = called;
         wait.calls.clear();
         wait.has_repeated = std::mem::take(&mut wait.repeats);
         wait.has_read = std::mem::take(&mut wait.reads);

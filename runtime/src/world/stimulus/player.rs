@@ -6,6 +6,7 @@ use kmotiondef::{Bit, Cycles, ThreadId};
 use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 use vm::scheduler::ThreadSet;
+use vm::thread::Threads;
 
 use super::acts::lines::{drive, let_go};
 use super::monitor::Progress;
@@ -306,12 +307,15 @@ impl Player {
     }
 
     /// The statements that have done nothing.
-    fn never_happened(&self, view: &View<'_>) -> Vec<String> {
+    fn never_happened(&self, view: &View<'_>, threads: &Threads) -> Vec<String> {
         let idle = self.rules.iter().zip(&self.progress).filter(|(_, progress)| !progress.happened);
         idle.map(|(rule, progress)| {
             let near = || progress.near.as_ref().map(|near| format!(" (a line contains \"{near}\")"));
             let reason = unchanged_level(rule, progress, view).or_else(|| other_reading(rule, view));
-            let reason = reason.or_else(near).or_else(|| too_late(rule, view.tick_start()));
+            let reason = reason
+                .or_else(near)
+                .or_else(|| too_late(rule, view.tick_start()))
+                .or_else(|| still_runs(rule, threads));
             format!("{}: {}{}", rule.place, rule.trigger, reason.unwrap_or_default())
         })
         .collect()
@@ -335,7 +339,7 @@ impl Player {
         }
         self.finish_watching(access, context);
         let view = View::new(access.machine, access.io, context.now, context.memory);
-        let statements = self.never_happened(&view);
+        let statements = self.never_happened(&view, context.threads);
         if !statements.is_empty() {
             access.out.remark(context.now, Message::NeverHappened { statements: statements.join("; ") });
         }
@@ -352,6 +356,12 @@ fn unchanged_level(rule: &Rule, progress: &Progress, view: &View<'_>) -> Option<
         }
         _ => None,
     }
+}
+
+/// A thread whose end a statement waits for, and that has not ended.
+fn still_runs(rule: &Rule, threads: &Threads) -> Option<String> {
+    let Condition::Ends(thread) = rule.trigger.condition()? else { return None };
+    threads.state(*thread).is_active().then(|| ", which still runs".to_owned())
 }
 
 /// The end of a run that was over before the moment of a statement, and a remedy where that was probably meant in

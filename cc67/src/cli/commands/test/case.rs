@@ -4,8 +4,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 
+use compiler::words::suggest;
+
 use crate::cli::args::sidecars::{Head, Project, SIDECARS};
-use crate::cli::io::input::{read, sources_below};
+use crate::cli::io::input::{files_below, read};
+use crate::cli::io::terminal;
 
 /// A program with the console it should show.
 #[derive(Debug)]
@@ -60,13 +63,36 @@ pub(super) fn find(paths: &[PathBuf]) -> Result<Vec<Case>> {
 
 /// Adds the tests of a folder and of those in it.
 fn search(folder: &Path, cases: &mut Vec<Case>) -> Result<()> {
-    for path in sources_below(folder)? {
+    for path in files_below(folder, "c")? {
         let head = Head::of(&path)?;
         let is_test = matches!(head, Head::Run { .. })
             || matches!(head, Head::None) && path.with_extension("expected").exists();
         if is_test {
             cases.push(case(&path, head)?);
         }
+    }
+    note_orphans(folder)
+}
+
+/// Reports expected outputs that belong to no program.
+fn note_orphans(folder: &Path) -> Result<()> {
+    for golden in files_below(folder, "expected")? {
+        let name = golden.file_stem().unwrap_or_default().to_string_lossy();
+        if golden.with_extension("c").exists() || golden.with_extension("C").exists() {
+            continue;
+        }
+        let beside = files_below(golden.parent().unwrap_or(folder), "c")?;
+        let without = beside.iter().filter(|source| !source.with_extension("expected").exists());
+        let names: Vec<_> =
+            without.filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned())).collect();
+        let hint = match suggest(&name, names.iter().map(String::as_str)) {
+            Some(near) => format!("; did you mean {near}.expected?"),
+            None => String::new(),
+        };
+        terminal::note(&format!(
+            "{} belongs to no program: there is no {name}.c beside it{hint}",
+            golden.display()
+        ));
     }
     Ok(())
 }
