@@ -30,7 +30,7 @@ mod moved;
 mod prototype;
 
 use std::collections::BTreeMap;
-use std::sync::LazyLock;
+use std::sync::{LazyLock, OnceLock};
 
 use crate::bits::{BitRange, kogna_range_of, range_of};
 use crate::firmware::{ABSENT, FIRMWARE_FUNCTIONS, FirmwareFunction, Origin, row_named};
@@ -100,7 +100,8 @@ struct BoardFacts {
     undefines: Vec<&'static str>,
     enumerations: Vec<(&'static str, &'static str)>,
     structures: Vec<StructureLayout>,
-    headers: Vec<Header>,
+    /// The C headers, made at the first use.
+    headers: OnceLock<Vec<Header>>,
     /// The lines that are about this kind of board, not about addresses or one version.
     kind: Vec<&'static str>,
 }
@@ -269,7 +270,8 @@ impl TargetBoard {
     /// The C headers.
     #[must_use]
     pub fn headers(&self) -> &[Header] {
-        self.facts.as_ref().map_or(crate::headers::EMBEDDED, |facts| &facts.headers)
+        let Some(facts) = &self.facts else { return crate::headers::EMBEDDED };
+        facts.headers.get_or_init(|| header::of_board(facts, (self.kind(), self.number())))
     }
 
     /// The function of this name, if programs can call one on this board.
@@ -535,7 +537,6 @@ impl TargetBoard {
                 _ => facts.read(line, word, rest),
             }
         }
-        facts.headers = header::of_board(&facts, (board.kind(), board.number()));
         board.facts = Some(facts);
         board
     }
