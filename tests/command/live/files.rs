@@ -71,6 +71,12 @@ fn the_machine_file_is_applied_when_it_is_saved_and_the_board_begins_again() {
     browser.until(&shows("#console", "homing"));
     let once = "document.querySelector('#console').textContent.split('homing').length === 2";
     browser.until(once);
+
+    // The text that the board was made of needs no new one.
+    folder.write("x.toml", "[axis.0]\nname = \"Crane\"\n");
+    browser.until(&shows("#timeline", "x.toml is saved: Restart applies it"));
+    folder.write("x.toml", "[axis.0]\nname = \"Tower\"\nunits = \"mm\"\n");
+    browser.until(&format!("!{}", shows("#timeline", "Restart applies it")));
     assert_eq!(browser.complaints(), [""; 0]);
     assert_eq!(live.end(), "");
 }

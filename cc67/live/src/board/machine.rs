@@ -1,5 +1,7 @@
 //! The machine file while its board is shown: one that is saved is applied when the board begins again.
 
+use std::fs;
+
 use cc67_host::{Session, Target};
 use serde_json::{Value, json};
 
@@ -23,15 +25,23 @@ pub(super) enum MachineState {
 
 impl<T: Target> ViewState<T> {
     /// Looks at the machine file from now on.
-    pub(super) fn watch_machine(&self, hub: &std::sync::Arc<Hub>) {
+    pub(super) fn watch_machine(&mut self, hub: &std::sync::Arc<Hub>) {
         if let Some(path) = &self.show.machine.path {
+            self.programs.machine_text = fs::read(path).ok();
             saved::watch_machine(path.clone(), &self.programs.watch, hub);
         }
+    }
+
+    /// Returns whether the machine file has the text that the board was made of: it was saved before, or as it was.
+    fn is_as_made(&self) -> bool {
+        let text = self.show.machine.path.as_ref().and_then(|path| fs::read(path).ok());
+        text.is_some() && text == self.programs.machine_text
     }
 
     /// Notes that the machine file was saved.
     pub(super) fn machine_saved(&mut self, session: &Session<T>, checked: Result<(), String>) {
         self.programs.machine = match checked {
+            _ if self.is_as_made() => MachineState::Same,
             Ok(()) => MachineState::Saved,
             Err(text) => MachineState::Wrong(text),
         };

@@ -27,6 +27,8 @@ pub(super) struct Programs {
     wrong: BTreeMap<ThreadId, Vec<CompileMessage>>,
     /// The machine file since the board was made.
     pub(super) machine: MachineState,
+    /// The text of the machine file that the board was made of.
+    pub(super) machine_text: Option<Vec<u8>>,
     /// Their files are looked at as long as there are programs.
     pub(super) watch: Watch,
 }
@@ -39,6 +41,7 @@ impl Programs {
         Self {
             watch,
             machine: MachineState::default(),
+            machine_text: None,
             programs: show.programs.clone(),
             options: options.clone(),
             reloads: show.reloads,
