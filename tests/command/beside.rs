@@ -97,6 +97,23 @@ fn first_programs_run_to_their_end_before_the_others_start() {
 }
 
 #[test]
+fn a_first_program_that_never_ends_is_named() {
+    let scratch = Scratch::new("first-endless");
+    scratch.write(
+        "a.c",
+        "#include \"KMotionDef.h\"\nmain() { EnableRS232Cmds(RS232_BAUD_9600); RS232_GetChar(); }\n",
+    );
+    scratch.write("b.c", "main() {}\n");
+    let output = cc67(&scratch, ["run", "--for", "0.1", "--first", "a.c", "b.c"]);
+    for part in [
+        "never happened: a.c:1:1: once thread 2 ends, which still runs",
+        "for RS232_GetChar, which waits while no character has been received",
+    ] {
+        assert!(output.stderr.contains(part), "{part}: {}", output.stderr);
+    }
+}
+
+#[test]
 fn commands_that_compile_find_the_included_files_of_a_project() {
     let scratch = Scratch::new("project-include");
     fs::create_dir_all(scratch.path().join("inc")).expect("a folder");

@@ -118,6 +118,16 @@ fn missing_tests_and_expectations_are_reported() {
 }
 
 #[test]
+fn expected_outputs_without_a_program_are_named() {
+    let files =
+        [("door.c", COUNT), ("doors.expected", "1\n"), ("sub/b.c", COUNT), ("sub/b.expected", "1\n2\n3\n")];
+    let output = test(&folder("orphans", &files), &["."]);
+    assert_eq!((output.stdout.as_str(), output.code), ("1 passed, 0 failed\n", 0), "{}", output.stderr);
+    let expect = "cc67: ./doors.expected belongs to no program: there is no doors.c beside it; did you mean door.expected?\n";
+    assert_eq!(output.stderr, expect);
+}
+
+#[test]
 fn a_first_line_that_is_not_the_first_is_reported() {
     let program = format!("// home.c - homes\n// cc67: run --for 2\n{COUNT}");
     let files = [("home.c", program.as_str()), ("blank.c", "//cc67: run\nmain() {}\n")];

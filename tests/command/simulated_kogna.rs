@@ -226,3 +226,26 @@ fn functions_and_memory_that_are_not_simulated_say_so() {
         assert!(output.stderr.contains(expect), "{option}: {}", output.stderr);
     }
 }
+
+#[test]
+fn stimuli_and_the_debugger_know_sixteen_axes() {
+    let program = format!("#include \"KMotionDef.h\"\nmain()\n{{\n{MOVE}\n}}\n");
+    let files = [
+        ("a.c", &*program),
+        ("a.cmd", "catch when \"dest12 > 100\"\ncontinue\nprint dest12 > 100\nprint dest15\n"),
+    ];
+    let stimulus = [
+        "--stim",
+        "when axis 12 dest > 100 set bit 48\nat end expect axis 12 dest = 250\nat end expect dest12 = 250",
+    ];
+    let output = kogna("simulated-kogna-stimulus", &files, &[&["run", "a.c"][..], &stimulus].concat(), "");
+    assert_eq!(output.code, 0, "{output:?}");
+    let output = kogna("simulated-kogna-debugger", &files, &["debug", "-O0", "a.c", "--batch", "a.cmd"], "");
+    assert!(output.stdout.contains("$1 = 1\n$2 = 0\n"), "{output:?}");
+
+    let scratch = Scratch::new("simulated-kogna-axes");
+    scratch.write("a.c", "main() {}\n");
+    let output = cc67(&scratch, ["run", "a.c", "--stim", "at end expect axis 12 enabled"]);
+    assert_eq!(output.code, 2, "{output:?}");
+    assert!(output.stderr.contains("--stim:1:1: axis 12: the board has axes 0 to 7"), "{output:?}");
+}

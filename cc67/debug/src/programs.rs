@@ -9,12 +9,13 @@ use compiler::debug::{CodeScope, FunctionModel, Model, source_of};
 use compiler::files;
 use compiler::pp::Disk;
 use compiler::target::Target as CodeTarget;
-use kmotiondef::ThreadId;
+use kmotiondef::{Axes, ThreadId};
 
 /// The debug information of the programs in the threads, or why there is none.
 #[derive(Debug, Default)]
 pub struct Programs {
     known: BTreeMap<ThreadId, (UserProgram, Result<Arc<Model>, String>)>,
+    axes: Axes,
 }
 
 /// A statement: the thread whose program it is of, its address and line.
@@ -43,6 +44,7 @@ pub(crate) struct Activation<'a> {
 impl Programs {
     /// Brings it up to what is loaded.
     pub fn update<T: Target>(&mut self, session: &Session<T>) {
+        self.axes = session.target().axes();
         self.known.retain(|thread, _| session.programs().iter().any(|program| program.thread == *thread));
         for program in session.programs() {
             if self.known.get(&program.thread).is_none_or(|(known, _)| known.image != program.image) {
@@ -50,6 +52,11 @@ impl Programs {
                 self.known.insert(program.thread, (program.clone(), model));
             }
         }
+    }
+
+    /// Returns the axes of their board.
+    pub(crate) const fn axes(&self) -> Axes {
+        self.axes
     }
 
     /// Returns the debug information of the program in a thread.

@@ -6,7 +6,7 @@ use compiler::debug::{
     AllowedCalls, Child, DebugReader, DebugValue, Displayed, LocalModel, LocalPlace, Location, NumberFormat,
     Probe,
 };
-use kmotiondef::GuestAddr;
+use kmotiondef::{Axes, GuestAddr};
 use runtime::trace::Item;
 use vm::engine::{ContextId, FrameView};
 
@@ -116,11 +116,11 @@ impl<T: Target> DebugReader for At<'_, T> {
 }
 
 /// The names in an expression that are items of the board and not the program's.
-fn items_in(expression: &str) -> Vec<&str> {
+fn items_in(axes: Axes, expression: &str) -> Vec<(&str, Item)> {
     let words = expression.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
-    let mut items: Vec<_> = words.filter(|word| Item::new(word).is_ok()).collect();
-    items.sort_unstable();
-    items.dedup();
+    let mut items: Vec<_> = words.filter_map(|word| Some((word, Item::among(axes, word).ok()?))).collect();
+    items.sort_unstable_by_key(|(word, _)| *word);
+    items.dedup_by_key(|(word, _)| *word);
     items
 }
 
@@ -150,14 +150,14 @@ fn compile(
     match model.probe(place, &expression, &[], calls) {
         Ok(probe) => Ok((probe, Vec::new())),
         Err(error) => {
-            let names = items_in(&expression);
+            let (names, items): (Vec<_>, Vec<_>) = items_in(programs.axes(), &expression).into_iter().unzip();
             if names.is_empty() {
                 return Err(in_words_of_gdb(&expression, &error).into());
             }
             let probe = model
                 .probe(place, &expression, &names, calls)
                 .map_err(|error| in_words_of_gdb(&expression, &error))?;
-            Ok((probe, names.into_iter().filter_map(|name| Item::new(name).ok()).collect()))
+            Ok((probe, items))
         }
     }
 }

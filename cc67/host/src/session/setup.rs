@@ -118,7 +118,8 @@ pub fn resolve(
     programs: &[UserProgram],
     options: &Options,
 ) -> Result<(), StimulusError> {
-    stimulus.resolve(|text| expression::for_stimulus(text, programs, options))
+    let axes = options.firmware.board().axes;
+    stimulus.resolve(axes, |text| expression::for_stimulus(text, programs, options))
 }
 
 /// Keeps a program that a stimulus may load; with what is known about it.

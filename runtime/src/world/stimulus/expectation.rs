@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use kmotiondef::structs::{Chan, Persist};
 use kmotiondef::variables::PERSIST;
-use kmotiondef::{AxisId, ThreadId};
+use kmotiondef::{Axes, AxisId, ThreadId};
 use vm::scheduler::ThreadSet;
 
 use super::reader::{StatementReader, integer, number};
@@ -368,7 +368,7 @@ fn axis(reader: &mut StatementReader<'_>) -> Result<Predicate, Mistake> {
     }
     let what = "`position`, `dest`, `velocity`, `output`, `load`, `enabled` or `disabled`";
     let (name, kind) = reader.take(what, |word| OF_AXIS.iter().find(|(name, _)| *name == word).copied())?;
-    let item = Item::new(&format!("{kind}{axis}")).expect("every axis has it");
+    let item = Item::among(Axes::new(Axes::MAX), &format!("{kind}{axis}")).expect("every axis has it");
     compared(reader, Subject::Item(item, format!("axis {axis} {name}").into()))
 }
 

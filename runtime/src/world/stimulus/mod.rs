@@ -55,7 +55,7 @@ pub(crate) use player::Player;
 use std::fmt;
 use std::sync::Arc;
 
-use kmotiondef::ThreadId;
+use kmotiondef::{Axes, AxisId, ThreadId};
 
 use crate::world::trace::Formula;
 
@@ -85,6 +85,8 @@ pub struct Rule {
     pub trigger: Trigger,
     /// Its action.
     pub action: Action,
+    /// The highest axis that it names.
+    pub highest_axis: Option<AxisId>,
 }
 
 /// A whole stimulus.
@@ -119,12 +121,17 @@ impl Stimulus {
     /// Hands the expressions in its expectations to somebody who knows the programs, and keeps what computes them.
     ///
     /// # Errors
-    /// The first one that is wrong, and where.
+    /// The first one that is wrong, or a statement about an axis that the board has not, and where.
     pub fn resolve(
         &mut self,
+        axes: Axes,
         mut find: impl FnMut(&str) -> Result<Arc<dyn Formula>, String>,
     ) -> Result<(), StimulusError> {
-        for Rule { place, trigger, action } in &mut self.rules {
+        for Rule { place, trigger, action, highest_axis } in &mut self.rules {
+            if let Some(axis) = highest_axis.filter(|axis| axis.index() >= axes.count()) {
+                let message = format!("axis {axis}: the board has axes 0 to {}", axes.last());
+                return Err(StimulusError { place: place.clone(), message });
+            }
             let expected = match action {
                 Action::Expect(expectation) => expectation.expression(),
                 _ => None,

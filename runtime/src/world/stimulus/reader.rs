@@ -12,6 +12,8 @@ pub(crate) struct StatementReader<'a> {
     pub(super) tokens: &'a [Token],
     /// The column after the last token.
     pub(super) behind: usize,
+    /// The highest axis so far.
+    pub(super) highest_axis: Option<AxisId>,
 }
 
 impl StatementReader<'_> {
@@ -164,8 +166,11 @@ impl StatementReader<'_> {
         })
     }
 
+    /// An axis of any board: that of the run is known when the stimulus is resolved.
     pub(crate) fn axis(&mut self) -> Result<AxisId, Mistake> {
-        self.index("an axis from 0 to 7", |number| Axes::default().get(number))
+        let axis = self.index("the number of an axis", |number| Axes::new(Axes::MAX).get(number))?;
+        self.highest_axis = self.highest_axis.max(Some(axis));
+        Ok(axis)
     }
 
     pub(crate) fn thread(&mut self) -> Result<ThreadId, Mistake> {

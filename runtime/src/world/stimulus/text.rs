@@ -35,9 +35,10 @@ pub(super) fn parse(text: &str, source: &str) -> Result<Vec<Rule>, StimulusError
             if statement.is_empty() {
                 continue;
             }
-            let (trigger, action) =
-                StatementReader { tokens: statement, behind }.statement().map_err(fail)?;
-            rules.push(Rule { place: place(first.column), trigger, action });
+            let mut reader = StatementReader { tokens: statement, behind, highest_axis: None };
+            let (trigger, action) = reader.statement().map_err(fail)?;
+            let highest_axis = reader.highest_axis;
+            rules.push(Rule { place: place(first.column), trigger, action, highest_axis });
         }
     }
     Ok(rules)
