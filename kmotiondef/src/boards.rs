@@ -80,11 +80,13 @@ impl PartialEq for TargetBoard {
 
 impl Eq for TargetBoard {}
 
-/// Every board; the first is the default.
-pub static BOARDS: LazyLock<Vec<TargetBoard>> = LazyLock::new(|| {
-    let others = FILES.iter().map(|text| TargetBoard::read(text));
-    std::iter::once(TargetBoard::DEFAULT).chain(others).collect()
-});
+/// Every board; the first is the default. The others are read when the first of them is looked at.
+pub fn boards() -> impl Iterator<Item = &'static TargetBoard> + Clone {
+    static OTHERS: LazyLock<Vec<TargetBoard>> =
+        LazyLock::new(|| FILES.iter().map(|text| TargetBoard::read(text)).collect());
+    let others = (0..FILES.len()).map(|number| &OTHERS[number]);
+    std::iter::once(TargetBoard::default_board()).chain(others)
+}
 
 /// Differences from the default board.
 #[derive(Debug, Default)]
@@ -179,7 +181,7 @@ impl TargetBoard {
     pub fn named(name: &str) -> Option<&'static Self> {
         match name == Self::DEFAULT.name {
             true => Some(Self::default_board()),
-            false => BOARDS.iter().find(|board| board.name.eq_ignore_ascii_case(name)),
+            false => boards().find(|board| board.name.eq_ignore_ascii_case(name)),
         }
     }
 
@@ -188,7 +190,7 @@ impl TargetBoard {
     pub fn of_version(version: &str) -> Option<&'static Self> {
         match version == Self::DEFAULT.version {
             true => Some(Self::default_board()),
-            false => BOARDS.iter().find(|board| board.version == version),
+            false => boards().find(|board| board.version == version),
         }
     }
 
@@ -196,7 +198,7 @@ impl TargetBoard {
     #[must_use]
     pub fn of_image(version_stamp: i16, code: u32) -> Option<&'static Self> {
         let holds = |board: &&Self| board.map.programs.holds(code);
-        BOARDS.iter().filter(|board| board.version_stamp() == version_stamp).find(holds)
+        boards().filter(|board| board.version_stamp() == version_stamp).find(holds)
     }
 
     /// Cycles of the processor between two interrupts of the servo.
@@ -228,7 +230,7 @@ impl TargetBoard {
     #[must_use]
     pub fn other_with(&self, name: &str) -> Option<&'static Self> {
         let has = |board: &Self| board.has(name) || board.defines(name);
-        BOARDS.iter().find(|other| has(other)).filter(|_| !has(self))
+        boards().find(|other| has(other)).filter(|_| !has(self))
     }
 
     /// Reports whether it is the default board.

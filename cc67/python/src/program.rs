@@ -18,7 +18,7 @@ use compiler::render::{self, Format};
 use compiler::target::Target;
 use compiler::{Compilation, Options, files, link_units, pp};
 use kmotiondef::ThreadId;
-use kmotiondef::boards::{BOARDS, TargetBoard};
+use kmotiondef::boards::{TargetBoard, boards};
 use pyo3::prelude::*;
 
 use crate::errors::{LoadError, input, unreadable};
@@ -81,7 +81,7 @@ impl CompileArguments {
 
     fn firmware(&self) -> PyResult<Firmware> {
         if let Some(name) = &self.board {
-            let names = || BOARDS.iter().map(|board| board.name).collect::<Vec<_>>().join(", ");
+            let names = || boards().map(|board| board.name).collect::<Vec<_>>().join(", ");
             let board = TargetBoard::named(name)
                 .ok_or_else(|| input(format!("no board is called {name:?}; the boards are {}", names())))?;
             return Ok(if board.is_default() { Firmware::default() } else { Firmware::Board(board) });

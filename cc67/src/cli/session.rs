@@ -23,7 +23,7 @@ use compiler::firmware::Firmware;
 use compiler::target::Target as CodeTarget;
 use compiler::{Division, Options};
 use kmotiondef::Ticks;
-use kmotiondef::boards::BOARDS;
+use kmotiondef::boards::boards;
 use runtime::stimulus::Stimulus;
 use runtime::{Board, Config, Event, ModelledBoard};
 use vm::engine::Engine;
@@ -362,7 +362,7 @@ impl PreparedBoard {
 fn modelled(options: &Options) -> Result<ModelledBoard> {
     let board = options.firmware.board();
     let unknown = || {
-        let known = BOARDS.iter().filter(|board| ModelledBoard::of(board).is_some()).map(|board| board.name);
+        let known = boards().filter(|board| ModelledBoard::of(board).is_some()).map(|board| board.name);
         let known = known.collect::<Vec<_>>().join(", ");
         anyhow!(
             "`--board`: {} is not simulated; programs can be built for it, and run on {known}",

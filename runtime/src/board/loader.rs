@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use coff::{Contents, FileFlags, Image, Line, Section, SectionFlags, SectionNumber, StorageClass, Target};
-use kmotiondef::boards::{BOARDS, TargetBoard};
+use kmotiondef::boards::{TargetBoard, boards};
 use kmotiondef::map::ProgramSpaces;
 use kmotiondef::{GuestAddr, ThreadId};
 use vm::loaded::Loaded as Code;
@@ -150,7 +150,7 @@ pub enum LoadError {
 pub fn board_of(image: &[u8]) -> ModelledBoard {
     let image = Image::read(image).ok();
     let stamp = image.and_then(|image| image.program).map(|program| program.version_stamp);
-    let mut boards = BOARDS.iter().filter(|board| Some(board.version_stamp()) == stamp);
+    let mut boards = boards().filter(|board| Some(board.version_stamp()) == stamp);
     boards.find_map(ModelledBoard::of).unwrap_or_default()
 }
 
@@ -232,7 +232,7 @@ fn states_firmware(target: Target, stamp: i16) -> bool {
 
 /// A version stamp in words.
 fn version(stamp: i16) -> String {
-    let known = BOARDS.iter().find(|board| board.version_stamp() == stamp);
+    let known = boards().find(|board| board.version_stamp() == stamp);
     match (stamp, known) {
         (_, Some(board)) => format!("version {}", board.number()),
         (1.., None) => format!("version {}.{:02}", stamp / 100, stamp % 100),

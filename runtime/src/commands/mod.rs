@@ -29,7 +29,7 @@ mod table;
 pub use arguments::Argument;
 pub use table::{COMMANDS, KOGNA_COMMANDS, LATER_COMMANDS};
 
-use kmotiondef::boards::{BOARDS, TargetBoard};
+use kmotiondef::boards::{TargetBoard, boards};
 use vm::firmware::TickContext;
 
 use arguments::Values;
@@ -185,7 +185,7 @@ pub fn boards_with(name: &str) -> impl Iterator<Item = (&'static str, &'static T
         (CommandSet::Later, named(LATER_COMMANDS)),
         (CommandSet::Kogna, named(KOGNA_COMMANDS)),
     ];
-    BOARDS.iter().filter_map(move |board| {
+    boards().filter_map(move |board| {
         let set = ModelledBoard::of(board)?.behaviour().commands;
         Some((names.into_iter().find_map(|(first, name)| name.filter(|_| set >= first))?, board))
     })

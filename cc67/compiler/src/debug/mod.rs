@@ -19,7 +19,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use kmotiondef::ThreadId;
-use kmotiondef::boards::{BOARDS, TargetBoard};
+use kmotiondef::boards::{TargetBoard, boards};
 
 use crate::driver::{Options, front_and_object, on_large_stack};
 use crate::image;
@@ -535,5 +535,5 @@ fn thread_of(program: &[u8]) -> Option<ThreadId> {
     let text = image.section(".text")?.address;
     let begins =
         |board: &TargetBoard| ThreadId::all().find(|thread| board.program_base(*thread).get() == text);
-    begins(TargetBoard::default_board()).or_else(|| BOARDS.iter().find_map(begins))
+    begins(TargetBoard::default_board()).or_else(|| boards().find_map(begins))
 }

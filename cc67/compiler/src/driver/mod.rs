@@ -17,7 +17,7 @@ use std::sync::Arc;
 use std::thread;
 
 use kmotiondef::ThreadId;
-use kmotiondef::boards::{BOARDS, TargetBoard};
+use kmotiondef::boards::{TargetBoard, boards};
 use kmotiondef::firmware::Origin;
 use kmotiondef::jumps::JumpFunction;
 use kmotiondef::timing::Timing;
@@ -494,7 +494,7 @@ impl Compilation {
 fn unknown_version(firmware: &Firmware) -> Option<Diagnostic> {
     let Firmware::File(file) = firmware else { return None };
     let version = file.version().filter(|_| file.board().is_none())?;
-    let known: Vec<_> = BOARDS.iter().map(|board| board.version).collect();
+    let known: Vec<_> = boards().map(|board| board.version).collect();
     let message = format!("the firmware file is of `{version}`, which cc67 does not know");
     let diagnostic = Diagnostic::global_warning(message).note(format!("known are {}", known.join(", ")));
     Some(diagnostic.note(

@@ -63,7 +63,7 @@ fn symbols(board: &TargetBoard) -> Vec<Symbol> {
 
 #[cfg(test)]
 mod tests {
-    use kmotiondef::boards::BOARDS;
+    use kmotiondef::boards::boards;
 
     use super::*;
     use crate::firmware::{BuiltIn, Firmware, FirmwareFile, FirmwareSymbols};
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn files_of_other_boards_link_as_the_boards_do() {
-        for board in BOARDS.iter() {
+        for board in boards() {
             let file = FirmwareFile::read(&export(board).expect("it fits")).expect("it is a firmware file");
             assert_eq!(file.board(), Some(board));
             let file = Firmware::File(file.into());

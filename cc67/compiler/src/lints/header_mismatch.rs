@@ -3,7 +3,7 @@
 //! The header decides where the fields of `CHAN` and similar structures are (`dialect.md` 1.2); with
 //! those of another version a program silently reads and writes the wrong ones.
 
-use kmotiondef::boards::{BOARDS, StructureLayout, TargetBoard};
+use kmotiondef::boards::{StructureLayout, TargetBoard, boards};
 
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
@@ -55,7 +55,7 @@ fn owner(headers: &[&SourceFile], version: &str) -> Option<&'static TargetBoard>
         let define = format!("#define BOARD \"{}\"", board.kind());
         headers.iter().any(|file| String::from_utf8_lossy(&file.text).contains(&define))
     };
-    let mut boards = BOARDS.iter().filter(|board| board.number() == version);
+    let mut boards = boards().filter(|board| board.number() == version);
     let first = boards.clone().next();
     boards.find(is_of).or(first)
 }

@@ -15,7 +15,7 @@ use compiler::pp::Standard;
 use compiler::render::Format;
 use compiler::target::Target;
 use compiler::{Division, Options, pp};
-use kmotiondef::boards::{BOARDS, TargetBoard};
+use kmotiondef::boards::{TargetBoard, boards};
 use kmotiondef::timing::{Timing, WaitStates};
 
 use super::heading;
@@ -92,7 +92,7 @@ pub(crate) struct TargetArguments {
 /// The board with a name.
 pub(crate) fn board(name: &str) -> Result<&'static TargetBoard, String> {
     TargetBoard::named(name).ok_or_else(|| {
-        let names: Vec<_> = BOARDS.iter().map(|board| board.name).collect();
+        let names: Vec<_> = boards().map(|board| board.name).collect();
         format!("the boards are {}", names.join(", "))
     })
 }

@@ -3,7 +3,7 @@
 
 use std::sync::LazyLock;
 
-use kmotiondef::boards::{BOARDS, StructureLayout};
+use kmotiondef::boards::{StructureLayout, boards};
 use kmotiondef::structs::MainStatus;
 use kmotiondef::{AxisId, Bit, ThreadId};
 
@@ -75,7 +75,7 @@ impl RecordLayout {
 /// The records of all boards, each once.
 static LAYOUTS: LazyLock<Vec<RecordLayout>> = LazyLock::new(|| {
     let mut layouts: Vec<RecordLayout> = Vec::new();
-    for board in BOARDS.iter() {
+    for board in boards() {
         let structures = board.structures();
         let record = structures.iter().find(|structure| structure.name == MainStatus::STRUCTURE.name);
         if let Some(layout) = record.map(RecordLayout::of_structure)

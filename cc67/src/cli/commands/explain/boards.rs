@@ -2,14 +2,13 @@
 
 use std::fmt::Write as _;
 
-use kmotiondef::boards::{BOARDS, TargetBoard};
+use kmotiondef::boards::{TargetBoard, boards};
 use kmotiondef::firmware::row_named;
 use kmotiondef::variables::variable_named;
 
 /// The boards whose firmware has a name and those whose firmware has it not, as a line of a list; empty if all are alike.
 pub(super) fn line(name: &str) -> String {
-    let (with, without): (Vec<&TargetBoard>, Vec<&TargetBoard>) =
-        BOARDS.iter().partition(|board| board.has(name));
+    let (with, without): (Vec<&TargetBoard>, Vec<&TargetBoard>) = boards().partition(|board| board.has(name));
     if with.is_empty() || without.is_empty() {
         return String::new();
     }
@@ -20,7 +19,7 @@ pub(super) fn line(name: &str) -> String {
 
 /// The answer for a name that the default board does not have.
 pub(super) fn answer(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
-    let board = BOARDS.iter().skip(1).find(|board| board.names().any(is_meant))?;
+    let board = boards().skip(1).find(|board| board.names().any(is_meant))?;
     let name = board.names().find(|name| is_meant(name))?;
     if row_named(name).is_some() || variable_named(name).is_some() {
         return None;

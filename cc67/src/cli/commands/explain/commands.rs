@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use kmotiondef::boards::BOARDS;
+use kmotiondef::boards::boards;
 use runtime::ModelledBoard;
 use runtime::commands::{COMMANDS, Command, KOGNA_COMMANDS, LATER_COMMANDS, boards_with};
 
@@ -42,14 +42,14 @@ pub(super) fn answer(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
          stimulus; letter case does not matter.\n{boards}",
         command.name,
         help = described(help),
-        boards = boards(command)
+        boards = boards_of(command)
     ))
 }
 
 /// The boards that have a command and those that lack it; nothing if all have it.
-fn boards(command: &Command) -> String {
+fn boards_of(command: &Command) -> String {
     let with: Vec<_> = boards_with(command.name).map(|(_, board)| board.name).collect();
-    let without = BOARDS.iter().filter(|board| ModelledBoard::of(board).is_some());
+    let without = boards().filter(|board| ModelledBoard::of(board).is_some());
     let without: Vec<_> = without.map(|board| board.name).filter(|name| !with.contains(name)).collect();
     if without.is_empty() {
         return String::new();

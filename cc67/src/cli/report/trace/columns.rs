@@ -3,7 +3,7 @@
 //! A picture of an axis whose position nobody measures shows where its load is; for that the loads are recorded as well.
 
 use kmotiondef::Axes;
-use kmotiondef::boards::BOARDS;
+use kmotiondef::boards::boards;
 use runtime::trace::{Item, Quantity, TraceRequest};
 
 /// The quantities of a trace, each with its place in a sample.
@@ -25,8 +25,7 @@ impl Columns {
     /// Nothing is enabled yet.
     pub(super) fn new(request: &TraceRequest) -> Self {
         let items: Vec<_> = request.quantities.iter().filter_map(Quantity::item).collect();
-        let is_default = BOARDS
-            .iter()
+        let is_default = boards()
             .any(|board| items == Item::of_axes(board.axes) || items == Self::of_pictures(board.axes));
         Self { quantities: request.quantities.clone(), is_default, enabled: 0 }
     }
