@@ -28,7 +28,7 @@ use crate::firmware::later::{self, Callee, Callees, LATER_FUNCTIONS};
 use crate::firmware::level::ModelledBoard;
 use crate::firmware::parts::Parts;
 use crate::firmware::races::shared;
-use crate::firmware::{kogna_bus, math, serial, time, waits};
+use crate::firmware::{axis_check, kogna_bus, math, serial, time, waits};
 use crate::io::Io;
 use crate::io::bits::bit_state;
 use crate::io::kanalog;
@@ -178,6 +178,7 @@ impl Kernel {
     /// Tells what only the end of a run makes certain.
     pub(crate) fn sum_up(&mut self, context: &TickContext<'_>) {
         self.settle_notices(context.now);
+        axis_check::note_unwatched_limits(&mut self.parts, context.memory, context.now);
         note_overruns(&mut self.parts, context, AFTER_USER_DATA);
         let Parts { out, machine, io, calls, races, pc, .. } = &mut self.parts;
         let held = String::from_utf8_lossy(out.console.held()).into_owned();

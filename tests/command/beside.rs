@@ -106,7 +106,7 @@ fn a_first_program_that_never_ends_is_named() {
     scratch.write("b.c", "main() {}\n");
     let output = cc67(&scratch, ["run", "--for", "0.1", "--first", "a.c", "b.c"]);
     for part in [
-        "never happened: a.c:1:1: once thread 2 ends, which still runs",
+        "never happened: a.c:1:1: once thread 2 ends, which still runs: thread 1 was not started",
         "for RS232_GetChar, which waits while no character has been received",
     ] {
         assert!(output.stderr.contains(part), "{part}: {}", output.stderr);

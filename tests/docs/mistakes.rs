@@ -16,6 +16,7 @@ No program in `c-programs/` gets any of these messages, and neither do correct p
 /// Those that come to light in the servo interrupt or on the PC, where nobody knows a line, or in another program.
 const WITHOUT_LINE: &[&str] = &[
     "address_of_a_text_in_a_request",
+    "analog_input_of_a_machine_in_volts",
     "analog_input_of_a_stimulus_in_volts",
     "analog_output_of_an_axis_written",
     "call_back_of_another_thread_replaced",
@@ -30,6 +31,7 @@ const WITHOUT_LINE: &[&str] = &[
     "lines_of_two_threads_mixed",
     "path_smoothed_with_no_time_constant",
     "path_with_a_disabled_axis",
+    "pulse_shorter_than_a_tick",
     "request_of_another_thread_overwritten",
     "running_program_replaced",
     "switch_beyond_the_end_of_the_travel",

@@ -8,8 +8,9 @@ use vm::memory::GuestMemory;
 
 use super::machine_file::MachineFile;
 use crate::firmware::parts::Parts;
+use crate::io::kanalog::{COUNTS_PER_VOLT, is_volts};
 use crate::io::konnect::Port;
-use crate::machine::description::{Axis, Connection, Encoder, Model};
+use crate::machine::description::{Analog, AnalogSource, Axis, Connection, Encoder, Model};
 use crate::machine::wiring::Wiring;
 use crate::machine::{Mechanics, Notes, Plant, connect_snapamp};
 use crate::out::Message;
@@ -47,6 +48,14 @@ pub(crate) fn install(parts: &mut Parts, machine: &MachineFile) {
         [(Port::Aux0, machine.boards.konnects[0]), (Port::Aux1, machine.boards.konnects[1])]
     {
         io.konnects.set_present(port, present);
+    }
+    for Analog { channel, source } in &machine.connected.analog {
+        if let AnalogSource::Value(value) = *source
+            && is_volts(value)
+        {
+            let (channel, volts) = (*channel, value / COUNTS_PER_VOLT);
+            out.remark(Cycles::default(), Message::FewCounts { channel, value, volts });
+        }
     }
     for &bit in &machine.idle_high {
         io.pins.idle_high(bit);

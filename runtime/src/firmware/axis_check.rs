@@ -9,7 +9,7 @@ use kmotiondef::firmware::Function;
 use kmotiondef::modes::{BacklashMode, InputMode, LastMotion, OutputMode};
 use kmotiondef::structs::{Chan, Iir};
 use kmotiondef::variables::COORD_SYSTEM0;
-use kmotiondef::{AxisId, Bit, Field};
+use kmotiondef::{AxisId, Bit, Cycles, Field};
 use vm::firmware::Caller;
 use vm::memory::GuestMemory;
 
@@ -23,7 +23,7 @@ use crate::out::{Message, OtherPlace, Speaker};
 use crate::servo::CallPlace;
 use crate::servo::coordinated::system::is_member;
 use crate::servo::independent::{has_motion, is_exponential};
-use crate::servo::limits::{WatchedLimit, watched_limits};
+use crate::servo::limits::{WatchedLimit, unwatched_limits, watched_limits};
 use crate::views::{Typed, chan};
 
 /// A program enables an axis at a destination.
@@ -248,6 +248,7 @@ pub(crate) fn moved(parts: &mut Parts, caller: &Caller<'_>, function: Function, 
         swapped_limits(memory, function, axis),
         no_gain(memory, function, axis),
         no_backlash_rate(memory, function, axis),
+        backlash_off(memory, function, axis),
         changed_connection(parts, memory, function, axis),
         output_wraps(memory, function, axis),
         limit_at_other_end(parts, memory, function, axis),
@@ -456,6 +457,24 @@ fn zero_of_feedback(memory: &GuestMemory, axis: AxisId) -> Option<Zero> {
         Some(("MaxFollowingError", "the least error while it moves disables it"))
     } else {
         None
+    }
+}
+
+fn backlash_off(memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
+    let is_off = memory.axis(axis, Chan::BACKLASH_MODE) == BacklashMode::Off.get();
+    let amount = memory.axis(axis, Chan::BACKLASH_AMOUNT);
+    (is_off && amount != 0.0).then_some(Message::BacklashOff { function, axis, amount })
+}
+
+/// Tells at the end of a run of limit switches that an axis which was moved has never watched.
+pub(crate) fn note_unwatched_limits(parts: &mut Parts, memory: &GuestMemory, now: Cycles) {
+    for axis in memory.axes().iter() {
+        let Some(CallPlace { thread, at }) = parts.servo.commands[axis.index()] else { continue };
+        let is_own = |bit| parts.machine.mechanics.contacts(bit).any(|(owner, ..)| owner == axis);
+        let unwatched = unwatched_limits(memory, axis).into_iter().find(|(_, bit)| is_own(*bit));
+        if let Some((end, bit)) = unwatched {
+            parts.out.remark_of(now, thread.into(), at, Message::LimitsOff { axis, end, bit });
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The firmware functions, one file a group, named as in the table.
 
-mod axis_check;
+pub(crate) mod axis_check;
 pub(crate) mod calls;
 pub(crate) mod console;
 pub(crate) mod coord;

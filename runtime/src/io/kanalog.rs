@@ -13,6 +13,16 @@ use vm::memory::GuestMemory;
 
 use crate::views::Typed;
 
+/// Counts of an analog input in a volt: 2048 in 10 V.
+pub(crate) const COUNTS_PER_VOLT: f64 = 204.8;
+
+/// Reports whether a number of counts looks like one of volts: at most 10, with one digit after the point.
+pub(crate) fn is_volts(value: f64) -> bool {
+    const MOST: f64 = 10.0;
+    const TENTHS: f64 = 10.0;
+    value != 0.0 && value.abs() <= MOST && (value * TENTHS).fract() == 0.0
+}
+
 /// The first output.
 const FIRST_OUTPUT: u16 = 144;
 /// The number of outputs.

@@ -357,6 +357,12 @@ messages! {
     /// A file is open for writing when all programs have ended.
     FileLeftOpen { name: String } = "file-left-open", Hint, [once],
         "{name} is still open for writing: call fclose, else the PC keeps the file open";
+    /// An axis has a backlash, and its compensation is off.
+    BacklashOff { function: Function, axis: AxisId, amount: f32 } = "backlash-off", Hint, [per axis],
+        "{function}: axis {axis} has BacklashAmount = {amount}, but BacklashMode is BACKLASH_OFF, so nothing is taken up: set BACKLASH_LINEAR";
+    /// An axis with a limit switch is moved without ever watching it.
+    LimitsOff { axis: AxisId, end: &'static str, bit: Bit } = "limits-off", Hint, [per axis],
+        "axis {axis} has LimitSwitch{end}Bit = {bit}, where its switch is, but LimitSwitchOptions never says that it is watched: the axis runs through it";
     /// The backlash of an axis is never taken up.
     NoBacklashRate { function: Function, axis: AxisId } = "no-backlash-rate", Warning, [per axis],
         "{function}: axis {axis} has BACKLASH_LINEAR with BacklashRate = 0, so its backlash is never taken up";
@@ -462,6 +468,9 @@ messages! {
     /// A switch or probe of the machine file is beyond the end of the travel.
     SwitchUnreachable { bit: Bit, axis: AxisId, place: String, source: String, end: f64, key: String } = "switch-unreachable", Warning, [per bit],
         "the switch or probe on bit {bit} ({source}) is active {place}, but the travel of axis {axis} ends at {end} ({key}): it is never reached";
+    /// A pulse of a stimulus is shorter than a tick.
+    ShortPulse { bit: Bit, us: f64 } = "short-pulse", Hint, [per bit],
+        "the pulse at bit {bit} takes {us:.0} µs, less than a tick of 90 µs: a program that reads the bit in each of its slices can miss it";
     /// An analog input of a stimulus has a few counts, where volts are probably meant.
     FewCounts { channel: usize, value: f64, volts: f64 } = "few-counts", Warning, [per channel],
         "adc {channel} = {value} is a number of counts, {volts:.3} V: write {value}V for volts";

@@ -258,6 +258,14 @@ pub(crate) fn watched_limits(memory: &GuestMemory, axis: AxisId) -> Vec<WatchedL
     ENDS.iter().filter_map(limit).collect()
 }
 
+/// The limit switches that have a number and are not watched, each with its end.
+pub(crate) fn unwatched_limits(memory: &GuestMemory, axis: AxisId) -> Vec<(&'static str, Bit)> {
+    let options = memory.axis(axis, Chan::LIMIT_SWITCH_OPTIONS);
+    let unwatched = ENDS.iter().filter(|end| options >> end.watch & 1 == 0);
+    let number = |end: &End| Bit::new(memory.axis(axis, end.bit)).filter(|bit| bit.get() > 0);
+    unwatched.filter_map(|end| Some((end.name, number(end)?))).collect()
+}
+
 fn check_switch(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, end: &End) {
     if !is_active(tick, memory, axis, end) {
         return;

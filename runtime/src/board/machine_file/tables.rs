@@ -9,6 +9,7 @@ use super::{
     MachineFileError, Model, Probe, Spindle, SpindleDrive, Spring, Switch, Travel, Wire,
 };
 use super::{boards, events, pc};
+use crate::io::kanalog::COUNTS_PER_VOLT;
 use crate::machine::wiring::Wiring;
 use crate::out::REMARKS;
 
@@ -301,12 +302,22 @@ fn analog(table: &Table<'_>) -> Read<Analog> {
     let (mut channel, mut source) = (None, None);
     keys!(table, |key, value| {
         "channel" => channel = Some(value.whole(7)? as usize);
-        "value" => source = Some(AnalogSource::Value(value.number()?));
+        "value" => source = Some(AnalogSource::Value(counts(&value)?));
         "sine" => source = Some(sine(&value.table()?)?);
         "follows" => source = Some(follows(&value.table()?)?);
     });
     let source = source.ok_or_else(|| table.is_missing("value"))?;
     Ok(Analog { channel: channel.ok_or_else(|| table.is_missing("channel"))?, source })
+}
+
+/// Counts of an analog input, or volts as a text: `"7.5V"`.
+fn counts(value: &Value<'_>) -> Read<f64> {
+    let Ok(text) = value.text() else { return value.number() };
+    let volts = text.strip_suffix('V').and_then(|volts| volts.trim().parse::<f64>().ok());
+    let volts = volts.filter(|volts| volts.is_finite());
+    volts
+        .map(|volts| volts * COUNTS_PER_VOLT)
+        .ok_or_else(|| value.is_wrong("counts, or volts such as \"7.5V\""))
 }
 
 fn sine(table: &Table<'_>) -> Read<AnalogSource> {

@@ -2,12 +2,10 @@
 
 use kmotiondef::Cycles;
 
+use crate::io::kanalog::COUNTS_PER_VOLT;
 use crate::machine::attached::{Attached, Outside};
 use crate::world::attached::Settings;
 use chips::kanalog::conversion;
-
-/// Counts of an analog input in a volt.
-const COUNTS_PER_VOLT: f64 = 204.8;
 
 /// The input, and the supply of the output.
 #[derive(Clone, Debug)]

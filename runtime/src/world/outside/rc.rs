@@ -6,14 +6,12 @@
 
 use kmotiondef::{Bit, Cycles};
 
+use crate::io::kanalog::COUNTS_PER_VOLT;
 use crate::io::konnect::{KonnectBoard, Port};
 use crate::machine::attached::{Attached, Outside};
 use crate::world::attached::Settings;
 use chips::changes::BitChange;
 use chips::kanalog::conversion;
-
-/// Counts of an analog input in a volt.
-const COUNTS_PER_VOLT: f64 = 204.8;
 
 /// The location of the outputs.
 #[derive(Clone, Copy, Debug)]

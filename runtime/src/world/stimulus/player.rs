@@ -12,7 +12,7 @@ use super::acts::lines::{drive, let_go};
 use super::monitor::Progress;
 use super::plans::{Due, MOST_PLANNED, Plans};
 use super::scene::Scene;
-use super::{Condition, Edge, Rule, Stimulus, Trigger};
+use super::{Action, Condition, Edge, Rule, Stimulus, Trigger};
 use super::{idle, reading};
 use crate::io::changes;
 use crate::machine::SentByte;
@@ -361,7 +361,11 @@ fn unchanged_level(rule: &Rule, progress: &Progress, view: &View<'_>) -> Option<
 /// A thread whose end a statement waits for, and that has not ended.
 fn still_runs(rule: &Rule, threads: &Threads) -> Option<String> {
     let Condition::Ends(thread) = rule.trigger.condition()? else { return None };
-    threads.state(*thread).is_active().then(|| ", which still runs".to_owned())
+    let effect = match &rule.action {
+        Action::Start(other) => format!(", which still runs: thread {other} was not started"),
+        _ => ", which still runs".to_owned(),
+    };
+    threads.state(*thread).is_active().then_some(effect)
 }
 
 /// The end of a run that was over before the moment of a statement, and a remedy where that was probably meant in

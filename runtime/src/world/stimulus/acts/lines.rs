@@ -7,6 +7,7 @@ use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
 use crate::io::bits::bit_state;
+use crate::io::kanalog::{COUNTS_PER_VOLT, is_volts};
 use crate::out::Message;
 use crate::views::Typed;
 use crate::world::WorldAccess;
@@ -18,8 +19,6 @@ use chips::kanalog::ADC_CHANNELS;
 
 /// Length of a pulse that does not say it: 10 ms.
 const PULSE: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 100);
-/// Counts of an analog input in a volt: 2048 in 10 V.
-const COUNTS_PER_VOLT: f64 = 204.8;
 /// Inputs of Kanalog.
 const KANALOG_INPUTS: std::ops::RangeInclusive<u16> = 128..=143;
 
@@ -59,6 +58,10 @@ pub(crate) fn read_pulse(reader: &mut StatementReader<'_>) -> Result<(Bit, Cycle
 }
 
 pub(crate) fn pulse(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) {
+    if duration < Cycles::PER_TICK {
+        let us = 1e6 * duration.get() as f64 / Cycles::PER_SECOND.get() as f64;
+        scene.access.out.remark(scene.context.now, Message::ShortPulse { bit, us });
+    }
     let level = level(scene, bit);
     let gives_back = takes(scene, bit, duration);
     set(scene, bit, !level);
@@ -152,13 +155,6 @@ pub(crate) fn adc(scene: &mut Scene<'_, '_, '_>, channel: usize, wave: Wave) {
         scene.access.out.remark(scene.context.now, Message::SourceOverridden { channel });
     }
     scene.plans.begin_wave(channel, wave, scene.context.now);
-}
-
-/// Reports whether a number of counts looks like one of volts: at most 10, with one digit after the point.
-fn is_volts(value: f64) -> bool {
-    const MOST: f64 = 10.0;
-    const TENTHS: f64 = 10.0;
-    value != 0.0 && value.abs() <= MOST && (value * TENTHS).fract() == 0.0
 }
 
 fn wave(reader: &mut StatementReader<'_>) -> Result<Wave, Mistake> {
