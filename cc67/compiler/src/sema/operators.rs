@@ -10,7 +10,7 @@ use crate::lints::{
 };
 use crate::operators::{BinaryOp, BinaryOperator, OperatorMeaning};
 use crate::source::Span;
-use crate::ty::{QualifiedType, TypeId, Types, convert};
+use crate::ty::{QualifiedType, Type, TypeId, Types, convert};
 use crate::typed::{ExprId, ExprKind};
 
 impl Sema<'_> {
@@ -260,9 +260,15 @@ impl Sema<'_> {
         if self.types.is_pointer(a) || self.types.is_pointer(b) {
             let is_text =
                 [a, b].iter().any(|ty| self.types.pointee(*ty).is_some_and(|to| to.ty.is_character()));
+            let is_function = |ty: &TypeId| {
+                let pointee = self.types.pointee(*ty);
+                pointee.is_some_and(|to| matches!(self.types.get(to.ty), Type::Function(_)))
+            };
             if is_text && operator == "+" {
                 diagnostic = diagnostic
                     .help("strings cannot be added; `printf(\"%f\\n\", value)` puts numbers in text");
+            } else if [a, b].iter().any(is_function) {
+                diagnostic = diagnostic.help("this is the function itself: call it with `()` after its name");
             }
         } else if a.is_floating() || b.is_floating() {
             diagnostic = diagnostic.note("floating-point values support only `+ - * /` and comparisons");

@@ -77,6 +77,16 @@ fn structures_are_copied() {
 }
 
 #[test]
+fn a_function_that_is_not_called_is_no_operand() {
+    said(
+        "double now(void);\nint g(double start) {\n return now - start > 5;\n}",
+        &[
+            "3: error: `-` cannot be used on `double (*)(void)` and `double` (this is the function itself: call it with `()` after its name)",
+        ],
+    );
+}
+
+#[test]
 fn wrong_operands_are_errors() {
     said(
         "struct S { int a; } s; int *p, *r; double d; void f(void);\nint g(int i) {\n d % 2.0;\n p + r;\n p * 2;\n ~d;\n s + 1;\n *i;\n i[i];\n s->a;\n p.a;\n s.b;\n i();\n &3;\n 3 = i;\n f = 0;\n p = d;\n d = p;\n (double)p;\n s = i;\n return s;\n}",
