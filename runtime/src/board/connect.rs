@@ -54,7 +54,8 @@ pub(crate) fn install(parts: &mut Parts, machine: &MachineFile) {
             && is_volts(value)
         {
             let (channel, volts) = (*channel, value / COUNTS_PER_VOLT);
-            out.remark(Cycles::default(), Message::FewCounts { channel, value, volts });
+            let wanted = format!("\"{value}V\"");
+            out.remark(Cycles::default(), Message::FewCounts { channel, value, volts, wanted });
         }
     }
     for &bit in &machine.idle_high {

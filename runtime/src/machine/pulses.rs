@@ -13,14 +13,13 @@ pub(crate) struct MissedPulse {
     pub(crate) gap_ms: f64,
 }
 
-/// What a read tells about the time since the read before.
+/// The notice that a read gives of the time since the one before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ReadNotice {
+    /// A pulse came and went.
     Missed(MissedPulse),
     /// A guarded input fell this long ago, while the program waited for something else.
-    Late {
-        ms: f64,
-    },
+    Late { ms: f64 },
 }
 
 /// The latest changes of the inputs that the world drives.

@@ -360,9 +360,9 @@ messages! {
     /// An axis has a backlash, and its compensation is off.
     BacklashOff { function: Function, axis: AxisId, amount: f32 } = "backlash-off", Hint, [per axis],
         "{function}: axis {axis} has BacklashAmount = {amount}, but BacklashMode is BACKLASH_OFF, so nothing is taken up: set BACKLASH_LINEAR";
-    /// An axis with a limit switch is moved without ever watching it.
+    /// An axis with a limit switch has been moved, and does not watch it at the end of the run.
     LimitsOff { axis: AxisId, end: &'static str, bit: Bit } = "limits-off", Hint, [per axis],
-        "axis {axis} has LimitSwitch{end}Bit = {bit}, where its switch is, but LimitSwitchOptions never says that it is watched: the axis runs through it";
+        "axis {axis} has LimitSwitch{end}Bit = {bit}, where its switch is, but LimitSwitchOptions does not watch it: the axis runs through it";
     /// The backlash of an axis is never taken up.
     NoBacklashRate { function: Function, axis: AxisId } = "no-backlash-rate", Warning, [per axis],
         "{function}: axis {axis} has BACKLASH_LINEAR with BacklashRate = 0, so its backlash is never taken up";
@@ -472,8 +472,8 @@ messages! {
     ShortPulse { bit: Bit, us: f64 } = "short-pulse", Hint, [per bit],
         "the pulse at bit {bit} takes {us:.0} µs, less than a tick of 90 µs: a program that reads the bit in each of its slices can miss it";
     /// An analog input of a stimulus has a few counts, where volts are probably meant.
-    FewCounts { channel: usize, value: f64, volts: f64 } = "few-counts", Warning, [per channel],
-        "adc {channel} = {value} is a number of counts, {volts:.3} V: write {value}V for volts";
+    FewCounts { channel: usize, value: f64, volts: f64, wanted: String } = "few-counts", Warning, [per channel],
+        "adc {channel} = {value} is a number of counts, {volts:.3} V: write {wanted} for volts";
     /// The PC finds no text where a request says, but at the same number of bytes or of doubles.
     TextElsewhere { code: i32, offset: i32, unit: &'static str, words: i32 } = "text-elsewhere", Warning, [per code],
         "request {code}: no text is at word {offset} of the gather buffer, but there is one at {offset} {unit}: the offset counts words of 4 bytes, so store {words} in persist.UserData[101]";

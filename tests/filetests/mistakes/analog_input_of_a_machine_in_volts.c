@@ -1,6 +1,6 @@
 //@ args: --machine parts/pot.toml
 //@ prints: 0.0 V
-//@ says: adc 2 = 7.5 is a number of counts, 0.037 V: write 7.5V for volts
+//@ says: adc 2 = 7.5 is a number of counts, 0.037 V: write "7.5V" for volts
 #include "KMotionDef.h"
 
 main()

@@ -1,6 +1,6 @@
 //@ args: --machine parts/limits.toml
 //@ prints: at 1000
-//@ says: thread 1 at limit_switches_that_nobody_watches.c:16:5 in `main`: axis 0 has LimitSwitchNegBit = 136, where its switch is, but LimitSwitchOptions never says that it is watched: the axis runs through it
+//@ says: thread 1 at limit_switches_that_nobody_watches.c:16:5 in `main`: axis 0 has LimitSwitchNegBit = 136, where its switch is, but LimitSwitchOptions does not watch it: the axis runs through it
 #include "KMotionDef.h"
 
 main()
