@@ -188,6 +188,20 @@ fn programs_that_run_together_are_compared() {
     let output = cc67(&scratch, ["check", "c.c"]);
     assert!(output.stderr.contains("thread 2 at b.c:6:"), "{}", output.stderr);
     assert_eq!(cc67(&scratch, ["check", "1:c.c", "2:b.c", "-W", "no-races"]).stderr, "");
+    let boss = "#include \"KMotionDef.h\"\nmain()\n{\n    int i;\n    for (i = 1; i <= 3; i++)\n    {\n        \
+                persist.UserData[51] = 1;\n        persist.UserData[50] = i * 1000;\n        \
+                while (persist.UserData[51]) WaitNextTimeSlice();\n    }\n}\n";
+    let mover = "#include \"KMotionDef.h\"\nmain()\n{\n    for (;;)\n    {\n        if (persist.UserData[51])\n        \
+                 {\n            Move(0, persist.UserData[50]);\n            persist.UserData[51] = 0;\n        }\n        \
+                 WaitNextTimeSlice();\n    }\n}\n";
+    scratch.write("boss.c", boss).write("mover.c", mover);
+    let output = cc67(&scratch, ["check", "1:boss.c", "2:mover.c"]);
+    let early =
+        "persist.UserData[51] is set before persist.UserData[50], which thread 2 at mover.c:8:13 reads";
+    assert!(output.stderr.contains(early) && output.stderr.contains("boss.c:7:9"), "{}", output.stderr);
+    let [flag, value] = ["persist.UserData[51] = 1;", "persist.UserData[50] = i * 1000;"];
+    scratch.write("boss.c", boss.replace(flag, "@").replace(value, flag).replace('@', value));
+    assert_eq!(cc67(&scratch, ["check", "1:boss.c", "2:mover.c"]).stderr, "");
     let waits = "#include \"KMotionDef.h\"\nint n;\nvoid f(void)\n{\n    n = 1;\n}\nmain()\n{\n    UserCallBack = f;\n    \
                  while (!n)\n        ;\n}\n";
     scratch.write("w.c", waits);

@@ -46,6 +46,21 @@ fn a_folder_is_not_a_program() {
 }
 
 #[test]
+fn check_reads_machine_files_and_stimuli_beside_programs() {
+    let scratch = Scratch::new("check-all");
+    scratch.write("a.c", HELLO);
+    scratch.write("mill.toml", "[axis.0]\nmodel = \"motor\"\n");
+    scratch.write("a.stim", "at 1s bit 136 = 1\n");
+    let all = ["check", "a.c", "mill.toml", "a.stim"];
+    assert_eq!(cc67(&scratch, all).render(), "---- exit 0\n");
+    scratch.write("mill.toml", "[axis.0]\nmodle = \"motor\"\n");
+    scratch.write("a.stim", "at 1s bit 136\n");
+    let output = cc67(&scratch, all);
+    assert_plain(&output, 1, "mill.toml:2:1: unknown key `modle` in `axis.0`; did you mean `model`?");
+    assert!(output.stderr.contains("a.stim:1:"), "{}", output.stderr);
+}
+
+#[test]
 fn an_empty_file_has_no_main() {
     assert_plain(&run_source("empty", "", &[]), 1, "main");
 }

@@ -150,7 +150,7 @@ fn compile_here(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Ex
     }
     // What is doubtful in the program was reported when it was compiled; in an expression it is a mistake.
     let (start, known) = (sources.file(main).start + before, sink.diagnostics().len());
-    lints::check(&unit, &names, &sources, &scope.options.firmware, &mut sink);
+    lints::check(&unit, &names, &sources, scope.options.lint_context(), &mut sink);
     let is_here = |diagnostic: &&Diagnostic| {
         // The board's lack of `fabs` matters to no expression, and the value of each one becomes a `double`.
         let matters = !matches!(diagnostic.lint, Some(Lint::Portability | Lint::IntegerDivision));

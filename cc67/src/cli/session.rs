@@ -247,7 +247,10 @@ impl Setup {
             }
             _ => error.into(),
         })?;
-        if let (CodeFor::Firmware(_), Some(now)) = (&code, session.target().flash()) {
+        // To read the flash of a modelled board fills two megabytes; only a firmware file writes to it as it starts.
+        if let CodeFor::Firmware(_) = code
+            && let Some(now) = session.target().flash()
+        {
             flash.begins_with(now);
         }
         let line = SerialLine::default();
@@ -301,6 +304,7 @@ impl PreparedBoard {
         let before = files.get(programs.len()..programs.len() + before.len()).unwrap_or_default();
         let mut machine_file = board.machine_file(options.firmware.board())?;
         let settings = [setting::all(&board.set, &mut machine_file)?, board.pc.mcode()?].concat();
+        options.float_elements = settings.iter().filter_map(|setting| setting.single).collect();
         machine_file.cpu.board_faults |= board.board_faults;
         if machine_file.cpu.board_faults {
             options.division = Division::Firmware;
@@ -345,7 +349,7 @@ impl PreparedBoard {
             options,
             programs: loaded,
             offered,
-            values: settings.into_iter().map(|Setting { address, bytes }| (address, bytes)).collect(),
+            values: settings.into_iter().map(|Setting { address, bytes, .. }| (address, bytes)).collect(),
             stimulus,
             is_assisted: board.assist,
             uart_input: uart.uart_input.as_deref().map(read).transpose()?.unwrap_or_default(),

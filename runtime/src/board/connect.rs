@@ -54,8 +54,8 @@ pub(crate) fn install(parts: &mut Parts, machine: &MachineFile) {
             && is_volts(value)
         {
             let (channel, volts) = (*channel, value / COUNTS_PER_VOLT);
-            let wanted = format!("\"{value}V\"");
-            out.remark(Cycles::default(), Message::FewCounts { channel, value, volts, wanted });
+            let (wanted, place) = (format!("\"{value}V\""), String::new());
+            out.remark(Cycles::default(), Message::FewCounts { place, channel, value, volts, wanted });
         }
     }
     for &bit in &machine.idle_high {

@@ -11,6 +11,7 @@ use kmotiondef::structs::Chan;
 use kmotiondef::variables::{COORD_SYSTEM0, CS0_STOPPING_STATE};
 use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId};
 use vm::engine::Engine;
+use vm::memory::GuestMemory;
 use vm::thread::{Progress, ThreadState};
 use vm::wake::Wake;
 
@@ -76,6 +77,8 @@ pub struct Owner {
     pub thread: ThreadId,
     /// The reason for which it does not free the lock.
     pub state: OwnerState,
+    /// The call that took it, if that is known.
+    pub at: Option<CodeAddr>,
 }
 
 /// The state of a thread that has a lock.
@@ -141,6 +144,8 @@ pub enum Reason {
     NoLimits(&'static str),
     /// A feedhold.
     FeedHold,
+    /// A feedhold, as Dest is beyond a soft limit.
+    SoftLimit(&'static str, f32),
     /// It belongs to a path that is executed.
     OnPath,
     /// It belongs to a path that waits for more segments.
@@ -158,6 +163,7 @@ impl fmt::Display for Reason {
             Self::DrivesNothing => f.write_str("its OutputMode is NO_OUTPUT_MODE, so it drives nothing"),
             Self::NoLimits(field) => write!(f, "its {field} is 0"),
             Self::FeedHold => f.write_str("feedhold"),
+            Self::SoftLimit(name, limit) => write!(f, "feedhold, as Dest is beyond {name} = {limit}"),
             Self::OnPath => f.write_str("it follows a path"),
             Self::PathStarves => f.write_str(
                 "its path has used up its segments and waits for more, as CS0_Flushed is 0: set it to 1 after the last segment",
@@ -229,7 +235,9 @@ impl<E: Engine> Board<E> {
             ThreadState::Paused(_) => OwnerState::Paused,
             ThreadState::Empty | ThreadState::Ready | ThreadState::Faulted(_) => OwnerState::Ended,
         };
-        Some(Owner { thread, state })
+        let held = self.machine.firmware().parts.calls.locks.held().iter();
+        let held = held.rev().find(|held| held.thread == thread && held.lock.get() == lock.cast_unsigned());
+        Some(Owner { thread, state, at: held.and_then(|held| held.at) })
     }
 
     /// Returns the origin of a bit's level, for which a thread has waited since an instant.
@@ -286,8 +294,9 @@ impl<E: Engine> Board<E> {
 
     fn reasons(&self, axis: AxisId, is_enabled: bool) -> Vec<Reason> {
         let memory = self.memory();
+        let limit_switch = || self.machine.firmware().active_limit(memory, axis).map(Reason::Limit);
         if !is_enabled {
-            return vec![Reason::Disabled];
+            return [Some(Reason::Disabled), limit_switch()].into_iter().flatten().collect();
         }
         let is_member = system::is_member(memory, axis);
         let is_held = is_member && memory.get(CS0_STOPPING_STATE) != 0;
@@ -300,15 +309,26 @@ impl<E: Engine> Board<E> {
             approaches.then_some(Reason::Approaches),
             drives_nothing.then_some(Reason::DrivesNothing),
             lacking.map(|(name, _)| Reason::NoLimits(name)),
-            is_held.then_some(Reason::FeedHold),
+            is_held.then(|| beyond_soft_limit(memory, axis).unwrap_or(Reason::FeedHold)),
             (is_member && !memory.get(COORD_SYSTEM0).is_null()).then_some(match rate::starves(memory, 0.0) {
                 true => Reason::PathStarves,
                 false => Reason::OnPath,
             }),
-            self.machine.firmware().active_limit(memory, axis).map(Reason::Limit),
+            limit_switch(),
         ]
         .into_iter()
         .flatten()
         .collect()
+    }
+}
+
+/// The soft limit beyond which Dest of an axis is.
+fn beyond_soft_limit(memory: &GuestMemory, axis: AxisId) -> Option<Reason> {
+    let dest = memory.axis(axis, Chan::DEST);
+    let (neg, pos) = (memory.axis(axis, Chan::SOFT_LIMIT_NEG), memory.axis(axis, Chan::SOFT_LIMIT_POS));
+    match () {
+        () if dest < f64::from(neg) => Some(Reason::SoftLimit("SoftLimitNeg", neg)),
+        () if dest > f64::from(pos) => Some(Reason::SoftLimit("SoftLimitPos", pos)),
+        () => None,
     }
 }

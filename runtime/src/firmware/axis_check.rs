@@ -149,10 +149,12 @@ pub(crate) fn jogs(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, speed: 
     let wait = parts.calls.waits.of(thread);
     let (looked, last_bit, has_repeated) = (wait.looked, wait.last_bit, wait.has_repeated);
     let now = (speed != 0.0).then_some(Jogged { thread, dest, speed, looked });
+    let to = speed;
+    let is_over = |before: &Jogged| speed == 0.0 || before.speed * speed < 0.0;
     let before =
-        parts.calls.motions.jogs(axis, now).filter(|before| now.is_none() && before.thread == thread);
+        parts.calls.motions.jogs(axis, now).filter(|before| is_over(before) && before.thread == thread);
     if let Some(message) = before
-        .filter(|_| parts.calls.waits.of(thread).has_read)
+        .filter(|_| speed == 0.0 && parts.calls.waits.of(thread).has_read)
         .and(last_bit)
         .and_then(|bit| watches_other(parts, caller.memory, axis, bit))
     {
@@ -165,21 +167,24 @@ pub(crate) fn jogs(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, speed: 
     };
     let of_axis = |bit: &Bit| parts.machine.mechanics.contact(*bit).is_some_and(|(owner, ..)| owner == axis);
     if let Some(bit) = last_bit.filter(of_axis) {
-        let switch = described_switch(parts, axis, bit);
-        parts.out.diagnose(caller, Message::JogEnded { axis, speed, bit, switch });
+        let switch = described_switch(parts, axis, bit, to == 0.0);
+        parts.out.diagnose(caller, Message::JogEnded { axis, to, speed, bit, switch });
     }
 }
 
 /// The switch of an axis as the machine file has it, and the place of the axis.
-fn described_switch(parts: &Parts, axis: AxisId, bit: Bit) -> String {
+fn described_switch(parts: &Parts, axis: AxisId, bit: Bit, is_stopped: bool) -> String {
     let Some((_, Some(place), active)) = parts.machine.mechanics.contact(bit) else {
         return "is the switch inverted?".to_owned();
     };
     let source = parts.machine.notes.contact(bit).unwrap_or_default();
     let (active, load) = (u8::from(active), parts.machine.table(axis));
-    format!(
-        "its switch is {active} {place} ({source}), and the axis is at {load:.0} (is the switch inverted, or at the other end?)"
-    )
+    // A program that goes back off its switch has only not searched for it.
+    let question = match is_stopped {
+        true => "is the switch inverted, or at the other end?",
+        false => "an axis begins at `start` in the machine file, 0 without it",
+    };
+    format!("its switch is {active} {place} ({source}), and the axis is at {load:.0} ({question})")
 }
 
 /// A switch that only axes can press which rest, watched while another axis moves: one that has switches of its own, or
@@ -263,14 +268,31 @@ pub(crate) fn moved(parts: &mut Parts, caller: &Caller<'_>, function: Function, 
         parts.calls.motions.goes_on(axis);
     }
     let Some(thread) = caller.thread else { return };
-    let is_on_its_way = |axis| {
-        has_motion(memory, axis) && memory.axis(axis, Chan::LAST_MOTION_TYPE) == LastMotion::Move.get()
-    };
+    let is_on_its_way = |axis| is_on_its_way(memory, axis);
     let overlap = Overlap { thread, function, axis, moving: axis, at: caller.at };
     parts.calls.motions.overlaps(overlap, is_on_its_way);
     let before = parts.calls.motions.moves(thread, axis);
+    if function == Function::MoveXYZABC {
+        parts.calls.motions.moves_together(thread, axis);
+    }
     if let Some(other) = before.filter(|_| has_motion(caller.memory, axis)) {
         parts.out.diagnose(caller, Message::OtherThreadMoves { function, axis, other });
+    }
+}
+
+/// Returns whether an axis moves to a place.
+fn is_on_its_way(memory: &GuestMemory, axis: AxisId) -> bool {
+    let last = memory.axis(axis, Chan::LAST_MOTION_TYPE);
+    let has_place = last == LastMotion::Move.get() || last == LastMotion::Multi.get();
+    has_place && has_motion(memory, axis) && memory.axis(axis, Chan::ENABLE) != 0
+}
+
+/// A thread switches an output: whether it has waited for one axis of a MoveXYZABC that still moves others.
+pub(crate) fn switches(parts: &mut Parts, caller: &Caller<'_>, function: Function, switched: Bit) {
+    let Some(thread) = caller.thread else { return };
+    let part = parts.calls.motions.part_left(thread, |axis| is_on_its_way(caller.memory, axis));
+    if let Some((asked, moving)) = part {
+        parts.out.diagnose(caller, Message::WaitsForPart { function, switched, asked, moving });
     }
 }
 
@@ -307,6 +329,15 @@ pub(crate) fn target_beyond(
     }
 }
 
+/// A move has ended: whether Vel was changed on the way, as if it applied to it.
+pub(crate) fn speed_changed(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId) {
+    let (from, to) = (parts.calls.motions.speed(axis), caller.memory.axis(axis, Chan::VEL));
+    let is_move = caller.memory.axis(axis, Chan::LAST_MOTION_TYPE) == LastMotion::Move.get();
+    if is_move && from > 0.0 && from != to {
+        parts.out.diagnose(caller, Message::SpeedChanged { axis, from, to });
+    }
+}
+
 /// A move of a few counts of an axis that counts in them.
 pub(crate) fn goes(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId, way: f64) {
     const FEW: f64 = 10.0;
@@ -316,6 +347,9 @@ pub(crate) fn goes(parts: &mut Parts, caller: &Caller<'_>, function: Function, a
     let small =
         caller.thread.filter(|_| is_tiny).map(|thread| SmallMove { thread, at: caller.at, function, way });
     parts.calls.motions.goes(axis, way, small);
+    let has_own_speed = matches!(function, Function::MoveAtVel | Function::MoveRelAtVel);
+    let speed = if has_own_speed { 0.0 } else { caller.memory.axis(axis, Chan::VEL) };
+    parts.calls.motions.begins_at(axis, speed);
 }
 
 /// A motion that takes minutes, most of them for its acceleration.
@@ -352,7 +386,11 @@ pub(crate) fn ends_motion(parts: &mut Parts, caller: &Caller<'_>, function: Func
     const SLOW: f64 = 1.0;
     let speed = f64::from(memory.axis(axis, Chan::LAST_VEL)).abs();
     if speed > SLOW || !is_exponential(memory, axis) {
-        parts.out.diagnose(caller, Message::MotionEnded { function, axis, speed });
+        let how = match speed {
+            ..SLOW => "has only just begun to move".to_owned(),
+            _ => format!("still moves at {speed:.0} units/s"),
+        };
+        parts.out.diagnose(caller, Message::MotionEnded { function, axis, how });
     }
 }
 

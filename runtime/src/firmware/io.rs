@@ -9,6 +9,7 @@ use kmotiondef::limits::{MAX_PWM_VALUE, MAX_PWMC_VALUE, MAX_PWMR_VALUE};
 use kmotiondef::variables::KSTEP_PRESENT;
 use vm::firmware::{Caller, Outcome, Wake};
 
+use super::axis_check;
 use super::calls::{Continuation, OutputStage};
 use super::costs;
 use super::parts::Parts;
@@ -93,6 +94,7 @@ fn write(
     costs::spend_bit(caller, costs, bit);
     let Some(bit) = checked(parts, caller, function, bit) else { return Outcome::Done(()) };
     check_written(parts, caller, function, bit);
+    axis_check::switches(parts, caller, function, bit);
     if let Some(stage) = interrupted_at(parts, caller, function)
         && let Some(group) = parts.io.outputs.changed(bit, level)
     {

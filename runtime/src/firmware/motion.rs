@@ -327,7 +327,7 @@ fn begins(
         false => Commanded::Move(target),
     };
     replaced::begins(parts, caller, axis, function, motion);
-    float_bits::notice(parts, caller, function, request.target);
+    let is_bits = float_bits::notice(parts, caller, function, request.target);
     let way = target - caller.memory.axis(axis, Chan::DEST);
     axis_check::moved(parts, caller, function, axis);
     if !request.is_relative {
@@ -335,7 +335,9 @@ fn begins(
     }
     if request.target.is_finite() {
         axis_check::goes(parts, caller, function, axis, way.abs());
-        axis_check::planned(parts, caller, function, axis, way.abs());
+        if !is_bits {
+            axis_check::planned(parts, caller, function, axis, way.abs());
+        }
         axis_check::target_beyond(parts, caller, function, axis, target);
     }
     // A destination that is not a number makes a relative target another one.
@@ -557,7 +559,7 @@ fn begin_jog(
     };
     if progress == PlanningStage::Called {
         axis_check::jogs(parts, caller, axis, velocity);
-        float_bits::notice(parts, caller, Function::Jog, velocity);
+        _ = float_bits::notice(parts, caller, Function::Jog, velocity);
         if is_beyond(parts, caller, Function::Jog, axis, velocity) {
             costs::refused(caller, Function::Jog);
             return Outcome::Done(());
@@ -672,6 +674,7 @@ pub(crate) fn check_done(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) 
         parts.calls.notices.asks(thread, axis);
         if done == 1 && has_waited {
             axis_check::arrived(parts, caller, axis);
+            axis_check::speed_changed(parts, caller, axis);
         }
     }
     done

@@ -334,8 +334,8 @@ messages! {
     NoAxisForLetter { function: Function, letter: char, target: f64 } = "no-axis-for-letter", Warning, [once],
         "{function}: {letter} should go to {target}, but DefineCoordSystem has given it no axis";
     /// A call ends the motion of an axis that it does not wait for.
-    MotionEnded { function: Function, axis: AxisId, speed: f64 } = "motion-ended", Warning, [per axis],
-        "{function}: axis {axis} still moves at {speed:.0} units/s, and its motion ends here at once: wait with `while (!CheckDone({axis}));` first";
+    MotionEnded { function: Function, axis: AxisId, how: String } = "motion-ended", Warning, [per axis],
+        "{function}: axis {axis} {how}, and its motion ends here at once: wait with `while (!CheckDone({axis}));` first";
     /// A program writes an analog output that an enabled axis drives.
     DacOverwritten { axis: AxisId, dac: usize } = "dac-overwritten", Warning, [per axis],
         "a program writes DAC {dac}, which axis {axis} drives too: the axis overwrites it in each tick. Use another output, or disable the axis";
@@ -381,6 +381,9 @@ messages! {
     /// A thread waits for one of the axes that it moves and continues while another one, for which nobody ever waits, still moves.
     NotWaitedFor { function: Function, axis: AxisId, moving: AxisId } = "not-waited-for", Warning, [per moving],
         "{function}: axis {axis} begins to move while axis {moving} is still on its way, and no program ever waits for that one: wait with `while (!CheckDone({moving}));` too";
+    /// A thread waits for one axis of its MoveXYZABC and switches an output while another one is still on its way.
+    WaitsForPart { function: Function, switched: Bit, asked: AxisId, moving: AxisId } = "waits-for-part", Warning, [per moving],
+        "{function}({switched}): axis {moving} is still on its way to the target of MoveXYZABC: `while (!CheckDone({asked}));` waits for axis {asked} alone, `while (!CheckDoneXYZABC());` for all";
     /// An index pulse has passed between two reads of its bit.
     IndexMissed { bit: Bit, axis: AxisId, width: f64, step: f64 } = "index-missed", Warning, [per bit],
         "ReadBit({bit}): an index pulse of axis {axis} has passed between two reads: it is {width} units wide, and the axis moves {step:.1} units from read to read";
@@ -460,8 +463,8 @@ messages! {
     MoveCut { function: Function, axis: AxisId, dest: f64, earlier: f64, target: f64, other: OtherPlace } = "move-cut", Warning, [per axis],
         "calls {function} for axis {axis}, which is at {dest:.0} on its way to {earlier:.0} (by {other}): it goes to {target:.0} from here and never arrives at {earlier:.0}. Wait for it with `while (!CheckDone({axis}));`";
     /// A number that a program uses is the bits of a floating-point number in `persist.UserData`.
-    FloatBits { function: Function, value: i32, index: usize, float: f32 } = "float-bits", Warning, [per index],
-        "{function}: {value} is the bits of the float {float}, which is in persist.UserData[{index}]: read it as *(float *)&persist.UserData[{index}]";
+    FloatBits { function: Function, what: String, index: usize, float: f32 } = "float-bits", Warning, [per index],
+        "{function}: {what} the bits of the float {float}, which is in persist.UserData[{index}]: read it as *(float *)&persist.UserData[{index}]";
     /// A spindle is configured with other counts than its encoder has.
     SpindleCounts { counts: f32, real: f64, hint: &'static str } = "spindle-counts", Warning, [once],
         "ConfigureSpindle: {counts} counts per revolution, but the encoder of the spindle has {real}{hint}, so speeds and threads are wrong by that factor";
@@ -472,8 +475,8 @@ messages! {
     ShortPulse { bit: Bit, us: f64 } = "short-pulse", Hint, [per bit],
         "the pulse at bit {bit} takes {us:.0} µs, less than a tick of 90 µs: a program that reads the bit in each of its slices can miss it";
     /// An analog input of a stimulus has a few counts, where volts are probably meant.
-    FewCounts { channel: usize, value: f64, volts: f64, wanted: String } = "few-counts", Warning, [per channel],
-        "adc {channel} = {value} is a number of counts, {volts:.3} V: write {wanted} for volts";
+    FewCounts { place: String, channel: usize, value: f64, volts: f64, wanted: String } = "few-counts", Warning, [always],
+        "{place}adc {channel} = {value} is a number of counts, {volts:.3} V: write {wanted} for volts";
     /// The PC finds no text where a request says, but at the same number of bytes or of doubles.
     TextElsewhere { code: i32, offset: i32, unit: &'static str, words: i32 } = "text-elsewhere", Warning, [per code],
         "request {code}: no text is at word {offset} of the gather buffer, but there is one at {offset} {unit}: the offset counts words of 4 bytes, so store {words} in persist.UserData[101]";
@@ -531,6 +534,9 @@ messages! {
     /// A thread waits for minutes.
     LongDelay { function: Function, seconds: f64 } = "long-delay", Hint, [once],
         "{function}({seconds}): the thread waits {seconds} seconds; write {function}(0.001 * ms) for milliseconds";
+    /// Vel of an axis was changed during a move.
+    SpeedChanged { axis: AxisId, from: f32, to: f32 } = "speed-changed", Hint, [per axis],
+        "CheckDone({axis}): Vel of axis {axis} was changed from {from} to {to} during its move, which kept the Vel that it began with: a new Vel counts from the next move on";
     /// A motion has ended, but the axis is somewhere else.
     NotThere { axis: AxisId, position: f64, dest: f64, advice: String } = "not-there", Warning, [per axis],
         "CheckDone({axis}) is 1, but axis {axis} is at {position:.0} and its Dest is {dest:.0}: CheckDone looks only at Dest, which the motor does not follow ({advice})";
@@ -541,8 +547,8 @@ messages! {
     WatchesOther { axis: AxisId, bit: Bit, other: AxisId } = "watches-other", Warning, [per axis],
         "Jog({axis}, 0): the thread has watched bit {bit} on the way, but that is a switch of axis {other}, which rests: watch the switch of axis {axis}";
     /// A jog is stopped before the axis has moved.
-    JogEnded { axis: AxisId, speed: f64, bit: Bit, switch: String } = "jog-ended", Hint, [per axis],
-        "Jog({axis}, 0): axis {axis} has not moved since Jog({axis}, {speed}): bit {bit} was already as the program waited for: {switch}";
+    JogEnded { axis: AxisId, to: f64, speed: f64, bit: Bit, switch: String } = "jog-ended", Hint, [per axis],
+        "Jog({axis}, {to}): axis {axis} has not moved since Jog({axis}, {speed}): bit {bit} was already as the program waited for: {switch}";
     /// An axis cannot follow because its output is at its limit.
     OutputLimit { axis: AxisId, most: f32 } = "output-limit", Warning, [per axis],
         "axis {axis} cannot follow: its output is at MaxOutput = {most}; lower Vel or Accel, or raise MaxOutput";
@@ -738,6 +744,9 @@ messages! {
     /// A statement of a stimulus limits something that nothing in the run moves.
     CannotFail { place: String, cause: String } = "cannot-fail", Warning, [always],
         "{place}: {cause}, so this cannot fail";
+    /// A stimulus forbids a text that is printed in other letters.
+    OtherLetters { place: String, printed: String } = "other-letters", Warning, [always],
+        "{place}: \"{printed}\" is printed, in other letters: upper and lower case count";
     /// A stimulus has too many actions.
     TooMuchPlanned { most: usize } = "too-much-planned", Warning, [once],
         "the stimulus has more than {most} actions; later ones are left out";

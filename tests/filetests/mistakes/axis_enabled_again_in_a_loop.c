@@ -1,4 +1,4 @@
-//@ says: thread 1 at axis_enabled_again_in_a_loop.c:15:9 in `main`: EnableAxis: axis 0 still moves at 0 units/s, and its motion ends here at once: wait with `while (!CheckDone(0));` first
+//@ says: thread 1 at axis_enabled_again_in_a_loop.c:15:9 in `main`: EnableAxis: axis 0 has only just begun to move, and its motion ends here at once: wait with `while (!CheckDone(0));` first
 #include "KMotionDef.h"
 
 main()

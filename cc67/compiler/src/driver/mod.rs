@@ -29,6 +29,7 @@ use crate::diag::{Diagnostic, Sink};
 use crate::firmware::{Firmware, FirmwareNames};
 use crate::ir::function::Function;
 use crate::link::{self, LinkErrorKind, Linked, SectionAddresses};
+use crate::lints::LintContext;
 use crate::names::Names;
 use crate::object::{self, About, Object, UnitBuilder};
 use crate::passes::inline::Candidates;
@@ -58,6 +59,8 @@ pub struct Options {
     pub gc_sections: bool,
     /// The addresses of sections outside the space of the thread.
     pub addresses: SectionAddresses,
+    /// The elements of `persist.UserData` in which the PC stores a `float` before a program starts, for warnings.
+    pub float_elements: Vec<u32>,
 }
 
 /// The quotients of floating numbers that are computed while a program runs.
@@ -84,11 +87,17 @@ impl Default for Options {
             division: Division::default(),
             gc_sections: true,
             addresses: SectionAddresses::default(),
+            float_elements: Vec::new(),
         }
     }
 }
 
 impl Options {
+    /// The board as lints look at it.
+    pub(crate) fn lint_context(&self) -> LintContext<'_> {
+        LintContext { firmware: &self.firmware, float_elements: &self.float_elements }
+    }
+
     /// The options of the preprocessor, with the headers of the board that the firmware belongs to.
     fn preprocessor_of_board(&self) -> Cow<'_, pp::Options> {
         let board = self.firmware.board();
@@ -239,7 +248,7 @@ fn compile_text(request: CompileRequest<'_>, text: &Arc<Vec<u8>>, headers: Heade
         HeadersRead::TooLittle => false,
     };
     if is_final {
-        lints::check(&unit, &names, &sources, &options.firmware, &mut sink);
+        lints::check(&unit, &names, &sources, options.lint_context(), &mut sink);
         if !sink.has_errors() {
             report_call_back_sharing(&unit, &sources, &mut sink);
         }

@@ -22,10 +22,10 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.whole_functions() {
         let search = Search { program, function, reached: &reached };
         for place in function.exprs.values().flat_map(|expr| accesses(function, &expr.kind)) {
-            sink.report_if(search.finding(place, None));
+            sink.report_if(search.finding(place, &[]));
         }
         for expr in function.exprs.values() {
-            search.call(expr, None, sink);
+            search.call(expr, &[], sink);
         }
         search.loops(&function.body, sink);
         function.each_stmt(&mut |stmt| match &stmt.kind {
@@ -69,6 +69,17 @@ struct Counter {
     first: i64,
     last: i64,
 }
+
+impl Counter {
+    /// The values of counters in their first iterations, and in their last.
+    fn values(counters: &[Self]) -> [Vec<Value>; 2] {
+        let values = |value: fn(&Self) -> i64| counters.iter().map(|one| (one.local, value(one))).collect();
+        [values(|counter| counter.first), values(|counter| counter.last)]
+    }
+}
+
+/// A local whose value is known.
+type Value = (LocalId, i64);
 
 /// An argument of a call: its value in the first iteration of a loop around the call, and in the last.
 #[derive(Clone, Copy)]
@@ -115,7 +126,27 @@ impl Search<'_> {
             };
             let Some(counter) = self.counter(before, *condition, *step) else { continue };
             if is_plain(body) && !self.changes(body, counter.local) {
-                self.iterations(body, counter, sink);
+                self.iterations(body, &[counter], sink);
+            }
+        }
+    }
+
+    /// Hands over the counting loops of `stmts` that are always executed, with their counters.
+    fn inner_loops<'s>(&self, stmts: &'s [Stmt], visit: &mut dyn FnMut(Counter, &'s [Stmt])) {
+        for stmt in stmts {
+            if let StmtKind::Block(inner) = &stmt.kind {
+                self.inner_loops(inner, visit);
+            }
+        }
+        for [before, stmt] in stmts.array_windows() {
+            let StmtKind::Loop { condition: Some(condition), test: LoopTest::Before, body, step: Some(step) } =
+                &stmt.kind
+            else {
+                continue;
+            };
+            let counter = self.counter(before, *condition, *step);
+            if let Some(counter) = counter.filter(|counter| !self.changes(body, counter.local)) {
+                visit(counter, body);
             }
         }
     }
@@ -158,7 +189,7 @@ impl Search<'_> {
         Walk { function: self.function, extent: Extent::Always }.stmts(&body[..always], &mut |expr| {
             for place in accesses(self.function, &self.function.exprs[expr].kind) {
                 let depends = |local: &LocalId| {
-                    self.target(place, None).is_none() && self.target(place, Some((*local, 0))).is_some()
+                    self.target(place, &[]).is_none() && self.target(place, &[(*local, 0)]).is_some()
                 };
                 places.extend(parameters.iter().copied().filter(depends).map(|local| (local, place)));
             }
@@ -167,7 +198,7 @@ impl Search<'_> {
     }
 
     /// Reports accesses of a called function outside an array, by its arguments.
-    fn call(&self, expr: &Expr, counter: Option<Counter>, sink: &mut Sink) {
+    fn call(&self, expr: &Expr, counters: &[Counter], sink: &mut Sink) {
         let ExprKind::Call(call) = &expr.kind else { return };
         let Callee::Symbol(callee) = call.callee else { return };
         let Some(Reached { function, places }) = self.reached.get(&callee) else { return };
@@ -175,15 +206,13 @@ impl Search<'_> {
         for (local, place) in places {
             let at = function.parameters.iter().position(|parameter| parameter == local);
             let Some(argument) = at.and_then(|at| call.arguments.get(at)) else { continue };
-            let known = |value: fn(&Counter) -> i64| {
-                self.number(*argument, counter.as_ref().map(|counter| (counter.local, value(counter))))
-            };
-            let (Some(first), Some(last)) = (known(|counter| counter.first), known(|counter| counter.last))
+            let [Some(first), Some(last)] =
+                Counter::values(counters).map(|values| self.number(*argument, &values))
             else {
                 continue;
             };
             // A constant is looked at without a loop.
-            if counter.is_some() && first == last {
+            if !counters.is_empty() && first == last {
                 continue;
             }
             let passed = Passed { local: *local, first, last, call: expr.span };
@@ -224,32 +253,45 @@ impl Search<'_> {
     }
 
     /// Reports accesses of every iteration that are outside an array in the first or last one.
-    fn iterations(&self, body: &[Stmt], counter: Counter, sink: &mut Sink) {
+    fn iterations(&self, body: &[Stmt], counters: &[Counter], sink: &mut Sink) {
+        // What depends on inner loops alone is reported with these.
+        let [_, inner @ ..] = counters else { return };
+        let [inner, _] = Counter::values(inner);
         Walk { function: self.function, extent: Extent::Always }.stmts(body, &mut |expr| {
             for place in accesses(self.function, &self.function.exprs[expr].kind) {
-                sink.report_if(self.finding(place, Some(counter)));
+                if inner.is_empty() || self.target(place, &inner).is_none() {
+                    sink.report_if(self.finding(place, counters));
+                }
             }
-            self.call(&self.function.exprs[expr], Some(counter), sink);
+            if inner.is_empty() {
+                self.call(&self.function.exprs[expr], counters, sink);
+            }
+        });
+        self.inner_loops(body, &mut |counter, body| {
+            self.iterations(body, &[counters, &[counter]].concat(), sink);
         });
     }
 
-    /// The message for an access to `place`, in the first and the last iteration of a counter or without one.
-    fn finding(&self, place: PlaceId, counter: Option<Counter>) -> Option<Diagnostic> {
-        let (object, from) = self.target(place, counter.map(|counter| (counter.local, counter.first)))?;
-        let (_, to) = self.target(place, counter.map(|counter| (counter.local, counter.last)))?;
-        if counter.is_some() && from == to {
+    /// The message for an access to `place`, in the first and the last iterations of counters or without any.
+    fn finding(&self, place: PlaceId, counters: &[Counter]) -> Option<Diagnostic> {
+        let [first, last] = Counter::values(counters);
+        let (object, from) = self.target(place, &first)?;
+        let (_, to) = self.target(place, &last)?;
+        if !counters.is_empty() && from == to {
             return None;
         }
-        if let Some(finding) = self.user_data(object, place, from, to).filter(|_| counter.is_some()) {
+        if let Some(finding) = self.user_data(object, place, from, to).filter(|_| !counters.is_empty()) {
             return Some(finding);
         }
         let (finding, wrong) = self.outside(place, object, [to, from])?;
-        Some(match counter {
-            None => finding,
-            Some(Counter { local, first, last }) => {
-                let (value, iteration) = if wrong == to { (last, "last") } else { (first, "first") };
-                let name = &self.function.locals[local].name;
-                finding.note(format!("`{name}` is {value} in the {iteration} iteration of the loop"))
+        let (values, iteration) = if wrong == to { (last, "last") } else { (first, "first") };
+        let is = |(local, value): &Value| format!("`{}` is {value}", self.function.locals[*local].name);
+        Some(match values.as_slice() {
+            [] => finding,
+            [one] => finding.note(format!("{} in the {iteration} iteration of the loop", is(one))),
+            all => {
+                let all: Vec<_> = all.iter().map(is).collect();
+                finding.note(format!("{} in the {iteration} iterations of the loops", all.join(" and ")))
             }
         })
     }
@@ -257,8 +299,8 @@ impl Search<'_> {
     /// The message for an access to `place` in a call.
     fn finding_of_call(&self, place: PlaceId, passed: Passed) -> Option<Diagnostic> {
         let Passed { local, first, last, call } = passed;
-        let (object, from) = self.target(place, Some((local, first)))?;
-        let (_, to) = self.target(place, Some((local, last)))?;
+        let (object, from) = self.target(place, &[(local, first)])?;
+        let (_, to) = self.target(place, &[(local, last)])?;
         let (finding, wrong) = self.outside(place, object, [to, from])?;
         let name = &self.function.locals[local].name;
         Some(if first == last {
@@ -296,40 +338,41 @@ impl Search<'_> {
         user_data_index::finding(from, to, size, place.span).filter(|_| self.program.name(symbol) == PERSIST)
     }
 
-    /// The object that a place lies in or beside, and the byte of it, with a local as a number.
-    fn target(&self, place: PlaceId, value: Option<(LocalId, i64)>) -> Option<(Object, i64)> {
+    /// The object that a place lies in or beside, and the byte of it, with locals as numbers.
+    fn target(&self, place: PlaceId, values: &[Value]) -> Option<(Object, i64)> {
         match self.function.places[place].kind {
             PlaceKind::Local(local, offset) => Some((Object::Local(local), offset.into())),
             PlaceKind::Symbol(symbol, offset) => Some((Object::Symbol(symbol), offset.into())),
             PlaceKind::Pointer(pointer, offset) => {
-                let (object, at) = self.pointed(pointer, value)?;
+                let (object, at) = self.pointed(pointer, values)?;
                 Some((object, at + i64::from(offset)))
             }
             PlaceKind::Bits(..) => None,
         }
     }
 
-    fn pointed(&self, pointer: ExprId, value: Option<(LocalId, i64)>) -> Option<(Object, i64)> {
+    fn pointed(&self, pointer: ExprId, values: &[Value]) -> Option<(Object, i64)> {
         match self.function.exprs[pointer].kind {
-            ExprKind::Address(place) => self.target(place, value),
-            ExprKind::Convert(inner) => self.pointed(inner, value),
+            ExprKind::Address(place) => self.target(place, values),
+            ExprKind::Convert(inner) => self.pointed(inner, values),
             ExprKind::Binary(BinaryOp::Add, base, bytes) => {
-                let (object, at) = self.pointed(base, value)?;
-                Some((object, at + self.number(bytes, value)?))
+                let (object, at) = self.pointed(base, values)?;
+                Some((object, at + self.number(bytes, values)?))
             }
             _ => None,
         }
     }
 
-    /// The value of an expression of constants and of the local that is known.
-    fn number(&self, expr: ExprId, value: Option<(LocalId, i64)>) -> Option<i64> {
+    /// The value of an expression of constants and of locals that are known.
+    fn number(&self, expr: ExprId, values: &[Value]) -> Option<i64> {
         match self.function.exprs[expr].kind {
             ExprKind::Int(number) => Some(number),
-            ExprKind::Convert(inner) => self.number(inner, value),
+            ExprKind::Convert(inner) => self.number(inner, values),
             ExprKind::Load(_) => {
-                value.filter(|(local, _)| self.loaded(expr) == Some(*local)).map(|(_, number)| number)
+                let local = self.loaded(expr)?;
+                values.iter().find(|(known, _)| *known == local).map(|(_, number)| *number)
             }
-            ExprKind::Binary(op, a, b) => op.exactly(self.number(a, value)?, self.number(b, value)?),
+            ExprKind::Binary(op, a, b) => op.exactly(self.number(a, values)?, self.number(b, values)?),
             _ => None,
         }
     }

@@ -52,20 +52,48 @@ const BUTTONS: [Buttons; 6] = [
 /// Reports answers that are compared with a number of no button, and those that are tested like a truth.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     let askers = program.functions().filter_map(|function| {
-        let buttons = posted(program, function).filter(|_| returns_answer(program, function))?;
-        Some((function.symbol, buttons))
+        let asker = posted(program, function).filter(|_| returns_answer(program, function))?;
+        Some((function.symbol, asker))
     });
-    let search = Search { program, askers: askers.collect() };
+    let mut search = Search { program, askers: askers.collect() };
+    search.add_callers();
     program.functions().for_each(|function| search.function(function, sink));
+}
+
+/// A function of the program that shows a box and returns its answer.
+#[derive(Clone, Copy)]
+enum Asker {
+    /// Always with the same buttons.
+    Buttons(Buttons),
+    /// With those of the argument at this index.
+    Argument(usize),
 }
 
 struct Search<'p, 'a> {
     program: &'p AnalysedProgram<'a>,
     /// Functions of the program that show a box and return its answer.
-    askers: BTreeMap<SymbolId, Buttons>,
+    askers: BTreeMap<SymbolId, Asker>,
 }
 
 impl Search<'_, '_> {
+    /// Adds the functions that return the answer of another.
+    fn add_callers(&mut self) {
+        loop {
+            let callers = self.program.functions().filter_map(|function| {
+                let mut answers = returned(function).into_iter().map(|value| self.answer(function, value));
+                let buttons = answers.next()??;
+                let is_one = answers.all(|other| other.is_some_and(|other| other.value == buttons.value));
+                (is_one && !self.askers.contains_key(&function.symbol))
+                    .then_some((function.symbol, Asker::Buttons(buttons)))
+            });
+            let callers: Vec<_> = callers.collect();
+            if callers.is_empty() {
+                return;
+            }
+            self.askers.extend(callers);
+        }
+    }
+
     fn function(&self, function: &Function, sink: &mut Sink) {
         if !self.shows_a_box(function) {
             return;
@@ -125,7 +153,10 @@ impl Search<'_, '_> {
             ExprKind::Load(place) => match function.places[*place].kind {
                 PlaceKind::Local(local, 0) => self.stored(function, local),
                 _ if element(self.program, function, *place) == Some(ANSWER) => {
-                    posted(self.program, function)
+                    match posted(self.program, function)? {
+                        Asker::Buttons(buttons) => Some(buttons),
+                        Asker::Argument(_) => None,
+                    }
                 }
                 _ => None,
             },
@@ -137,8 +168,15 @@ impl Search<'_, '_> {
     /// The buttons of a call, by its flags.
     fn asked(&self, function: &Function, call: &Call) -> Option<Buttons> {
         let Callee::Symbol(callee) = call.callee else { return None };
-        if let Some(buttons) = self.askers.get(&callee) {
-            return Some(*buttons);
+        match self.askers.get(&callee) {
+            Some(Asker::Buttons(buttons)) => return Some(*buttons),
+            Some(Asker::Argument(index)) => {
+                let ExprKind::Int(flags) = function.exprs[*call.arguments.get(*index)?].kind else {
+                    return None;
+                };
+                return buttons(flags);
+            }
+            None => {}
         }
         let name = self.program.name(callee).to_lowercase();
         let is_box = name.contains("msgbox") || name.contains("messagebox");
@@ -186,37 +224,48 @@ fn compared(buttons: Buttons, span: Span, result: bool, number: i64) -> Diagnost
 
 /// Returns whether a function returns the mailbox's answer.
 fn returns_answer(program: &AnalysedProgram<'_>, function: &Function) -> bool {
-    let mut returns = Vec::new();
+    let returned = returned(function);
+    let is_answer = |value: &ExprId| {
+        matches!(function.exprs[*value].kind, ExprKind::Load(place)
+            if element(program, function, place) == Some(ANSWER))
+    };
+    !returned.is_empty() && returned.iter().all(is_answer)
+}
+
+/// The values that a function returns.
+fn returned(function: &Function) -> Vec<ExprId> {
+    let mut values = Vec::new();
     function.each_stmt(&mut |stmt| {
         if let StmtKind::Return(Some(value)) = stmt.kind {
-            returns.push(matches!(function.exprs[value].kind, ExprKind::Load(place)
-                if element(program, function, place) == Some(ANSWER)));
+            values.push(value);
         }
     });
-    !returns.is_empty() && returns.into_iter().all(|is_answer| is_answer)
+    values
 }
 
 /// Returns whether a function returns an answer as it is; one of the program may make another value of it.
 fn hands_on(program: &AnalysedProgram<'_>, callee: SymbolId) -> bool {
     let Some(function) = program.functions().find(|function| function.symbol == callee) else { return true };
-    let mut is_answer = true;
-    function.each_stmt(&mut |stmt| {
-        if let StmtKind::Return(Some(value)) = stmt.kind {
-            is_answer &= matches!(function.exprs[value].kind, ExprKind::Load(_) | ExprKind::Call(_));
-        }
-    });
-    is_answer
+    returned(function)
+        .into_iter()
+        .all(|value| matches!(function.exprs[value].kind, ExprKind::Load(_) | ExprKind::Call(_)))
 }
 
 /// The buttons of the only box that a function asks for in the mailbox.
-fn posted(program: &AnalysedProgram<'_>, function: &Function) -> Option<Buttons> {
+fn posted(program: &AnalysedProgram<'_>, function: &Function) -> Option<Asker> {
     let mut flags = function.exprs.values().filter_map(|expr| match expr.kind {
         ExprKind::Assign(place, value) if element(program, function, place) == Some(FLAGS) => Some(value),
         _ => None,
     });
     let (Some(value), None) = (flags.next(), flags.next()) else { return None };
-    let ExprKind::Int(flags) = function.exprs[value].kind else { return None };
-    buttons(flags)
+    match function.exprs[value].kind {
+        ExprKind::Int(flags) => buttons(flags).map(Asker::Buttons),
+        ExprKind::Load(place) => {
+            let PlaceKind::Local(local, 0) = function.places[place].kind else { return None };
+            function.parameters.iter().position(|parameter| *parameter == local).map(Asker::Argument)
+        }
+        _ => None,
+    }
 }
 
 fn buttons(flags: i64) -> Option<Buttons> {

@@ -108,8 +108,18 @@ macro_rules! list_passes {
 }
 for_each_lint!(list_passes);
 
+/// The board that a program is for, as far as lints look at it.
+#[derive(Clone, Copy)]
+pub struct LintContext<'a> {
+    /// The names of its firmware.
+    pub firmware: &'a dyn FirmwareNames,
+    /// The elements of `persist.UserData` in which a `float` is stored before the program starts.
+    pub float_elements: &'a [u32],
+}
+
 /// Runs every pass over a program that was analysed.
-pub fn check(unit: &Unit, names: &Names, sources: &SourceMap, firmware: &dyn FirmwareNames, sink: &mut Sink) {
-    let program = AnalysedProgram { unit, names, sources, firmware };
+pub fn check(unit: &Unit, names: &Names, sources: &SourceMap, context: LintContext<'_>, sink: &mut Sink) {
+    let LintContext { firmware, float_elements } = context;
+    let program = AnalysedProgram { unit, names, sources, firmware, float_elements };
     PASSES.iter().for_each(|pass| pass(&program, sink));
 }

@@ -1,14 +1,21 @@
-//! `void swap(int a, int b) { int t = a; a = b; b = t; }`: a function that changes only its own copies.
+//! `void swap(int a, int b) { int t = a; a = b; b = t; }`: a function that changes only its own copies, and
+//! `void Probe(double edge) { …; edge = ch0->Position; }`: a result that stays in one.
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::program::AnalysedProgram;
 use super::walk::{Extent, Walk};
 use crate::diag::{Diagnostic, Lint, Sink};
-use crate::typed::{ExprKind, Function, LocalId, PlaceKind, StmtKind};
+use crate::typed::{ExprKind, Function, LocalId, PlaceId, PlaceKind, StmtKind};
 
-/// Reports functions that store in their parameters and do nothing else.
+/// Reports functions that store in their parameters and do nothing else, and values that are stored in a parameter which
+/// nothing reads.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.whole_functions() {
-        let Some(changed) = changed(function) else { continue };
+        let Some(changed) = changed(function) else {
+            lost(program, function, sink);
+            continue;
+        };
         let spelled: Vec<_> =
             changed.iter().map(|local| format!("`{}`", function.locals[*local].name)).collect();
         let names = match spelled.split_last() {
@@ -32,6 +39,46 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
                 .at("arguments are copied in a call")
                 .help(help),
         );
+    }
+}
+
+/// Reports the parameters that a function stores in and never reads.
+fn lost(program: &AnalysedProgram<'_>, function: &Function, sink: &mut Sink) {
+    let parameter = |place: PlaceId| match function.places[place].kind {
+        PlaceKind::Local(local, _) => function.parameters.contains(&local).then_some(local),
+        _ => None,
+    };
+    let (mut stored, mut read) = (BTreeMap::new(), BTreeSet::new());
+    for expr in function.exprs.values() {
+        match &expr.kind {
+            ExprKind::Assign(place, _) => {
+                stored.extend(parameter(*place).map(|local| (local, expr.span)));
+            }
+            ExprKind::Update(update) => read.extend(parameter(update.place)),
+            ExprKind::Load(place) | ExprKind::Address(place) | ExprKind::Copy { from: place, .. } => {
+                read.extend(parameter(*place));
+            }
+            _ => {}
+        }
+    }
+    stored.retain(|local, _| !read.contains(local));
+    for (local, span) in stored {
+        let local = &function.locals[local];
+        let (name, ty) = (&local.name, program.spell(local.ty));
+        let message = format!(
+            "`{name}` is a copy of the caller's value: what is stored in it stays in `{}`",
+            program.name(function.symbol)
+        );
+        let finding = Diagnostic::warning(Lint::ParameterCopy, span, message)
+            .at("nothing reads the copy")
+            .label(local.span, "arguments are copied in a call");
+        sink.report(if program.unit.types.is_pointer(local.ty) {
+            finding.help(format!("`*{name}` is what it points to"))
+        } else {
+            finding.help(format!(
+                "take the address, `{ty} *{name}`, store in `*{name}`, and call with `&` before the variable"
+            ))
+        });
     }
 }
 

@@ -36,6 +36,8 @@ pub(super) struct AnalysedProgram<'a> {
     pub(super) sources: &'a SourceMap,
     /// The board it is for.
     pub(super) firmware: &'a dyn FirmwareNames,
+    /// The elements of `persist.UserData` in which a `float` is stored before it starts.
+    pub(super) float_elements: &'a [u32],
 }
 
 impl<'a> AnalysedProgram<'a> {

@@ -41,7 +41,33 @@ fn after_jump(program: &AnalysedProgram<'_>, stmts: &[Stmt]) -> Option<Diagnosti
         is_written && !completes(before) && !is_jump(stmt) && !has_label(stmt)
     })?;
     let (start, reason) = cause(program, before)?;
-    Some(finding(stmt.span).label(start, reason).help("move it before that, or delete it"))
+    let finding = finding(stmt.span).label(start, reason);
+    Some(match break_of_a_switch(before) {
+        Some(leaves) => finding
+            .label(leaves, "this `break` leaves the `switch`, not the loop")
+            .help("to end the loop from inside of the `switch`, set a variable that its condition tests, or `return`"),
+        None => finding.help("move it before that, or delete it"),
+    })
+}
+
+/// The last `break` of a `switch` in an endless loop that no `break` leaves.
+fn break_of_a_switch(endless: &Stmt) -> Option<Span> {
+    let StmtKind::Loop { body, .. } = &endless.kind else { return None };
+    let mut last = None;
+    for stmt in body.iter().flat_map(|stmt| match &stmt.kind {
+        StmtKind::Block(inner) => inner.as_slice(),
+        _ => std::slice::from_ref(stmt),
+    }) {
+        if let StmtKind::Switch { body, .. } = &stmt.kind {
+            let inner = body.iter().flat_map(|stmt| match &stmt.kind {
+                StmtKind::Block(inner) => inner.as_slice(),
+                _ => std::slice::from_ref(stmt),
+            });
+            last =
+                inner.filter(|stmt| matches!(stmt.kind, StmtKind::Break)).map(|stmt| stmt.span).next_back();
+        }
+    }
+    last
 }
 
 fn finding(span: Span) -> Diagnostic {

@@ -3,7 +3,7 @@
 //!
 //! The types of the PC's elements are those of `gather-persist-console.md` sections 5 and 8.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::format::literal_format;
 use super::program::{AnalysedProgram, PERSIST};
@@ -14,7 +14,7 @@ use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::BinaryOp;
 use crate::source::Span;
 use crate::ty::{TypeId, Types};
-use crate::typed::{ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind};
+use crate::typed::{ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind, StmtKind};
 
 /// Elements in which the PC stores a `float`: offset, factor, speed and limit of constant surface speed.
 const PC_FLOATS: std::ops::RangeInclusive<i32> = 111..=114;
@@ -38,6 +38,8 @@ struct Stores {
     has_more: bool,
     /// The first store that begins there, of anything but 0, and its type.
     begun: Option<(Span, TypeId)>,
+    /// The first store of 0 that begins there, and its type.
+    zero: Option<(Span, TypeId)>,
     /// The first store of a `double` whose second half is there.
     second_half: Option<Span>,
 }
@@ -46,14 +48,22 @@ struct Stores {
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     let stores = stores(program, sink);
     overlaps(program, &stores, sink);
+    halves(program, &stores, sink);
     for function in program.functions() {
         let elements = Elements::of(program, function);
         let walk = Walk { function, extent: Extent::All };
+        let copied = copied(function);
         walk.stmts(&function.body, &mut |expr| {
             sink.report_if(integer_bits(&elements, expr, &stores));
+            if !copied.contains(&expr) {
+                sink.report_if(bits_of_the_pc(&elements, expr, &stores));
+            }
             for (value, use_of) in uses(program, function, expr) {
                 let Some(element) = elements.integer_load(value) else { continue };
                 let stored = stores.get(&element).copied().unwrap_or_default();
+                if is_float_of_the_pc(program, element) && stored.begun.is_none() {
+                    continue;
+                }
                 let span = function.exprs[value].span;
                 let message = format!("`persist.UserData[{element}]` is read as an integer");
                 let finding = Diagnostic::warning(Lint::UserDataType, span, message);
@@ -98,6 +108,48 @@ fn overlaps(program: &AnalysedProgram<'_>, stores: &BTreeMap<i32, Stores>, sink:
     }
 }
 
+/// Reports integers that are stored in one half of a `double` which the same program reads.
+fn halves(program: &AnalysedProgram<'_>, stores: &BTreeMap<i32, Stores>, sink: &mut Sink) {
+    let is_int = |element: i32| {
+        stores.get(&element).is_some_and(|stored| stored.has_others && stored.floating.is_none())
+    };
+    let mut reported = BTreeSet::new();
+    for function in program.functions() {
+        let elements = Elements::of(program, function);
+        for expr in function.exprs.values() {
+            let ExprKind::Load(place) = expr.kind else { continue };
+            if function.places[place].ty != Types::DOUBLE {
+                continue;
+            }
+            let Some(first) = elements.element(place) else { continue };
+            // Both halves together are a copy.
+            let (half, which) = match (is_int(first), is_int(first + 1)) {
+                (true, false) => (first, "first"),
+                (false, true) => (first + 1, "second"),
+                (true, true) | (false, false) => continue,
+            };
+            let Some((span, _)) = stores.get(&half).and_then(|stored| stored.begun.or(stored.zero)) else {
+                continue;
+            };
+            if !reported.insert(half) {
+                continue;
+            }
+            let message = format!("`persist.UserData[{half}]` is the {which} half of a `double`");
+            sink.report(
+                Diagnostic::warning(Lint::UserDataType, span, message)
+                    .at("an `int` overwrites it")
+                    .label(
+                        expr.span,
+                        format!("elements {first} and {} are read as a `double` here", first + 1),
+                    )
+                    .help(
+                        "a `double` takes two elements: index N of the doubles is elements 2 N and 2 N + 1",
+                    ),
+            );
+        }
+    }
+}
+
 /// Reports an element that is read as a floating-point number where the program only stores small integers.
 fn integer_bits(
     elements: &Elements<'_, '_>,
@@ -122,6 +174,42 @@ fn integer_bits(
             .label(place, "an `int` is stored here")
             .help(format!("write `persist.UserData[{element}]`")),
     )
+}
+
+/// Returns whether the PC stores a `float` in an element before the program starts.
+fn is_float_of_the_pc(program: &AnalysedProgram<'_>, element: i32) -> bool {
+    u32::try_from(element).is_ok_and(|element| program.float_elements.contains(&element))
+}
+
+/// Reports an element that is read as an integer, where a `float` is stored before the program starts and by nothing else.
+fn bits_of_the_pc(
+    elements: &Elements<'_, '_>,
+    expr: ExprId,
+    stores: &BTreeMap<i32, Stores>,
+) -> Option<Diagnostic> {
+    let Elements { program, function, .. } = *elements;
+    let element = elements.integer_load(expr).filter(|element| is_float_of_the_pc(program, *element))?;
+    if stores.get(&element).is_some_and(|stored| stored.begun.is_some()) {
+        return None;
+    }
+    let message = format!("`persist.UserData[{element}]` is read as an integer");
+    Some(
+        Diagnostic::warning(Lint::UserDataType, function.exprs[expr].span, message)
+            .at("the bits of a floating-point number")
+            .note("the options of this run store a `float` there, as the PC does for M codes")
+            .help(format!("write `*(float *)&persist.UserData[{element}]`")),
+    )
+}
+
+/// The values that a function stores in memory as they are, such as elements that it copies.
+fn copied(function: &Function) -> BTreeSet<ExprId> {
+    let stored = function.exprs.values().filter_map(|expr| match expr.kind {
+        ExprKind::Assign(place, value) => {
+            (!matches!(function.places[place].kind, PlaceKind::Local(..))).then_some(value)
+        }
+        _ => None,
+    });
+    stored.collect()
 }
 
 /// The use of a value.
@@ -166,10 +254,16 @@ fn stores(program: &AnalysedProgram<'_>, sink: &mut Sink) -> BTreeMap<i32, Store
             if is_double && MAILBOX.contains(&element) {
                 sink.report(mailbox(element, span));
             }
+            if element == *MAILBOX.start() && !is_double && is_no_request(program, function, expr) {
+                sink.report(request(span));
+            }
             let is_zero = matches!(function.exprs[expr].kind, ExprKind::Assign(_, value)
                 if matches!(function.exprs[value].kind, ExprKind::Int(0)));
-            if !is_zero {
-                stores.entry(element).or_default().begun.get_or_insert((span, ty));
+            let entry = stores.entry(element).or_default();
+            if is_zero {
+                entry.zero.get_or_insert((span, ty));
+            } else {
+                entry.begun.get_or_insert((span, ty));
             }
             if is_double {
                 stores.entry(element + 1).or_default().second_half.get_or_insert(span);
@@ -207,6 +301,55 @@ fn mailbox(element: i32, span: Span) -> Diagnostic {
         .at(format!("elements {element} and {}", element + 1))
         .note("elements 100 to 107 hold requests to the PC: it takes what it finds in element 100 as the code of one")
         .help("use elements outside 100 to 107: `double` index 50 is element 100")
+}
+
+/// Returns whether a store in the mailbox is one of a number for the program's own use: it names no request, its value is
+/// not an argument, the program has no parameters or answers of requests, and no loop of it waits until the PC has taken it.
+fn is_no_request(program: &AnalysedProgram<'_>, function: &Function, store: ExprId) -> bool {
+    const REQUESTS: &[u8] = b"PC_COMM";
+    let is_argument = |value: ExprId| match function.exprs[value].kind {
+        ExprKind::Load(place) => matches!(function.places[place].kind,
+            PlaceKind::Local(local, _) if function.parameters.contains(&local)),
+        _ => false,
+    };
+    let text = program.sources.text(function.exprs[store].span);
+    if text.windows(REQUESTS.len()).any(|word| word == REQUESTS) {
+        return false;
+    }
+    if let ExprKind::Assign(_, value) = function.exprs[store].kind {
+        let is_zero = matches!(function.exprs[value].kind, ExprKind::Int(0));
+        if is_zero || is_argument(value) {
+            return false;
+        }
+    }
+    !program.functions().any(|function| {
+        let others = *MAILBOX.start() + 1..=*MAILBOX.end();
+        let has_parameters = |place: PlaceId| {
+            element(program, function, place).is_some_and(|element| others.contains(&element))
+        };
+        function.places.keys().any(has_parameters) || waits_for_the_pc(program, function)
+    })
+}
+
+/// Returns whether a loop of a function looks at the mailbox.
+fn waits_for_the_pc(program: &AnalysedProgram<'_>, function: &Function) -> bool {
+    let mut waits = false;
+    function.each_stmt(&mut |stmt| {
+        let StmtKind::Loop { condition: Some(condition), .. } = stmt.kind else { return };
+        Walk { function, extent: Extent::All }.expr(condition, &mut |expr| {
+            waits |= matches!(function.exprs[expr].kind, ExprKind::Load(place)
+                if element(program, function, place) == Some(*MAILBOX.start()));
+        });
+    });
+    waits
+}
+
+fn request(span: Span) -> Diagnostic {
+    let message = format!("`persist.UserData[{}]` is the PC's mailbox", MAILBOX.start());
+    Diagnostic::warning(Lint::UserDataType, span, message)
+        .at("the PC takes any number here as the code of a request")
+        .note("elements 100 to 107 hold requests to the PC; they are written as `PC_COMM_…`")
+        .help("use an element outside 100 to 107 for a number of your own")
 }
 
 /// The elements that a function reaches, also through pointers such as `double *d = (double *)persist.UserData;`.

@@ -130,9 +130,22 @@ fn dac_variables(program: &AnalysedProgram<'_>, function: &Function, sink: &mut 
     for expr in function.exprs.values() {
         let ExprKind::Assign(place, value) = expr.kind else { continue };
         let is_dac = pointed(function, place).is_some_and(|symbol| program.name(symbol) == DAC_WORDS);
-        if let Some((name, value)) = cut_variable(function, value).filter(|_| is_dac) {
-            let word = DacWord { value, is_cut: true };
-            sink.report_if(word.finding(expr.span).map(|found| found.note(format!("`{name}` is {value}"))));
+        match cut_variable(program, function, value).filter(|_| is_dac) {
+            Some((name, Some(value))) => {
+                let word = DacWord { value, is_cut: true };
+                sink.report_if(
+                    word.finding(expr.span).map(|found| found.note(format!("`{name}` is {value}"))),
+                );
+            }
+            Some((name, None)) if names_volts(name) => {
+                let message = format!("`DAC` takes a number of counts, and `{name}` looks like volts");
+                sink.report(
+                    Diagnostic::warning(Lint::DacCounts, expr.span, message)
+                        .note("10 V are 2047 counts on a Kanalog")
+                        .help(format!("write `(int)({name} * {COUNTS_PER_VOLT:.1})` for it")),
+                );
+            }
+            Some((_, None)) | None => {}
         }
     }
 }
@@ -152,16 +165,31 @@ fn pointed(function: &Function, place: PlaceId) -> Option<SymbolId> {
     }
 }
 
-/// Name and value of the variable in `(variable - 2048) & 0xfff`.
-fn cut_variable(function: &Function, value: ExprId) -> Option<(&str, i64)> {
+/// Returns whether a variable is named for volts, and not for the counts of some.
+fn names_volts(name: &str) -> bool {
+    let name = name.to_ascii_lowercase();
+    name.contains("volt") && !name.contains("count") && !name.contains("dac")
+}
+
+/// The name of the variable in `(variable - 2048) & 0xfff`, and its value if it has only one.
+fn cut_variable<'a>(
+    program: &AnalysedProgram<'a>,
+    function: &'a Function,
+    value: ExprId,
+) -> Option<(&'a str, Option<i64>)> {
     let ExprKind::Binary(BinaryOp::And, word, mask) = plain(function, value) else { return None };
     let ExprKind::Binary(BinaryOp::Subtract, variable, zero) = plain(function, *word) else { return None };
     let is_macro = matches!(plain(function, *mask), ExprKind::Int(DAC_BITS))
         && matches!(plain(function, *zero), ExprKind::Int(DAC_ZERO));
     let ExprKind::Load(place) = plain(function, *variable) else { return None };
-    let PlaceKind::Local(local, 0) = function.places[*place].kind else { return None };
-    let value = is_macro.then(|| single_values(function).get(&local).copied()).flatten()?;
-    Some((function.locals[local].name.as_str(), value))
+    match function.places[*place].kind {
+        _ if !is_macro => None,
+        PlaceKind::Local(local, 0) => {
+            Some((function.locals[local].name.as_str(), single_values(function).get(&local).copied()))
+        }
+        PlaceKind::Symbol(symbol, 0) => Some((program.name(symbol), None)),
+        PlaceKind::Local(..) | PlaceKind::Symbol(..) | PlaceKind::Pointer(..) | PlaceKind::Bits(..) => None,
+    }
 }
 
 /// An expression without its conversions.

@@ -7,7 +7,7 @@ use kmotiondef::{GuestAddr, ThreadId};
 
 use super::Cell;
 use super::accesses::{Action, CellAccess, ThreadProgram, UpdateKind};
-use super::flow::Wait;
+use super::flow::{Guard, Wait};
 use crate::diag::{Diagnostic, Lint};
 use crate::typed::SymbolId;
 
@@ -33,9 +33,9 @@ pub(crate) fn report_call_back_sharing(program: &ThreadProgram<'_>) -> Vec<Diagn
 pub(crate) fn advise(program: &ThreadProgram<'_>, programs: &[ThreadProgram<'_>]) -> Vec<Diagnostic> {
     let [main, call_back] = contexts(program);
     let others = programs.iter().filter(|other| other.thread != program.thread);
-    let found = others
-        .flat_map(contexts)
-        .flat_map(|theirs| lost_updates(main, theirs).chain(torn_doubles(main, theirs)));
+    let found = others.flat_map(contexts).flat_map(|theirs| {
+        lost_updates(main, theirs).chain(torn_doubles(main, theirs)).chain(early_flags(main, theirs))
+    });
     // The board's own compilers read memory each time; this is for other ones.
     found.chain(not_volatile(main, call_back)).collect()
 }
@@ -126,6 +126,47 @@ fn torn_doubles<'a>(
             let message = format!("the eight bytes of {cell} are stored as two words, and {who} loads them: half of the value can be old");
             Diagnostic::warning(Lint::Races, access.span, message)
                 .help("hold the same lock at both places, or set a flag after the value and read the flag first")
+                .note(MORE)
+        })
+    })
+}
+
+/// Flags of `ours` that are set before the value which `theirs` reads once it has seen the flag.
+fn early_flags<'a>(
+    ours: SharingContext<'a>,
+    theirs: SharingContext<'a>,
+) -> impl Iterator<Item = Diagnostic> + 'a {
+    let mut seen = BTreeSet::new();
+    let is_store = |access: &CellAccess| matches!(access.action, Action::Store(_) | Action::Update(_));
+    ours.accesses.iter().enumerate().filter_map(move |(number, flag)| {
+        let Action::Store(Some(set)) = flag.action else { return None };
+        let sets_flag = |access: &CellAccess| access.cell == flag.cell && is_store(access);
+        // What is done until the flag is looked at or set again belongs to it.
+        let after = &ours.accesses[number + 1..];
+        let end = after.iter().position(|access| access.cell == flag.cell).unwrap_or(after.len());
+        if after[end..].iter().any(sets_flag) {
+            return None;
+        }
+        let value = after[..end].iter().find(|value| {
+            let is_first = !ours.accesses[..number].iter().any(|one| one.cell == value.cell && is_store(one));
+            is_store(value) && is_first && value.locks.intersection(&flag.locks).next().is_none()
+        })?;
+        let read = theirs.accesses.iter().find(|read| {
+            let tests_flag =
+                |guard: &Guard| guard.cell == flag.cell && guard.is_simple() && guard.admits(Some(set));
+            read.action == Action::Load
+                && is_same(ours, value, theirs, read)
+                && read.guards.iter().any(tests_flag)
+        })?;
+        seen.insert(flag.cell).then(|| {
+            let (flag_name, value_name) = (name(ours.program, flag), name(ours.program, value));
+            let message = format!(
+                "{flag_name} is set before {value_name}, which {} reads once it has seen the flag: it can read the old value",
+                who(theirs, read)
+            );
+            Diagnostic::warning(Lint::Races, flag.span, message)
+                .label(value.span, "the value is stored here")
+                .help("store the value first, and set the flag after it")
                 .note(MORE)
         })
     })

@@ -38,6 +38,11 @@ impl Guard {
         self.cell == other.cell && !values.any(|value| self.admits(Some(value)) && other.admits(Some(value)))
     }
 
+    /// Returns whether the cell is compared with a constant.
+    pub(super) const fn is_simple(&self) -> bool {
+        self.test.is_some()
+    }
+
     /// Returns whether the stored value can be the one that was waited for; an unknown value can.
     pub(super) fn admits(&self, stored: Option<i32>) -> bool {
         let (Some(Test { op, is_swapped, constant, outcome }), Some(stored)) = (self.test, stored) else {

@@ -88,6 +88,20 @@ impl WaitCondition {
         (!left.is_empty() && !is_plain).then_some(right)
     }
 
+    /// The line, from 1, of the first store in a variable that is written exactly so.
+    pub(super) fn stored_at(text: &str, name: &str) -> Option<u32> {
+        let compact = |text: &str| text.split_whitespace().collect::<String>();
+        let name = compact(name);
+        let is_store = |line: &str| {
+            let line = compact(line.split("//").next().unwrap_or_default());
+            line.match_indices(&name).any(|(at, _)| {
+                let after = &line[at + name.len()..];
+                after.starts_with('=') && !after.starts_with("==")
+            })
+        };
+        (1..).zip(text.lines()).find(|(_, line)| is_store(line)).map(|(number, _)| number)
+    }
+
     /// Returns whether a text stores to a variable, or passes its address on.
     pub(super) fn writes(text: &str, name: &str) -> bool {
         let base = name.split(['[', '.', '-']).next().unwrap_or(name);
@@ -201,6 +215,13 @@ mod tests {
         ] {
             assert_eq!(WaitCondition(text.to_owned()).right_side(), expect, "{text}");
         }
+    }
+
+    #[test]
+    fn the_line_of_a_store_is_found() {
+        let text = "while (!persist.UserData[ READY ]) ;\n// persist.UserData[READY] = 2;\nif (persist.UserData[READY] == 1)\n  persist.UserData[READY] = 1;\n";
+        assert_eq!(WaitCondition::stored_at(text, "persist.UserData[READY]"), Some(4));
+        assert_eq!(WaitCondition::stored_at(text, "persist.UserData[DONE]"), None);
     }
 
     #[test]

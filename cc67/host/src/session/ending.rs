@@ -111,7 +111,9 @@ impl fmt::Display for EndingAxis {
         if self.velocity != 0.0 {
             write!(f, ", moves at {} units/s", number(self.velocity))?;
         }
-        let why: Vec<_> = self.why.iter().filter(|_| self.enabled).map(String::as_str).collect();
+        // Its state has been shown.
+        let why = self.why.iter().map(String::as_str).skip(usize::from(!self.enabled));
+        let why: Vec<_> = why.collect();
         if why.is_empty() { Ok(()) } else { write!(f, ": {}", why.join(", ")) }
     }
 }
@@ -140,7 +142,8 @@ impl<T: Target> Session<T> {
         // An endless loop that looks at its own output does not wait for it.
         let is_endless = calls.first().is_some_and(|call| self.is_in_endless_loop(thread, call));
         let is_awaited = |one: &&Awaited| !(is_endless && matches!(one, Awaited::Bit(_, _, Source::Output)));
-        let mut waits_for: Vec<_> = awaited.iter().filter(is_awaited).map(awaited_words).collect();
+        let mut waits_for: Vec<_> =
+            awaited.iter().filter(is_awaited).map(|one| self.awaited_words(one)).collect();
         if waits_for.is_empty() && matches!(state, Standing::Slice | Standing::Computing) {
             waits_for.extend(calls.first().and_then(|call| self.condition(thread, call)));
         }
@@ -154,6 +157,31 @@ impl<T: Target> Session<T> {
             waits_for.extend(plain_wait(state));
         }
         EndingThread { thread, state: state_word, calls, waits_for, since: seconds(since) }
+    }
+
+    fn awaited_words(&self, awaited: &Awaited) -> String {
+        match awaited {
+            Awaited::Bit(bit, level, source) => bit_words(*bit, u8::from(*level), source),
+            Awaited::Motion(axis, -1) => format!("axis {axis}, which is disabled: CheckDone({axis}) is -1"),
+            Awaited::Motion(axis, 0) => format!("the end of the motion of axis {axis}"),
+            Awaited::Motion(axis, _) => format!("axis {axis}, which has ended its motion"),
+            Awaited::Path => "the end of the path".to_owned(),
+            Awaited::Recording => "the end of the recording".to_owned(),
+            Awaited::Lock(owner) => self.lock_words(*owner),
+        }
+    }
+
+    fn lock_words(&self, owner: Option<Owner>) -> String {
+        let Some(Owner { thread, state, at }) = owner else { return "a lock".to_owned() };
+        let taken = at.and_then(|at| self.source_calls(at).next());
+        let taken = taken.map_or(String::new(), |call| format!(", taken at {call}"));
+        match state {
+            OwnerState::Active => format!("a lock that thread {thread} has{taken}"),
+            OwnerState::Paused => format!("a lock that thread {thread} has{taken}, which is paused"),
+            OwnerState::Ended => {
+                format!("a lock that thread {thread} has{taken}, which has ended without MutexUnlock")
+            }
+        }
     }
 
     /// The source of an instruction; then the function that has it in place of a call, if there is one.
@@ -201,10 +229,39 @@ impl<T: Target> Session<T> {
             () if is_written => "",
             () => ", which nothing writes,",
         };
-        Some(format!("`{name}`{value}{unwritten} in `{}`{right}", condition.text()))
+        let setter = self.other_setter(thread, name).unwrap_or_default();
+        Some(format!("`{name}`{value}{unwritten} in `{}`{right}{setter}", condition.text()))
+    }
+
+    /// Describes the store of another thread in an element of `persist.UserData` in which the program of a thread that waits
+    /// for it stores nothing; nothing if several threads do.
+    fn other_setter(&self, thread: ThreadId, name: &str) -> Option<String> {
+        if !name.starts_with(SHARED) {
+            return None;
+        }
+        let stores = self.programs.iter().filter_map(|program| {
+            let text = source_text(&program.path, &program.name())?;
+            Some((program, WaitCondition::stored_at(&text, name)?))
+        });
+        let stores: Vec<_> = stores.collect();
+        let [(program, line)] = *stores else { return None };
+        if program.thread == thread {
+            return None;
+        }
+        let standing = self.target.standing_threads();
+        let other = standing.into_iter().find(|standing| standing.thread == program.thread)?;
+        let wait = other.calls.first().and_then(|at| self.source(*at));
+        let is_after = wait.is_some_and(|wait| {
+            Path::new(wait.file).file_name() == program.path.file_name()
+                && wait.line.is_some_and(|waits| waits < line)
+        });
+        let after = if is_after { ", after its own wait" } else { "" };
+        Some(format!(", which thread {} sets at {}:{line}{after}", program.thread, program.name()))
     }
 }
 
+/// The elements that all threads share.
+const SHARED: &str = "persist.UserData[";
 /// The variable in which the firmware measures a spindle.
 const SPINDLE: &str = "Spindle.";
 const TRUE_SPEED: &str = "Spindle.TrueSpeedRPS";
@@ -218,15 +275,6 @@ fn source_text(program: &Path, file: &str) -> Option<String> {
     Some(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-fn lock_words(owner: Option<Owner>) -> String {
-    let Some(Owner { thread, state }) = owner else { return "a lock".to_owned() };
-    match state {
-        OwnerState::Active => format!("a lock that thread {thread} has"),
-        OwnerState::Paused => format!("a lock that thread {thread} has, which is paused"),
-        OwnerState::Ended => format!("a lock that thread {thread} has, which has ended without MutexUnlock"),
-    }
-}
-
 /// Describes the wait of a thread that polls nothing.
 fn plain_wait(state: Standing) -> Option<String> {
     match state {
@@ -234,18 +282,6 @@ fn plain_wait(state: Standing) -> Option<String> {
         Standing::Slice => Some("its next slice".to_owned()),
         Standing::Call(function, waits) => Some(format!("{function}, which waits {waits}")),
         Standing::Computing | Standing::Paused | Standing::Idle => None,
-    }
-}
-
-fn awaited_words(awaited: &Awaited) -> String {
-    match awaited {
-        Awaited::Bit(bit, level, source) => bit_words(*bit, u8::from(*level), source),
-        Awaited::Motion(axis, -1) => format!("axis {axis}, which is disabled: CheckDone({axis}) is -1"),
-        Awaited::Motion(axis, 0) => format!("the end of the motion of axis {axis}"),
-        Awaited::Motion(axis, _) => format!("axis {axis}, which has ended its motion"),
-        Awaited::Path => "the end of the path".to_owned(),
-        Awaited::Recording => "the end of the recording".to_owned(),
-        Awaited::Lock(owner) => lock_words(*owner),
     }
 }
 

@@ -223,14 +223,7 @@ impl BoardArguments {
         let Some(path) = self.machine.as_deref() else {
             return Ok(MachineFile { board, ..MachineFile::default() });
         };
-        let bytes = read(path)?;
-        let Ok(text) = String::from_utf8(bytes) else { anyhow::bail!("{} is not text", path.display()) };
-        let mut machine = MachineFile::parse_for(board, &text).map_err(|error| {
-            anyhow::anyhow!("{}:{}:{}: {error}", path.display(), error.line, error.column)
-        })?;
-        machine.set_name(path);
-        machine.beside(path.parent().unwrap_or(Path::new("")));
-        Ok(machine)
+        read_machine_file(path, board)
     }
 
     /// Returns the PC's files: those of the folder that is named here, of the machine file's folder, or of the default
@@ -241,6 +234,19 @@ impl BoardArguments {
         let files = Directory::new(folder).with_names(machine.pc.disk_files.clone());
         if self.keeps_files { Box::new(Overlay::new(files)) } else { Box::new(files) }
     }
+}
+
+/// Reads a machine file for a board.
+///
+/// # Errors
+/// It cannot be read, or something in it is wrong: its place comes first.
+pub(crate) fn read_machine_file(path: &Path, board: &'static TargetBoard) -> Result<MachineFile> {
+    let Ok(text) = String::from_utf8(read(path)?) else { anyhow::bail!("{} is not text", path.display()) };
+    let mut machine = MachineFile::parse_for(board, &text)
+        .map_err(|error| anyhow::anyhow!("{}:{}:{}: {error}", path.display(), error.line, error.column))?;
+    machine.set_name(path);
+    machine.beside(path.parent().unwrap_or(Path::new("")));
+    Ok(machine)
 }
 
 #[cfg(test)]

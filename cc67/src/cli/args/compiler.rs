@@ -153,6 +153,7 @@ impl SourceArguments {
             division: Division::default(),
             gc_sections: self.gc_sections || (self.optimization != Level::None && !self.no_gc_sections),
             addresses: SectionAddresses::default(),
+            float_elements: Vec::new(),
         })
     }
 

@@ -125,9 +125,10 @@ mod tests {
     use super::*;
 
     fn check(text: &str, expect: &[(u32, u32)]) {
-        let settings = mcode(text).expect(text);
-        let expect: Vec<_> =
-            expect.iter().map(|(element, word)| setting::word(*element, *word).expect("inside")).collect();
+        let stored = |setting: Setting| (setting.address, setting.bytes);
+        let settings: Vec<_> = mcode(text).expect(text).into_iter().map(stored).collect();
+        let word = |(element, word): &(u32, u32)| stored(setting::word(*element, *word).expect("inside"));
+        let expect: Vec<_> = expect.iter().map(word).collect();
         assert_eq!(settings, expect, "{text}");
     }
 

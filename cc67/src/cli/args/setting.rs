@@ -6,6 +6,9 @@ use kmotiondef::structs::Persist;
 use kmotiondef::variables::PERSIST;
 use runtime::MachineFile;
 
+/// The prefix of a single.
+const SINGLE: &str = "f:";
+
 /// Elements of `persist.UserData`.
 const USER_DATA: u32 = 200;
 
@@ -16,6 +19,8 @@ pub(crate) struct Setting {
     pub(crate) address: GuestAddr,
     /// The value, little endian.
     pub(crate) bytes: Vec<u8>,
+    /// The element of `persist.UserData` that it is if a single is stored in it.
+    pub(crate) single: Option<u32>,
 }
 
 /// Reads all settings: start values, and keys of the machine file, which change `machine` at once.
@@ -40,7 +45,8 @@ fn persist(text: &str, index: &str, value: &str) -> Result<Setting> {
     if index >= USER_DATA || index + (bytes.len() as u32 / 4) > USER_DATA {
         bail!("`--set {text}` is outside persist.UserData[0..{}]", USER_DATA - 1);
     }
-    Ok(Setting { address: user_data().offset(4 * index), bytes })
+    let single = value.starts_with(SINGLE).then_some(index);
+    Ok(Setting { address: user_data().offset(4 * index), bytes, single })
 }
 
 /// A word of `persist.UserData`.
@@ -48,7 +54,7 @@ pub(crate) fn word(element: u32, word: u32) -> Result<Setting> {
     if element >= USER_DATA {
         bail!("element {element} is outside persist.UserData[0..{}]", USER_DATA - 1);
     }
-    Ok(Setting { address: user_data().offset(4 * element), bytes: word.to_le_bytes().into() })
+    Ok(Setting { address: user_data().offset(4 * element), bytes: word.to_le_bytes().into(), single: None })
 }
 
 /// A whole number in `persist.UserData`.
@@ -58,7 +64,7 @@ pub(crate) fn whole(element: u32, value: i32) -> Result<Setting> {
 
 /// A single in `persist.UserData`.
 pub(crate) fn single(element: u32, value: f32) -> Result<Setting> {
-    word(element, value.to_bits())
+    Ok(Setting { single: Some(element), ..word(element, value.to_bits())? })
 }
 
 /// Address of `persist.UserData[0]`.
@@ -69,7 +75,7 @@ fn user_data() -> GuestAddr {
 /// A decimal or hexadecimal integer, `f:` a single, `d:` a double.
 fn bytes(value: &str) -> Result<Vec<u8>> {
     let wrong = || anyhow!("{}", wanted(value));
-    if let Some(single) = value.strip_prefix("f:") {
+    if let Some(single) = value.strip_prefix(SINGLE) {
         return Ok(single.parse::<f32>().map_err(|_| wrong())?.to_le_bytes().into());
     }
     if let Some(double) = value.strip_prefix("d:") {

@@ -10,11 +10,14 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use kmotiondef::ThreadId;
+use kmotiondef::boards::TargetBoard;
 use kmotiondef::timing::Timing;
 
+use crate::cli::args::board::read_machine_file;
 use crate::cli::args::compiler::SourceArguments;
 use crate::cli::args::program::{ProgramFile, assign, names_thread};
-use crate::cli::args::sidecars::{Head, Project, within};
+use crate::cli::args::sidecars::{Head, PROJECT_FILE, Project, within};
+use crate::cli::args::stimulus;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::input::{files_below, is_source, read};
 use crate::cli::io::{output, terminal};
@@ -28,8 +31,8 @@ use compiler::target::Target;
 /// Arguments of `cc67 check`.
 #[derive(Debug, Args)]
 pub(super) struct CheckArguments {
-    /// Programs to check, or folders with programs; `N:FILE` is the program of thread N, and all of these are checked as running together [default: the programs of
-    /// cc67.toml]
+    /// Programs to check, or folders with programs; `N:FILE` is the program of thread N, and all of these are checked as running together; also machine files (.toml)
+    /// and stimuli (.stim) [default: the programs of cc67.toml]
     #[arg(value_name = "[N:]FILE")]
     files: Vec<OsString>,
     /// Show the stack that each function needs on the controller, and the worst chain of calls
@@ -44,8 +47,18 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<Exit> {
     let target = if arguments.stack { Target::C67x } else { Target::default() };
     let options = arguments.compiler.resolve(target, Timing::VENDOR)?;
     let levels = arguments.compiler.levels()?;
-    let (programs, groups) = arguments.programs()?;
+    let (descriptions, files): (Vec<_>, Vec<_>) = arguments.files.iter().cloned().partition(is_description);
+    let (programs, groups) = match files.is_empty() && !descriptions.is_empty() {
+        true => Default::default(),
+        false => programs(files)?,
+    };
     let mut has_errors = false;
+    for description in descriptions {
+        if let Err(error) = check_description(&description, options.firmware.board()) {
+            terminal::error(&error);
+            has_errors = true;
+        }
+    }
     for path in &programs {
         let text = read(path)?;
         let mut compilation = compiler::compile(path, text, &options, &Disk);
@@ -72,6 +85,26 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<Exit> {
     Ok(if has_errors { Exit::Failure } else { Exit::Success })
 }
 
+/// Returns whether a file describes a machine or what happens around it.
+fn is_description(file: &OsString) -> bool {
+    let path = Path::new(file);
+    let suffix = path.extension().unwrap_or_default();
+    let is_one = suffix.eq_ignore_ascii_case("toml") || suffix.eq_ignore_ascii_case("stim");
+    is_one && !path.is_dir()
+}
+
+/// Reads a machine file, a project file or a stimulus.
+fn check_description(file: &OsStr, board: &'static TargetBoard) -> Result<()> {
+    let path = Path::new(file);
+    if path.file_name() == Some(OsStr::new(PROJECT_FILE)) {
+        return Project::above(path.parent().unwrap_or(Path::new(""))).map(|_| ());
+    }
+    if path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("stim")) {
+        return stimulus::read(&[file.to_string_lossy().into_owned()]).map(|_| ());
+    }
+    read_machine_file(path, board).map(|_| ())
+}
+
 /// Returns whether the file of that name in the folder of `path` is among the programs.
 fn is_beside(path: &Path, name: &str, programs: &[PathBuf]) -> bool {
     programs.iter().any(|program| *program == path.with_file_name(name))
@@ -82,33 +115,33 @@ impl CheckArguments {
     pub(super) fn first(&self) -> Option<&OsStr> {
         self.files.first().map(OsString::as_os_str)
     }
+}
 
-    /// The files to check, and the programs that run together.
-    fn programs(&self) -> Result<(Vec<PathBuf>, Vec<Vec<ProgramFile>>)> {
-        let of_project = || -> Result<Vec<OsString>> {
-            match Project::above(Path::new(""))? {
-                Some(project) if !project.programs().is_empty() => Ok(project.programs().to_vec()),
-                _ => {
-                    bail!("no FILE given, and no cc67.toml here or above with `programs = [\"1:main.c\", …]`")
-                }
+/// The programs to check, and those of them that run together; those of the project file if none is named.
+fn programs(named: Vec<OsString>) -> Result<(Vec<PathBuf>, Vec<Vec<ProgramFile>>)> {
+    let of_project = || -> Result<Vec<OsString>> {
+        match Project::above(Path::new(""))? {
+            Some(project) if !project.programs().is_empty() => Ok(project.programs().to_vec()),
+            _ => {
+                bail!("no FILE given, and no cc67.toml here or above with `programs = [\"1:main.c\", …]`")
             }
-        };
-        let files = if self.files.is_empty() { of_project()? } else { self.files.clone() };
-        let mut is_together = self.files.is_empty();
-        for file in &files {
-            is_together |= names_thread(file)?;
         }
-        if is_together {
-            let programs = assign(&files)?;
-            return Ok((programs.iter().map(|program| program.path.clone()).collect(), vec![programs]));
-        }
-        let mut paths = Vec::new();
-        for path in files.into_iter().map(PathBuf::from) {
-            if path.is_dir() { add_programs(&path, &mut paths)? } else { paths.push(path) }
-        }
-        let groups = paths.iter().filter_map(|path| group_of(path).transpose()).collect::<Result<_>>()?;
-        Ok((paths, groups))
+    };
+    let mut is_together = named.is_empty();
+    let files = if is_together { of_project()? } else { named };
+    for file in &files {
+        is_together |= names_thread(file)?;
     }
+    if is_together {
+        let programs = assign(&files)?;
+        return Ok((programs.iter().map(|program| program.path.clone()).collect(), vec![programs]));
+    }
+    let mut paths = Vec::new();
+    for path in files.into_iter().map(PathBuf::from) {
+        if path.is_dir() { add_programs(&path, &mut paths)? } else { paths.push(path) }
+    }
+    let groups = paths.iter().filter_map(|path| group_of(path).transpose()).collect::<Result<_>>()?;
+    Ok((paths, groups))
 }
 
 /// Adds the programs of a folder and of those in it.

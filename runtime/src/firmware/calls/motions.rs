@@ -102,6 +102,10 @@ struct Thread {
     in_motion: u16,
     /// Axes that it has moved and that still moved when it had waited for another one; a bit for each.
     left_behind: u16,
+    /// Axes that its last MoveXYZABC moves; a bit for each.
+    together: u16,
+    /// The axis for whose motion it has waited last.
+    waited: Option<AxisId>,
     /// True if it has found a path under way.
     path_in_motion: bool,
     /// Axes that it has moved to their switches and not zeroed since; a bit for each.
@@ -124,6 +128,8 @@ pub(crate) struct Motions {
     /// The jog of each axis, and the length of its last move.
     jogged: [Option<Jogged>; Axes::MAX],
     ways: [f64; Axes::MAX],
+    /// Vel of each axis when its last move began.
+    speeds: [f32; Axes::MAX],
     /// The first move of each axis if that and all others are of a few counts; nothing after any other motion.
     small: [Small; Axes::MAX],
     cut: [Option<Cut>; Axes::MAX],
@@ -177,6 +183,16 @@ impl Motions {
             Small::All(first) => Some((axis, first)),
             Small::Unmoved | Small::Not => None,
         })
+    }
+
+    /// A move of an axis begins with this Vel.
+    pub(crate) fn begins_at(&mut self, axis: AxisId, speed: f32) {
+        self.speeds[axis.index()] = speed;
+    }
+
+    /// Returns Vel of an axis when its last move began.
+    pub(crate) fn speed(&self, axis: AxisId) -> f32 {
+        self.speeds[axis.index()]
     }
 
     /// Returns the distance of the last move of an axis.
@@ -242,7 +258,9 @@ impl Motions {
 
     /// A thread moves an axis; the thread that moved it before, if that was another one.
     pub(crate) fn moves(&mut self, thread: ThreadId, axis: AxisId) -> Option<ThreadId> {
-        self.threads[thread.index()].moved |= bit(axis);
+        let own = &mut self.threads[thread.index()];
+        own.moved |= bit(axis);
+        own.together &= !bit(axis);
         self.movers[axis.index()].replace(thread).filter(|before| *before != thread)
     }
 
@@ -260,6 +278,7 @@ impl Motions {
         let own = &mut self.threads[thread.index()];
         own.left_behind &= !bit(axis);
         if done != 0 && own.in_motion & bit(axis) != 0 {
+            own.waited = Some(axis);
             let others = AxisId::all().filter(|other| own.moved & bit(*other) != 0 && is_moving(*other));
             own.left_behind = others.fold(own.left_behind, |all, other| all | bit(other));
         }
@@ -288,6 +307,29 @@ impl Motions {
         }
     }
 
+    /// A thread moves an axis to its place in the target of MoveXYZABC.
+    pub(crate) fn moves_together(&mut self, thread: ThreadId, axis: AxisId) {
+        self.threads[thread.index()].together |= bit(axis);
+    }
+
+    /// A thread acts after it has waited for an axis of its MoveXYZABC: that axis, and another one that `is_on_its_way`,
+    /// once.
+    pub(crate) fn part_left(
+        &mut self,
+        thread: ThreadId,
+        is_on_its_way: impl Fn(AxisId) -> bool,
+    ) -> Option<(AxisId, AxisId)> {
+        let own = &mut self.threads[thread.index()];
+        let left = own.left_behind & own.together;
+        if left == 0 {
+            return None;
+        }
+        let asked = own.waited.filter(|asked| own.together & bit(*asked) != 0)?;
+        let moving = AxisId::all().find(|axis| left & bit(*axis) != 0 && is_on_its_way(*axis))?;
+        own.together = 0;
+        Some((asked, moving))
+    }
+
     /// The motions that began while an axis still moved that nobody ever asks about.
     pub(crate) fn unasked_overlaps(&self) -> impl Iterator<Item = Overlap> + '_ {
         self.overlaps.iter().flatten().copied().filter(|overlap| self.asked & bit(overlap.moving) == 0)
@@ -298,6 +340,8 @@ impl Motions {
         let own = &mut self.threads[thread.index()];
         own.ended_wait = (own.path_in_motion && done < 0).then_some(EndedWait { thread, axis: None, at });
         own.path_in_motion = done == 0;
+        own.left_behind &= !own.together;
+        self.asked |= own.together;
     }
 
     /// A thread has moved an axis to its switch.

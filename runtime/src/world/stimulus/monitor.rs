@@ -219,7 +219,12 @@ impl Player {
         for (index, progress) in self.progress.iter().enumerate() {
             let place = self.rules[index].place.to_string();
             if let Some(state) = progress.idle.clone().filter(|_| !progress.has_changed) {
+                let state = state + &self.out_of_order(index);
                 access.out.remark(context.now, Message::NothingChanged { place, state });
+                continue;
+            }
+            if let Some(printed) = self.other_letters(index) {
+                access.out.remark(context.now, Message::OtherLetters { place, printed });
                 continue;
             }
             let view = View::new(access.machine, access.io, context.now, context.memory);
@@ -231,19 +236,57 @@ impl Player {
     }
 }
 
+impl Player {
+    /// A hint for a statement whose moment lies before that of the statement above it.
+    fn out_of_order(&self, index: usize) -> String {
+        let moment = |rule: &Rule| match rule.trigger {
+            Trigger::At(time) => Some(time),
+            _ => None,
+        };
+        let rule = &self.rules[index];
+        let before = index.checked_sub(1).map(|before| &self.rules[before]);
+        match before.filter(|before| before.place.source == rule.place.source) {
+            Some(before) if moment(rule).zip(moment(before)).is_some_and(|(this, other)| this < other) => {
+                format!(
+                    " (times count from power-up: this moment is before that of line {})",
+                    before.place.line
+                )
+            }
+            _ => String::new(),
+        }
+    }
+
+    /// The text that was printed where a statement forbids it in other letters.
+    fn other_letters(&self, index: usize) -> Option<String> {
+        let Action::Expect(expectation) = &self.rules[index].action else { return None };
+        let progress = &self.progress[index];
+        let is_forbidden = expectation.sense != Sense::Is && !progress.told;
+        let printed = progress.near.clone().filter(|_| is_forbidden && expectation.printed().is_some())?;
+        // Whoever writes both means both.
+        let is_known = self.rules.iter().any(|rule| wanted(rule) == Some(printed.as_str()));
+        (!is_known).then_some(printed)
+    }
+}
+
 /// Notes the text of a line that differs only in upper and lower case from what a statement waits for or expects.
 fn note_case(rule: &Rule, progress: &mut Progress, line: &str) {
-    let wanted = match (&rule.trigger.condition(), &rule.action) {
-        (Some(Condition::Printed(text)), _) => Some(text.as_str()),
-        (_, Action::Expect(expectation)) => expectation.printed(),
-        _ => None,
+    let Some(wanted) = wanted(rule).filter(|wanted| !wanted.is_empty() && progress.near.is_none()) else {
+        return;
     };
-    let Some(wanted) = wanted.filter(|wanted| !wanted.is_empty() && progress.near.is_none()) else { return };
     let mut starts = line.char_indices().map(|(at, _)| at);
     let near = starts.find_map(|at| {
         line.get(at..at + wanted.len()).filter(|near| near.eq_ignore_ascii_case(wanted) && *near != wanted)
     });
     progress.near = near.map(str::to_owned);
+}
+
+/// The text of a line that a statement waits for, expects or forbids.
+fn wanted(rule: &Rule) -> Option<&str> {
+    match (rule.trigger.condition(), &rule.action) {
+        (Some(Condition::Printed(text)), _) => Some(text.as_str()),
+        (_, Action::Expect(expectation)) => expectation.printed(),
+        _ => None,
+    }
 }
 
 /// Seconds as short as they are exact to the nanosecond.

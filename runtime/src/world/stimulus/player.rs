@@ -312,10 +312,8 @@ impl Player {
         idle.map(|(rule, progress)| {
             let near = || progress.near.as_ref().map(|near| format!(" (a line contains \"{near}\")"));
             let reason = unchanged_level(rule, progress, view).or_else(|| other_reading(rule, view));
-            let reason = reason
-                .or_else(near)
-                .or_else(|| too_late(rule, view.tick_start()))
-                .or_else(|| still_runs(rule, threads));
+            let reason =
+                reason.or_else(near).or_else(|| too_late(rule, view)).or_else(|| still_runs(rule, threads));
             format!("{}: {}{}", rule.place, rule.trigger, reason.unwrap_or_default())
         })
         .collect()
@@ -370,14 +368,22 @@ fn still_runs(rule: &Rule, threads: &Threads) -> Option<String> {
 
 /// The end of a run that was over before the moment of a statement, and a remedy where that was probably meant in
 /// milliseconds.
-fn too_late(rule: &Rule, end: Cycles) -> Option<String> {
+fn too_late(rule: &Rule, view: &View<'_>) -> Option<String> {
     const LONG: f64 = 10.0;
     const MS: f64 = 1000.0;
     let Trigger::At(time) = rule.trigger else { return None };
+    let end = view.tick_start();
     let seconds = |time: Cycles| time.get() as f64 / Cycles::PER_SECOND.get() as f64;
     let number = seconds(time);
     let is_likely = number >= LONG && number.fract() == 0.0 && number / MS <= seconds(end);
-    let remedy = if is_likely { format!(" (milliseconds are `{number}ms`)") } else { String::new() };
+    let remedy = match rule.action {
+        _ if is_likely => format!(" (milliseconds are `{number}ms`)"),
+        Action::Set(bit, false) if view.item(Item::of_bit(bit)) == 0.0 => format!(
+            "; bit {bit} is 0 without it: `idle_high = [{bit}]` under `[inputs]` of the machine file makes an input 1 at \
+             rest"
+        ),
+        _ => String::new(),
+    };
     (time > end).then(|| format!(", but the run ended at {:.3} s{remedy}", seconds(end)))
 }
 

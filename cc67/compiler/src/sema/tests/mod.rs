@@ -14,7 +14,7 @@ use kmotiondef::CType;
 use super::{analyze, print};
 use crate::diag::{Lint, Preset, Severity, Sink};
 use crate::firmware::{FirmwareNames, Prototype};
-use crate::lints::check as run_lints;
+use crate::lints::{LintContext, check as run_lints};
 use crate::names::Names;
 use crate::parse::parse;
 use crate::pp::{MemoryFiles, Options, preprocess};
@@ -62,7 +62,8 @@ fn analyzed(source: &str) -> (Unit, Names, Vec<String>) {
     let tokens = preprocess(main, &Options::default(), &files, &mut sources, &mut names, &mut sink);
     let tree = parse(&tokens, &sources, &names, &mut sink);
     let unit = analyze(&tree, &mut names, &sources, &Board, &mut sink);
-    run_lints(&unit, &names, &sources, &Board, &mut sink);
+    let context = LintContext { firmware: &Board, float_elements: &[] };
+    run_lints(&unit, &names, &sources, context, &mut sink);
     let is_shown = |lint: Lint| lint.preset() == Preset::On;
     let shown = sink.diagnostics().iter().filter(|diagnostic| diagnostic.lint.is_none_or(is_shown));
     let said = shown.map(|diagnostic| {

@@ -8,7 +8,7 @@ mod project;
 mod words;
 
 pub(crate) use head::Head;
-pub(crate) use project::Project;
+pub(crate) use project::{NAME as PROJECT_FILE, Project};
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
@@ -98,7 +98,10 @@ impl Sidecars {
                 && !names(given, option)
                 && !options.iter().any(|word| word.starts_with(option))
             {
-                sidecars.said.push(path.display().to_string());
+                let replaced = value_of(&sidecars.options, option);
+                let replaced = replaced
+                    .map_or(String::new(), |file| format!(" in place of {}", Path::new(&file).display()));
+                sidecars.said.push(format!("{}{replaced}", path.display()));
                 sidecars.options.extend([OsString::from(option), path.into()]);
             }
         }
@@ -174,6 +177,17 @@ fn known(options: Vec<String>, knows: impl Fn(&str) -> bool) -> Vec<String> {
 fn names(arguments: &[OsString], option: &str) -> bool {
     arguments.iter().filter_map(|argument| argument.to_str()).any(|argument| {
         argument.strip_prefix(option).is_some_and(|rest| rest.is_empty() || rest.starts_with('='))
+    })
+}
+
+/// The last value of an option among words.
+fn value_of(words: &[OsString], option: &str) -> Option<OsString> {
+    words.iter().enumerate().rev().find_map(|(index, word)| {
+        let rest = word.to_str()?.strip_prefix(option)?;
+        match rest.strip_prefix('=') {
+            Some(value) => Some(value.into()),
+            None => words.get(index + 1).filter(|_| rest.is_empty()).cloned(),
+        }
     })
 }
 

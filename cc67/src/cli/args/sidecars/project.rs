@@ -25,7 +25,7 @@ use super::{file_or_text, within};
 use crate::cli::io::input::read;
 
 /// The name of the file.
-pub(super) const NAME: &str = "cc67.toml";
+pub(crate) const NAME: &str = "cc67.toml";
 
 /// Keys that are lists or values of their own, and the option that each stands for.
 const KEYS: &[(&str, &str)] = &[

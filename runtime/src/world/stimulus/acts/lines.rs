@@ -149,8 +149,8 @@ pub(crate) fn adc(scene: &mut Scene<'_, '_, '_>, channel: usize, wave: Wave) {
         && is_volts(value)
     {
         let (now, volts) = (scene.context.now, value / COUNTS_PER_VOLT);
-        let wanted = format!("{value}V");
-        scene.access.out.remark(now, Message::FewCounts { channel, value, volts, wanted });
+        let (wanted, place) = (format!("{value}V"), format!("{}: ", scene.place));
+        scene.access.out.remark(now, Message::FewCounts { place, channel, value, volts, wanted });
     }
     if scene.access.machine.mechanics.hold_analog(channel) {
         scene.access.out.remark(scene.context.now, Message::SourceOverridden { channel });
