@@ -4,6 +4,8 @@
 //! the program has its meaning there. The board does not execute it; it is computed from the board's memory, so a run
 //! is the same with and without it. For the same reason it only reads.
 
+mod node;
+
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,8 +21,10 @@ use crate::pp::{Disk, Files};
 use crate::sema::constants::{self, Constant};
 use crate::ty::{BitRange, TypeId, Types};
 use crate::typed::{
-    Call, Callee, ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind, StmtKind, SymbolId, UnaryOp, Unit,
+    Call, Callee, ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind, StmtKind, SymbolId, Unit,
 };
+
+use self::node::{Builder, Node, Place};
 
 /// The name of the function around an expression.
 const FUNCTION: &str = "__cc67_watch";
@@ -102,7 +106,10 @@ pub enum Local {
 pub struct Expression {
     function: Function,
     value: ExprId,
-    meanings: BTreeMap<SymbolId, Meaning>,
+    /// The computation of the value.
+    root: Node,
+    /// The place that the value is read from, if it is one.
+    place: Option<Place>,
 }
 
 /// The meaning of a name.
@@ -177,7 +184,7 @@ fn compile_here(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Ex
     let meanings = check.meanings;
     match doubt {
         Some(doubt) => Err(doubt),
-        None => Ok(Expression { function, value, meanings }),
+        None => Ok(Expression::new(function, value, &meanings)),
     }
 }
 
@@ -363,12 +370,14 @@ impl ItemReader for NoMemory {
 
 impl Expression {
     /// The value of a function's expression; its names refer to these.
-    pub(crate) const fn new(
-        function: Function,
-        value: ExprId,
-        meanings: BTreeMap<SymbolId, Meaning>,
-    ) -> Self {
-        Self { function, value, meanings }
+    pub(crate) fn new(function: Function, value: ExprId, meanings: &BTreeMap<SymbolId, Meaning>) -> Self {
+        let builder = Builder { function: &function, meanings };
+        let root = builder.node(value);
+        let place = stored_place(&function, value).map(|place| match function.places[place].kind {
+            PlaceKind::Bits(unit, _) => builder.place(unit),
+            PlaceKind::Symbol(..) | PlaceKind::Pointer(..) | PlaceKind::Local(..) => builder.place(place),
+        });
+        Self { function, value, root, place }
     }
 
     /// The function around it.
@@ -376,15 +385,20 @@ impl Expression {
         &self.function
     }
 
-    /// The value of an expression in it.
-    pub(crate) fn constant_of(&self, id: ExprId, reader: &dyn ItemReader) -> Option<Constant> {
-        self.constant(id, reader)
+    /// The value now; `None` where it divides an integer by 0 or reads what has no value.
+    pub(crate) fn constant<R: ItemReader + ?Sized>(&self, reader: &R) -> Option<Constant> {
+        self.root.value(reader)
+    }
+
+    /// Returns whether the value now is not 0; `None` as for [`constant`](Self::constant).
+    pub(crate) fn truth<R: ItemReader + ?Sized>(&self, reader: &R) -> Option<bool> {
+        self.root.truth(reader)
     }
 
     /// The value now; not a number where it divides an integer by 0.
     #[must_use]
     pub fn value(&self, reader: &dyn ItemReader) -> f64 {
-        match self.constant(self.value, reader) {
+        match self.constant(reader) {
             Some(Constant::Float(value)) => value,
             Some(Constant::Int(value)) => value as f64,
             None => f64::NAN,
@@ -397,10 +411,10 @@ impl Expression {
     pub fn store(&self, value: f64, reader: &dyn ItemReader) -> Option<(GuestAddr, Vec<u8>)> {
         let place = self.stored_place()?;
         let ty = self.function.places[place].ty;
+        let address = self.place.as_ref()?.address(reader)?;
         let PlaceKind::Bits(unit, range) = self.function.places[place].kind else {
-            return Some((self.address(place, reader)?, bytes_of(value, ty)));
+            return Some((address, bytes_of(value, ty)));
         };
-        let address = self.address(unit, reader)?;
         let mask = ((1_u64 << range.width) - 1) << range.shift;
         let word = u64::from_le_bytes(reader.bytes(address));
         let word = word & !mask | (value as i64).cast_unsigned() << range.shift & mask;
@@ -420,20 +434,14 @@ impl Expression {
             _ => return None,
         };
         let memory = NoMemory::default();
-        let address = self.address(place, &memory)?;
+        let address = self.place.as_ref()?.address(&memory)?;
         (!memory.was_read.get()).then_some((address, kind))
     }
 
     /// Reports whether a value can be stored in it, by its form.
     #[must_use]
-    pub fn is_place(&self) -> bool {
-        match self.stored_place().map(|place| &self.function.places[place].kind) {
-            Some(PlaceKind::Symbol(symbol, _)) => {
-                matches!(self.meanings.get(symbol), Some(Meaning::Variable(_)))
-            }
-            Some(PlaceKind::Pointer(..) | PlaceKind::Local(..) | PlaceKind::Bits(..)) => true,
-            None => false,
-        }
+    pub const fn is_place(&self) -> bool {
+        matches!(self.place, Some(Place::Fixed(_) | Place::Pointed(..) | Place::Local(..)))
     }
 
     /// The least and the greatest value of the integer that is stored in it; `None` of anything else.
@@ -454,97 +462,19 @@ impl Expression {
         Some(if is_signed { (-span / 2.0, span / 2.0 - 1.0) } else { (0.0, span - 1.0) })
     }
 
-    /// The place that the expression is, below the conversion of what is read from it.
     fn stored_place(&self) -> Option<PlaceId> {
-        let kind = |id: ExprId| &self.function.exprs[id].kind;
-        let read = match kind(self.value) {
-            ExprKind::Convert(inner) => kind(*inner),
-            other => other,
-        };
-        if let ExprKind::Load(place) = read { Some(*place) } else { None }
+        stored_place(&self.function, self.value)
     }
+}
 
-    fn constant(&self, id: ExprId, reader: &dyn ItemReader) -> Option<Constant> {
-        let expr = &self.function.exprs[id];
-        let of = |id: ExprId| self.constant(id, reader);
-        let is_true = |id: ExprId| of(id).map(Constant::is_true);
-        let boolean = |value: bool| Constant::Int(value.into());
-        Some(match &expr.kind {
-            ExprKind::Int(value) => Constant::Int(*value),
-            ExprKind::Float(value) => Constant::Float(*value),
-            ExprKind::Load(place) => return self.load(*place, reader),
-            ExprKind::Address(place) => Constant::Int(self.address(*place, reader)?.get().into()),
-            ExprKind::Unary(UnaryOp::Not, a) => boolean(!is_true(*a)?),
-            ExprKind::Unary(op, a) => constants::unary(*op, of(*a)?, expr.ty)?,
-            ExprKind::Binary(op, a, b) => constants::binary(*op, of(*a)?, of(*b)?, expr.ty)?,
-            ExprKind::Compare(op, a, b) => {
-                boolean(constants::compare(*op, of(*a)?, of(*b)?, self.function.exprs[*a].ty)?)
-            }
-            ExprKind::And(a, b) => boolean(is_true(*a)? && is_true(*b)?),
-            ExprKind::Or(a, b) => boolean(is_true(*a)? || is_true(*b)?),
-            ExprKind::Conditional(a, b, c) => return of(if is_true(*a)? { *b } else { *c }),
-            ExprKind::Comma(_, b) => return of(*b),
-            ExprKind::Convert(a) => constants::convert(of(*a)?, self.function.exprs[*a].ty, expr.ty),
-            ExprKind::Call(call) => return self.call(id, call, reader),
-            _ => return None,
-        })
-    }
-
-    fn call(&self, id: ExprId, call: &Call, reader: &dyn ItemReader) -> Option<Constant> {
-        let Callee::Symbol(symbol) = call.callee else { return None };
-        match self.meanings.get(&symbol)? {
-            Meaning::Function(function) => match self.constant(*call.arguments.first()?, reader)? {
-                Constant::Float(value) => Some(Constant::Float(function(value))),
-                Constant::Int(_) => None,
-            },
-            Meaning::Code(address) => {
-                let slot =
-                    |id: &ExprId| Some(slot_of(self.constant(*id, reader)?, self.function.exprs[*id].ty));
-                let arguments = call.arguments.iter().map(slot).collect::<Option<Vec<_>>>()?;
-                let slot = reader.result(CallRequest { id, function: *address, arguments })?;
-                Some(read(self.function.exprs[id].ty, slot.to_le_bytes()))
-            }
-            Meaning::Variable(_) | Meaning::Item(_) => None,
-        }
-    }
-
-    fn load(&self, id: PlaceId, reader: &dyn ItemReader) -> Option<Constant> {
-        let place = &self.function.places[id];
-        if let PlaceKind::Symbol(symbol, _) = place.kind
-            && let Some(Meaning::Item(index)) = self.meanings.get(&symbol)
-        {
-            return Some(Constant::Float(reader.item(*index)));
-        }
-        if let PlaceKind::Bits(unit, range) = place.kind {
-            let Constant::Int(word) = self.load(unit, reader)? else { return None };
-            return Some(Constant::Int(bits(word, range, place.ty)));
-        }
-        if let PlaceKind::Local(local, 0) = place.kind
-            && let Local::Slot(bits) = reader.local(local)?
-        {
-            return Some(read(place.ty, bits.to_le_bytes()));
-        }
-        Some(read(place.ty, reader.bytes(self.address(id, reader)?)))
-    }
-
-    fn address(&self, id: PlaceId, reader: &dyn ItemReader) -> Option<GuestAddr> {
-        let (base, offset) = match self.function.places[id].kind {
-            PlaceKind::Symbol(symbol, offset) => match self.meanings.get(&symbol)? {
-                Meaning::Variable(address) => (address.get(), offset),
-                Meaning::Item(_) | Meaning::Function(_) | Meaning::Code(_) => return None,
-            },
-            PlaceKind::Pointer(pointer, offset) => match self.constant(pointer, reader)? {
-                Constant::Int(address) => (address as u32, offset),
-                Constant::Float(_) => return None,
-            },
-            PlaceKind::Local(local, offset) => match reader.local(local)? {
-                Local::Memory(address) => (address.get(), offset.cast_signed()),
-                Local::Slot(_) => return None,
-            },
-            PlaceKind::Bits(..) => return None,
-        };
-        Some(GuestAddr::new(base.wrapping_add_signed(offset)))
-    }
+/// The place that an expression is, below the conversion of what is read from it.
+fn stored_place(function: &Function, value: ExprId) -> Option<PlaceId> {
+    let kind = |id: ExprId| &function.exprs[id].kind;
+    let read = match kind(value) {
+        ExprKind::Convert(inner) => kind(*inner),
+        other => other,
+    };
+    if let ExprKind::Load(place) = read { Some(*place) } else { None }
 }
 
 /// The value that the first of these bytes are in memory; pointers are unsigned.

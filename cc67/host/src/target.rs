@@ -30,7 +30,7 @@ use runtime::stimulus::Stimulus;
 use runtime::trace::{Item, Quantity, TraceRequest};
 use runtime::{Event, OpenBox};
 use vm::engine::{AccessRange, CallEnd, ContextId, FrameView, Hold};
-use vm::scheduler::Turn;
+use vm::scheduler::{ThreadSet, Turn};
 use vm::thread::ThreadState;
 
 use crate::capability::{Capability, Unsupported};
@@ -147,6 +147,11 @@ pub trait Target {
 
     /// The state of a thread.
     fn thread(&self, thread: ThreadId) -> &ThreadState;
+
+    /// The threads that are active.
+    fn active(&self) -> ThreadSet {
+        ThreadId::all().filter(|thread| self.thread(*thread).is_active()).collect()
+    }
 
     /// The present instruction of a thread, then the calls that led there, innermost first; empty where unknown.
     fn backtrace(&self, thread: ThreadId) -> Vec<CodeAddr> {

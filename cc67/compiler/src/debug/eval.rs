@@ -261,7 +261,7 @@ impl Model {
             return Err(ProbeError::Invalid("an item of the board has no address".to_owned()));
         }
         let function = unit.functions.swap_remove(index);
-        let expression = Expression::new(function, value, named.meanings);
+        let expression = Expression::new(function, value, &named.meanings);
         Ok(Probe { unit, names, expression, value, is_address, locals, has_locals: named.has_locals })
     }
 
@@ -367,20 +367,23 @@ fn no_memory(address: GuestAddr) -> String {
 }
 
 /// A reader as an expression wants it.
-struct Inner<'a> {
-    reader: &'a dyn DebugReader,
+struct Inner<'a, R: ?Sized> {
+    reader: &'a R,
     locals: &'a BTreeMap<LocalId, LocalModel>,
-    results: &'a CallResults,
+    results: Option<&'a CallResults>,
     /// The last address read at which there is no memory.
     unmapped: Cell<Option<GuestAddr>>,
 }
 
-impl watch::ItemReader for Inner<'_> {
+impl<R: DebugReader + ?Sized> watch::ItemReader for Inner<'_, R> {
+    #[inline]
     fn bytes(&self, address: GuestAddr) -> [u8; 8] {
-        if !self.reader.is_mapped(address) {
+        let bytes = self.reader.bytes(address);
+        // Only where there is no memory nothing but zeros is read.
+        if u64::from_le_bytes(bytes) == 0 && !self.reader.is_mapped(address) {
             self.unmapped.set(Some(address));
         }
-        self.reader.bytes(address)
+        bytes
     }
 
     fn item(&self, index: usize) -> f64 {
@@ -395,9 +398,10 @@ impl watch::ItemReader for Inner<'_> {
     }
 
     fn result(&self, call: CallRequest) -> Option<u64> {
-        let known = self.results.known.get(&call.id).copied();
+        let results = self.results?;
+        let known = results.known.get(&call.id).copied();
         if known.is_none() {
-            self.results.next.borrow_mut().get_or_insert(call);
+            results.next.borrow_mut().get_or_insert(call);
         }
         known
     }
@@ -418,19 +422,30 @@ impl Probe {
     /// # Errors
     /// As [`value`](Self::value).
     pub fn value_with(&self, reader: &dyn DebugReader, results: &CallResults) -> Result<DebugValue, String> {
-        let inner = Inner { reader, locals: &self.locals, results, unmapped: Cell::new(None) };
+        let inner = Inner { reader, locals: &self.locals, results: Some(results), unmapped: Cell::new(None) };
         let value = self.value_in(&inner)?;
         let unmapped = inner.unmapped.get();
         let place = value.address().filter(|address| !reader.is_mapped(*address));
         unmapped.or(place).map_or(Ok(value), |address| Err(no_memory(address)))
     }
 
-    fn value_in(&self, inner: &Inner<'_>) -> Result<DebugValue, String> {
+    /// Returns whether the expression has a value at present that is not 0.
+    pub fn is_true<R: DebugReader>(&self, reader: &R) -> bool {
+        if self.is_address {
+            let number = self.value(reader).ok().and_then(|value| self.shown(reader).number(&value));
+            return number.is_some_and(|number| number != 0.0);
+        }
+        let inner = Inner { reader, locals: &self.locals, results: None, unmapped: Cell::new(None) };
+        let truth = self.expression.truth(&inner);
+        inner.unmapped.get().is_none() && truth == Some(true)
+    }
+
+    fn value_in(&self, inner: &Inner<'_, dyn DebugReader + '_>) -> Result<DebugValue, String> {
         let reader = inner.reader;
         let function = self.expression.function();
         let ty = function.exprs[self.value].ty;
         if !self.is_address {
-            let constant = self.expression.constant_of(self.value, inner).ok_or_else(|| self.why(reader))?;
+            let constant = self.expression.constant(inner).ok_or_else(|| self.why(reader))?;
             return Ok(DebugValue { ty, data: Data::Constant(constant) });
         }
         let pointee = match self.unit.types.get(ty) {
@@ -446,7 +461,7 @@ impl Probe {
                 reader.local(local).ok_or_else(|| optimised_out(&local.name))?,
             ));
         }
-        match self.expression.constant_of(self.value, inner) {
+        match self.expression.constant(inner) {
             Some(Constant::Int(address)) => {
                 Ok(DebugValue { ty: pointee, data: Data::Memory(GuestAddr::new(address as u32)) })
             }

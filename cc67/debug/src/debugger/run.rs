@@ -6,6 +6,7 @@ use cc67_host::{Capability, Target};
 use kmotiondef::{Bit, CodeAddr, GuestAddr, ThreadId, Ticks};
 use runtime::{Event, EventKind};
 use vm::engine::{AccessRange, ContextId};
+use vm::scheduler::ThreadSet;
 
 use super::{Breakpoint, BreakpointKind, DebugError, Debugger, Events, Reason, Stop, WatchedAccess};
 
@@ -275,7 +276,7 @@ impl<T: Target> Debugger<T> {
         let limit = if let Goal::Tick(tick) = goal { *tick } else { self.limit };
         let mut infos: Vec<_> = self.session.debug().into_iter().map(|(_, info)| info).collect();
         let catches = self.catches.clone();
-        let mut active = self.active();
+        let mut active = self.session.target().active();
         loop {
             if self.is_interrupted() {
                 return self.stopped(Reason::Interrupted, None);
@@ -304,13 +305,13 @@ impl<T: Target> Debugger<T> {
                 if let Some(reason) = self.judge(hold, goal, true) {
                     return self.stopped(reason, Some(hold.context));
                 }
-                active = self.active();
+                active = self.session.target().active();
                 continue;
             }
             if let Some((reason, thread)) = caught {
                 return self.stopped(reason, thread.map(ContextId::of));
             }
-            active = self.active();
+            active = self.session.target().active();
             if let Some(reason) = self.between_ticks(goal, (before, active), &bits) {
                 let context = if let Reason::Started(thread) | Reason::Ended(thread) = &reason {
                     Some(ContextId::of(*thread))
@@ -326,7 +327,11 @@ impl<T: Target> Debugger<T> {
                 let reason = Reason::LinkLost(reason.to_owned());
                 return self.stopped(reason, None);
             }
-            if active == 0 && !self.is_lent() && self.session.has_ended() && !matches!(goal, Goal::Tick(_)) {
+            if active.is_empty()
+                && !self.is_lent()
+                && self.session.has_ended()
+                && !matches!(goal, Goal::Tick(_))
+            {
                 self.session.finish(&mut |event| events(&event));
                 return self.stopped(Reason::AllEnded, None);
             }
@@ -347,26 +352,29 @@ impl<T: Target> Debugger<T> {
         timeline.next_input().map_or(limit, |next| next.min(limit))
     }
 
-    /// The threads that are active, a bit for each.
-    fn active(&self) -> u8 {
-        let active = ThreadId::all().filter(|thread| self.session.thread(*thread).is_active());
-        active.fold(0, |set, thread| set | bit_of(thread))
-    }
-
     fn bits(&self) -> Vec<bool> {
+        if self.catches.bits.is_empty() {
+            return Vec::new();
+        }
         self.catches.bits.iter().map(|bit| Bit::new(*bit).is_some_and(|bit| self.session.bit(bit))).collect()
     }
 
     /// Returns the reason to stop at the end of a tick, if there is one; takes the threads that were and are active.
-    fn between_ticks(&mut self, goal: &Goal, (before, now): (u8, u8), bits: &[bool]) -> Option<Reason> {
+    fn between_ticks(
+        &mut self,
+        goal: &Goal,
+        (before, now): (ThreadSet, ThreadSet),
+        bits: &[bool],
+    ) -> Option<Reason> {
         if let Some(reason) = self.judge_tick(true) {
             return Some(reason);
         }
         if before == now && bits.is_empty() {
             return None;
         }
-        let changed =
-            |from: u8, to: u8| ThreadId::all().filter(move |thread| from & !to & bit_of(*thread) != 0);
+        let changed = |from: ThreadSet, to: ThreadSet| {
+            ThreadId::all().filter(move |thread| from.contains(*thread) && !to.contains(*thread))
+        };
         let stepped = match goal {
             Goal::Line { context, .. }
             | Goal::Leave { context, .. }
@@ -407,11 +415,6 @@ impl<T: Target> Debugger<T> {
             Goal::None | Goal::Instruction(_) | Goal::Tick(_) => false,
         }
     }
-}
-
-/// A thread in a set of threads.
-const fn bit_of(thread: ThreadId) -> u8 {
-    1 << (thread.get() - 1)
 }
 
 /// Returns the reason for which an event stops the board, if it does, and its context.

@@ -115,6 +115,35 @@ impl<T: Target> DebugReader for At<'_, T> {
     }
 }
 
+/// A board, as expressions without locals read it every tick.
+struct Outside<'a, T> {
+    target: &'a T,
+    items: &'a [Item],
+}
+
+impl<T: Target> DebugReader for Outside<'_, T> {
+    fn bytes(&self, address: GuestAddr) -> [u8; 8] {
+        let mut bytes = [0; 8];
+        match self.target.read(address, &mut bytes) {
+            Ok(()) => bytes,
+            // What is unknown is not so.
+            Err(_) => [0; 8],
+        }
+    }
+
+    fn item(&self, index: usize) -> f64 {
+        self.items.get(index).map_or(0.0, |item| self.target.value(*item))
+    }
+
+    fn is_mapped(&self, address: GuestAddr) -> bool {
+        self.target.is_mapped(address)
+    }
+
+    fn local(&self, _: &LocalModel) -> Option<LocalPlace> {
+        None
+    }
+}
+
 /// The names in an expression that are items of the board and not the program's.
 fn items_in(axes: Axes, expression: &str) -> Vec<(&str, Item)> {
     let words = expression.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
@@ -234,7 +263,11 @@ impl<T: Target> Debugger<T> {
     /// Returns whether the expression of a breakpoint is so at present; not where it has no value.
     pub(super) fn is_so(&self, breakpoint: &super::Breakpoint) -> bool {
         let Subject::Truth(prepared, _) = &breakpoint.subject else { return false };
-        self.is_true(prepared, self.view_of(prepared).as_ref()).unwrap_or(false)
+        if prepared.probe.has_locals() {
+            let view = self.view_of(prepared);
+            return prepared.probe.is_true(&At::new(self, view.as_ref(), &prepared.items));
+        }
+        prepared.probe.is_true(&Outside { target: self.session.target(), items: &prepared.items })
     }
 
     fn with_value<R>(

@@ -9,7 +9,7 @@ use runtime::stimulus::Stimulus;
 use runtime::trace::{Item, Quantity, TraceRequest};
 use runtime::{Board, OpenBox};
 use vm::engine::{AccessRange, CallEnd, ContextId, FrameView, Hold};
-use vm::scheduler::Turn;
+use vm::scheduler::{ThreadSet, Turn};
 use vm::thread::ThreadState;
 
 use super::{BootedTarget, EventSink, Target, TargetSnapshot};
@@ -98,6 +98,7 @@ impl TargetSnapshot for AnySnapshot {
 /// Methods that are those of whichever it is.
 macro_rules! delegate {
     ($(fn $name:ident(&self $(, $argument:ident: $ty:ty)*) $(-> $result:ty)?;)*) => {$(
+        #[inline]
         fn $name(&self $(, $argument: $ty)*) $(-> $result)? {
             with!(self, it => Target::$name(it.as_ref() $(, $argument)*))
         }
@@ -123,6 +124,7 @@ impl Target for AnyTarget {
         fn turn(&self) -> Turn;
         fn debug(&self, thread: ThreadId) -> Option<&DebugInfo>;
         fn thread(&self, thread: ThreadId) -> &ThreadState;
+        fn active(&self) -> ThreadSet;
         fn backtrace(&self, thread: ThreadId) -> Vec<CodeAddr>;
         fn interrupted_at(&self, thread: ThreadId) -> Option<CodeAddr>;
         fn stack_used(&self, thread: ThreadId) -> Option<u32>;

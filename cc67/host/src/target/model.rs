@@ -9,7 +9,7 @@ use runtime::{Board, BoardSnapshot, OpenBox};
 use vm::engine::{AccessRange, CallEnd, ContextId, Engine, FrameView, Hold};
 use vm::loaded::Loaded;
 use vm::memory::GuestMemory;
-use vm::scheduler::Turn;
+use vm::scheduler::{ThreadSet, Turn};
 use vm::thread::ThreadState;
 use vm::trap::Access;
 
@@ -36,7 +36,15 @@ impl<E: Engine> TargetSnapshot for BoardSnapshot<E> {
 const INSTRUCTION: u32 = 8;
 
 /// Copies guest memory; where there is none, zeros.
+#[inline]
 pub(super) fn read(memory: &GuestMemory, address: GuestAddr, bytes: &mut [u8]) {
+    // Expressions that are looked at every tick read words. One that is 0 may be cut short by the end of a region.
+    if let Ok(bytes) = <&mut [u8; 8]>::try_from(&mut *bytes)
+        && let word @ 1.. = memory.peek::<u64>(address)
+    {
+        *bytes = word.to_le_bytes();
+        return;
+    }
     match u32::try_from(bytes.len()).ok().and_then(|length| memory.read_bytes(address, length).ok()) {
         Some(found) => bytes.copy_from_slice(found),
         // The end of a region.
@@ -123,6 +131,10 @@ impl<E: Engine> Target for Board<E> {
         self.thread(thread)
     }
 
+    fn active(&self) -> ThreadSet {
+        self.machine().threads().active()
+    }
+
     fn backtrace(&self, thread: ThreadId) -> Vec<CodeAddr> {
         self.machine().backtrace(thread)
     }
@@ -159,6 +171,7 @@ impl<E: Engine> Target for Board<E> {
         self.moving()
     }
 
+    #[inline]
     fn read(&self, address: GuestAddr, bytes: &mut [u8]) -> Result<(), HostError> {
         read(self.memory(), address, bytes);
         Ok(())
