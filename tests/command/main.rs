@@ -31,6 +31,7 @@ mod schedules;
 mod serve;
 mod shell;
 mod simulated_kogna;
+mod start;
 mod targets;
 mod traces;
 mod trial;
