@@ -312,7 +312,7 @@ macro_rules! for_each_firmware_fn {
             /// State of a bit, 0 or 1: an output's own state, an input's pin.
             io::read_bit = ReadBit(bit: BitNumber) -> i32, at 0x1001_2214, cost 78, header,
                 polls(Polled::Bit), reads_bit;
-            /// Raw conversion of analog input `ch`, 0 to 4095; the macro ADC(ch) is the usual way.
+            /// Analog input `ch` in counts, -2048 to 2047, as the macro ADC(ch) gives it.
             io::read_adc = ReadADC(ch: i32) -> i32, at 0x8001_C3E0, cost 19, header;
             /// Drives PWM channel `ch` in locked antiphase, `v` within ±MAX_PWM_VALUE.
             io::write_pwm = WritePWM(ch: i32, v: Within<MAX_PWM_VALUE>), at 0x1000_1CB4, cost 101, header;

@@ -202,6 +202,15 @@ fn programs_that_run_together_are_compared() {
     let [flag, value] = ["persist.UserData[51] = 1;", "persist.UserData[50] = i * 1000;"];
     scratch.write("boss.c", boss.replace(flag, "@").replace(value, flag).replace('@', value));
     assert_eq!(cc67(&scratch, ["check", "1:boss.c", "2:mover.c"]).stderr, "");
+    let measure = "#include \"KMotionDef.h\"\nmain()\n{\n    *(float *)&persist.UserData[60] = ch0->Position / 80.0;\n}\n";
+    let drill = "#include \"KMotionDef.h\"\nmain()\n{\n    double mm = persist.UserData[60];\n    MoveRel(2, mm * 80.0);\n}\n";
+    scratch.write("measure.c", measure).write("drill.c", drill);
+    let output = cc67(&scratch, ["check", "1:measure.c", "2:drill.c"]);
+    let other =
+        "persist.UserData[60] is read as an integer, and thread 1 at measure.c:4:5 stores a `float` there";
+    assert!(output.stderr.contains(other) && output.stderr.contains("drill.c:4:17"), "{}", output.stderr);
+    scratch.write("drill.c", drill.replace("= persist.UserData[60]", "= *(float *)&persist.UserData[60]"));
+    assert_eq!(cc67(&scratch, ["check", "1:measure.c", "2:drill.c"]).stderr, "");
     let waits = "#include \"KMotionDef.h\"\nint n;\nvoid f(void)\n{\n    n = 1;\n}\nmain()\n{\n    UserCallBack = f;\n    \
                  while (!n)\n        ;\n}\n";
     scratch.write("w.c", waits);

@@ -329,7 +329,7 @@ pub(crate) fn target_beyond(
     }
 }
 
-/// A move has ended: whether Vel was changed on the way, as if it applied to it.
+/// A thread looks at a move: whether Vel was changed on the way, as if it applied to it.
 pub(crate) fn speed_changed(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId) {
     let (from, to) = (parts.calls.motions.speed(axis), caller.memory.axis(axis, Chan::VEL));
     let is_move = caller.memory.axis(axis, Chan::LAST_MOTION_TYPE) == LastMotion::Move.get();

@@ -674,6 +674,8 @@ pub(crate) fn check_done(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) 
         parts.calls.notices.asks(thread, axis);
         if done == 1 && has_waited {
             axis_check::arrived(parts, caller, axis);
+        }
+        if done == 0 || has_waited {
             axis_check::speed_changed(parts, caller, axis);
         }
     }

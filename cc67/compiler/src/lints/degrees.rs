@@ -134,7 +134,15 @@ impl<'a> Counted<'a> {
 fn multiple(function: &Function, expr: ExprId) -> Option<(f64, Span)> {
     /// Fewer are steps of something else, such as seconds.
     const LEAST: f64 = 5.0;
-    let ExprKind::Binary(BinaryOp::Multiply, a, b) = function.exprs[expr].kind else { return None };
+    let (a, b) = match function.exprs[expr].kind {
+        ExprKind::Binary(BinaryOp::Multiply, a, b) => (a, b),
+        ExprKind::Binary(BinaryOp::Divide, turns, parts) => {
+            let (turn, span) = multiple(function, turns)?;
+            let parts = number(function, parts)?;
+            return (turn == TURN && parts > 1.0).then_some((turn / parts, span));
+        }
+        _ => return None,
+    };
     let is_count = |side: ExprId| match function.exprs[side].kind {
         ExprKind::Convert(inner) => {
             function.exprs[inner].ty == Types::INT && loaded(function, inner).is_some()

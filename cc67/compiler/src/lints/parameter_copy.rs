@@ -44,36 +44,43 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
 
 /// Reports the parameters that a function stores in and never reads.
 fn lost(program: &AnalysedProgram<'_>, function: &Function, sink: &mut Sink) {
+    // A parameter and the byte of it, for the members of a structure.
     let parameter = |place: PlaceId| match function.places[place].kind {
-        PlaceKind::Local(local, _) => function.parameters.contains(&local).then_some(local),
+        PlaceKind::Local(local, byte) => function.parameters.contains(&local).then_some((local, byte)),
         _ => None,
     };
-    let (mut stored, mut read) = (BTreeMap::new(), BTreeSet::new());
+    let (mut stored, mut read, mut whole) = (BTreeMap::new(), BTreeSet::new(), BTreeSet::new());
     for expr in function.exprs.values() {
         match &expr.kind {
             ExprKind::Assign(place, _) => {
-                stored.extend(parameter(*place).map(|local| (local, expr.span)));
+                stored.extend(parameter(*place).map(|part| (part, (expr.span, *place))));
             }
             ExprKind::Update(update) => read.extend(parameter(update.place)),
-            ExprKind::Load(place) | ExprKind::Address(place) | ExprKind::Copy { from: place, .. } => {
-                read.extend(parameter(*place));
+            ExprKind::Load(place) => read.extend(parameter(*place)),
+            ExprKind::Address(place) | ExprKind::Copy { from: place, .. } => {
+                whole.extend(parameter(*place).map(|(local, _)| local));
             }
             _ => {}
         }
     }
-    stored.retain(|local, _| !read.contains(local));
-    for (local, span) in stored {
+    stored.retain(|part, _| !read.contains(part) && !whole.contains(&part.0));
+    for ((local, _), (span, place)) in stored {
         let local = &function.locals[local];
         let (name, ty) = (&local.name, program.spell(local.ty));
         let message = format!(
             "`{name}` is a copy of the caller's value: what is stored in it stays in `{}`",
             program.name(function.symbol)
         );
+        let is_member = function.places[place].ty != local.ty;
         let finding = Diagnostic::warning(Lint::ParameterCopy, span, message)
             .at("nothing reads the copy")
             .label(local.span, "arguments are copied in a call");
         sink.report(if program.unit.types.is_pointer(local.ty) {
             finding.help(format!("`*{name}` is what it points to"))
+        } else if is_member {
+            finding.help(format!(
+                "take the address, `{ty} *{name}`, write `{name}->`, and call with `&` before the variable"
+            ))
         } else {
             finding.help(format!(
                 "take the address, `{ty} *{name}`, store in `*{name}`, and call with `&` before the variable"

@@ -58,8 +58,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// Reports locals of an inner block that hide one of an outer block which keeps its constant first value and is read
-/// afterwards.
+/// Reports locals of an inner block that hide one of an outer block which keeps its constant first value and is read.
 fn outer_locals(function: &Function, sink: &mut Sink) {
     let place = |place: PlaceId| match function.places[place].kind {
         PlaceKind::Local(local, _) => Some(local),
@@ -90,9 +89,7 @@ fn outer_locals(function: &Function, sink: &mut Sink) {
                 }
                 ExprKind::Update(update) => is_constant &= place(update.place) != Some(outer_id),
                 ExprKind::Address(taken) => is_constant &= place(*taken) != Some(outer_id),
-                ExprKind::Load(loaded)
-                    if place(*loaded) == Some(outer_id) && expr.span.lo > inner.span.lo =>
-                {
+                ExprKind::Load(loaded) if place(*loaded) == Some(outer_id) => {
                     read.get_or_insert(expr.span);
                 }
                 _ => {}

@@ -53,6 +53,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
         let elements = Elements::of(program, function);
         let walk = Walk { function, extent: Extent::All };
         let copied = copied(function);
+        second_halves(&elements, &stores, sink);
         walk.stmts(&function.body, &mut |expr| {
             sink.report_if(integer_bits(&elements, expr, &stores));
             if !copied.contains(&expr) {
@@ -174,6 +175,31 @@ fn integer_bits(
             .label(place, "an `int` is stored here")
             .help(format!("write `persist.UserData[{element}]`")),
     )
+}
+
+/// Reports an integer that is read from the second half of a `double`, where the first half is no integer.
+fn second_halves(elements: &Elements<'_, '_>, stores: &BTreeMap<i32, Stores>, sink: &mut Sink) {
+    let exprs = &elements.function.exprs;
+    let loads = exprs.iter().filter_map(|(id, expr)| Some((elements.integer_load(id)?, expr.span)));
+    let loads: Vec<_> = loads.collect();
+    let is_double = |element: i32| {
+        let first = stores.get(&(element - 1)).copied().unwrap_or_default();
+        !first.has_others && !loads.iter().any(|(other, _)| *other == element - 1)
+    };
+    let found = loads.iter().find_map(|(element, span)| {
+        let double = stores.get(element)?.second_half.filter(|_| is_double(*element))?;
+        Some((element, span, double))
+    });
+    let Some((element, span, double)) = found else { return };
+    let message = format!("`persist.UserData[{element}]` is the second half of a `double`");
+    sink.report(
+        Diagnostic::warning(Lint::UserDataType, *span, message)
+            .at("read as an integer")
+            .label(double, format!("this `double` is in elements {} and {element}", element - 1))
+            .help(
+                "use an element that no `double` takes: index N of the doubles is elements 2 N and 2 N + 1",
+            ),
+    );
 }
 
 /// Returns whether the PC stores a `float` in an element before the program starts.

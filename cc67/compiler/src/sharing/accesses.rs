@@ -13,7 +13,7 @@ use super::flow::{Conditions, Guard, Wait};
 use super::values::{Pointers, Values};
 use crate::ir::function::{Function, Signatures};
 use crate::ir::inst::{BlockId, Callee, Constant, Inst, InstKind, Operand};
-use crate::ir::operators::BinaryOp;
+use crate::ir::operators::{BinaryOp, Width};
 use crate::lower::{self, Definitions};
 use crate::source::{SourceMap, Span};
 use crate::typed::{SymbolId, Unit};
@@ -71,7 +71,7 @@ pub(super) enum UpdateKind {
 #[derive(Clone, Debug)]
 pub(super) struct CellAccess {
     pub(super) cell: Cell,
-    pub(super) size: u32,
+    pub(super) width: Width,
     pub(super) action: Action,
     pub(super) span: Span,
     pub(super) locks: BTreeSet<Cell>,
@@ -180,7 +180,7 @@ impl AccessWalk<'_> {
         match inst.kind {
             InstKind::Load { width, address, .. } => {
                 let cell = values.cell(address);
-                self.note(cell, width.bytes(), Action::Load, span, here);
+                self.note(cell, width, Action::Load, span, here);
             }
             InstKind::Store { src, width, address } => {
                 let Some(cell) = values.cell(address) else { return };
@@ -194,7 +194,7 @@ impl AccessWalk<'_> {
                     _ if values.loads(src).contains(&cell) => Action::Update(update_kind(values, src)),
                     _ => Action::Store(None),
                 };
-                self.note(Some(cell), width.bytes(), action, span, here);
+                self.note(Some(cell), width, action, span, here);
                 if action == Action::Store(Some(0)) {
                     self.locks.remove(&cell);
                 }
@@ -234,15 +234,15 @@ impl AccessWalk<'_> {
         let called = FirmwareCall::ALL.iter().find(|function| function.name() == name);
         match called {
             Some(FirmwareCall::MutexLock | FirmwareCall::TestAndSet) => {
-                self.note(cell, 4, Action::Lock, span, here);
+                self.note(cell, Width::I32, Action::Lock, span, here);
                 self.locks.extend(cell);
             }
             Some(FirmwareCall::MutexUnlock) => {
-                self.note(cell, 4, Action::Unlock, span, here);
+                self.note(cell, Width::I32, Action::Unlock, span, here);
                 self.locks.retain(|lock| Some(*lock) != cell);
             }
             Some(FirmwareCall::AtomicSet | FirmwareCall::AtomicClear) => {
-                self.note(cell, 4, Action::Change, span, here);
+                self.note(cell, Width::I32, Action::Change, span, here);
             }
             Some(FirmwareCall::StartThread) => {
                 if let Some(Constant::I32(number)) = first
@@ -250,7 +250,7 @@ impl AccessWalk<'_> {
                 {
                     self.found.accesses.push(self.access(
                         Cell::Board(0),
-                        0,
+                        Width::I32,
                         Action::Start(thread),
                         span,
                         here,
@@ -261,7 +261,7 @@ impl AccessWalk<'_> {
         }
     }
 
-    fn note(&mut self, cell: Option<Cell>, size: u32, action: Action, span: Span, here: &Caller) {
+    fn note(&mut self, cell: Option<Cell>, width: Width, action: Action, span: Span, here: &Caller) {
         let is_memory = |cell: &Cell| match *cell {
             Cell::Board(address) => {
                 [SDRAM, IRAM].iter().any(|region| address.wrapping_sub(region.base.get()) < region.size)
@@ -269,13 +269,13 @@ impl AccessWalk<'_> {
             Cell::Variable(..) => true,
         };
         if let Some(cell) = cell.filter(is_memory) {
-            self.found.accesses.push(self.access(cell, size, action, span, here));
+            self.found.accesses.push(self.access(cell, width, action, span, here));
         }
     }
 
-    fn access(&self, cell: Cell, size: u32, action: Action, span: Span, here: &Caller) -> CellAccess {
+    fn access(&self, cell: Cell, width: Width, action: Action, span: Span, here: &Caller) -> CellAccess {
         let (locks, guards) = (self.locks.clone(), here.guards.clone());
-        CellAccess { cell, size, action, span, locks, guards, is_repeated: here.is_repeated }
+        CellAccess { cell, width, action, span, locks, guards, is_repeated: here.is_repeated }
     }
 }
 

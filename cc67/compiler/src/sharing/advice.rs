@@ -2,13 +2,16 @@
 
 use std::collections::BTreeSet;
 
-use kmotiondef::variables::{CHAN, USER_CALL_BACK, cell_name, variable_around};
+use kmotiondef::limits::N_USER_DATA_VARS;
+use kmotiondef::structs::Persist;
+use kmotiondef::variables::{CHAN, PERSIST, USER_CALL_BACK, cell_name, variable_around};
 use kmotiondef::{GuestAddr, ThreadId};
 
 use super::Cell;
 use super::accesses::{Action, CellAccess, ThreadProgram, UpdateKind};
 use super::flow::{Guard, Wait};
 use crate::diag::{Diagnostic, Lint};
+use crate::ir::operators::Width;
 use crate::typed::SymbolId;
 
 /// The way to more.
@@ -34,7 +37,10 @@ pub(crate) fn advise(program: &ThreadProgram<'_>, programs: &[ThreadProgram<'_>]
     let [main, call_back] = contexts(program);
     let others = programs.iter().filter(|other| other.thread != program.thread);
     let found = others.flat_map(contexts).flat_map(|theirs| {
-        lost_updates(main, theirs).chain(torn_doubles(main, theirs)).chain(early_flags(main, theirs))
+        lost_updates(main, theirs)
+            .chain(torn_doubles(main, theirs))
+            .chain(early_flags(main, theirs))
+            .chain(other_types(main, theirs))
     });
     // The board's own compilers read memory each time; this is for other ones.
     found.chain(not_volatile(main, call_back)).collect()
@@ -104,7 +110,7 @@ fn torn_doubles<'a>(
 ) -> impl Iterator<Item = Diagnostic> + 'a {
     let mut seen = BTreeSet::new();
     let stores = ours.accesses.iter().enumerate().filter(|(_, access)| {
-        access.size == 8
+        access.width.bytes() == 8
             && matches!(access.action, Action::Store(_) | Action::Update(_))
             && !is_of_axis(access.cell)
     });
@@ -116,7 +122,7 @@ fn torn_doubles<'a>(
             return None;
         }
         let mut loads = theirs.accesses.iter().enumerate().filter(|(_, other)| {
-            other.size == 8 && other.action == Action::Load && is_same(ours, access, theirs, other)
+            other.width.bytes() == 8 && other.action == Action::Load && is_same(ours, access, theirs, other)
         });
         let (_, other) = loads.find(|(place, _)| {
             is_conflict(ours, number, theirs, *place) && !comes_before(ours, number, theirs, *place)
@@ -170,6 +176,53 @@ fn early_flags<'a>(
                 .note(MORE)
         })
     })
+}
+
+/// Elements of `persist.UserData` that `ours` only reads as one type, and `theirs` only stores as the other.
+fn other_types<'a>(
+    ours: SharingContext<'a>,
+    theirs: SharingContext<'a>,
+) -> impl Iterator<Item = Diagnostic> + 'a {
+    let mut seen = BTreeSet::new();
+    ours.accesses.iter().filter_map(move |read| {
+        let is_single = match read.width {
+            Width::F32 => true,
+            Width::I32 => false,
+            _ => return None,
+        };
+        let is_other = |store: &CellAccess| {
+            let other = if is_single { Width::I32 } else { Width::F32 };
+            // All bits of a 0 are 0, and a constant may be a flag.
+            matches!(store.action, Action::Store(None)) && store.width == other
+        };
+        let is_it = |access: &&CellAccess| access.cell == read.cell;
+        let only_reads = ours.accesses.iter().filter(is_it).all(|access| access.action == Action::Load);
+        let mut stores = theirs.accesses.iter().filter(is_it).filter(|access| access.action != Action::Load);
+        let store = stores.next().filter(|store| is_other(store) && stores.all(is_other))?;
+        let is_read = read.action == Action::Load && only_reads && is_element(read.cell);
+        (is_read && is_same(ours, read, theirs, store) && seen.insert(read.cell)).then(|| {
+            let cell = name(ours.program, read);
+            let (read_as, stored, help) = match is_single {
+                true => ("a `float`", "an integer", cell.clone()),
+                false => ("an integer", "a `float`", format!("*(float *)&{cell}")),
+            };
+            let message =
+                format!("{cell} is read as {read_as}, and {} stores {stored} there", who(theirs, store));
+            Diagnostic::warning(Lint::UserDataType, read.span, message)
+                .at("the bits of the other type")
+                .help(format!("read `{help}`, or store the other type"))
+        })
+    })
+}
+
+/// Returns whether a cell is an element of `persist.UserData` for programs.
+fn is_element(cell: Cell) -> bool {
+    /// The elements of the PC's requests and answers, and of constant surface speed.
+    const OF_THE_PC: std::ops::RangeInclusive<u32> = 100..=114;
+    let Cell::Board(address) = cell else { return false };
+    let first = PERSIST.field(Persist::USER_DATA).address().get();
+    let index = address.wrapping_sub(first) / 4;
+    index < N_USER_DATA_VARS as u32 && !OF_THE_PC.contains(&index)
 }
 
 /// Variables that a loop of `main` without a call waits for, that the call-back stores and that are not `volatile`.
@@ -281,7 +334,7 @@ fn is_of_axis(cell: Cell) -> bool {
 /// Returns the name of a cell in the source.
 fn name(program: &ThreadProgram<'_>, access: &CellAccess) -> String {
     match access.cell {
-        Cell::Board(address) => cell_name(GuestAddr::new(address), access.size),
+        Cell::Board(address) => cell_name(GuestAddr::new(address), access.width.bytes()),
         Cell::Variable(symbol, 0) => program.unit.symbols[symbol].name.clone(),
         Cell::Variable(symbol, offset) => format!("{} + {offset}", program.unit.symbols[symbol].name),
     }
