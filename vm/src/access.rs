@@ -89,7 +89,7 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
     /// Stores the rest of a slot.
     ///
     /// # Errors
-    /// What the place has become meanwhile.
+    /// The address may have become unmapped or write-protected since the low word was stored.
     pub(crate) fn store_high_word(&mut self, word: HighWord) -> Result<(), TrapKind> {
         self.memory.store(word.place, word.value)
     }

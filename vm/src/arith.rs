@@ -1,15 +1,13 @@
 //! Arithmetic of the target, in one place.
 //!
-//! The interpreter executes with it, the compiler folds constants with it, the native
-//! engine's slow paths call it: the three agree by construction. Rules: `dialect.md` 1.4 of
-//! the specification.
+//! The interpreter executes with it, the compiler folds constants with it, the native engine's slow paths call it: so
+//! the three agree by construction. Rules: `dialect.md` 1.4 of the specification.
 //!
-//! The bits of a NaN that an operation makes differ between processors, so every operation
-//! here yields the same one.
+//! The bits of a NaN produced by an operation differ between processors, so every operation here yields the same NaN.
 
 use std::hint::cold_path;
 
-/// `value`, with every NaN made the same.
+/// `value`, with every NaN replaced by the canonical NaN.
 #[must_use]
 #[inline]
 pub const fn canonical_f32(value: f32) -> f32 {
@@ -20,7 +18,7 @@ pub const fn canonical_f32(value: f32) -> f32 {
     value
 }
 
-/// `value`, with every NaN made the same.
+/// `value`, with every NaN replaced by the canonical NaN.
 #[must_use]
 #[inline]
 pub const fn canonical_f64(value: f64) -> f64 {
@@ -114,8 +112,8 @@ impl WordDivision {
 
     /// The result of the firmware's routine for a division of `a` by zero.
     ///
-    /// It subtracts and shifts one time more than the dividend has bits, and zero can always be subtracted
-    /// (`c67-subset.md` section 7; measured for what that section does not list).
+    /// It subtracts and shifts once more than the dividend has bits, and zero can always be subtracted (`c67-subset.md`
+    /// section 7; measured for what that section does not list).
     #[must_use]
     pub const fn by_zero(self, a: i32) -> i32 {
         let (quotient, remainder) = ones(a.unsigned_abs());
@@ -155,7 +153,7 @@ pub const fn shl_i32(a: i32, count: i32) -> i32 {
     if all { 0 } else { a.wrapping_shl(count) }
 }
 
-/// Arithmetic right shift by `count` modulo 64; all sign from 32 on.
+/// Arithmetic right shift by `count` modulo 64; only sign bits remain from 32 on.
 #[must_use]
 #[inline]
 pub const fn shr_i32_s(a: i32, count: i32) -> i32 {

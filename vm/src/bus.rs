@@ -1,7 +1,7 @@
 //! Device registers: addresses where a read or write is an action.
 //!
-//! The machine does not know the devices; the kernel routes each access to its device. An access of eight bytes reaches
-//! the bus as two of four, low half first.
+//! The machine does not know the devices; the kernel routes each access to its device. An eight-byte access reaches the
+//! bus as two four-byte accesses, low half first.
 
 use kmotiondef::{AccessSize, Cycles, GuestAddr};
 
@@ -13,7 +13,7 @@ pub trait Bus {
     /// Writes a register or sends a command to the flash chip; the upper bits of `value` beyond `size` are zero.
     fn write(&mut self, addr: GuestAddr, size: AccessSize, value: u32, now: Cycles);
 
-    /// Processor time that an access of this address takes beyond the instruction's own.
+    /// Processor time that an access to this address takes beyond that of the instruction itself.
     fn access_cycles(&self, addr: GuestAddr) -> Cycles {
         let _ = addr;
         Cycles::new(0)

@@ -1,10 +1,10 @@
 //! The arguments of a firmware call, as every engine hands them over.
 //!
-//! How a program passes arguments is a matter of its engine: bytecode has them in registers after its own, machine
-//! code in the state that it shares with the engine, the real processor in A4, B4, A6, B6 and so on and then on its
-//! stack. The firmware sees none of that. It takes arguments by position, and of a variadic function the variable part
-//! by its address ([`VarArgs`]). Its result is a [`Value`](crate::firmware::Value), which the engine puts where its
-//! programs look for it.
+//! Each engine passes arguments in its own way: bytecode in the registers after those of the caller, machine code in
+//! the state that it shares with the engine, the real processor in A4, B4, A6, B6 and so on and then on its stack. The
+//! firmware sees none of that. It takes arguments by position, and the variable part of a variadic call by its address
+//! ([`VarArgs`]). Its result is a [`Value`](crate::firmware::Value), which the engine puts where its programs look for
+//! it.
 
 use kmotiondef::GuestAddr;
 
@@ -20,7 +20,7 @@ impl<'a> CallArguments<'a> {
     /// No arguments.
     pub const NONE: Self = Self(&[]);
 
-    /// CallArguments that lie in slots one after another.
+    /// Call arguments in consecutive slots.
     #[must_use]
     pub const fn from_slots(slots: &'a [u64]) -> Self {
         Self(slots)
@@ -40,7 +40,7 @@ impl<'a> CallArguments<'a> {
     }
 }
 
-/// Room to gather the arguments of calls in, for an engine whose programs do not keep them in slots.
+/// A buffer in which an engine gathers the arguments of a call if its programs do not keep them in slots.
 #[derive(Clone, Debug, Default)]
 pub struct ArgumentList(Vec<u64>);
 

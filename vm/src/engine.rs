@@ -2,7 +2,7 @@
 //!
 //! An engine keeps a context for each thread and one for the call-back: registers, call frames, its code and the
 //! position in it. Contexts are opaque to everything else, so engines that have only this trait in common can run
-//! threads side by side on one machine. An engine decides nothing about time: it obeys `charge` and returns.
+//! threads side by side on one machine. An engine makes no decision about time: it obeys `charge` and returns.
 
 use std::fmt;
 use std::sync::Arc;
@@ -27,11 +27,11 @@ use crate::wake::Wake;
 pub enum Stop {
     /// The budget is used up.
     Preempted,
-    /// Only of a long slice: what comes next involves the board, so it belongs into an ordinary slice.
+    /// In a long slice only: the next instruction involves the board, so it must run in an ordinary slice.
     NeedsBoard,
     /// A debugger holds the context before its instruction; the slice continues when the context is resumed.
     Held,
-    /// A firmware call waits; it is repeated when the wake comes true.
+    /// A firmware call waits; it is repeated when the wake event occurs.
     Waiting(Wake),
     /// The program has returned from its entry function or called `ThreadDone`.
     Ended,
@@ -45,24 +45,24 @@ pub enum Observed {
     /// None.
     #[default]
     None,
-    /// In each slice of a thread, those that the firmware does not take for [redundant](crate::firmware::Repeats).
+    /// Each access once per slice of a thread, unless the firmware takes it for [redundant](crate::firmware::Repeats).
     Fresh,
-    /// All, each before it is made, too ([`Firmware::switch_at`]); bytecode is interpreted then.
+    /// All accesses, each also before it is made ([`Firmware::switch_at`]); bytecode is always interpreted then.
     All,
 }
 
 /// The points at which a thread that runs bytecode can lose the processor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Preemption {
-    /// After a `charge` that overdraws the budget: what it pays for is never split.
+    /// After a `charge` that overdraws the budget: a charged segment is never split.
     #[default]
     Segments,
-    /// Before any instruction, in the cycle in which the slice ends, as on the board: between the load and the store of
-    /// one statement, too, and between the two words of a store of eight bytes.
+    /// Before any instruction, in the cycle in which the slice ends, as on the board: even between the load and the
+    /// store of one statement, and between the two words of an eight-byte store.
     ///
-    /// A segment that the budget covers is executed at once. Another one is executed in [`meter::steps`] to its end, in
-    /// this slice and the next: an instruction takes effect if some of the budget is left then. A firmware function, a
-    /// call within the program with its result, and the copy of a block are one step.
+    /// A segment that the budget covers is executed as a whole. Otherwise it is executed in [`meter::steps`], in this
+    /// slice and the next: an instruction takes effect if some of the budget is left at its step. A firmware function,
+    /// a call within the program with its result, and the copy of a block are one step.
     Instructions,
 }
 
@@ -120,7 +120,7 @@ impl ContextId {
 pub struct CallStack {
     /// The stack of the context.
     pub whole: Stack,
-    /// The context has calls in progress, whose part of the stack stays as it is.
+    /// True if the context has calls in progress, whose part of the stack must not change.
     pub is_in_use: bool,
 }
 
@@ -141,13 +141,13 @@ impl Stack {
     }
 }
 
-/// The iterations of waiting loops that a slice passes over.
+/// The iterations of waiting loops that are skipped in a slice.
 #[derive(Clone, Copy, Debug)]
 pub struct Polling {
     is_on: bool,
-    /// The cycles that were passed over so far.
+    /// The cycles skipped so far.
     passed: Cycles,
-    /// The budget after the last access to a register of a device; more than any budget if there was none.
+    /// The budget after the last access to a device register; more than any budget if there was none.
     accessed: Cycles,
 }
 
@@ -161,13 +161,13 @@ impl Polling {
         Self { is_on, passed: Cycles::new(0), accessed: Cycles::new(i64::MAX) }
     }
 
-    /// Reports whether iterations are passed over.
+    /// Reports whether iterations are skipped.
     #[must_use]
     pub(crate) const fn is_on(self) -> bool {
         self.is_on
     }
 
-    /// The cycles of the iterations that were passed over.
+    /// The cycles of the skipped iterations.
     #[must_use]
     pub(crate) const fn passed(self) -> Cycles {
         self.passed
@@ -178,9 +178,9 @@ impl Polling {
 pub(crate) struct Iteration<'a> {
     /// The budget at its start.
     pub(crate) start: Cycles,
-    /// The use that it makes of the time, if it does.
+    /// The time comparisons of the iteration, if it makes any.
     pub(crate) clock: Option<&'a TimeTests>,
-    /// The budget after the call that has yielded the time; that at its start if there was none.
+    /// The budget after the call that yielded the time; the budget at the start of the iteration if there was none.
     pub(crate) called: Cycles,
     /// The doubles in registers.
     pub(crate) register: &'a dyn Fn(u16) -> f64,
@@ -205,12 +205,12 @@ pub struct Slice<'a, F: ?Sized> {
     pub budget: Cycles,
     /// The wake that came true, if the context is in a waiting call.
     pub woken: Option<Wake>,
-    /// True if the budget is that of several slices, of a thread that is alone and of a board that does nothing.
+    /// True if the budget covers several slices: the thread is the only one, and the board does nothing.
     ///
-    /// The context then computes with registers and SDRAM alone. Before anything else it stops with
+    /// The context may then compute with registers and SDRAM only. Before any other action it stops with
     /// [`Stop::NeedsBoard`].
     pub is_long: bool,
-    /// The iterations of waiting loops that are passed over.
+    /// The waiting-loop iterations that are skipped.
     pub polling: Polling,
 }
 
@@ -221,15 +221,15 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
         self.start + (self.length - self.budget)
     }
 
-    /// Notes an access to a register of a device: what it yields may be different each time.
+    /// Notes an access to a device register, which may yield a different value each time.
     pub(crate) const fn note_access(&mut self) {
         self.polling.accessed = self.budget;
     }
 
-    /// Passes over iterations of a [waiting loop](crate::polling) that are like the one that has just ended.
+    /// Skips iterations of a [waiting loop](crate::polling) that equal the one that has just ended.
     ///
-    /// It began in this slice. The last one like it that the slice covers is executed again: so the firmware remembers
-    /// the same last calls, at the same instants, as without this.
+    /// That iteration began in this slice. The last equal iteration that the slice covers is executed again, so that
+    /// the firmware sees the same last calls at the same instants as without skipping.
     pub(crate) fn pass_iterations(&mut self, iteration: &Iteration<'_>) {
         let each = iteration.start - self.budget;
         if !self.polling.is_on || self.polling.accessed <= iteration.start || each <= Cycles::default() {
@@ -250,8 +250,7 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
         self.polling.passed += passed;
     }
 
-    /// The number of iterations of `each` cycles before one of the comparisons with the time has another result; at
-    /// most `most`.
+    /// The number of iterations of `each` cycles, at most `most`, before a comparison with the time changes its result.
     fn count_until(&self, clock: &TimeTests, iteration: &Iteration<'_>, each: Cycles, most: i64) -> i64 {
         let called = self.start + (self.length - iteration.called);
         let time = |count: i64| self.firmware.time(self.memory, called + Cycles::new(count * each.get()));
@@ -272,8 +271,8 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
 
     /// Makes the firmware call of `address` for the context `id`, which is at the instruction `at`.
     ///
-    /// After [`Outcome::Wait`] the engine stops the context in the call, and makes the same call with the same arguments
-    /// again when the context is resumed: the wake that came true is handed over here.
+    /// After [`Outcome::Wait`] the engine stops the context in the call. When the context is resumed, the engine
+    /// repeats the call with the same arguments, and passes the wake event that has occurred.
     ///
     /// # Errors
     /// The kind of trap that stops the context.
@@ -300,7 +299,8 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
     }
 }
 
-/// A snapshot that another engine has taken: threads that run as machine code continue where they were taken only.
+/// The snapshot was taken by another engine: threads that run as machine code can continue only in the engine that took
+/// it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the snapshot is from another board, whose native threads cannot continue here")]
 pub struct ForeignSnapshot;
@@ -314,14 +314,14 @@ pub enum HoldReason {
     Step,
     /// A watched range has changed.
     Changed {
-        /// Its place in the list that was set.
+        /// Its index in the list of watched ranges.
         index: usize,
-        /// The instruction that did it; `None` if it was none of this context's.
+        /// The instruction that changed it; `None` if it was not one of this context.
         by: Option<CodeAddr>,
     },
-    /// An instruction has read a range, or has written to it, whatever is there now.
+    /// An instruction has read a range, or written to it, whether or not the bytes changed.
     Accessed {
-        /// Its place in the list that was set.
+        /// Its index in the list of watched ranges.
         index: usize,
         /// The instruction.
         by: CodeAddr,
@@ -330,14 +330,14 @@ pub enum HoldReason {
     },
 }
 
-/// Bytes of memory whose accesses by programs are looked for.
+/// Bytes of memory for which accesses by programs are watched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AccessRange {
     /// The first of them.
     pub address: GuestAddr,
     /// Number of bytes.
     pub size: u32,
-    /// Stores count as well as loads.
+    /// True if stores are watched as well as loads.
     pub has_stores: bool,
 }
 
@@ -366,7 +366,7 @@ pub enum CallEnd {
     Trapped(Trap),
     /// No program that is loaded, and not the firmware, has such a function.
     NoFunction,
-    /// The engine makes no calls for a debugger.
+    /// The engine cannot make calls for a debugger.
     Unsupported,
 }
 
@@ -388,10 +388,10 @@ pub trait Executor: Default {
     /// The code that this engine runs.
     type Code;
 
-    /// True if it makes code of the host; real images on the same machine are translated then, too.
+    /// True if the engine generates host code; real images on the same machine are then translated, too.
     const TRANSLATES: bool = false;
 
-    /// True if it keeps an account of the time spent; one of real images on the same machine is kept then, too.
+    /// True if the engine keeps an account of the time spent; so do real images on the same machine then.
     const KEEPS_ACCOUNT: bool = false;
 
     /// All contexts as they were at an instant between two slices.
@@ -404,7 +404,7 @@ pub trait Executor: Default {
     /// ([`Firmware::accessed`]).
     fn observe(&mut self, observed: Observed);
 
-    /// Gives `id` a fresh context that is at the beginning of the function at `entry`.
+    /// Gives `id` a fresh context at the beginning of the function at `entry`.
     ///
     /// The code is always run with the same firmware.
     ///
@@ -422,19 +422,19 @@ pub trait Executor: Default {
     /// Runs `id` until it stops. A context that was never started has ended.
     fn resume<F: Firmware + ?Sized>(&mut self, id: ContextId, slice: &mut Slice<'_, F>) -> Stop;
 
-    /// All contexts as they are.
+    /// A snapshot of all contexts.
     fn snapshot(&self) -> Self::Snapshot;
 
-    /// Makes all contexts what they were when `snapshot` was taken.
+    /// Restores all contexts from `snapshot`.
     ///
     /// # Errors
-    /// [`ForeignSnapshot`] if another engine has taken it and its contexts cannot run on this one; nothing has changed
-    /// then.
+    /// [`ForeignSnapshot`] if another engine took it and its contexts cannot run on this one; nothing is changed in
+    /// that case.
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), ForeignSnapshot>;
 
     /// Reports whether `id` may be resumed with a [long slice](Slice::is_long).
     ///
-    /// In one it must stop as well before it uses more of its stack than ever.
+    /// In a long slice it must also stop before it uses more of its stack than ever before.
     fn takes_long_slices(&self, id: ContextId) -> bool {
         let _ = id;
         false
@@ -446,8 +446,8 @@ pub trait Executor: Default {
     /// The position of `id`: its instruction, then the calls that led there, innermost first.
     fn backtrace(&self, id: ContextId) -> Vec<CodeAddr>;
 
-    /// True if it can hold contexts for a debugger: without it, the methods below do nothing and find nothing. Holding
-    /// contexts changes neither what a program does nor when.
+    /// True if the engine can hold contexts for a debugger; otherwise the methods below have no effect and find
+    /// nothing. Holding a context changes neither the actions of a program nor their timing.
     const HOLDS: bool = false;
 
     /// Holds contexts before these instructions, and before no others.
@@ -460,24 +460,24 @@ pub trait Executor: Default {
         let _ = context;
     }
 
-    /// Holds contexts after these bytes, addresses and how many, are not what they are now; and after no others.
+    /// Holds contexts after a change of these bytes (address and length each), and after changes of no others.
     fn set_watched(&mut self, memory: &GuestMemory, ranges: &[(GuestAddr, u32)]) {
         let _ = (memory, ranges);
     }
 
-    /// Holds contexts after instructions that access these bytes, and after no others. What functions of the firmware
-    /// read is not noticed.
+    /// Holds contexts after instructions that access these bytes, and no others. Reads by firmware functions are not
+    /// noticed.
     fn set_accessed(&mut self, ranges: &[AccessRange]) {
         let _ = ranges;
     }
 
-    /// Returns which of what is watched has changed since the last call.
+    /// Returns the index of a watched range that has changed since the last call.
     fn take_change(&mut self, memory: &GuestMemory) -> Option<usize> {
         let _ = memory;
         None
     }
 
-    /// Returns which context was held last, and why; once.
+    /// Returns the context that was held last and the reason, once.
     fn take_hold(&mut self) -> Option<Hold> {
         None
     }
@@ -488,7 +488,8 @@ pub trait Executor: Default {
         Vec::new()
     }
 
-    /// Sets a register of a call in progress, the innermost of which is number 0; whether there is such a register.
+    /// Sets a register of a call in progress, counted from the innermost as 0; returns whether there is such a
+    /// register.
     fn set_register(&mut self, id: ContextId, frame: usize, register: u16, slot: u64) -> bool {
         let _ = (id, frame, register, slot);
         false

@@ -1,9 +1,9 @@
-//! Accesses that tell nothing new: like one that the context has made before in the same slice.
+//! Redundant accesses: those that equal one that the context has already made in the same slice.
 //!
-//! No other thread runs in a slice. So an instruction that accesses an address again there is reported once, unless the
-//! firmware wants to have it again ([`Repeats`](crate::firmware::Repeats)). The accesses are in a table without
-//! collision lists: one that takes the entry of another has that reported again. The table is the same on every engine,
-//! and so is what is reported.
+//! No other thread runs in a slice. So an instruction that accesses the same address several times is reported once,
+//! unless the firmware requests repeats ([`Repeats`](crate::firmware::Repeats)). Accesses are kept in a table without
+//! collision lists: an access that is evicted by another is reported again. The table is the same on every engine, and
+//! so are the reports.
 
 use std::cell::Cell;
 use std::sync::Arc;
@@ -37,7 +37,7 @@ pub(crate) struct AccessFilter {
 }
 
 impl AccessFilter {
-    /// A filter that knows no access.
+    /// An empty filter.
     pub(crate) const fn new() -> Self {
         Self {
             slice: Cell::new(1 << SLICE_SHIFT),
@@ -47,7 +47,7 @@ impl AccessFilter {
         }
     }
 
-    /// The filter of a context, which knows no access.
+    /// An empty filter for a context.
     pub(crate) fn with_owners(owners: &Arc<PageOwners>, context: ContextId) -> Self {
         Self { owners: Some((Arc::clone(owners), owner_code(context))), ..Self::new() }
     }
@@ -85,7 +85,7 @@ impl AccessFilter {
         self.entries[place(word, address)].set(self.slice.get() + key(word, address));
     }
 
-    /// Takes over what `saved` knows.
+    /// Restores the entries of `saved`.
     #[cfg(feature = "native")]
     pub(crate) fn put_back(&self, saved: &Self) {
         self.slice.set(saved.slice.get());
@@ -123,10 +123,11 @@ const _: () = assert!(PAGES.is_power_of_two());
 /// The mark of a page that several contexts have accessed.
 const SHARED: u8 = u8::MAX;
 
-/// The context that alone has accessed a page of SDRAM after the programs, as a buffer of its own; by page, 0 for none.
+/// For each page of SDRAM after the programs, the only context that has accessed it so far; 0 for none.
 ///
-/// Such accesses are not reported. When another context accesses the page, all are from then on. Of the pages before,
-/// which hold stacks and programs, none has an owner: an address outside SDRAM looks like one of those.
+/// Accesses to a page by its only user are not reported. From the first access by another context on, all accesses to
+/// the page are. The pages before, which hold stacks and programs, have no owner; an address outside SDRAM is treated
+/// like one of them.
 #[derive(Debug)]
 pub(crate) struct PageOwners(Box<[AtomicU8; PAGES]>);
 
@@ -170,7 +171,7 @@ impl PageOwners {
         self.0.iter().map(|page| page.load(Ordering::Relaxed)).collect()
     }
 
-    /// Makes the marks what they were.
+    /// Restores the marks.
     pub(crate) fn put_back(&self, marks: &[u8]) {
         for (page, mark) in self.0.iter().zip(marks) {
             page.store(*mark, Ordering::Relaxed);

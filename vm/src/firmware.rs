@@ -13,7 +13,7 @@ use crate::scheduler::Turn;
 use crate::slot::Slot;
 use crate::thread::Threads;
 use crate::trap::{Trap, TrapKind};
-// Part of what a firmware function returns.
+// Part of the result of a firmware function.
 pub use crate::wake::Wake;
 
 /// A value that crosses between a program and the firmware.
@@ -63,8 +63,7 @@ impl Value {
 pub enum Outcome<T> {
     /// The call is complete; the program continues after it.
     Done(T),
-    /// The thread waits. When the wake comes true the same call is made again, with
-    /// [`Caller::woken`] saying so.
+    /// The thread waits. When the wake event occurs, the same call is repeated with [`Caller::woken`] set.
     Wait(Wake),
     /// The calling thread has ended (`ThreadDone`).
     End,
@@ -82,23 +81,24 @@ pub struct Signature {
 impl Signature {
     /// Reports whether a function of this signature may be called through a pointer to `called`.
     ///
-    /// The call passes what the function takes, in this order; what it passes after that is ignored. A result may be
-    /// ignored, and one that is not there reads as 0. Machine code relies on the order: in every calling convention
-    /// the place of a parameter depends only on those before it, and the caller clears the stack.
+    /// The call must pass the function's parameters in order; further arguments are ignored. A result may be ignored,
+    /// and a missing result reads as 0. Machine code relies on the order: in every calling convention the place of a
+    /// parameter depends only on those before it, and the caller clears the stack.
     #[must_use]
     pub fn may_be_called_as(&self, called: &Self) -> bool {
         let results_agree = self.result.is_none() || called.result.is_none() || self.result == called.result;
         results_agree && called.params.starts_with(&self.params)
     }
 
-    /// [`may_be_called_as`](Self::may_be_called_as), as what stops a program that calls the function at `addr`.
+    /// Checks [`may_be_called_as`](Self::may_be_called_as) for a call of the function at `addr`, with the trap as the
+    /// error.
     pub(crate) fn check_call(&self, addr: GuestAddr, called: &Self) -> Result<(), TrapKind> {
         if self.may_be_called_as(called) { Ok(()) } else { Err(TrapKind::SignatureMismatch { addr }) }
     }
 }
 
-/// A firmware function that does nothing but compute its result from its arguments, so that an engine may
-/// call it without asking the firmware.
+/// A firmware function that only computes its result from its arguments, so that an engine may call it without the
+/// firmware.
 #[derive(Clone, Copy, Debug)]
 pub struct Pure {
     /// The cost of a call, in cycles.
@@ -179,13 +179,13 @@ pub struct Caller<'a> {
     pub slice_start: Cycles,
     /// The budget of the slice at its start, in cycles.
     pub slice: Cycles,
-    /// The rest of it; the function spends its cost here.
+    /// The rest of the budget; the function spends its cost here.
     pub budget: &'a mut Cycles,
-    /// The wake that made the machine repeat the call; `None` the first time.
+    /// The wake event after which the machine repeats the call; `None` the first time.
     pub woken: Option<Wake>,
     /// The arguments.
     pub arguments: CallArguments<'a>,
-    /// The instruction that calls; `None` for a call that no program makes.
+    /// The calling instruction; `None` for a call that does not come from a program.
     pub at: Option<CodeAddr>,
 }
 
@@ -196,7 +196,8 @@ impl Caller<'_> {
         self.slice_start + (self.slice - *self.budget)
     }
 
-    /// Returns whether the call ends in a later slice of the thread: it has spent more than what was left of this one.
+    /// Returns whether the call ends in a later slice of the thread, because it has spent more than the rest of this
+    /// slice.
     #[must_use]
     pub fn is_overdrawn(&self) -> bool {
         *self.budget < Cycles::new(0)
@@ -232,7 +233,7 @@ pub struct ExecutedPacket {
     pub start: Cycles,
     /// The cycles that it took.
     pub cycles: Cycles,
-    /// Its instructions, bars between them.
+    /// Its instructions, separated by bars.
     pub text: String,
 }
 
@@ -251,19 +252,19 @@ pub struct SharedAccess<'a> {
     pub is_store: bool,
     /// The value as a register slot; 0 for the copy of a block.
     pub value: u64,
-    /// The loads in the same function whose values the stored value depends on; for a load, those whose values are used
-    /// together with its own.
+    /// The loads in the same function on whose values the stored value depends; for a load, the loads whose values are
+    /// used together with its own.
     pub made_of: &'a [CodeAddr],
     /// The instant.
     pub now: Cycles,
 }
 
-/// The treatment of an access that an instruction makes again in the same slice.
+/// The treatment of an access that an instruction repeats in the same slice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Repeats {
-    /// It is reported, too.
+    /// It is reported again.
     Reported,
-    /// It tells nothing new; the machine may leave it out.
+    /// It is redundant; the machine may omit it.
     Redundant,
 }
 
@@ -293,10 +294,10 @@ pub struct NextAccess {
     pub now: Cycles,
 }
 
-/// The kind of state that a firmware function yields which does nothing else.
+/// The kind of state yielded by a firmware function that has no other effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReadState {
-    /// One that changes with ticks only, or by what a program does.
+    /// A state that changes only with ticks, or by an action of a program.
     Steady,
     /// The time as a double, which grows from cycle to cycle.
     Time,
@@ -304,9 +305,9 @@ pub enum ReadState {
 
 /// The firmware as the machine sees it.
 ///
-/// In each tick the machine calls, in this order: [`callback`](Self::callback) (and runs what it
-/// names), [`tick`](Self::tick), [`switch_to`](Self::switch_to), and then either
-/// [`primary_slice`](Self::primary_slice) or the firmware calls of a user thread.
+/// In each tick the machine calls, in this order: [`callback`](Self::callback) (and runs the function that it returns),
+/// [`tick`](Self::tick), [`switch_to`](Self::switch_to), and then either [`primary_slice`](Self::primary_slice) or the
+/// firmware calls of a user thread.
 pub trait Firmware: Bus {
     /// The signature of the function at `address`, if a firmware function starts there.
     fn signature(&self, address: GuestAddr) -> Option<&Signature>;
@@ -317,17 +318,17 @@ pub trait Firmware: Bus {
     /// The kind of trap that stops the calling thread.
     fn call(&mut self, address: GuestAddr, caller: &mut Caller<'_>) -> Result<Outcome<Value>, TrapKind>;
 
-    /// The function at `address`, if it is one that only computes; [`call`](Self::call) then does the same.
+    /// The function at `address`, if it only computes; [`call`](Self::call) then gives the same result.
     fn pure(&self, address: GuestAddr) -> Option<Pure> {
         let _ = address;
         None
     }
 
-    /// The state of the board that a call of the function at `address` yields, if it does nothing else.
+    /// The kind of state that a call of the function at `address` yields, if it has no other effect.
     ///
-    /// Called again in the same slice, while nothing is stored and nothing else is called, it takes as long, yields the
-    /// same or another [time](Self::time), and leaves the firmware as the call before has left it, up to the instant
-    /// [`steady_until`](Self::steady_until).
+    /// If it is called again in the same slice, with no store and no other call in between, it takes the same time,
+    /// yields the same state or another [time](Self::time), and leaves the firmware as the previous call left it, up to
+    /// the instant [`steady_until`](Self::steady_until).
     fn reads(&self, address: GuestAddr) -> Option<ReadState> {
         let _ = address;
         None
@@ -339,7 +340,8 @@ pub trait Firmware: Bus {
         f64::NAN
     }
 
-    /// The instant at which a call that only [reads](Self::reads) may do more than before; `None` if there is none.
+    /// The instant from which a call that only [reads](Self::reads) may have more effects than before; `None` if there
+    /// is none.
     fn steady_until(&self) -> Option<Cycles> {
         None
     }
@@ -372,7 +374,7 @@ pub trait Firmware: Bus {
     /// The servo interrupt: all work of the kernel in one tick.
     fn tick(&mut self, context: &mut TickContext<'_>);
 
-    /// The cycles that the servo interrupt takes of the present tick, asked after [`tick`](Self::tick).
+    /// The cycles that the servo interrupt takes of the present tick; called after [`tick`](Self::tick).
     fn servo_time(&self, memory: &GuestMemory) -> Cycles {
         let _ = memory;
         Cycles::new(8_000)
@@ -393,13 +395,13 @@ pub trait Firmware: Bus {
         let _ = (thread, context);
     }
 
-    /// Reports whether somebody wants to know of slices ([`slice_ran`](Self::slice_ran)).
+    /// Reports whether slices should be reported to [`slice_ran`](Self::slice_ran).
     fn follows_slices(&self) -> bool {
         false
     }
 
-    /// A thread has run in its slice, from `start` to `end`; where slices can end at any instruction, with the one before
-    /// which the servo interrupt has stopped it.
+    /// Reports that a thread has run in its slice, from `start` to `end`; where slices can end at any instruction, with
+    /// the instruction before which the servo interrupt has stopped it.
     fn slice_ran(&mut self, thread: ThreadId, start: Cycles, end: Cycles, interrupted_at: Option<CodeAddr>) {
         let _ = (thread, start, end, interrupted_at);
     }
@@ -415,20 +417,21 @@ pub trait Firmware: Bus {
         let _ = packet;
     }
 
-    /// A program has made an access; reported where the machine [observes](crate::machine::Config::observed) them.
+    /// Reports an access by a program, where the machine [observes](crate::machine::Config::observed) accesses.
     fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory) -> Repeats {
         let _ = (access, memory);
         Repeats::Reported
     }
 
-    /// Returns whether a call or an access since the last question has changed what orders accesses: all of them are
-    /// reported again then.
+    /// Returns whether a call or an access since the last query has changed the order of accesses: all of them are then
+    /// reported again.
     fn take_ordering(&mut self) -> bool {
         false
     }
 
-    /// Returns where a thread loses the processor at an access to shared memory that it is about to make, if it does; asked
-    /// where the machine [observes](crate::machine::Config::observed) them, again if another slice ends before the access.
+    /// Returns the point at which a thread loses the processor at an access to shared memory that it is about to make,
+    /// if it does. Called where the machine [observes](crate::machine::Config::observed) accesses, and again if another
+    /// slice ends before the access.
     fn switch_at(&mut self, access: &NextAccess) -> Option<SwitchPoint> {
         let _ = access;
         None
@@ -437,26 +440,25 @@ pub trait Firmware: Bus {
     /// A thread was stopped by a trap, or the call-back, which the kernel must then take out.
     fn trapped(&mut self, trap: &Trap, context: &mut TickContext<'_>);
 
-    /// A thread's stack has first held more than the board's would; at most once for each start.
+    /// Reports that a thread's stack has exceeded the size of the board's stack; at most once for each start.
     fn stack_exceeded(&mut self, thread: ThreadId, used: u32) {
         let _ = (thread, used);
     }
 
-    /// Number of the next ticks that do nothing but what [`skip_ticks`](Self::skip_ticks) does at once.
+    /// The number of coming ticks that do nothing except what [`skip_ticks`](Self::skip_ticks) does at once.
     fn quiet_ticks(&self, memory: &GuestMemory) -> u64 {
         let _ = memory;
         0
     }
 
-    /// Number of the next ticks that are quiet while a program computes with SDRAM alone; at most as many as
+    /// The number of coming ticks that are quiet while a program computes with SDRAM alone; at most
     /// [`quiet_ticks`](Self::quiet_ticks).
     fn quiet_slices(&self, memory: &GuestMemory) -> u64 {
         let _ = memory;
         0
     }
 
-    /// Stands for `count` calls of `tick`, `switch_to` and `primary_slice`; `context` is that of the
-    /// last of these ticks.
+    /// Replaces `count` calls of `tick`, `switch_to` and `primary_slice`; `context` belongs to the last of these ticks.
     fn skip_ticks(&mut self, count: u64, context: &mut TickContext<'_>) {
         let _ = (count, context);
     }

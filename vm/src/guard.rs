@@ -1,6 +1,6 @@
 //! The words before the bytecode of an image: code that the real processor may execute.
 //!
-//! A loader that ignores an image's target, as the vendor's does, would have the processor execute bytecode. So an
+//! A loader that ignores an image's target, as the vendor's does, would make the processor execute bytecode. So an
 //! image's text begins with a return: a thread that is started there has ended before it reaches the bytecode, whose
 //! first word follows. The entry point of such an image is the start of its text, for the processor as for the
 //! simulated board, which reads the address of `main` in the next word.
@@ -15,7 +15,7 @@ pub const BYTES: usize = 2 * WORD;
 /// `B .S2 B3` and `NOP 5`: the return and its delay slots (`c67x.md` sections 2.2 and 3).
 const RETURN: [u32; 2] = [0x000C_0362, 0x0000_8000];
 
-/// The bytes before the bytecode of a program whose `main` is at `main`.
+/// The bytes before the bytecode of a program with this `main`.
 #[must_use]
 pub fn words(main: GuestAddr) -> [u8; BYTES] {
     let words = [RETURN[0], RETURN[1], main.get(), 0];

@@ -1,9 +1,9 @@
 //! The bytecode engine: interprets a program.
 //!
-//! The registers of all calls of a context lie in one array, each call's window directly
-//! after its caller's registers, so that an argument is written where the callee has its
-//! parameter. `dispatch::execute` goes from instruction to instruction, calls and returns
-//! included, until something else is needed than registers and RAM; the loop around it sees to that.
+//! The registers of all calls of a context lie in one array, each call's window directly after its caller's registers,
+//! so that an argument is written where the callee has its parameter. `dispatch::execute` goes from instruction to
+//! instruction, calls and returns included, until it needs something other than registers and RAM; the loop around it
+//! handles that.
 
 #![deny(clippy::wildcard_enum_match_arm, reason = "a new instruction, operator or mode must be decided")]
 
@@ -57,7 +57,7 @@ pub struct BytecodeEngine {
     steps: Stepping,
 }
 
-/// A context, and the code that it is in.
+/// A context, and the code that it executes.
 #[derive(Debug)]
 struct Running {
     code: Code,
@@ -65,7 +65,7 @@ struct Running {
 }
 
 impl BytecodeEngine {
-    /// Has `observer` observe contexts that are started from now on.
+    /// Observes contexts that are started from now on with `observer`.
     #[cfg(feature = "native")]
     pub(crate) fn observe_with(&mut self, observer: Option<Observer>) {
         self.steps.observer = observer;
@@ -78,7 +78,7 @@ impl BytecodeEngine {
 }
 
 impl BytecodeEngine {
-    /// Gives all contexts the words at which they should be held now.
+    /// Updates, in all contexts, the words at which they are held.
     fn refresh(&mut self) {
         for Running { code, .. } in self.contexts.iter_mut().flatten() {
             let observed = self.steps.observed();
@@ -301,7 +301,7 @@ impl BytecodeEngine {
     }
 }
 
-/// Enters the entry function of a context that was not run yet.
+/// Enters the entry function of a context that has not run yet.
 fn enter(program: &Program, context: &mut Context) -> Result<(), TrapKind> {
     match context.pending.take() {
         Some(function) => context.enter(program, function),
@@ -374,7 +374,7 @@ fn run<F: Firmware + ?Sized>(
                     }
                 }
             }
-            // The instruction after the one that was executed alone.
+            // The context is held at the instruction after the single step.
             Exit::Held | Exit::Shared if is_alone => {}
             Exit::Load(address, width, register) => {
                 let slot = slice.load_slot(address, width)?;
@@ -426,7 +426,7 @@ fn run<F: Firmware + ?Sized>(
     }
 }
 
-/// Executes `context`, whose `pc` is then the instruction that ended that.
+/// Executes `context`; its `pc` is then the instruction that ended the execution.
 fn execute<F: Firmware + ?Sized>(
     program: &Program,
     words: &Words,
@@ -442,7 +442,7 @@ fn execute<F: Firmware + ?Sized>(
     exit
 }
 
-/// Makes a firmware call; the stop, if the context does not continue after it at once.
+/// Makes a firmware call; returns the stop if the context does not continue at once after it.
 ///
 /// # Errors
 /// `missing` if there is no function at `address`, or what the call itself yields.

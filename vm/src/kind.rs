@@ -1,7 +1,7 @@
 //! The kind of an instruction: one word of its row, from which every predicate over instructions follows.
 //!
-//! A question about instructions is a method of [`OpKind`] or a match over it, which names every kind: a new kind is
-//! then a compile error wherever somebody must decide.
+//! A predicate over instructions is a method of [`OpKind`] or an exhaustive match over it: a new kind is then a compile
+//! error wherever a decision is needed.
 
 use crate::operand::Class;
 
@@ -47,7 +47,7 @@ impl Width {
 /// Defines the names of operands that are requested by name.
 macro_rules! operand_names {
     ($($(#[doc = $doc:literal])+ $name:ident = $text:literal,)*) => {
-        /// A name that operands have in the rows, for operands that are looked up by name.
+        /// A name of operands in the rows, for operands that are looked up by name.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Name {
             $($(#[doc = $doc])+ $name,)*
@@ -110,11 +110,11 @@ pub enum OpKind {
     Move,
     /// Assigns the address of a local.
     Address,
-    /// Computes; a NaN that it yields is that of arithmetic.
+    /// Computes; a NaN result is the canonical NaN of arithmetic.
     Arithmetic,
-    /// Changes the sign alone.
+    /// Changes only the sign.
     Negation,
-    /// Computes a value of another class; a NaN that it yields is that of arithmetic.
+    /// Computes a value of another class; a NaN result is the canonical NaN of arithmetic.
     Conversion,
     /// Loads: from `base + off`, or from `addr`.
     Load(Width),
@@ -132,9 +132,9 @@ pub enum OpKind {
     Argument(Class),
     /// Calls a function.
     Call,
-    /// Takes the result of the call before.
+    /// Takes the result of the previous call.
     Result(Class),
-    /// Returns, with a value of this class if there is one.
+    /// Returns, possibly with a value of this class.
     Return(Option<Class>),
     /// Stops the program.
     Stop,
@@ -165,7 +165,7 @@ impl OpKind {
         }
     }
 
-    /// Reports whether execution simply continues with the next word, and the word belongs to no call.
+    /// Reports whether execution simply continues with the next word, and the word does not belong to a call.
     #[must_use]
     pub const fn is_straight(self) -> bool {
         match self {

@@ -5,9 +5,9 @@
 //! the [`scheduler`] selects a thread, and the rest of the tick is that thread's slice: a budget of cycles that its
 //! engine may spend. The engine owns the context of a running thread: registers, calls, the position in the code. It
 //! runs the context until it stops ([`engine::Stop`]): the budget is spent, a firmware call waits, the thread ends, or
-//! it does something impossible ([`trap`]). The thread's program ([`loaded`]) determines the engine. Bytecode comes as
-//! bytes that [`verify`] turns into a [`program::Program`], which is data that any engine of bytecode can run without
-//! further checks; real images are words in guest memory. A firmware call gets its arguments by position ([`call`]),
+//! it traps ([`trap`]). The thread's program ([`loaded`]) determines the engine. Bytecode comes as bytes that
+//! [`verify`] turns into a [`program::Program`], which is data that any engine of bytecode can run without further
+//! checks; real images are words in guest memory. A firmware call gets its arguments by position ([`call`]),
 //! independent of registers. Between two ticks, the whole state can be saved as a [`machine::Snapshot`] and restored
 //! any number of times.
 //!
@@ -34,8 +34,8 @@
 //! - A run is a function of images, inputs and options: no clock, no randomness, no operating-system thread, no hash
 //!   order.
 //! - `charge` is the only place where a thread of bytecode can lose the processor; with
-//!   [`Preemption::Instructions`](engine::Preemption) also before the instructions of a segment that the budget does not
-//!   cover, in the cycles that [`meter::steps`] says.
+//!   [`Preemption::Instructions`](engine::Preemption) also before the instructions of a segment that the budget does
+//!   not cover, in the cycles given by [`meter::steps`].
 //! - A restored machine continues exactly as it did after the snapshot; nothing on a native stack owns anything.
 
 mod access;

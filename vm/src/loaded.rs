@@ -15,14 +15,14 @@ pub use self::image::Image;
 /// The code that a thread is loaded with; each kind has its engine.
 #[derive(Clone, Debug)]
 pub enum Loaded {
-    /// Bytecode, for the engine that the machine was made with.
+    /// Bytecode, for the bytecode engine of the machine.
     Program(Arc<Program>),
     /// Code of the real processor.
     Image(Arc<Image>),
 }
 
 impl Loaded {
-    /// The program, if it is one.
+    /// The program, if it is bytecode.
     #[must_use]
     pub fn program(&self) -> Option<&Arc<Program>> {
         match self {
@@ -40,7 +40,7 @@ impl Loaded {
         }
     }
 
-    /// The addresses that its code lies among.
+    /// The range of addresses that contains its code.
     #[must_use]
     pub fn code(&self) -> Range<GuestAddr> {
         match self {

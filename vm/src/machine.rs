@@ -1,8 +1,8 @@
 //! The machine: memory, threads, programs, an engine, the firmware, and the tick that ties them.
 //!
-//! Tick `k` begins `k` times 90 µs after power-up with the servo interrupt: the call-back, the
-//! kernel's work, the choice of the next thread. What is left of the tick is that thread's
-//! slice. Rules: threads-and-time.md of the specification.
+//! Tick `k` begins `k` times 90 µs after power-up with the servo interrupt: the call-back, the kernel's work, the
+//! choice of the next thread. The rest of the tick is that thread's slice. Rules: threads-and-time.md of the
+//! specification.
 
 mod called;
 mod engines;
@@ -34,9 +34,9 @@ use crate::wake::Wake;
 /// Bytes of the board's stacks that a program can use: each interrupt takes 128 of the 2048.
 pub const BOARD_STACK_USABLE: u32 = BOARD_STACK_SIZE - 128;
 
-/// Ticks that a call-back may run before it counts as endless: the board would stop.
+/// The limit of ticks for a call-back, after which it counts as endless; the board would stop.
 const CALLBACK_TICKS: i64 = 100;
-/// The computer's work for a tick besides programs, in cycles of programs that take as long.
+/// The host's work for a tick besides running programs, in program cycles that take the same time.
 const TICK_WORK: u64 = 500;
 
 const CALLBACK_LIMIT: Cycles = Cycles::new(CALLBACK_TICKS * Cycles::PER_TICK.get());
@@ -46,7 +46,7 @@ const CALLBACK_LIMIT: Cycles = Cycles::new(CALLBACK_TICKS * Cycles::PER_TICK.get
 pub struct Config {
     /// The cycles that the servo interrupt takes of each tick; `None` for the firmware's own figure.
     pub servo: Option<Cycles>,
-    /// Skip time in which nothing can happen; never changes a result.
+    /// Whether time in which nothing can happen is skipped; this never changes a result.
     pub shortcuts: bool,
     /// Stacks as small as the board's.
     pub strict_stack: bool,
@@ -71,7 +71,7 @@ impl Default for Config {
     }
 }
 
-/// A board without its firmware's knowledge: what runs programs in ticks.
+/// A board without its firmware: it runs programs in ticks.
 #[derive(Debug)]
 pub struct Machine<F, E = BytecodeEngine> {
     config: Config,
@@ -88,7 +88,7 @@ pub struct Machine<F, E = BytecodeEngine> {
     /// The tick in progress, if a debugger holds it.
     held: Option<Held>,
     work: u64,
-    /// The cycles that the last slice had beyond its end in the shadow of a branch.
+    /// The cycles by which the last slice has run beyond its end, in the delay slots of a branch.
     shadow: Option<Cycles>,
 }
 
@@ -111,7 +111,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     pub fn with_engine(firmware: F, config: Config, engine: E) -> Self {
         let mut memory = GuestMemory::new();
         memory.set_faults(config.faults);
-        // Known when this is compiled, so that what never translates has no code generator.
+        // A constant, so that a machine that never translates does not contain a code generator.
         let hot = if E::TRANSLATES { HotCode::HERE } else { None };
         let mut engine = engine;
         engine.set_preemption(config.preemption);
@@ -137,7 +137,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         }
     }
 
-    /// Makes `thread` ready to run `program` from `entry`, in place of what it held.
+    /// Makes `thread` ready to run `program` from `entry`, and replaces its previous program.
     ///
     /// The program's bytes are in guest memory already; its text is protected from now on.
     pub fn load_program(&mut self, thread: ThreadId, program: impl Into<Arc<Program>>, entry: GuestAddr) {
@@ -168,7 +168,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         self.threads.start(thread)
     }
 
-    /// The program loaded in `thread`; `None` too for what is not bytecode.
+    /// The program loaded in `thread`; `None` also if the program is not bytecode.
     #[must_use]
     pub fn program(&self, thread: ThreadId) -> Option<&Program> {
         Some(self.loaded(thread)?.program()?)
@@ -180,7 +180,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         self.loaded[thread.index()].as_ref()
     }
 
-    /// The position of `thread`: its instruction, then the calls that led there, innermost first.
+    /// The position of `thread`: its instruction, then the calls that led to it, innermost first.
     #[must_use]
     pub fn backtrace(&self, thread: ThreadId) -> Vec<CodeAddr> {
         let id = ContextId::of(thread);
@@ -256,7 +256,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         &self.firmware
     }
 
-    /// The firmware together with what it works on, for requests from outside between two ticks.
+    /// The firmware together with its tick context, for requests from outside between two ticks.
     pub fn firmware_mut(&mut self) -> (&mut F, TickContext<'_>) {
         let now = end_of(self.tick);
         (
@@ -265,7 +265,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         )
     }
 
-    /// The thread whose slice the last tick was.
+    /// The thread that had the slice of the last tick.
     #[must_use]
     pub const fn turn(&self) -> Turn {
         self.turn
@@ -287,7 +287,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     /// Runs to the end of the next tick in which something can happen, or of tick `limit`, whichever
     /// comes first.
     ///
-    /// A tick that is [held](Self::held) is continued, whatever the limit.
+    /// A tick that is [held](Self::held) is continued regardless of the limit.
     pub fn step(&mut self, limit: Ticks) {
         if self.held.is_some() {
             return self.run_tick();
@@ -303,7 +303,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         }
     }
 
-    /// Runs one tick, or what is left of one that is [held](Self::held).
+    /// Runs one tick, or the rest of one that is [held](Self::held).
     pub fn run_tick(&mut self) {
         if let Some(held) = self.held.take() {
             return self.go_on(held);
@@ -340,7 +340,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         self.config.servo.unwrap_or_else(|| self.firmware.servo_time(&self.memory))
     }
 
-    /// Runs the call-back, if there is one, and returns what it spent; `None` if it is held.
+    /// Runs the call-back, if there is one, and returns the cycles it spent; `None` if it is held.
     fn run_callback(&mut self, begin: Cycles) -> Option<Cycles> {
         let address = self.firmware.callback(&self.memory);
         if address.is_null() {
@@ -359,7 +359,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         self.resume_callback(address, begin, CALLBACK_LIMIT)
     }
 
-    /// Runs the call-back at `address` until it returns; what it has spent, `None` if it is held.
+    /// Runs the call-back at `address` until it returns; yields the cycles it has spent, `None` if it is held.
     fn resume_callback(&mut self, address: GuestAddr, begin: Cycles, budget: Cycles) -> Option<Cycles> {
         let id = ContextId::CALLBACK;
         let loaded = self.loaded.iter().flatten().find(|loaded| loaded.has_function(address))?;
@@ -407,7 +407,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         let available = window.end - window.start - window.callback;
         let debt = self.threads.debt(thread);
         if available <= debt {
-            // The last slice's block, or the call-back, fills this one too.
+            // The last block of the previous slice, or the call-back, takes all of this slice, too.
             self.threads.set_debt(thread, debt - available.max(Cycles::default()));
             return;
         }
@@ -485,7 +485,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             self.firmware.slice_ran(thread, window.end - budget, window.end - left, at);
         }
         match (stop, woken) {
-            // Its call goes on waiting until the instruction is executed.
+            // Its call keeps waiting until the instruction is executed.
             (Stop::Held, Some(wake)) => {
                 self.threads.set_state(thread, ThreadState::Active(Progress::Waiting(wake)));
             }
@@ -604,7 +604,7 @@ fn end_of(tick: Ticks) -> Cycles {
     start_of(tick) + Cycles::PER_TICK
 }
 
-/// An alleged address of code, made a multiple of 4.
+/// The code address for an unchecked address, rounded down to a multiple of 4.
 fn code_at(addr: GuestAddr) -> CodeAddr {
     CodeAddr::new(addr.get() & !3).expect("it is made a multiple of 4")
 }

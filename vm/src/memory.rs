@@ -1,8 +1,8 @@
 //! Guest memory: the one copy of everything a program can see.
 //!
-//! Two ways in. Accesses on behalf of a program ([`GuestMemory::load`], `store`, `read_bytes`, …)
-//! are checked: mapped, aligned, not into program text. The kernel and the loader use
-//! [`GuestMemory::peek`] and `poke`, which know no alignment and no protection.
+//! Two ways in. Accesses on behalf of a program ([`GuestMemory::load`], `store`, `read_bytes`, …) are checked: the
+//! address is mapped and aligned, and a store is not into program text. The kernel and the loader use
+//! [`GuestMemory::peek`] and `poke`, which ignore alignment and protection.
 //!
 //! Registers of devices are not memory; the engine sends such accesses to the
 //! [`Bus`](crate::bus::Bus), and here they count as unmapped.
@@ -42,15 +42,15 @@ const SDRAM_BASE: u32 = SDRAM.base.get();
 const IRAM_BASE: u32 = IRAM.base.get();
 const FLASH_BASE: u32 = FLASH.base.get();
 
-/// The effect of accesses and divisions that a program of the simulated board should not make.
+/// The effect of accesses and divisions that are errors of a program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Faults {
     /// The access stops the thread.
     #[default]
     Trap,
-    /// They act as on the real board: an integer division by zero yields a meaningless value, ROM and control registers
-    /// read 0 and ignore stores, low bits of a misaligned address are ignored. Everywhere else, and for stores into
-    /// program text, they stop the thread all the same.
+    /// As on the real board: an integer division by zero yields a meaningless value, ROM and control registers read 0
+    /// and ignore stores, low bits of a misaligned address are ignored. Accesses to other addresses, and stores into
+    /// program text, still stop the thread.
     Board,
 }
 
@@ -70,8 +70,8 @@ pub trait Scalar: sealed::Sealed + Copy + Default {
     #[doc(hidden)]
     fn get(bytes: &[u8], offset: usize) -> Option<Self>;
 
-    /// Reads at a multiple of the size, and returns `None` elsewhere; one comparison tests both, as any other offset
-    /// becomes an index far beyond the end.
+    /// Reads at a multiple of the size, and returns `None` elsewhere; one comparison tests both, because any other
+    /// offset becomes an index far beyond the end.
     #[doc(hidden)]
     fn get_multiple(bytes: &[u8], offset: u32) -> Option<Self>;
 
@@ -143,8 +143,8 @@ scalars! {
 
 /// The guest's 32-bit address space.
 ///
-/// The kernel's accesses try the addresses of a KFLOP first, which are constants. On a board with another map a miss there
-/// is the rule, and the access is made where that map says.
+/// The kernel's accesses try the addresses of a KFLOP first, which are constants. On a board with another map they
+/// usually miss, and the access is then made by that map.
 #[derive(Clone, Debug)]
 pub struct GuestMemory {
     sdram: Box<[u8; SDRAM_SIZE]>,
@@ -195,7 +195,7 @@ struct Bases {
 
 /// The state for accesses of RAM besides SDRAM, and for divisions.
 ///
-/// An engine that has both apart can keep the place of SDRAM in a register of the processor.
+/// An engine that holds both separately can keep the address of SDRAM in a processor register.
 pub(crate) struct RamRest<'a> {
     iram: &'a mut [u8],
     bases: Bases,
@@ -233,7 +233,7 @@ impl RamRest<'_> {
     /// [`GuestMemory::divided_by_zero`]
     ///
     /// # Errors
-    /// [`TrapKind::DivisionByZero`], unless programs get what the board yields.
+    /// [`TrapKind::DivisionByZero`], unless programs get the board's result.
     #[cold]
     pub(crate) const fn divided_by_zero(&self, op: WordDivision, a: i32) -> Result<i32, TrapKind> {
         divided_by_zero(self.faults, op, a)
@@ -274,7 +274,7 @@ impl GuestMemory {
         }
     }
 
-    /// Chooses what accesses and divisions do that a program should not make.
+    /// Sets the effect of accesses and divisions that are errors of a program.
     pub const fn set_faults(&mut self, faults: Faults) {
         self.faults = faults;
     }
@@ -282,7 +282,7 @@ impl GuestMemory {
     /// The result of an integer division of `a` by zero.
     ///
     /// # Errors
-    /// [`TrapKind::DivisionByZero`], unless programs get what the board yields.
+    /// [`TrapKind::DivisionByZero`], unless programs get the board's result.
     #[cold]
     pub const fn divided_by_zero(&self, op: WordDivision, a: i32) -> Result<i32, TrapKind> {
         divided_by_zero(self.faults, op, a)
@@ -296,7 +296,7 @@ impl GuestMemory {
         std::mem::replace(&mut self.is_touched, false)
     }
 
-    /// Notes a write to on-chip RAM that was not made here.
+    /// Notes a write to on-chip RAM that did not go through this type.
     #[cfg(feature = "native")]
     pub(crate) const fn touch(&mut self) {
         self.is_touched = true;
@@ -371,7 +371,7 @@ impl GuestMemory {
         rest.store_ram(sdram, addr, value)
     }
 
-    /// SDRAM, and what else an engine needs for accesses of RAM.
+    /// SDRAM, and the rest of the state that an engine needs for accesses of RAM.
     #[inline(always)]
     pub(crate) fn split(&mut self) -> (&mut Sdram, RamRest<'_>) {
         let bases = self.bases();
@@ -444,7 +444,7 @@ impl GuestMemory {
     /// Writes `bytes` at `addr` on behalf of a program.
     ///
     /// # Errors
-    /// [`TrapKind::Unmapped`] or [`TrapKind::WriteProtected`]; nothing is written then.
+    /// [`TrapKind::Unmapped`] or [`TrapKind::WriteProtected`]; nothing is written in that case.
     pub fn write_bytes(&mut self, addr: GuestAddr, bytes: &[u8]) -> Result<(), TrapKind> {
         self.check_writable(addr, length(bytes))?;
         self.poke_bytes(addr, bytes)
@@ -453,7 +453,7 @@ impl GuestMemory {
     /// Writes `bytes` at `addr` for the kernel or the loader: no protection, flash included.
     ///
     /// # Errors
-    /// [`TrapKind::Unmapped`]; nothing is written then.
+    /// [`TrapKind::Unmapped`]; nothing is written in that case.
     pub fn poke_bytes(&mut self, addr: GuestAddr, bytes: &[u8]) -> Result<(), TrapKind> {
         if self.is_silent(addr, length(bytes)) {
             return Ok(());
@@ -462,7 +462,7 @@ impl GuestMemory {
         Ok(())
     }
 
-    /// A block of RAM for the kernel, found once for many accesses; `None` unless all of it is one region's.
+    /// A block of RAM for the kernel, located once for many accesses; `None` unless it lies in a single region.
     #[must_use]
     #[inline]
     pub fn block<const N: usize>(&self, addr: GuestAddr) -> Option<&[u8; N]> {
@@ -508,10 +508,10 @@ impl GuestMemory {
         Ok(visible.to_vec())
     }
 
-    /// Copies `len` bytes from `from` to `to` on behalf of a program; they may overlap.
+    /// Copies `len` bytes from `from` to `to` on behalf of a program; the ranges may overlap.
     ///
     /// # Errors
-    /// [`TrapKind::Unmapped`] or [`TrapKind::WriteProtected`]; nothing is written then.
+    /// [`TrapKind::Unmapped`] or [`TrapKind::WriteProtected`]; nothing is written in that case.
     pub fn copy(&mut self, to: GuestAddr, from: GuestAddr, len: u32) -> Result<(), TrapKind> {
         self.bytes(from, len)?;
         self.check_writable(to, len)?;
@@ -527,10 +527,10 @@ impl GuestMemory {
         self.poke_bytes(to, &bytes)
     }
 
-    /// Writes `len` times `byte` at `addr` on behalf of a program.
+    /// Writes `byte` `len` times at `addr` on behalf of a program.
     ///
     /// # Errors
-    /// [`TrapKind::Unmapped`] or [`TrapKind::WriteProtected`]; nothing is written then.
+    /// [`TrapKind::Unmapped`] or [`TrapKind::WriteProtected`]; nothing is written in that case.
     pub fn fill(&mut self, addr: GuestAddr, byte: u8, len: u32) -> Result<(), TrapKind> {
         self.check_writable(addr, len)?;
         if !self.is_silent(addr, len) {
@@ -549,7 +549,7 @@ impl GuestMemory {
         self.protection.set(thread, 0..0);
     }
 
-    /// SDRAM and on-chip RAM as they are, for compiled code, which makes the checks itself and says what it touches.
+    /// SDRAM and on-chip RAM, for compiled code, which makes the checks itself and reports the writes.
     #[cfg(feature = "native")]
     pub(crate) fn ram_mut(&mut self) -> (&mut [u8; SDRAM_SIZE], &mut [u8; IRAM_SIZE]) {
         (&mut self.sdram, &mut self.iram)
@@ -578,13 +578,13 @@ impl GuestMemory {
         Ok(())
     }
 
-    /// Reports whether flash memory was never written. To ask first saves the host its two megabytes of erased bytes.
+    /// Reports whether flash memory was never written. Testing this first saves the host two megabytes of erased bytes.
     #[must_use]
     pub const fn is_flash_erased(&self) -> bool {
         self.flash.is_erased()
     }
 
-    /// The `len` bytes from `addr` on; none of them need be mapped if there are none.
+    /// The `len` bytes from `addr` on; if `len` is 0, the address need not be mapped.
     fn bytes(&self, addr: GuestAddr, len: u32) -> Result<&[u8], TrapKind> {
         if len == 0 {
             return Ok(&[]);
@@ -637,7 +637,7 @@ impl GuestMemory {
         }
     }
 
-    /// The bytes from `addr` to the end of the place around it that the board answers with 0, if this board does so.
+    /// The bytes from `addr` to the end of its area that reads as 0 on this board, if there is one.
     fn silent(&self, addr: GuestAddr) -> Option<&[u8]> {
         match self.faults {
             Faults::Trap => None,
@@ -663,13 +663,13 @@ const fn index_const(size: u32) -> usize {
     size as usize
 }
 
-/// A guest number as a host index; on a 64-bit host this does nothing.
+/// A guest number as a host index; no conversion on a 64-bit host.
 #[inline]
 fn index(number: u32) -> usize {
     usize::try_from(number).unwrap_or(usize::MAX)
 }
 
-/// The length of something that came from or goes into guest memory.
+/// The length of bytes that are copied from or to guest memory.
 fn length(bytes: &[u8]) -> u32 {
     u32::try_from(bytes.len()).unwrap_or(u32::MAX)
 }

@@ -1,8 +1,8 @@
-//! Metering: the place and the amount of each `charge`.
+//! Metering: the position and the amount of each `charge`.
 //!
-//! The compiler's last pass inserts charges with this. The verifier demands less: the amounts are not checked, as an
-//! image's charges may state the cycles of the vendor's code and not of these words; but every function and every
-//! iteration of a loop must have a charge, so that every program reaches one ([`uncharged`]).
+//! The compiler's last pass uses this module to insert charges. The verifier requires less: it does not check the
+//! amounts, as an image's charges may state the cycles of the vendor's code instead of these words; but every function
+//! and every iteration of a loop must have a charge, so that every program reaches one ([`uncharged`]).
 //!
 //! The rule. The words of a function fall into **segments** that are executed from their
 //! beginning to their end. A segment begins
@@ -11,10 +11,9 @@
 //! - after every branch (`br`, `br_if`, `br_unless`, `br_table` with its `br` words), return and `unreachable`;
 //! - after every call with its result word, if it has one.
 //!
-//! It ends before the next beginning. The cost of a segment is the sum of the costs of its
-//! words; the `br` words of a `br_table` cost nothing, its own cost includes the jump. The first
-//! word of every segment whose cost is not 0 is a `charge` of that cost. There is one such charge
-//! a segment and no other.
+//! It ends before the beginning of the next segment. The cost of a segment is the sum of the costs of its words; the
+//! `br` words of a `br_table` cost nothing, its own cost includes the jump. The first word of every segment whose cost
+//! is not 0 is a `charge` of that cost. A segment has only this charge.
 //!
 //! A segment that begins after a call is charged when the callee has returned, so a firmware
 //! call that overdraws the budget loses the processor directly after itself.
@@ -30,18 +29,17 @@ use crate::kind::{Name, OpKind};
 use crate::op::Op;
 use crate::operand::{Addr, Label};
 
-/// The charges that `body` needs: the word before which each stands, and its cycles, ascending.
+/// The charges that `body` needs: the word before which each is inserted, and its cycles, in ascending order.
 ///
-/// `body` holds the executable words of one function, without the `func` and `types` words;
-/// labels are indices into `ops`. Charges that already exist count as free, and then the
-/// word named is the charge itself.
+/// `body` holds the executable words of one function, without the `func` and `types` words; labels are indices into
+/// `ops`. Existing charges are taken as free, and the word is then the charge itself.
 #[must_use]
 pub fn charge_points(ops: &[Op], body: Range<usize>) -> Vec<(usize, u32)> {
     segment_sums(ops, body, Op::cost)
 }
 
 /// As [`charge_points`], for a body whose charges were placed where its source states costs: each segment gets the sum
-/// of its own.
+/// of its own charges.
 #[must_use]
 pub fn stated_points(ops: &[Op], body: Range<usize>) -> Vec<(usize, u32)> {
     segment_sums(ops, body, stated)
@@ -52,7 +50,7 @@ pub(crate) const fn stated(op: &Op) -> u32 {
     if let Op::Charge { cycles } = op { cycles.0 } else { 0 }
 }
 
-/// The segments whose words cost something, and how much.
+/// The segments with a cost, and the cost of each.
 fn segment_sums(ops: &[Op], body: Range<usize>, cost_of: impl Fn(&Op) -> u32) -> Vec<(usize, u32)> {
     let words = ops.get(body.clone()).unwrap_or_default();
     let roles = Roles::of(words, body.start);
@@ -71,7 +69,7 @@ fn segment_sums(ops: &[Op], body: Range<usize>, cost_of: impl Fn(&Op) -> u32) ->
     points
 }
 
-/// The word of `body` where execution can begin, or come back to, without meeting a charge.
+/// A word of `body` that execution can start from, or return to, without meeting a charge.
 #[must_use]
 pub fn uncharged(ops: &[Op], body: Range<usize>) -> Option<usize> {
     let words = ops.get(body.clone()).unwrap_or_default();
@@ -79,7 +77,7 @@ pub fn uncharged(ops: &[Op], body: Range<usize>) -> Option<usize> {
         return Some(body.start);
     }
     let begins = Roles::of(words, body.start).begins;
-    // A segment that is met again while it is on the way stands in a circle.
+    // A segment that is reached again while it is on the current path belongs to a cycle.
     let (mut on_way, mut done) = (vec![false; words.len()], vec![false; words.len()]);
     for root in (0..words.len()).filter(|root| begins[*root]) {
         if done[root] {
@@ -106,7 +104,7 @@ pub fn uncharged(ops: &[Op], body: Range<usize>) -> Option<usize> {
     None
 }
 
-/// The segments that follow the one at `first`; none if it is charged.
+/// The successors of the segment at `first`; none if it is charged.
 fn successors(words: &[Op], begins: &[bool], first: usize, start: usize) -> Vec<usize> {
     let mut found = Vec::new();
     if stated(&words[first]) != 0 {
@@ -128,17 +126,16 @@ fn successors(words: &[Op], begins: &[bool], first: usize, start: usize) -> Vec<
 pub struct Steps {
     /// The cycles before the first instruction takes effect.
     pub head: u32,
-    /// The instructions in their order, and the cycles from the moment in which each takes effect to that of the next;
-    /// of the last one, to the end of the segment.
+    /// The instructions in order, and the cycles from the effect of each to the effect of the next; for the last one,
+    /// to the end of the segment.
     pub steps: Vec<(usize, u32)>,
 }
 
-/// The steps of what the charge at `charge` pays for: everything up to the next charge, or up to the first
-/// instruction that may continue elsewhere. The result of a call belongs to the call.
+/// The steps paid by the charge at `charge`: everything up to the next charge, or up to the first instruction that may
+/// continue elsewhere. The result of a call belongs to the call.
 ///
-/// Each instruction takes what the vendor's code takes for it at least; what the charge pays for besides, locals in
-/// memory for instance, passes before the first of them. A charge that is too small for that is shared out in
-/// proportion.
+/// Each instruction takes at least the cycles that the vendor's code takes for it; the rest of the charge, for locals
+/// in memory for instance, passes before the first step. A smaller charge is divided in proportion.
 #[must_use]
 pub fn steps(ops: &[Op], charge: usize) -> Steps {
     let total = ops.get(charge).map_or(0, stated);
@@ -165,8 +162,8 @@ pub fn steps(ops: &[Op], charge: usize) -> Steps {
     Steps { head, steps: effects.iter().map(lasting).collect() }
 }
 
-/// The cycles that the vendor's code takes before an instruction takes effect, and from then on
-/// (`spec/costs.md` section 6): a constant address takes two, a load four until the value is there.
+/// The cycles that the vendor's code takes before an instruction takes effect, and after it (`spec/costs.md` section
+/// 6): a constant address takes two, a load four until its value is available.
 fn shape(op: &Op) -> (u32, u32) {
     let address = if op.operand::<Addr>(Name::Addr).is_some() { 2 } else { 0 };
     match op.kind() {
@@ -197,7 +194,7 @@ pub const fn is_result(op: &Op) -> bool {
     matches!(op.kind(), OpKind::Result(_))
 }
 
-/// The target of the branch `op`, if it is one with a label.
+/// The target of the branch `op`, if it has a label.
 #[must_use]
 pub fn branch_target(op: &Op) -> Option<Label> {
     op.operand(Name::To)
@@ -238,12 +235,13 @@ impl Roles {
     }
 }
 
-/// Reports whether a segment begins after an instruction of this kind, with the words that belong to it.
+/// Reports whether a segment begins after an instruction of this kind and the words that belong to it.
 const fn ends_segment(kind: OpKind) -> bool {
     kind.ends_path() || matches!(kind, OpKind::Branch | OpKind::Table | OpKind::Call)
 }
 
-/// Number of words that belong to the one at `offset`: the branches of a table, the result of a call.
+/// Number of words in the group at `offset`: an instruction with the branches of its table, or with the result of its
+/// call.
 fn group_length(words: &[Op], offset: usize) -> usize {
     let Some(op) = words.get(offset) else { return 1 };
     if let Op::BrTable { n, .. } = op {
@@ -311,7 +309,7 @@ mod tests {
         let check = |ops: &[Op], head, expected: &[(usize, u32)]| {
             assert_eq!(steps(ops, 0), Steps { head, steps: expected.to_vec() });
         };
-        // The value is loaded in cycle 2 of the 19 that the words take at least, and stored in cycle 12.
+        // The words take at least 19 cycles; the value is loaded in cycle 2 and stored in cycle 12.
         check(&update(19), 2, &[(1, 5), (2, 5), (3, 1), (4, 6)]);
         check(&update(44), 27, &[(1, 5), (2, 5), (3, 1), (4, 6)]);
         check(&update(4), 0, &[(1, 1), (2, 1), (3, 0), (4, 2)]);

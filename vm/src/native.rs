@@ -1,14 +1,12 @@
 //! The native engine: translates a program with Cranelift when it is first started.
 //!
-//! A context is a fiber: a native stack on which the program's machine code runs. Whatever the
-//! code cannot do with registers and RAM alone it requests by suspending its fiber; this file
-//! answers, in the words of the interpreter: the same functions load, store, call the firmware and
-//! check signatures. So a firmware function runs on the host's stack, may take its time, may wait,
-//! and a context can be discarded at any moment.
+//! A context is a fiber: a native stack on which the program's machine code runs. For everything that needs more than
+//! registers and RAM, the code suspends its fiber with a request. This file answers requests with the functions of the
+//! interpreter, which load, store, call the firmware and check signatures. So a firmware function runs on the host's
+//! stack and may wait, and a context can be discarded at any moment.
 //!
-//! Cycles, stops, traps and back traces are those of the bytecode engine. A program that cannot
-//! be compiled (a host without code generator, a function beyond a limit of Cranelift's) runs on
-//! a bytecode engine kept for that.
+//! Cycles, stops, traps and back traces are those of the bytecode engine. A program that cannot be compiled (on a host
+//! without a code generator, or with a function beyond a limit of Cranelift) runs on a fallback bytecode engine.
 
 mod code;
 mod compile;
@@ -59,9 +57,9 @@ pub struct NativeEngine {
     /// Runs the contexts whose program cannot be compiled.
     bytecode: BytecodeEngine,
     preemption: Preemption,
-    /// The observer of accesses to shared memory, if any is reported; where all are, the interpreter does so.
+    /// The observer of accesses to shared memory, if any are reported; if all are, the interpreter runs the program.
     observer: Option<Observer>,
-    /// Identifies this engine: a suspended fiber can continue only in its own engine.
+    /// The identity of this engine: a suspended fiber can only continue in its own engine.
     identity: Arc<()>,
 }
 
@@ -74,7 +72,7 @@ pub struct NativeSnapshot {
 }
 
 impl NativeEngine {
-    /// An engine that compiles nothing that another engine with the same `shared` has compiled lately.
+    /// An engine that shares machine code with the other engines that have the same `shared`.
     #[must_use]
     pub fn with_shared(shared: SharedCode) -> Self {
         Self { shared: Some(shared), ..Self::default() }
@@ -167,7 +165,7 @@ impl Executor for NativeEngine {
         }
         self.bytecode.restore(&snapshot.bytecode)?;
         for (place, saved) in self.contexts.iter_mut().zip(&snapshot.contexts) {
-            // First of all the fiber ends that may be on the same stack.
+            // First end the old fiber, which may use the same stack.
             *place = None;
             *place = saved.as_ref().map(Saved::context);
         }

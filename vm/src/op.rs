@@ -1,4 +1,4 @@
-//! The bytecode: one row an instruction, everything mechanical expanded from it.
+//! The bytecode: one table row per instruction, from which everything mechanical is expanded.
 //!
 //! `for_each_op!` hands the whole table to a macro of the caller's. Here it is expanded to
 //! the [`Op`] enum, its encoding, decoding and cost; elsewhere to the printer, the parser
@@ -431,7 +431,7 @@ macro_rules! define_ops {
                 }
             }
 
-            /// The operand of the given name, if the row has one and it is of that type.
+            /// The operand with the given name, if the row has one of that type.
             #[must_use]
             #[inline]
             pub fn operand<T: Copy + Any>(&self, name: Name) -> Option<T> {

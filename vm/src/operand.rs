@@ -72,7 +72,7 @@ pub trait OperandType: Copy + fmt::Display {
     fn to_bits(self) -> u32;
     /// The operand from such a number; every bit pattern is an operand.
     fn from_bits(bits: u32) -> Self;
-    /// The operand from what `Display` prints; numbers may be decimal or `0x` hexadecimal.
+    /// Parses an operand from the text that `Display` prints; numbers may be decimal or `0x` hexadecimal.
     fn parse(text: &str) -> Option<Self>;
 }
 
@@ -169,7 +169,7 @@ macro_rules! number {
 trait Number: Sized {
     /// Little-endian bytes, zero-padded.
     fn to_le_bytes_padded(self) -> [u8; 4];
-    /// The number from its little-endian bytes; those beyond its size are left away.
+    /// The number from its little-endian bytes; bytes beyond its size are dropped.
     fn from_low_bytes(bytes: [u8; 4]) -> Self;
     /// The number in decimal, or in hexadecimal as its bit pattern.
     fn parse_number(text: &str) -> Option<Self>;

@@ -1,7 +1,6 @@
 //! The parts of encoded instructions that a linker changes: labels, constants, signatures.
 //!
-//! Which instruction has which of them follows from the types of its operands, so a new row of the table needs nothing
-//! here.
+//! The types of an instruction's operands determine its parts, so a new row of the table needs no code here.
 
 use crate::for_each_op;
 use crate::op::Op;
@@ -10,7 +9,7 @@ use crate::operand::{
     RegI64, SigRef,
 };
 
-/// A change of operands; the rest stays as it is.
+/// A change of operands; the rest is unchanged.
 pub trait Patch {
     /// Changes a place in the code.
     fn label(&mut self, _: &mut Label) {}
@@ -22,7 +21,7 @@ pub trait Patch {
     fn signature(&mut self, _: &mut SigRef) {}
 }
 
-/// An operand that a change is offered to.
+/// An operand to which a change can apply.
 trait Patchable {
     fn patch(&mut self, patch: &mut impl Patch);
 }

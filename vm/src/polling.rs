@@ -1,16 +1,16 @@
-//! Loops that may only wait.
+//! Waiting loops: loops that may only wait.
 //!
-//! An iteration of such a loop stores nothing and calls nothing but what yields a state of the board, and it begins with
-//! the same registers each time: no register that it reads before it assigns it is one that it assigns. So an iteration
-//! that comes back to its first word is followed by others like it, until something happens outside the thread: at
-//! the earliest when its slice is over. An engine that has executed one passes over those that follow
+//! An iteration of such a loop stores nothing, calls only functions that yield a state of the board, and begins with
+//! the same registers each time: it assigns no register that it reads before the assignment. So an iteration that
+//! returns to its first word is followed by equal ones until something happens outside the thread, at the earliest when
+//! its slice is over. An engine that has executed one iteration skips those that follow
 //! ([`Slice::pass_iterations`](crate::engine::Slice::pass_iterations)).
 //!
-//! The time is a state that changes within a slice. It may be read once in an iteration, to be compared
-//! ([`clock`]): those iterations are like the last one that come before a comparison has another result.
+//! The time is a state that changes within a slice. It may be read once in an iteration, to be compared ([`clock`]):
+//! iterations are equal until the result of a comparison changes.
 //!
 //! A loop is found by its backward branches. It need not have a single entry, and it may contain other loops: an engine
-//! counts an iteration only if all of it was in the words found here.
+//! counts an iteration only if it has executed only words of the loop.
 
 #![deny(clippy::wildcard_enum_match_arm, reason = "a new instruction, operator or mode must be decided")]
 
@@ -42,7 +42,7 @@ pub(crate) struct PollingLoop {
     pub(crate) branches: Vec<usize>,
     /// The words of an iteration.
     pub(crate) words: BTreeSet<usize>,
-    /// The use that an iteration makes of the time, if it does.
+    /// The time comparisons of an iteration, if it reads the time.
     pub(crate) clock: Option<TimeTests>,
 }
 
@@ -58,7 +58,7 @@ pub(crate) fn polling_loops(program: &Program, readers: Readers<'_>) -> Vec<Poll
 struct LoopSearch<'a> {
     program: &'a Program,
     readers: Readers<'a>,
-    /// The functions that have no effect but their result; false for one that is still being searched.
+    /// The functions that have no effect except their result; false for a function whose search is in progress.
     quiet: BTreeMap<FuncRef, bool>,
 }
 
@@ -135,8 +135,8 @@ impl LoopSearch<'_> {
         matches!(self.program.ops()[at].kind(), OpKind::Call)
     }
 
-    /// Reports whether an instruction has no effect but on registers of its call, and depends on nothing but the time
-    /// that changes within a slice.
+    /// Reports whether an instruction affects only registers of its call, and depends on nothing that changes within a
+    /// slice except the time.
     fn is_quiet(&mut self, at: usize) -> bool {
         let op = self.program.ops()[at];
         match op.kind() {
@@ -183,7 +183,7 @@ impl LoopSearch<'_> {
         quiet
     }
 
-    /// Reports whether an iteration reads a register as the one before has assigned it.
+    /// Reports whether an iteration reads a register that the previous iteration has assigned.
     fn carries_registers(&self, function: &Function, polling: &PollingLoop) -> bool {
         let assigned = |at: &usize| registers(&self.program.ops()[*at]).assigned;
         let assigned: BTreeSet<u16> = polling.words.iter().filter_map(assigned).collect();
@@ -192,7 +192,7 @@ impl LoopSearch<'_> {
     }
 }
 
-/// Reports whether a register may be read from the words `open` on before it is assigned, in words that `are_meant`.
+/// Reports whether a register may be read from the words `open` on before it is assigned, along words that `are_meant`.
 fn is_live(
     program: &Program,
     mut open: Vec<usize>,
@@ -272,7 +272,7 @@ mod tests {
             "@a: charge 9\nmov_i32 r1, r0\nload_i32_at r0, 0x10000000\neq_i32 r2, r0, r1\nbr_if r2, @a\nret",
             &[],
         );
-        // Read after the loop, and assigned on one of two ways only.
+        // Read after the loop, and assigned on only one of two paths.
         check(
             "@a: charge 9\nload_i32_at r0, 0x10000000\nbr_if r0, @b\ncharge 9\nconst_i32 r1, 3\n@b: charge 9\n\
              load_i32_at r0, 0x10000004\nbr_if r0, @a\nstore_i32_at r1, 0x10000008\nret",

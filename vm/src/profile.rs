@@ -1,9 +1,9 @@
 //! The profiling engine: the bytecode engine, with an account of where the time went.
 //!
-//! Nothing is sampled. The interpreter is given nothing to spend, so that every `charge` returns to here: what it
-//! spent is put down to the segment that begins there, then the program continues with what it really has left. By
-//! [the rule of metering](crate::meter) a segment is executed as a whole, and a call ends it, so the account is exact.
-//! Firmware functions and devices see the true budget, and the run is the same, cycle by cycle, as without a profile.
+//! Nothing is sampled. The interpreter gets an empty budget, so that every `charge` returns to this engine: its cycles
+//! are added to the segment that begins there, then the program continues with its real budget. By [the rule of
+//! metering](crate::meter) a segment is executed as a whole, and a call ends it, so the account is exact. Firmware
+//! functions and devices see the real budget, and the run is the same, cycle by cycle, as without a profile.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -27,14 +27,14 @@ use kmotiondef::AccessSize;
 
 const NOTHING: Cycles = Cycles::new(0);
 
-/// A place of a program, with the calls that led there.
+/// A place of a program, with the calls that led to it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Site {
     /// The thread or the call-back.
     pub context: ContextId,
-    /// The first instruction of a segment, then the calls that led there, innermost first.
+    /// The first instruction of a segment, then the calls that led to it, innermost first.
     pub calls: Vec<CodeAddr>,
-    /// The firmware function that the segment ends with, if the time was spent in it.
+    /// The firmware function called at the end of the segment, if the time was spent in it.
     pub firmware: Option<GuestAddr>,
 }
 
@@ -54,7 +54,7 @@ pub struct Profile {
 }
 
 impl Profile {
-    /// The sites in their order, and what was spent at each.
+    /// The sites in order, and the time spent at each.
     pub fn sites(&self) -> impl Iterator<Item = (&Site, Spent)> {
         self.spent.iter().map(|(site, spent)| (site, *spent))
     }
@@ -68,7 +68,7 @@ impl Profile {
     }
 }
 
-/// The instructions of the segment that begins at `head`, and what each costs.
+/// The instructions of the segment that begins at `head`, and the cost of each.
 pub fn segment(program: &Program, head: CodeAddr) -> impl Iterator<Item = (CodeAddr, u32)> {
     let first = program.word_at(head).unwrap_or(usize::MAX);
     let ops = program.ops().iter().enumerate().skip(first);
@@ -96,7 +96,7 @@ impl ProfilingEngine {
         Site { context, calls: self.inner.backtrace(context), firmware: None }
     }
 
-    /// Runs up to the next charge, or to where the program stops before.
+    /// Runs up to the next charge, or to an earlier stop of the program.
     fn run_segment<F: Firmware + ?Sized>(&mut self, id: ContextId, slice: &mut Slice<'_, F>) -> Stop {
         let site = self.site(id);
         let left = slice.budget;
@@ -119,7 +119,7 @@ impl ProfilingEngine {
         let (function, in_firmware) = metered.called.unzip();
         let in_firmware = in_firmware.unwrap_or_default();
         let charged = self.charged(id, &stop);
-        // Device registers take time as well; it belongs to the segment that reads or writes them.
+        // Accesses to device registers take time, too; it belongs to the segment that makes them.
         self.profile.add(site.clone(), spent - in_firmware - charged, NOTHING);
         let call = Site { firmware: function, ..site };
         if let Stop::Waiting(_) = stop {
@@ -207,15 +207,15 @@ impl Executor for ProfilingEngine {
     }
 }
 
-/// The firmware, with the true budget and a note of what its calls spend.
+/// The firmware, with the real budget and a record of the cycles spent by its calls.
 #[derive(Debug)]
 struct Metered<'a, F: ?Sized> {
     firmware: &'a mut F,
     /// The budget of the whole slice, in cycles.
     length: Cycles,
-    /// The budget left at the start of the part that the engine knows of.
+    /// The budget left at the start of the part that the engine has been given.
     left: Cycles,
-    /// The function that was called, and what it spent.
+    /// The function that was called, and the cycles it spent.
     called: Option<(GuestAddr, Cycles)>,
 }
 
@@ -362,7 +362,7 @@ ret_i32 r0";
                 format!("{}{call}: {computing} + {waiting}", calls.join("<"))
             })
             .collect();
-        // The delay of 50,000 cycles ends between two slices, so the thread goes on with the next: at 98,000.
+        // The delay of 50,000 cycles ends between two slices, so the thread continues with the next slice: at 98,000.
         let expect =
             ["3: 2 + 0", "6: 18 + 0", "10: 3 + 0", "12: 6 + 0", "12 0x10008008: 0 + 71962", "15: 2 + 0"];
         assert_eq!(lines[..6], expect);

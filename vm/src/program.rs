@@ -41,7 +41,7 @@ pub struct Function {
 /// A program that an engine can run without further checks.
 ///
 /// Made by [`verify`](crate::verify::verify) only. Instructions are addressed by the index of their word in the text.
-/// It is pure data: translations of it are kept by the engine ([`Translations`](crate::translations::Translations)).
+/// It is pure data: the engine keeps its translations ([`Translations`](crate::translations::Translations)).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Program {
     pub(crate) base: u32,
@@ -74,7 +74,7 @@ impl Program {
         GuestAddr::new(self.base.wrapping_sub(guard))
     }
 
-    /// The address of `main`, if the image says where it is.
+    /// The address of `main`, if the image gives it.
     #[must_use]
     pub const fn main(&self) -> Option<GuestAddr> {
         self.main
@@ -86,9 +86,9 @@ impl Program {
         &self.ops
     }
 
-    /// Returns the program for a processor that takes `factor` times as long for everything between its calls.
+    /// Returns the program with all costs between firmware calls multiplied by `factor`.
     ///
-    /// A segment costs a cycle at least, and what fits a count at most.
+    /// A segment costs at least one cycle, and at most the largest count that can be encoded.
     #[must_use]
     pub fn with_costs_scaled(mut self, factor: f64) -> Self {
         for op in &mut self.ops {
@@ -205,7 +205,7 @@ impl Program {
         self.functions.binary_search_by_key(&function, |function| function.at).ok()
     }
 
-    /// The function whose body holds the word with the given index.
+    /// The function whose body contains the word with the given index.
     #[must_use]
     pub fn function_around(&self, word: usize) -> Option<&Function> {
         let next = self.functions.partition_point(|function| function.at.0 as usize <= word);

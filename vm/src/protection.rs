@@ -1,13 +1,13 @@
 //! The bytes that hold program text: one bit for each instruction word of the program area.
 //!
-//! A store asks on its fast path, so the ranges of the seven programs are kept as a map.
+//! Stores check it on their fast path, so the ranges of the seven programs are kept as a map.
 
 use std::ops::Range;
 
 use kmotiondef::ThreadId;
 use kmotiondef::map::{MemoryMap, ProgramSpaces};
 
-/// Bytes that one bit stands for.
+/// The bytes covered by one bit.
 const GRANULE: u32 = 8;
 
 /// A range of addresses for each thread.
@@ -20,7 +20,7 @@ pub(crate) struct Protection {
     /// The area of programs.
     area: ProgramSpaces,
     map: Box<[u64]>,
-    /// The addresses from the first to the last that is protected: most stores go elsewhere and need not ask the map.
+    /// The addresses from the first to the last protected byte: most stores are outside and skip the map.
     hull: Hull,
 }
 

@@ -1,11 +1,10 @@
 //! The rotation: which thread gets the slice of a tick.
 //!
-//! Pure: nothing here touches memory, time or an engine. Rules: threads-and-time.md 1.2 of
-//! the specification.
+//! It is pure: it does not access memory, time or an engine. Rules: threads-and-time.md 1.2 of the specification.
 
 use kmotiondef::ThreadId;
 
-/// The thread that a slice belongs to.
+/// The owner of a slice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Turn {
     /// The primary thread, number 0.
@@ -40,7 +39,7 @@ impl ThreadSet {
         Self(self.0 | 1 << thread.get())
     }
 
-    /// The set with `thread` taken out.
+    /// The set without `thread`.
     #[must_use]
     pub const fn without(self, thread: ThreadId) -> Self {
         Self(self.0 & !(1 << thread.get()))
@@ -89,7 +88,7 @@ pub fn next(active: ThreadSet, current: Turn) -> Turn {
 /// The thread `ticks` ticks after `current`, while the same threads are active.
 #[must_use]
 pub fn after(active: ThreadSet, current: Turn, ticks: u64) -> Turn {
-    // From an inactive thread's turn the rotation first returns to its cycle.
+    // From the slice of an inactive thread, the rotation first returns to its cycle.
     if ticks == 0 {
         return current;
     }

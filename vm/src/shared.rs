@@ -1,4 +1,4 @@
-//! Memory that threads can share, and what a program does to it as far as its text says.
+//! Memory that threads can share, and its accesses by a program, as far as its text shows.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -27,7 +27,8 @@ pub(crate) const fn is_shared(address: u32) -> bool {
     (in_sdram && !is_stack && !is_program) || in_iram
 }
 
-/// Returns whether an address is in the space of programs, where a call-back meets the thread that it interrupts.
+/// Returns whether an address is in the space of programs, where a call-back can access the data of the interrupted
+/// thread.
 #[inline(always)]
 pub(crate) const fn is_of_program(address: u32) -> bool {
     address >= PROGRAM_BASE && address < PROGRAM_LIMIT
@@ -54,7 +55,7 @@ impl Program {
         })
     }
 
-    /// The shared cells of constant address that the program changes by a load and a store: what another thread stores
+    /// The shared cells at constant addresses that the program updates by a load and a store: a store by another thread
     /// in between is lost.
     #[must_use]
     pub fn updated_cells(&self) -> BTreeSet<GuestAddr> {
@@ -107,8 +108,8 @@ impl OpRegisters {
     }
 }
 
-/// The loads in the function of the store `word` from which its value is made, as the instructions before it are
-/// written.
+/// The loads in the function of the store `word` on which the stored value depends, following the instructions before
+/// it.
 pub(crate) fn loads_of(program: &Program, word: usize) -> Vec<CodeAddr> {
     let (Some(op), Some(function)) = (program.ops().get(word), program.function_around(word)) else {
         return Vec::new();
@@ -119,9 +120,9 @@ pub(crate) fn loads_of(program: &Program, word: usize) -> Vec<CodeAddr> {
 /// The origin of the value of a register.
 #[derive(Debug, Default)]
 struct Origin {
-    /// The loads that it is made of.
+    /// The loads on which it depends.
     loads: Vec<CodeAddr>,
-    /// The registers that it is computed with, itself among them.
+    /// The registers with which it is computed, including itself.
     registers: BTreeSet<u16>,
 }
 
@@ -148,8 +149,8 @@ fn origin(program: &Program, function: &Function, word: usize, register: u16) ->
     found
 }
 
-/// The loads of a function whose values it uses together: by load, the others, and itself if a loop adds up what it
-/// loads. The limit of a loop belongs to what the loop loads.
+/// The loads of a function whose values it uses together: for each load the others, and the load itself if a loop
+/// accumulates its values. The limit of a loop belongs to the loads of the loop.
 pub(crate) fn loads_together(
     program: &Program,
     function: &Function,

@@ -45,7 +45,7 @@ pub(crate) fn thread(number: i32) -> ThreadId {
     ThreadId::new(number).expect("a number of 1 to 7")
 }
 
-/// The bytes of a program whose functions are `functions`.
+/// The bytes of a program with these functions.
 pub(crate) fn bytes(functions: &str) -> Vec<u8> {
     assemble(&format!("{HEAD}{functions}")).expect("the text is correct")
 }
@@ -89,7 +89,7 @@ impl TestFunction {
     }
 }
 
-/// A firmware of a few functions that writes down what it sees.
+/// A firmware with a few functions that records its calls.
 #[derive(Clone, Debug)]
 pub(crate) struct Fake {
     signatures: [Signature; 4],
@@ -118,7 +118,7 @@ impl Fake {
         }
     }
 
-    /// The results that must be the same however time passes: in single ticks or in many at once.
+    /// The results that must not depend on the way time passes: in single ticks or in many at once.
     pub(crate) fn seen(&self) -> (&[String], u64, &[String]) {
         (&self.log, self.ticks, &self.bus)
     }

@@ -1,9 +1,8 @@
 //! Bytecode as text: disassembler and assembler, both expanded from the instruction table.
 //!
-//! One word a line, `@12: add_i32 r0, r1, r2`. The number in front is the word's index, as
-//! labels name it. A word that is not an instruction, or a constant of the pool, is printed as
-//! `word 0x…`. A `;` begins a comment. What is printed can be parsed again, byte for byte; texts
-//! written by hand may leave the index away or put a name in its place: `@loop:`, then
+//! One word a line, `@12: add_i32 r0, r1, r2`. The number in front is the word's index, to which labels refer. A word
+//! that is not an instruction, or a constant of the pool, is printed as `word 0x…`. A `;` begins a comment. Printed
+//! text can be parsed again, byte for byte; hand-written text may omit the index or use a name instead: `@loop:`, then
 //! `br @loop` and `call fn@main`.
 
 use std::collections::BTreeMap;
@@ -33,13 +32,13 @@ pub enum AssembleErrorKind {
     /// No instruction has this name.
     #[error("there is no instruction `{0}`")]
     UnknownName(String),
-    /// The operands are not those of the instruction.
+    /// The operands do not match the instruction.
     #[error("the operands of `{0}` are not `{1}`")]
     Operands(String, String),
     /// A label is used and not defined.
     #[error("there is no label `{0}`")]
     UnknownLabel(String),
-    /// A label is defined twice, or a number is not the index of its word.
+    /// A label is defined twice, or a number in front of a word is not its index.
     #[error("the label `{0}` is not allowed here")]
     BadLabel(String),
 }
@@ -144,7 +143,7 @@ impl<'a> TextLine<'a> {
     }
 }
 
-/// The index of the word that each named label comes before.
+/// The index of the word after each named label.
 fn define_labels<'a>(lines: &[TextLine<'a>]) -> Result<BTreeMap<&'a str, usize>, AssembleError> {
     let mut labels = BTreeMap::new();
     let mut word = 0;

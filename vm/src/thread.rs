@@ -1,9 +1,8 @@
 //! The seven user threads: their states, and starting, pausing, resuming, ending.
 //!
-//! States are data only; registers and call frames belong to the engine. A thread that is
-//! started is merely marked fresh, and the machine gives it a fresh context when its slice
-//! comes. So firmware functions can start and pause threads while an engine runs one.
-//! Rules: threads-and-time.md section 2 of the specification.
+//! States are data only; registers and call frames belong to the engine. A thread that is started is only marked as
+//! fresh, and the machine gives it a new context in its next slice. So firmware functions can start and pause threads
+//! while an engine runs one. Rules: threads-and-time.md section 2 of the specification.
 
 use kmotiondef::{Cycles, GuestAddr, ThreadId};
 
@@ -14,14 +13,14 @@ use crate::wake::Wake;
 /// The progress of an active or paused thread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// Started, but had no slice yet: begins at its entry point.
+    /// Started, but without a slice yet: begins at its entry point.
     Fresh,
     /// In the middle of its program.
     Going,
     /// In a firmware call that waits.
     Waiting(Wake),
-    /// Resumed without a program state to continue: takes its slices and does nothing, as the
-    /// released firmware spins there.
+    /// Resumed without a program state to continue: takes its slices and does nothing, as the released firmware idles
+    /// in this case.
     Idle,
 }
 
@@ -75,7 +74,7 @@ pub struct Threads {
     is_pausing: bool,
     /// The threads that have ever had a slice.
     ran: ThreadSet,
-    /// The starts of each thread so far.
+    /// The number of starts of each thread so far.
     starts: [u32; ThreadId::MAX as usize],
 }
 
@@ -99,22 +98,22 @@ impl Threads {
         }
     }
 
-    /// Makes `thread` ready to start at `entry`, whatever it was doing.
+    /// Makes `thread` ready to start at `entry`, whatever its current state.
     pub fn set_entry(&mut self, thread: ThreadId, entry: GuestAddr) {
         *self.slot(thread) = Slot { state: ThreadState::Ready, entry, debt: Cycles::new(0) };
     }
 
-    /// Forgets what was loaded in `thread`.
+    /// Clears the program of `thread`.
     pub fn clear(&mut self, thread: ThreadId) {
         *self.slot(thread) = Slot { state: ThreadState::Empty, entry: GuestAddr::NULL, debt: Cycles::new(0) };
     }
 
-    /// Starts `thread` at its entry point with a fresh stack, also if it is active or paused.
+    /// Starts `thread` at its entry point with a fresh stack, even if it is active or paused.
     ///
-    /// A thread that starts itself goes on undisturbed.
+    /// A thread that starts itself continues unchanged.
     ///
     /// # Errors
-    /// [`NotLoaded`] for an empty thread; nothing happens then.
+    /// [`NotLoaded`] for an empty thread; nothing happens in that case.
     pub fn start(&mut self, thread: ThreadId) -> Result<(), NotLoaded> {
         if self.running == Some(thread) {
             return Ok(());
@@ -137,7 +136,7 @@ impl Threads {
 
     /// Takes `thread` out of the rotation, keeping where it was; no effect unless it is active.
     ///
-    /// A thread that does this to itself continues to the end of its slice.
+    /// A thread that pauses itself continues to the end of its slice.
     pub fn pause(&mut self, thread: ThreadId) {
         if self.running == Some(thread) {
             self.is_pausing = true;
@@ -151,8 +150,8 @@ impl Threads {
 
     /// Lets a paused `thread` continue.
     ///
-    /// One that never ran or has ended becomes active without ever doing anything; on one that
-    /// is active or faulted this has no effect.
+    /// A thread that never ran or has ended becomes active but executes nothing; on an active or faulted thread this
+    /// has no effect.
     ///
     /// # Errors
     /// [`NotLoaded`] for an empty thread.
@@ -188,7 +187,7 @@ impl Threads {
         ThreadId::all().filter(|thread| self.state(*thread).is_active()).collect()
     }
 
-    /// The thread whose slice is being executed right now, if any.
+    /// The thread whose slice is being executed now, if any.
     #[must_use]
     pub const fn running(&self) -> Option<ThreadId> {
         self.running
@@ -205,7 +204,7 @@ impl Threads {
         self.ran.contains(thread)
     }
 
-    /// Returns whether the thread whose slice is over has paused itself; said once.
+    /// Returns, once, whether the thread whose slice is over has paused itself.
     pub(crate) const fn take_pausing(&mut self) -> bool {
         std::mem::replace(&mut self.is_pausing, false)
     }

@@ -1,6 +1,6 @@
-//! The translations of the programs that an engine was given, kept by the engine.
+//! An engine's translations of its programs.
 //!
-//! A program is shared by reference, and is identified by that reference. Its translation is dropped after the last
+//! A program is shared by reference, and is identified by that reference. Its translation is dropped when the last
 //! other reference to the program is gone.
 
 use std::sync::{Arc, Weak};
@@ -18,9 +18,9 @@ impl<T> Default for Translations<T> {
 }
 
 impl<T: Clone> Translations<T> {
-    /// Returns the translation of `program`; `make` makes it when it is first requested.
+    /// Returns the translation of `program`; `make` creates it when it is first requested.
     pub(crate) fn get(&mut self, program: &Arc<Program>, make: impl FnOnce(&Program) -> T) -> T {
-        // A weak reference keeps the address of its program from being used again.
+        // A weak reference prevents the address of its program from being reused.
         let is_same = |(known, _): &&(Weak<Program>, T)| known.as_ptr() == Arc::as_ptr(program);
         if let Some((_, made)) = self.0.iter().find(is_same) {
             return made.clone();

@@ -1,7 +1,7 @@
 //! Traps: the running program did something impossible.
 //!
-//! A trap stops one thread; the machine continues. Firmware functions yield a [`TrapKind`],
-//! the engine adds the place and the thread.
+//! A trap stops one thread; the machine continues. Firmware functions return a [`TrapKind`]; the engine adds the place
+//! and the thread.
 
 mod processor;
 mod scene;
@@ -105,13 +105,13 @@ pub enum TrapKind {
         /// Address of the `jmp_buf`.
         addr: GuestAddr,
     },
-    /// More places than are kept.
+    /// There are too many jump points.
     #[error("`setjmp` has set more than {most} buffers in functions that have not returned")]
     TooManyJumpPlaces {
         /// The largest number of places.
         most: usize,
     },
-    /// A firmware function that exists on the board only.
+    /// A firmware function that is not simulated.
     #[error("calls `{name}`, whose behaviour the simulated board does not model yet")]
     NotModelled {
         /// Name of the function.
@@ -126,12 +126,12 @@ pub enum TrapKind {
         /// The limit.
         limit: i64,
     },
-    /// The compiler held this place to be out of reach; a `goto *` to no label leads to such a one.
+    /// The compiler took this place to be unreachable; a `goto *` to an invalid label leads to such a place.
     #[error(
         "execution reached an address without code, for example by `goto *` to something other than a label"
     )]
     Unreachable,
-    /// Code of the real processor that no compiler makes.
+    /// Code of the real processor that compilers do not generate.
     #[error(transparent)]
     Processor(#[from] Fault),
 }
@@ -150,7 +150,7 @@ pub struct Trap {
 }
 
 impl Trap {
-    /// A trap of which no more than the place is known.
+    /// A trap of which only the place is known.
     #[must_use]
     pub const fn new(kind: TrapKind, at: CodeAddr, thread: Option<ThreadId>) -> Self {
         Self { kind, at, thread, scene: None }

@@ -1,7 +1,7 @@
 //! Variable arguments of a firmware call, as the compiler lays them out.
 //!
-//! They lie in guest memory one after another, each at a multiple of its own size (4 or 8);
-//! the first at a multiple of 8. Their address is the last parameter of the function.
+//! They are consecutive in guest memory, each at a multiple of its own size (4 or 8), the first at a multiple of 8.
+//! Their address is the last parameter of the function.
 
 use kmotiondef::GuestAddr;
 
@@ -24,7 +24,7 @@ impl VarArgs {
     /// Takes the next argument, of four or eight bytes.
     ///
     /// # Errors
-    /// [`TrapKind::Unmapped`] if it lies outside memory.
+    /// [`TrapKind::Unmapped`] if it is outside memory.
     pub fn take<T: Scalar>(&mut self, memory: &GuestMemory) -> Result<T, TrapKind> {
         let address = GuestAddr::new(self.next.get().wrapping_add(T::SIZE - 1) & !(T::SIZE - 1));
         self.next = address.offset(T::SIZE);

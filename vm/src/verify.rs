@@ -1,9 +1,8 @@
 //! Turns the bytes of a text into a [`Program`]: an image is not trusted.
 //!
-//! A program that passes cannot leave its registers, its constants or its code, passes
-//! arguments as its callees expect them, and charges what it costs ([`meter`](crate::meter)).
-//! What depends on values (addresses, pointers to functions, divisors, depth of calls) is
-//! checked where it happens. Reading a register that was never written yields 0.
+//! A program that passes cannot leave its registers, its constants or its code, passes arguments as its callees expect
+//! them, and charges its cost ([`meter`](crate::meter)). What depends on values (addresses, pointers to functions,
+//! divisors, depth of calls) is checked where it happens. Reading a register that was never written yields 0.
 
 #![deny(clippy::wildcard_enum_match_arm, reason = "a new instruction, operator or mode must be decided")]
 #![cfg_attr(
@@ -33,7 +32,7 @@ use crate::program::{Function, MAX_TEXT, Program};
 /// Most parameters of a function.
 pub const MAX_PARAMETERS: usize = 255;
 
-/// Most registers of a function, so that the arguments of its calls fit after them.
+/// The limit of registers in a function, so that the arguments of its calls fit after them.
 pub const MAX_REGISTERS: usize = 0xff00;
 
 /// Classes in one `types` word.
@@ -58,12 +57,12 @@ pub enum VerifyErrorKind {
     /// The text does not begin with a `program` word.
     #[error("the text is not bytecode")]
     NotAProgram,
-    /// The text does not begin with the words that let a real processor return at once.
+    /// The text does not begin with the words that make a real processor return at once.
     #[error(
         "the text begins with bytecode, where a real processor would begin to execute it; build it again"
     )]
     Unguarded,
-    /// The text says that `main` is where no function is.
+    /// The text gives an address for `main` at which no function begins.
     #[error("no function is at {0}, where `main` should be")]
     Main(GuestAddr),
     /// The bytecode is of another version.
@@ -108,19 +107,19 @@ pub enum VerifyErrorKind {
     /// A branch leaves its function or enters the middle of a call or table.
     #[error("word {0} cannot be the target of a branch here")]
     BadLabel(u32),
-    /// An argument does not follow the one before it, or no call follows.
+    /// An argument does not follow the previous one, or is not followed by a call.
     #[error("the arguments of a call must be in order directly before it")]
     Arguments,
-    /// The arguments of a call are not those of its signature.
+    /// The arguments of a call do not match its signature.
     #[error("the arguments of the call are not those of its signature")]
     ArgumentClasses,
-    /// A result is taken where no call with such a result stands directly before.
+    /// A result is taken without a call with such a result directly before it.
     #[error("no call with this class of result stands directly before")]
     Result,
     /// A `br_table` is not followed by its branches.
     #[error("the table must be followed by {0} `br` words")]
     Table(usize),
-    /// A return is of another class than the signature says.
+    /// A return has another class than the signature.
     #[error("the return is not that of the function's signature")]
     ReturnClass,
     /// The last instruction of a function continues after it.
@@ -134,7 +133,7 @@ pub enum VerifyErrorKind {
 /// Verifies the text of an image, which begins at `start` with the words of [`guard`].
 ///
 /// # Errors
-/// The first thing that is wrong.
+/// The first error found.
 pub fn verify_image(text: &[u8], start: GuestAddr) -> Result<Program, VerifyError> {
     let fail = |kind| VerifyError { at: 0, kind };
     let Some((main, code)) = guard::split(text) else {
@@ -150,7 +149,7 @@ pub fn verify_image(text: &[u8], start: GuestAddr) -> Result<Program, VerifyErro
 /// Verifies the bytecode that is at `base`.
 ///
 /// # Errors
-/// The first thing that is wrong.
+/// The first error found.
 pub fn verify(text: &[u8], base: GuestAddr) -> Result<Program, VerifyError> {
     let (words, rest) = text.as_chunks::<WORD>();
     if !rest.is_empty() || !base.get().is_multiple_of(8) || text.len() > MAX_TEXT {

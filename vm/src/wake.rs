@@ -1,12 +1,12 @@
-//! The events that a waiting thread waits for.
+//! The events for which a thread can wait.
 
 use kmotiondef::Cycles;
 
-/// The event that a waiting thread waits for.
+/// The event for which a thread waits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wake {
-    /// An instant: the thread continues then if it falls into one of its slices, else at the beginning of its next
-    /// slice.
+    /// A time: the thread continues at that time if it falls into one of its slices, otherwise at the beginning of its
+    /// next slice.
     At(Cycles),
     /// The beginning of its next slice.
     NextSlice,

@@ -1,9 +1,10 @@
-//! A record of the time that real images spent, for each packet and each firmware call.
+//! A record of the time spent by real images, for each packet and each firmware call.
 //!
-//! Nothing is sampled: packets are executed one at a time, and a run is the same, cycle by cycle, as without an account.
+//! Nothing is sampled: packets are executed one at a time, and a run is the same, cycle by cycle, as without an
+//! account.
 //!
-//! Real code keeps no list of its callers. The account makes one: a branch to the beginning of a function is a call if
-//! the return address in B3 is near after the branch, and that call ends where the return address is reached.
+//! Real code keeps no list of its callers, so the account builds one: a branch to the beginning of a function is a call
+//! if the return address in B3 is near after the branch, and that call ends when the return address is reached.
 
 use std::collections::BTreeMap;
 
@@ -11,9 +12,9 @@ use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 
 use crate::engine::ContextId;
 
-/// Bytes from a call to its return address at most: six packets.
+/// The largest distance from a call to its return address, in bytes: six packets.
 const LONGEST_CALL: u32 = 6 * 32;
-/// Most calls that have not returned; code without returns makes no more.
+/// The limit of calls that have not returned; calls of code that never returns are not added beyond it.
 const DEEPEST: usize = 256;
 
 /// A place where time is spent: context, packet, firmware function, callers.
@@ -23,13 +24,13 @@ pub struct Spender {
     pub context: ContextId,
     /// The packet.
     pub at: CodeAddr,
-    /// The firmware function that it calls, if the time was spent there.
+    /// The firmware function called there, if the time was spent in it.
     pub firmware: Option<GuestAddr>,
     /// The calls that led there.
     pub callers: Callers,
 }
 
-/// Calls that led to a place, see [`Account::calls`].
+/// An entry in the tree of calls; see [`Account::calls`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Callers(usize);
 
@@ -48,7 +49,7 @@ pub(super) type Spot = (ContextId, CodeAddr, Option<GuestAddr>);
 /// The branch by which a packet was reached.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Branch {
-    /// The packet of the last branch that was taken.
+    /// The packet of the last taken branch.
     pub(super) from: CodeAddr,
     /// B3.
     pub(super) link: u32,
@@ -108,7 +109,8 @@ impl Account {
             trail.callers = call.outer;
             return;
         }
-        // A jump to the beginning of a function that is under way is not a call, nor is one from its end to another.
+        // A jump to the beginning of a function in progress is not a call, nor is a tail jump from its end to another
+        // function.
         let is_new = trail.open.last().is_none_or(|call| call.back != branch.link);
         let is_call = branch.enters && is_new && is_return_of(branch.link, branch.from.as_guest_addr().get());
         if !is_call || trail.open.len() >= DEEPEST {

@@ -104,7 +104,7 @@ pub(super) const fn abs(s2: u32) -> u32 {
     if s2 == 0x8000_0000 { 0x7FFF_FFFF } else { s2.cast_signed().unsigned_abs() }
 }
 
-/// Two sums of 16 bits, no carry between.
+/// Two 16-bit sums, without a carry from one to the other.
 pub(super) const fn add2(s1: u32, s2: u32) -> u32 {
     let high = (s1 & 0xFFFF_0000).wrapping_add(s2 & 0xFFFF_0000);
     high | (s1.wrapping_add(s2) & 0xFFFF)
@@ -116,7 +116,7 @@ pub(super) const fn sub2(s1: u32, s2: u32) -> u32 {
     high | (s1.wrapping_sub(s2) & 0xFFFF)
 }
 
-/// Bits `s1[9:5]..=s1[4:0]`; none if the second is less.
+/// Bits `s1[9:5]..=s1[4:0]`; none if the second number is less than the first.
 const fn bits(s1: u32) -> u32 {
     let (low, high) = (s1 >> 5 & 31, s1 & 31);
     if high < low { 0 } else { (u32::MAX >> (31 - high)) & (u32::MAX << low) }

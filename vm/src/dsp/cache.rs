@@ -1,16 +1,16 @@
 //! Decoded packets by address.
 //!
-//! Packets that follow each other in memory are decoded together and follow each other here, so that straight code
-//! needs no search. Pages of 4 KiB say which packet begins at each word, and which lines of 32 bytes hold words that
-//! were decoded: a store to such a line drops the packets of it and no others.
+//! Packets that follow each other in memory are decoded together and follow each other here, so that straight-line code
+//! needs no search. Pages of 4 KiB record which packet begins at each word, and which 32-byte lines hold decoded words:
+//! a store to such a line drops only the packets of that line.
 
 use super::decode::{Decoded, FORESEEN, Micro, NoPacket, Packet, STEADY, decode};
 use super::memory::Memory;
 use super::work::Work;
 
-/// Packets decoded at once.
+/// The number of packets decoded at once.
 const RUN: usize = 64;
-/// Packets kept; with more of them, everything is forgotten.
+/// The capacity of the cache, in packets; when it is exceeded, the cache is cleared.
 const MOST: usize = 1 << 20;
 /// Bytes of a page, of a line.
 const PAGE: u32 = 1 << PAGE_BITS;
@@ -20,7 +20,7 @@ const LINE: u32 = 32;
 const WORDS: usize = PAGE as usize / 4;
 /// Places for pages: as many as the two RAMs have.
 const PLACES: usize = 1 << 13;
-/// Bytes before a line in which a packet of it may begin: a packet has eight words at most.
+/// Distance before a line at which a packet that reaches into it may begin, in bytes: a packet has at most eight words.
 const BEFORE: u32 = 28;
 /// No packet begins there.
 const NONE: u32 = u32::MAX;
@@ -65,14 +65,14 @@ impl Default for Cache {
     }
 }
 
-/// A copy knows nothing yet but its stops: what is decoded follows from memory, and copies are made for snapshots.
+/// A copy keeps only its stops: decoded packets can be derived from memory again, and copies are made for snapshots.
 impl Clone for Cache {
     fn clone(&self) -> Self {
         Self { stops: self.stops.clone(), ..Self::default() }
     }
 }
 
-/// The place of the page of an address: SDRAM and on-chip RAM have all of theirs.
+/// The index of the page of an address: SDRAM and on-chip RAM have a page for every address.
 #[inline(always)]
 const fn place(at: u32) -> usize {
     (at >> PAGE_BITS & 0xFFF | (at >> 31) << 12) as usize
@@ -91,8 +91,8 @@ fn each_product(packet: Packet, micros: &mut [Micro], change: impl Fn(&mut Micro
 }
 
 impl Cache {
-    /// The packets from this index on, and the instructions from the first of these on: those of a packet follow those of
-    /// the packet before it.
+    /// The packets from this index on, and the instructions from the first one of these packets on: instructions are
+    /// stored in the order of their packets.
     #[inline(always)]
     pub(super) fn follow(&self, index: u32) -> (&[Packet], &[Micro]) {
         let packets = &self.packets[index as usize..];
@@ -127,7 +127,7 @@ impl Cache {
         (index != NONE).then_some(index)
     }
 
-    /// Decodes packets from `at` on until one is known or cannot be decoded.
+    /// Decodes packets from `at` on, up to one that is already decoded or cannot be decoded.
     #[cold]
     fn fill<M: Memory>(&mut self, at: u32, memory: &M) -> Result<u32, NoPacket> {
         if self.packets.len() >= MOST {
@@ -209,7 +209,7 @@ impl Cache {
         self.page_mut(line).lines &= !line_bit(line);
     }
 
-    /// Forgets everything.
+    /// Drops all decoded packets.
     pub(super) fn clear(&mut self) {
         let stops = std::mem::take(&mut self.stops);
         *self = Self { generation: self.generation + 1, stops, ..Self::default() };
@@ -237,7 +237,7 @@ impl Cache {
         self.stops.binary_search(&at).is_ok()
     }
 
-    /// A number that is another one once decoded packets were dropped.
+    /// A number that changes whenever decoded packets are dropped.
     pub(super) const fn generation(&self) -> u64 {
         self.generation
     }

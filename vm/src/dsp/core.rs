@@ -11,9 +11,9 @@ use super::pipeline::{Passed, State};
 use super::watched::Watched;
 use crate::trap::{Fault, TrapKind};
 
-/// Cycles after which code that never allows an interrupt is held to be endless: 1 ms.
+/// Cycles after which code that never allows an interrupt is taken for an endless loop: 1 ms.
 ///
-/// The board loses ticks long before, and with them position.
+/// The board loses ticks, and with them position, long before that.
 const LONGEST_SHADOW: i64 = 200_000;
 
 /// The reason why a core returned.
@@ -35,7 +35,7 @@ pub enum Halt {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HotCode(RegionTranslator);
 
-/// The translator of a build without one: there is none.
+/// Placeholder for the translator in builds without one.
 #[cfg(not(feature = "native"))]
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum HotCode {}
@@ -56,7 +56,7 @@ enum Border {
     Slice,
     /// At the next packet.
     Next,
-    /// At points where an interrupt is possible, or at the first packet from this cycle on.
+    /// At points where an interrupt is possible, or at the first packet at or after this cycle.
     Interrupt(u64),
 }
 
@@ -71,12 +71,12 @@ pub struct Core {
     /// The instruction of the last fault.
     faulted_at: Option<u32>,
     border: Border,
-    /// The stop that was reported last: the packet there is executed next.
+    /// The stop that was reported last: the next run executes its packet.
     passed: Option<u32>,
     idle: Idle,
     skips: bool,
     loops: Loops,
-    /// Hot code as code of the host, where that is wanted.
+    /// Hot code translated to host code, if translation is on.
     #[cfg(feature = "native")]
     native: Option<Box<super::native::Native>>,
 }
@@ -112,7 +112,8 @@ impl Core {
         }
     }
 
-    /// The instruction of the last fault, if one of the packet that the core is before is known to have caused it.
+    /// The instruction that caused the last fault, if it is known to belong to the packet that the core is about to
+    /// execute.
     #[must_use]
     pub const fn faulted_at(&self) -> Option<u32> {
         self.faulted_at
@@ -197,8 +198,8 @@ impl Core {
         }
     }
 
-    /// Stops every run before the packets at these addresses, and before no others; a run from a stop that was reported
-    /// executes it. What is executed, and when, stays the same.
+    /// Stops every run before the packets at these addresses, and nowhere else; a run that starts at a reported stop
+    /// executes its packet. Stops change neither the instructions that are executed nor their timing.
     pub fn set_stops(&mut self, addresses: impl IntoIterator<Item = u32>) {
         self.passed = self.passed.filter(|at| *at == self.state.pc);
         self.cache.set_stops(addresses);
@@ -284,7 +285,7 @@ impl Core {
         }
     }
 
-    /// Sets whether hot code is translated to code of the host, if this build can do so. The results stay the same.
+    /// Turns the translation of hot code to host code on or off, if this build supports it. The results stay the same.
     pub fn translate(&mut self, whether: bool) {
         self.translate_hot(if whether { HotCode::HERE } else { None });
     }
@@ -308,7 +309,7 @@ impl Core {
         0
     }
 
-    /// A branch has arrived: executes what is translated from there on.
+    /// Called when a branch arrives: executes the translated code that begins there.
     #[cfg(feature = "native")]
     #[inline]
     fn run_native<M: Memory>(&mut self, memory: &mut M) {
@@ -340,7 +341,7 @@ impl Core {
         }
     }
 
-    /// A branch has gone back: a loop that changes nothing is skipped up to the next border.
+    /// Called after a backward branch: skips a loop that changes nothing, up to the next border.
     fn went_back<M: Memory>(&mut self, memory: &M) {
         match self.idle.arrive(self.state.pc, self.state.cycle()) {
             Arrival::Pass => {}
@@ -363,7 +364,7 @@ impl Core {
         self.idle.skipped += iterations * period;
     }
 
-    /// A branch has gone back: executes the loop that begins here, if it is known.
+    /// Called after a backward branch: executes the loop that begins here, if it is known.
     fn run_loop<M: Memory>(&mut self, memory: &mut M) -> Result<(), Halt> {
         #[cfg(feature = "native")]
         if self.native.is_some() {
@@ -388,7 +389,8 @@ impl Core {
         self.cache.find(self.state.pc, memory)
     }
 
-    /// Executes a packet, or all that follow each other in memory, up to where the next must be searched.
+    /// Executes one packet, or all consecutive packets in memory up to the point where the next one must be searched
+    /// for.
     #[inline(always)]
     fn run_from<const ALL: bool, M: Memory>(&mut self, index: u32, memory: &mut M) -> Result<(), Halt> {
         let Self { state, cache, idle, .. } = self;
@@ -437,13 +439,13 @@ impl Core {
         Ok(())
     }
 
-    /// Executes packet by packet what would be executed as a loop; nothing else changes.
+    /// Executes loops packet by packet from now on; nothing else changes.
     #[cfg(test)]
     pub(super) const fn keep_to_packets(&mut self) {
         self.loops.turn_off();
     }
 
-    /// Packets that were executed as those of loops.
+    /// The number of packets executed as part of loops.
     #[cfg(test)]
     pub(super) fn looped(&self) -> u64 {
         self.loops.packets()

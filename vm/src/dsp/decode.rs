@@ -1,7 +1,7 @@
-//! Packets, decoded once: operands resolved, order chosen, checks made that need no values.
+//! Packets, decoded once: operands resolved, order chosen, and all checks made that do not depend on values.
 //!
-//! The instructions of a packet read all their sources before any of them writes. They are executed one after another
-//! nevertheless, in an order in which no instruction reads a register that an earlier one of the packet has written;
+//! The instructions of a packet read all their sources before any of them writes. They are nevertheless executed one
+//! after another, in an order in which no instruction reads a register that an earlier one of the packet has written;
 //! where there is no such order (two moves that exchange registers), a result is [deferred](DEFERRED) to the beginning
 //! of the next cycle.
 
@@ -12,7 +12,7 @@ use super::pipeline::BRANCH;
 use super::work::{Plan, Work, plan};
 use crate::trap::Fault;
 
-/// The register that always holds 1, the condition of what executes always.
+/// The register that always holds 1: the condition of unconditional instructions.
 pub(super) const TRUE: u8 = 64;
 /// The register that always holds 0, to which constants are added.
 pub(super) const ZERO: u8 = 65;
@@ -37,7 +37,7 @@ pub(super) const AFTER: u8 = 64;
 /// No instruction of the packet changes a high word that a double instruction reads a cycle later; of a product, two.
 pub(super) const STEADY: u8 = 128;
 
-/// In `extra` of a [steady](STEADY) product: the packet that follows in memory does not change its words either.
+/// In `extra` of a [steady](STEADY) product: the next packet in memory does not change its words either.
 pub(super) const FORESEEN: u8 = 1;
 
 /// Most instructions of a packet.
@@ -73,9 +73,9 @@ pub(super) struct Micro {
 /// A packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Packet {
-    /// The place of its first instruction that does something among all of the cache.
+    /// The index of its first instruction that has an effect, among all instructions of the cache.
     pub(super) first: u32,
-    /// Number of instructions that do something.
+    /// Number of instructions that have an effect.
     pub(super) count: u8,
     /// The delays after which an effect that it issues may occur, as bits.
     pub(super) delays: u16,
@@ -87,7 +87,7 @@ pub(super) struct Packet {
     pub(super) has_branch: bool,
     /// True if it waits for an interrupt.
     pub(super) is_idle: bool,
-    /// True if the packet after it is the next of the cache.
+    /// True if the packet after it in memory is the next one of the cache.
     pub(super) is_linked: bool,
     /// The address after it.
     pub(super) end: u32,
@@ -100,7 +100,7 @@ pub(super) struct Decoded {
     pub(super) writes: u64,
 }
 
-/// Reports whether bytes look like code of this processor: the first words are instructions.
+/// Reports whether bytes look like code of this processor, judging by their first words.
 #[must_use]
 pub fn is_code(bytes: &[u8]) -> bool {
     let words = bytes.as_chunks::<4>().0;
@@ -109,7 +109,7 @@ pub fn is_code(bytes: &[u8]) -> bool {
 
 /// The reason why there is no packet.
 pub(super) enum NoPacket {
-    /// No code of this context is there.
+    /// The address does not hold code of this context.
     Outside,
     /// The words are wrong.
     Fault(Fault),
@@ -122,7 +122,7 @@ pub(super) fn places<M: Memory>(memory: &M, at: u32) -> Vec<u32> {
         .map_or_else(|_| Vec::new(), |ordered| ordered.into_iter().map(|(at, _)| at).collect())
 }
 
-/// The instructions of the packet at `at` that do something, in the order in which they are executed.
+/// The instructions of the packet at `at` that have an effect, in execution order.
 pub(super) fn instructions<M: Memory>(memory: &M, at: u32) -> Vec<Inst> {
     let words = places(memory, at).into_iter().filter_map(|at| memory.fetch(at));
     words.filter_map(|word| Inst::decode(word).ok()).collect()
@@ -180,7 +180,7 @@ fn fetch<M: Memory>(memory: &M, at: u32) -> Result<(Vec<(u32, Inst)>, u32), NoPa
     Ok((insts, end))
 }
 
-/// An instruction with what matters for the order.
+/// An instruction with the facts that determine the order.
 struct Ordered {
     at: u32,
     micro: Micro,
@@ -234,7 +234,8 @@ fn order(insts: &[(u32, Inst)]) -> Result<Vec<(u32, Micro)>, Fault> {
     Ok(ordered)
 }
 
-/// Results of E1 for one register: refused if certain, else found when they land.
+/// Handles results of E1 for the same register: a certain conflict is a fault, a possible one is detected when the
+/// results land.
 fn defer_shared(open: &mut [Ordered]) -> Result<(), Fault> {
     for index in 0..open.len() {
         for other in index + 1..open.len() {

@@ -9,8 +9,8 @@ use super::{alu, float, product};
 use crate::trap::TrapKind;
 
 impl State {
-    /// Executes an instruction whose condition holds; `RENAMED` if its results have places of their own, so that they
-    /// are written at once ([`loops`](super::loops)).
+    /// Executes an instruction whose condition holds. `RENAMED` is set if its results have locations of their own, so
+    /// that they are written at once ([`loops`](super::loops)).
     #[inline(always)]
     pub(super) fn execute<const RENAMED: bool, M: Memory>(
         &mut self,
@@ -169,7 +169,7 @@ impl State {
         Ok(())
     }
 
-    /// A result that lands in `delay` cycles from now.
+    /// Schedules a result that lands `delay` cycles from now.
     #[inline(always)]
     fn land<const RENAMED: bool>(&mut self, delay: u64, reg: u8, value: u32) {
         if RENAMED {
@@ -190,7 +190,7 @@ impl State {
     #[inline(always)]
     fn land_both<const RENAMED: bool>(&mut self, delay: u64, reg: u8, value: u64) {
         if RENAMED {
-            // As is known to be even, both words are written at once.
+            // The register is known to be even, so both words are written at once.
             self.land_pair::<RENAMED>(delay, delay, reg & !1, value);
         } else {
             self.push_both(delay, reg, value);
@@ -219,7 +219,7 @@ impl State {
         self.write_or_defer::<RENAMED>(m, m.dst | 1, (value >> 32) as u32);
     }
 
-    /// A double whose low word is there in E1, the high one in E2.
+    /// Schedules a double whose low word is available in E1 and its high word in E2.
     fn give_double<const RENAMED: bool>(&mut self, m: &Micro, value: u64) {
         self.give::<RENAMED>(m, value as u32);
         self.land::<RENAMED>(2, m.dst | 1, (value >> 32) as u32);
@@ -266,8 +266,8 @@ impl State {
         if m.flags & AFTER == 0 { sum } else { base }
     }
 
-    /// All words of a double instruction that reads the high one of s1 after `cycles` cycles, and that of s2 after one;
-    /// `None` if it is not known yet what they will be.
+    /// All words of a double instruction that reads the high word of s1 after `cycles` cycles and the high word of s2
+    /// after one; `None` if those values are not known yet.
     #[inline(always)]
     fn words<const RENAMED: bool>(&self, m: &Micro, cycles: u64, low1: u32, low2: u32) -> Option<(u64, u64)> {
         if !RENAMED && m.flags & STEADY == 0 {
@@ -288,7 +288,8 @@ impl State {
         if is_foreseen { self.words::<RENAMED>(m, 2, low1, low2) } else { None }
     }
 
-    /// A double instruction that reads its high words after E1: at once where it is known what they will be.
+    /// Starts a double instruction that reads its high words after E1; it is computed at once if those values are
+    /// already known.
     fn start_double<const RENAMED: bool>(&mut self, m: &Micro, low1: u32, low2: u32) {
         let is_product = m.work == Work::Mpydp;
         let words = if is_product { None } else { self.words::<RENAMED>(m, 1, low1, low2) };
@@ -317,7 +318,7 @@ impl State {
         self.finish_double::<false>(&late.micro, self.clock.cycle - late.issued, join(late.low1, high1), s2);
     }
 
-    /// Computes with all words there, `passed` cycles after the issue.
+    /// Computes a double instruction with all of its words, `passed` cycles after the issue.
     fn finish_double<const RENAMED: bool>(&mut self, m: &Micro, passed: u64, s1: u64, s2: u64) {
         let dst = m.dst;
         let (a, b) = (float::double(s1), float::double(s2));
@@ -330,7 +331,7 @@ impl State {
             }
             Work::Cmpgtdp => self.land::<RENAMED>(2 - passed, dst, u32::from(a > b)),
             Work::Cmpltdp => self.land::<RENAMED>(2 - passed, dst, u32::from(a < b)),
-            // Only these seven start so; see `start_double`.
+            // Only these seven instructions start this way; see `start_double`.
             _ => self.land::<RENAMED>(2 - passed, dst, u32::from(a == b)),
         }
     }

@@ -1,13 +1,13 @@
-//! Effects in flight: results, branches, double instructions that have more to read.
+//! Effects in flight: results, branches, and double instructions that have not read all of their sources.
 //!
-//! Results wait in sixteen slots, the slot of a cycle being its number modulo 16. The cycles in which an effect may
-//! land are kept in a mask of their own, so that cycles without one pass quickly.
+//! Results wait in sixteen slots; the slot of a cycle is its number modulo 16. The cycles in which an effect may land
+//! are kept in a separate mask, so that cycles without one pass quickly.
 
 use super::decode::Micro;
 
 /// Slots; more than the longest latency.
 pub(super) const SLOTS: usize = 16;
-/// All delays there are.
+/// All possible delays.
 pub(super) const ANY: u32 = (1 << SLOTS) - 2;
 
 /// A double instruction that has not read all of its sources.
@@ -19,11 +19,11 @@ pub(super) struct Late {
     pub(super) issued: u64,
     /// The instruction.
     pub(super) micro: Micro,
-    /// Low word of s1, or all of a single.
+    /// Low word of s1; all of a single.
     pub(super) low1: u32,
     /// Low word of s2.
     pub(super) low2: u32,
-    /// High word of s2, once read.
+    /// High word of s2, once it has been read.
     pub(super) high2: Option<u32>,
 }
 
@@ -32,8 +32,8 @@ pub(super) struct Late {
 pub(super) struct Flight {
     /// The cycles in which an effect may land, relative to the present one: bit k for k cycles; bit 0 is meaningless.
     ///
-    /// The effects that a packet may issue are known when it is decoded, so this changes once a packet and not with
-    /// each result; a bit may be set for an instruction that was not executed.
+    /// The effects that a packet may issue are known when it is decoded, so this changes once per packet rather than
+    /// with each result; a bit may be set for an instruction that was not executed.
     pub(super) due: u32,
     pub(super) masks: [u64; SLOTS],
     pub(super) values: Box<[[u32; 64]; SLOTS]>,
@@ -48,7 +48,7 @@ impl Flight {
         self.due >> 1 == 0
     }
 
-    /// Says that something may happen after each of these delays.
+    /// Notes that an effect may land after each of these delays.
     #[inline(always)]
     pub(super) const fn expect(&mut self, delays: u32) {
         self.due |= delays;

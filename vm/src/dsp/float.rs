@@ -1,7 +1,7 @@
 //! Floating point as the processor computes it (`c67x.md` 4).
 //!
-//! Nearest even; a denormal source counts as zero of its sign, a result below the smallest
-//! normal number becomes zero of its sign; every NaN that comes out has the same bits.
+//! Rounds to nearest even; a denormal source counts as zero of its sign, a result below the smallest normal number
+//! becomes zero of its sign, and every NaN result has the same bits.
 
 const NAN_SINGLE: u32 = 0x7FFF_FFFF;
 const NAN_DOUBLE: u64 = 0x7FFF_FFFF_FFFF_FFFF;
@@ -56,7 +56,7 @@ pub(super) fn mpysp(s1: u32, s2: u32) -> u32 {
     from_single(single(s1) * single(s2))
 }
 
-/// Reports whether bits are those of a finite number with this exponent or a greater one.
+/// Reports whether bits are those of a finite number whose biased exponent is at least `least`.
 #[inline(always)]
 const fn is_finite_from(least: u64, bits: u64) -> bool {
     (bits >> 52 & 0x7FF).wrapping_sub(least) < 0x7FF - least

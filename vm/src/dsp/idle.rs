@@ -1,8 +1,8 @@
 //! Waiting loops: recognised by their effects, and skipped in one step.
 //!
 //! If an iteration ends with the registers, the results in flight and every byte that it stored as they were before,
-//! and no device was reached, then every further iteration does the same until something happens from outside. So as
-//! many iterations are skipped as fit into the time left. Only the clock of the computer shows the difference. Source:
+//! and no device was accessed, then every further iteration does the same until something outside changes. So as many
+//! iterations are skipped as fit into the remaining time. Only the computer's clock shows the difference. Source:
 //! `dsp-board.md` 9, "Skipping idle loops".
 
 use super::pipeline::Picture;
@@ -16,7 +16,7 @@ const MOST_STORES: usize = 64;
 /// Places that are counted, a power of two.
 const PLACES: usize = 64;
 
-/// A word that was stored to: its address, and what was there before.
+/// A word that was stored to: its address, and its value before.
 type Old = (u32, u32);
 
 /// An iteration that is being watched.
@@ -28,26 +28,26 @@ struct Iteration {
     stores: Vec<Old>,
 }
 
-/// Number of visits of an address since something last happened.
+/// The number of visits to an address since the last event.
 #[derive(Clone, Copy, Debug, Default)]
 struct Visits {
     pc: u32,
     count: u8,
-    /// The number of what last happened before the first of these visits.
+    /// The number of the last event before the first of these visits.
     since: u32,
 }
 
-/// The knowledge about loops since something last happened.
+/// The knowledge about loops since the last event.
 #[derive(Clone, Debug)]
 pub(super) struct Idle {
     visits: [Visits; PLACES],
-    /// Counts what happens. A program that polls a firmware function calls it millions of times, and each call is such:
-    /// so the visits before it become invalid, and are not cleared.
+    /// Counts events. A program that polls a firmware function calls it millions of times, and each call is an event;
+    /// so earlier visits become invalid by their number instead of being cleared.
     happened: u32,
     iteration: Option<Box<Iteration>>,
     /// True while stores are noted.
     pub(super) is_watching: bool,
-    /// Cycles that were skipped so far.
+    /// Cycles skipped so far.
     pub(super) skipped: u64,
 }
 
@@ -68,14 +68,14 @@ impl Default for Idle {
 pub(super) enum Arrival {
     /// Nothing.
     Pass,
-    /// The place is worth a picture.
+    /// The address has been visited often enough to take a picture.
     Look,
-    /// The place of the picture is reached again.
+    /// The address of the picture is reached again.
     Again,
 }
 
 impl Idle {
-    /// Forgets all observations, because something has happened.
+    /// Drops all observations, because of an event.
     pub(super) fn forget(&mut self) {
         self.happened = self.happened.wrapping_add(1);
         if self.happened == 0 {
@@ -85,7 +85,7 @@ impl Idle {
         self.is_watching = false;
     }
 
-    /// A branch has gone back to `pc` in this cycle.
+    /// Called when a branch has gone back to `pc` in this cycle.
     #[inline(always)]
     pub(super) fn arrive(&mut self, pc: u32, cycle: u64) -> Arrival {
         if let Some(iteration) = &self.iteration {
@@ -106,7 +106,7 @@ impl Idle {
         if place.count == ENOUGH { Arrival::Look } else { Arrival::Pass }
     }
 
-    /// Watches the iteration that begins here.
+    /// Starts to observe the iteration that begins here.
     pub(super) fn look(&mut self, picture: Picture, packets: u64, touches: u64) {
         self.iteration = Some(Box::new(Iteration { picture, packets, touches, stores: Vec::new() }));
         self.is_watching = true;

@@ -9,7 +9,7 @@ use crate::trap::Scene;
 const STACK: Reg = Reg::b(15);
 /// Most instructions of a packet.
 const MOST: u32 = 8;
-/// Bytes shown before a place, and from it on.
+/// Bytes shown before an address, and from it on.
 const AROUND: u32 = 8 * 4;
 /// CSR at power-up: little endian, interrupts off.
 const POWER_UP: u32 = 0x100;
@@ -28,7 +28,7 @@ impl Core {
         core
     }
 
-    /// The registers by name, those of side A first, then the control registers that matter.
+    /// The registers by name: side A, side B, then the control registers of interest.
     #[must_use]
     pub fn registers(&self) -> Vec<(String, u32)> {
         let state = &self.state;

@@ -3,8 +3,8 @@
 //! In software-pipelined code a result lands in every cycle, and the interpreter of single packets spends most of its
 //! time on results in flight. A loop that is reached often is therefore planned once ([`plan`]): a result is written at
 //! once to a location that no instruction reads yet, and instructions are renamed to read it there from the cycle on in
-//! which it lands ([`renaming`]). They are executed by the same functions as elsewhere. Where the loop is left, for
-//! whatever reason, the state is converted back: only the clock of the computer shows the difference.
+//! which it lands ([`renaming`]). They are executed by the same functions as elsewhere. When the loop is left, for
+//! whatever reason, the state is converted back: only the computer's clock shows the difference.
 
 mod plan;
 mod renaming;
@@ -30,29 +30,29 @@ const PLACES: usize = 256;
 /// Most loops of one place, most loops.
 const MOST_HERE: usize = 8;
 const MOST: usize = 128;
-/// Number of changes of the code after which nothing is planned any more.
+/// Number of code changes after which no more loops are planned.
 const MOST_CHANGES: u32 = 64;
-/// A loop is entered if there is time for as many cycles.
+/// The fewest cycles that must be left for a loop to be entered.
 const LEAST: i64 = 64;
 /// A loop that in this many entries or more has executed fewer packets in each than `WORTH` is not entered any more.
 const TRIAL: u64 = 64;
 const WORTH: u64 = 32;
 
-/// The places where branches go back to, and the loops there.
+/// The targets of backward branches, and the loops there.
 #[derive(Debug)]
 pub(super) struct Loops {
     /// Places, and how often they were reached.
     places: Box<[(u32, u32); PLACES]>,
     known: BTreeMap<u32, Vec<RenamedLoop>>,
     count: usize,
-    /// The state of the code that the loops are of.
+    /// The generation of the code that the loops were planned from.
     generation: u64,
     changes: u32,
     flying: Vec<Flying>,
     is_off: bool,
 }
 
-/// A loop with its entry and the effects in flight there.
+/// A loop with its entry and the effects in flight at the entry.
 #[derive(Debug)]
 pub(super) struct RenamedLoop {
     flying: Vec<Flying>,
@@ -76,7 +76,7 @@ impl Default for Loops {
     }
 }
 
-/// A copy is empty: the loops are found again, as packets are decoded again.
+/// A copy is empty: loops are found again, just as packets are decoded again.
 impl Clone for Loops {
     fn clone(&self) -> Self {
         Self { is_off: self.is_off, ..Self::default() }
@@ -90,7 +90,7 @@ impl Loops {
         self.is_off = true;
     }
 
-    /// Packets that the loops known now have executed.
+    /// The number of packets executed by the loops known now.
     #[cfg(test)]
     pub(super) fn packets(&self) -> u64 {
         self.known.values().flatten().map(|known| known.packets).sum()
@@ -124,7 +124,7 @@ impl Loops {
         let here = self.known.entry(pc).or_default();
         let index = match here.iter().position(|known| known.flying == self.flying) {
             Some(index) => index,
-            // Something else is on its way after an interrupt, but not for long.
+            // After an interrupt other effects may be in flight, but not for long.
             None if here.len() >= MOST_HERE || self.count >= MOST => return None,
             None => {
                 let Some(planned) = plan_with(state, &self.flying, cache, memory) else {
@@ -178,7 +178,7 @@ impl RenamedLoop {
     /// Executes packets until the loop is left.
     ///
     /// # Errors
-    /// What a packet did wrong, and the number of the instruction if it was one.
+    /// The fault of a packet, and the number of the instruction if one caused it.
     #[inline(never)]
     pub(super) fn run<M: Memory>(
         &mut self,
@@ -237,7 +237,7 @@ impl RenamedLoop {
 }
 
 impl Arrival {
-    /// The packet that it leads to; further cycles pass if it is not taken.
+    /// The packet that follows; if the branch is not taken, further cycles pass.
     #[inline(always)]
     fn target(self, state: &mut State) -> Option<u32> {
         if let Some(decider) = self.decider

@@ -1,4 +1,4 @@
-//! Lines of RAM that translated code must not store to: the interpreter performs these stores and checks what is there.
+//! Lines of RAM that translated code must not store to: the interpreter performs these stores and checks the line.
 
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ const CODE: u8 = 1;
 /// Some of the line is protected.
 const PROTECTED: u8 = 2;
 
-/// A mark for each line of both RAMs, from the moment on at which something is translated.
+/// A mark for each line of both RAMs; allocated when something is translated for the first time.
 #[derive(Debug, Default)]
 pub(super) struct LineMarks {
     marks: Option<Box<Marks>>,
@@ -21,7 +21,7 @@ pub(super) struct LineMarks {
 }
 
 impl LineMarks {
-    /// Makes marks; whether there were none.
+    /// Allocates the marks; returns whether there were none.
     pub(super) fn begin(&mut self) -> bool {
         if self.marks.is_some() {
             return false;

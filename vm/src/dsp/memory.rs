@@ -4,14 +4,14 @@
 use crate::memory::GuestMemory;
 use crate::trap::TrapKind;
 
-/// Cycles that have passed, and those that may still pass.
+/// Cycles that have passed, and cycles that are left.
 ///
-/// An access that makes the processor wait takes its time off what is left.
+/// An access that stalls the processor reduces the cycles that are left.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Clock {
-    /// Cycles of packets since the start: those by which results land.
+    /// Packet cycles since the start, by which results land.
     pub(super) cycle: u64,
-    /// The cycle of packets in which nothing is left.
+    /// The packet cycle in which no time is left.
     pub(super) deadline: u64,
     /// Cycles since the start that the processor waited for memory.
     pub(super) stalled: u64,
@@ -24,13 +24,13 @@ impl Clock {
         self.cycle + self.stalled
     }
 
-    /// Lets the processor wait: time passes, and results in flight wait with it.
+    /// Stalls the processor: time passes, and results in flight are delayed as well.
     pub const fn stall(&mut self, cycles: u64) {
         self.stalled += cycles;
         self.deadline = self.deadline.wrapping_sub(cycles);
     }
 
-    /// Sets the cycle since the start in which nothing is left.
+    /// Sets the cycle since the start in which no time is left.
     pub(super) const fn set_end(&mut self, end: u64) {
         self.deadline = end.wrapping_sub(self.stalled);
     }
@@ -41,7 +41,7 @@ impl Clock {
         self.deadline.wrapping_sub(self.cycle).cast_signed()
     }
 
-    /// Sets what is left.
+    /// Sets the cycles that are left.
     pub const fn set_left(&mut self, left: i64) {
         self.deadline = self.cycle.wrapping_add_signed(left);
     }
@@ -57,12 +57,13 @@ impl Clock {
 ///
 /// Addresses are multiples of the size of the access: the processor ignores the low bits.
 pub trait Memory {
-    /// Number of accesses so far that reached a device in a way that may matter; a loop without one can be skipped.
+    /// The number of accesses so far that reached a device in a way that may matter; a loop without such an access can
+    /// be skipped.
     fn touches(&self) -> u64 {
         0
     }
 
-    /// Both RAMs, if accesses of their addresses reach nothing else: then hot code is translated.
+    /// Both RAMs, if accesses to their addresses have no other effect: then hot code is translated.
     #[cfg(feature = "native")]
     fn ram(&mut self) -> Option<&mut GuestMemory> {
         None

@@ -1,9 +1,9 @@
-//! Hot code as code of the host.
+//! Hot code translated to host code.
 //!
 //! The executor of packets reports where branches arrive ([`Native::run`]). An address that is reached often is
 //! translated with all packets reachable from it ([`region`]), for the effects in flight there ([`flying`]). A region
 //! runs until something happens that only the interpreter handles, or until too little time is left. Both agree to the
-//! cycle and to the bit; a store among code, and everything else that drops decoded packets, drops all regions.
+//! cycle and to the bit. A store to code, like everything else that drops decoded packets, drops all regions.
 
 mod access;
 mod arith;
@@ -30,7 +30,7 @@ const PLACES: usize = 1024;
 /// Most regions of one place, most regions.
 const MOST_HERE: usize = 4;
 const MOST: usize = 512;
-/// Number of changes of the code after which nothing is translated any more.
+/// Number of code changes after which nothing more is translated.
 const MOST_CHANGES: u32 = 64;
 
 /// The function that translates the packets reachable from an address.
@@ -39,10 +39,10 @@ pub(super) struct RegionTranslator(Translate);
 
 type Translate = fn(u32, Vec<Flying>, &mut Find<'_>) -> Result<Region, NoRegion>;
 
-/// The one that makes code of this computer.
+/// The translator to code of this computer.
 pub(super) const TRANSLATOR: RegionTranslator = RegionTranslator(region::translate);
 
-/// The places where branches arrive, and what is translated there.
+/// The addresses where branches arrive, and the code translated there.
 #[derive(Debug)]
 pub(super) struct Native {
     translator: RegionTranslator,
@@ -50,7 +50,7 @@ pub(super) struct Native {
     places: Box<[(u32, u32)]>,
     regions: BTreeMap<u32, Vec<Region>>,
     count: usize,
-    /// The state of the code that the regions are of.
+    /// The generation of the code that the regions were translated from.
     generation: u64,
     changes: u32,
     handover: Box<Handover>,
@@ -60,7 +60,7 @@ pub(super) struct Native {
 }
 
 impl Native {
-    /// Nothing is known yet.
+    /// A translator without any regions yet.
     pub(super) fn new(translator: RegionTranslator) -> Self {
         Self {
             translator,
@@ -76,14 +76,14 @@ impl Native {
     }
 }
 
-/// A copy knows nothing yet, like the decoded packets of a copy.
+/// A copy is empty, as is a copy of the decoded packets.
 impl Clone for Native {
     fn clone(&self) -> Self {
         Self::new(self.translator)
     }
 }
 
-/// The stack that is watched, and packets executed: what a core has besides its state.
+/// The stack watch and the count of executed packets: the data of a core besides its state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Account {
     /// Limit and top.
@@ -95,7 +95,7 @@ pub(super) struct Account {
 }
 
 impl Native {
-    /// Executes regions from where a branch has arrived, as far as there are some.
+    /// Executes regions from the address where a branch has arrived, for as long as there are any.
     pub(super) fn run<M: Memory>(
         &mut self,
         state: &mut State,
@@ -154,7 +154,7 @@ impl Native {
         self.places.iter_mut().for_each(|place| place.1 = heat);
     }
 
-    /// Translates what is reached from `pc`; the index of the region.
+    /// Translates the code reached from `pc`; returns the index of the region.
     #[cold]
     fn translate<M: Memory>(&mut self, pc: u32, cache: &mut Cache, memory: &mut M) -> Option<usize> {
         let here = self.regions.get(&pc).map_or(0, Vec::len);
@@ -179,7 +179,7 @@ impl Native {
         Some(regions.len() - 1)
     }
 
-    /// Runs a region; whether another one may follow.
+    /// Runs a region; returns whether another one may follow.
     fn enter<M: Memory>(
         &mut self,
         pc: u32,

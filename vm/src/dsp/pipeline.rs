@@ -57,7 +57,7 @@ struct Undefined {
     two_branches: Option<(u32, u32)>,
 }
 
-/// The state that decides how a processor continues, apart from memory.
+/// The part of the state that decides how a processor continues, apart from memory.
 #[derive(Clone, Debug)]
 pub(super) struct Picture {
     /// The cycle of it.
@@ -70,7 +70,7 @@ pub(super) struct Picture {
     shadow: u64,
     /// Results in flight: when, which registers, their values, and the target of a branch.
     flight: Vec<(u64, u64, [u32; 64], Option<u32>)>,
-    /// True if `flight` holds everything that is in flight.
+    /// True if `flight` holds all effects in flight.
     is_whole: bool,
 }
 
@@ -120,7 +120,7 @@ impl State {
         self.regs[reg.index()]
     }
 
-    /// Sets a register at once.
+    /// Sets a register immediately.
     pub const fn set_reg(&mut self, reg: Reg, value: u32) {
         self.regs[reg.index()] = value;
     }
@@ -131,7 +131,7 @@ impl State {
         self.control[control.number() as usize & 31]
     }
 
-    /// Sets a control register at once, all bits of it.
+    /// Sets all bits of a control register immediately.
     pub const fn set_control(&mut self, control: c67x::Control, value: u32) {
         self.control[control.number() as usize & 31] = value;
     }
@@ -142,7 +142,7 @@ impl State {
         self.pc
     }
 
-    /// Addresses of the packets of the last branch that was taken, and of the one taken before it.
+    /// Addresses of the packets of the last two taken branches, the latest first.
     #[must_use]
     pub const fn branched_at(&self) -> [u32; 2] {
         self.branched_at
@@ -197,24 +197,24 @@ impl State {
         }
     }
 
-    /// Lets cycles pass in which nothing changes; a multiple of 16 if results are in flight.
+    /// Lets cycles pass in which nothing changes; with results in flight, their number is a multiple of 16.
     pub(super) const fn skip(&mut self, cycles: u64) {
         self.clock.cycle += cycles;
         self.shadow += cycles;
     }
 
-    /// Sets the flag of interrupt 4, that of the timer.
+    /// Sets the flag of interrupt 4, the timer interrupt.
     pub const fn raise_timer(&mut self) {
         self.control[IFR] |= TIMER;
     }
 
-    /// Reports whether the interrupt of the timer waits to be taken.
+    /// Reports whether the timer interrupt is pending.
     #[must_use]
     pub const fn has_timer_flag(&self) -> bool {
         self.control[IFR] & TIMER != 0
     }
 
-    /// Takes the interrupt of the timer: everything in flight lands, and the handler begins `overhead` cycles later.
+    /// Takes the timer interrupt: everything in flight lands, and the handler begins `overhead` cycles later.
     ///
     /// Source: `dsp-board.md` 4.2. The caller has tested [`is_interruptible`](Self::is_interruptible).
     pub fn take_timer_interrupt(&mut self, overhead: u64) {
@@ -227,7 +227,7 @@ impl State {
         self.pc = (self.control[ISTP] & VECTORS) + VECTOR_BYTES * TIMER.trailing_zeros();
     }
 
-    /// Lets everything in flight land, and cycles pass in which nothing is executed.
+    /// Lets everything in flight land, and then cycles pass in which nothing is executed.
     pub fn wait(&mut self, cycles: u64) {
         self.settle();
         self.clock.cycle += cycles;
@@ -256,7 +256,7 @@ impl State {
         self.refuse_second(self.flight.masks[self.slot(1)] & bit(reg));
     }
 
-    /// Lets a result land in `delay` cycles from now, when something is [expected](Flight::expect).
+    /// Schedules a result that lands `delay` cycles from now, at a delay that is [expected](Flight::expect).
     #[inline(always)]
     pub(super) fn push(&mut self, delay: u64, reg: u8, value: u32) {
         let slot = self.slot(delay);
@@ -318,7 +318,7 @@ impl State {
         self.flight.late.push(late);
     }
 
-    /// A branch, taken or not, keeps interrupts off.
+    /// Holds off interrupts because of a branch, taken or not.
     #[inline(always)]
     pub(super) const fn hold_interrupts(&mut self) {
         self.shadow = self.clock.cycle + BRANCH;
@@ -343,21 +343,21 @@ impl State {
         self.branched_at = [from, self.branched_at[0]];
     }
 
-    /// Lets a branch arrive that was issued before.
+    /// Schedules the arrival of a branch that was issued earlier.
     pub(super) const fn set_branch(&mut self, due: u64, target: u32) {
         let slot = self.slot(due);
         self.flight.branches |= 1 << slot;
         self.flight.targets[slot] = target;
     }
 
-    /// Returns from an interrupt: where to.
+    /// Returns from an interrupt; yields the return address.
     pub(super) const fn return_from_interrupt(&mut self) -> u32 {
         let previous = if self.control[CSR] & PGIE != 0 { GIE } else { 0 };
         self.control[CSR] = self.control[CSR] & !GIE | previous;
         self.control[IRP]
     }
 
-    /// Returns from the interrupt that cannot be masked: where to.
+    /// Returns from the non-maskable interrupt; yields the return address.
     pub(super) const fn return_from_nmi(&mut self) -> u32 {
         self.control[IER] |= 2;
         self.control[NRP]
@@ -377,7 +377,7 @@ impl State {
         }
     }
 
-    /// The fault of a packet whose outcome the processor leaves open.
+    /// Reports the fault of a packet whose outcome the processor leaves undefined.
     #[inline(always)]
     pub(super) fn refuse_undefined(&self) -> Result<(), Fault> {
         if self.undefined.conflicts != 0 { Err(self.undefined()) } else { Ok(()) }

@@ -76,7 +76,7 @@ impl Halves {
     }
 }
 
-/// The product of two sources as the byte says.
+/// The product of two sources with the halves and signs given by `halves`.
 pub(super) const fn multiply(halves: u8, s1: u32, s2: u32) -> u32 {
     let a = half(s1, halves & HIGH1 != 0, halves & SIGNED1 != 0);
     let b = half(s2, halves & HIGH2 != 0, halves & SIGNED2 != 0);

@@ -1,8 +1,8 @@
 //! Threads on the processor: how they begin, call the firmware, lose the processor and end.
 //!
-//! A branch that leaves the program area is a call of the firmware: the function of that
-//! address is called with the arguments of the calling convention, and the program goes on
-//! at B3. Rules: `c67-subset.md` 5, 7 and 10 of the specification.
+//! A branch that leaves the program area is a call of the firmware: the function at that address is called with the
+//! arguments of the calling convention, and the program continues at B3. Rules: `c67-subset.md` 5, 7 and 10 of the
+//! specification.
 
 use std::sync::Arc;
 
@@ -26,17 +26,17 @@ use crate::trap::{Trap, TrapKind};
 const A5: Reg = Reg::a(5);
 const A14: Reg = Reg::a(14);
 
-/// The return address of a call-back: no code and no function is there.
+/// The return address of a call-back: an address without code and without a function.
 const CALLBACK_RETURN: u32 = 0xFFFF_FFE0;
 
-/// The value put into a register that a firmware function may change, so that a later use of it is noticed.
+/// The value put into registers that a firmware function may clobber, so that a later use of one is noticed.
 const CHANGED: u32 = 0xC4A7_6ED0;
 
 /// Runs real images.
 #[derive(Debug, Default)]
 pub struct DspEngine {
     contexts: [Option<Processor>; ContextId::COUNT],
-    /// The translator of hot code, if it is translated.
+    /// The translator of hot code, if translation is on.
     hot: Option<HotCode>,
     account: Option<Account>,
 }
@@ -55,7 +55,7 @@ struct Processor {
 }
 
 impl DspEngine {
-    /// An engine that may translate hot code to the host's, and may keep an account.
+    /// An engine that translates hot code to host code if `hot` is given, and can keep an account.
     #[must_use]
     pub(crate) fn new(hot: Option<HotCode>, keeps_account: bool) -> Self {
         Self { hot, account: keeps_account.then(Account::default), ..Self::default() }
@@ -67,7 +67,7 @@ impl DspEngine {
         self.account.as_ref()
     }
 
-    /// The registers of `id`, and where it is; `None` if it was never started.
+    /// The registers and position of `id`; `None` if it was never started.
     #[must_use]
     pub fn core(&self, id: ContextId) -> Option<&Core> {
         self.contexts[id.index()].as_ref().map(|context| &context.core)
@@ -78,7 +78,7 @@ impl DspEngine {
 fn board_stack(image: &Image, thread: ThreadId) -> (u32, u32) {
     let stacks = if image.is_for_kogna() { KOGNA_STACKS_BASE } else { BOARD_STACKS_BASE };
     let base = stacks + BOARD_STACK_SIZE * (u32::from(thread.get()) - 1);
-    // The start code leaves room for what an interrupt saves, and takes it back at once.
+    // The start code reserves room for the registers that an interrupt saves, and frees it at once.
     let top = ((base + BOARD_STACK_SIZE - 140) & !7) + 128;
     (top, base)
 }
@@ -87,7 +87,7 @@ impl Executor for DspEngine {
     type Code = Image;
     type Snapshot = DspSnapshot;
 
-    /// The processor takes interrupts between two packets, whatever bytecode does.
+    /// The processor takes interrupts between two packets, regardless of the setting for bytecode.
     fn set_preemption(&mut self, _: Preemption) {}
 
     /// Accesses of code for the processor are not reported.
@@ -146,7 +146,7 @@ impl Executor for DspEngine {
     }
 
     fn restore(&mut self, snapshot: &DspSnapshot) -> Result<(), ForeignSnapshot> {
-        // Restoring has the memory along with them, so decoded packets are those of their words.
+        // Memory is restored together with the contexts, so decoded packets match their words.
         self.contexts.clone_from(&snapshot.0);
         Ok(())
     }
@@ -162,7 +162,7 @@ impl Executor for DspEngine {
 }
 
 impl Processor {
-    /// The packet it is before; in a firmware call, the branch that made it.
+    /// The packet about to be executed; in a firmware call, the branch that made it.
     fn place(&self) -> CodeAddr {
         let pc = self.core.state.pc();
         if Image::is_code(pc) { code_at(self.core.faulted_at().unwrap_or(pc)) } else { call_at(&self.core) }
@@ -245,7 +245,7 @@ impl Processor {
         halt
     }
 
-    /// Makes the firmware call of an address; returns the stop, if the program does not continue at once.
+    /// Makes the firmware call of an address; returns the stop if the program does not continue at once.
     fn call<F: Firmware + ?Sized>(
         &mut self,
         id: ContextId,
@@ -298,7 +298,7 @@ impl Processor {
     }
 }
 
-/// The branch that made a firmware call: where the linker put a jump in between, the one that led to the jump.
+/// The branch that made a firmware call; if the linker has inserted a jump, the branch to that jump.
 fn call_at(core: &Core) -> CodeAddr {
     let [last, before] = core.state.branched_at();
     let back = core.state.reg(LINK);
@@ -320,7 +320,7 @@ fn in_register(core: &Core, position: usize, class: Class) -> u64 {
     }
 }
 
-/// The last named argument of a variadic function, or the address of those after it.
+/// The last named argument of a variadic function, or the address of the arguments after it.
 fn on_stack(core: &Core, memory: &GuestMemory, after_named: usize) -> u64 {
     let first = core.state.reg(STACK).wrapping_add(4);
     let named = memory.peek::<u32>(GuestAddr::new(first));

@@ -10,7 +10,7 @@ pub(super) struct Watched<'a, M> {
     pub(super) inner: &'a mut M,
     cache: &'a Cache,
     idle: &'a mut Idle,
-    /// Addresses of decoded words that the packet has changed: it has two stores at most.
+    /// Addresses of decoded words that the packet has changed: a packet has at most two stores.
     pub(super) hits: [Option<u32>; 2],
 }
 

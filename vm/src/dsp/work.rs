@@ -1,7 +1,7 @@
 //! The operation of an instruction, once its operands are resolved.
 //!
-//! Several forms of the table share one [`Work`]: sides, cross paths and constants are gone.
-//! The formulas are those of the table (`c67x::Row::meaning`); here is what is common.
+//! Several forms of the table share one [`Work`]: sides, cross paths and constants are already resolved. The formulas
+//! are those of the table (`c67x::Row::meaning`).
 
 use c67x::{Inst, Kind, Mnemonic, Op, UnitKind};
 
@@ -109,7 +109,7 @@ works! {
     ShrLong,
     /// 40 bits: `s2 >> s1`, unsigned
     ShruLong,
-    /// Product of 16 bits; `extra` says which halves.
+    /// Product of 16-bit halves; `extra` selects them.
     Product,
     /// `s1 * s2`, low word
     Mpyi,
@@ -161,15 +161,15 @@ works! {
     Rsqrdp,
     /// `s1 + s2`, double; the high words are read a cycle later.
     Adddp,
-    /// `s1 - s2`, double; as before.
+    /// `s1 - s2`, double; reads its words as above.
     Subdp,
-    /// `s1 == s2`, double; as before.
+    /// `s1 == s2`, double; reads its words as above.
     Cmpeqdp,
-    /// `s1 > s2`, double; as before.
+    /// `s1 > s2`, double; reads its words as above.
     Cmpgtdp,
-    /// `s1 < s2`, double; as before.
+    /// `s1 < s2`, double; reads its words as above.
     Cmpltdp,
-    /// `s1 * s2`, double; the high word of s2 is read a cycle later, that of s1 two.
+    /// `s1 * s2`, double; the high word of s2 is read a cycle later, the high word of s1 two cycles later.
     Mpydp,
     /// `single s1 * double s2`; the high word of s2 is read a cycle later.
     Mpyspdp,
@@ -193,7 +193,7 @@ works! {
     Sth,
     /// The word.
     Stw,
-    /// Branch to an address that is known.
+    /// Branch to a constant address.
     BranchTo,
     /// Branch to the address in a register.
     BranchRegister,

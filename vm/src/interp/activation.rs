@@ -23,7 +23,7 @@ use crate::trap::TrapKind;
 pub(super) enum Exit {
     /// The budget is used up.
     Preempted,
-    /// A call within the program for which there is no room yet.
+    /// A call within the program that needs more room.
     Call(FuncRef),
     /// A call of the firmware.
     CallFirmware(GuestAddr, SigRef),
@@ -31,9 +31,9 @@ pub(super) enum Exit {
     CallPointer(GuestAddr, SigRef),
     /// A return from the outermost call.
     Ended,
-    /// A load that is not from RAM, into the register of the given index.
+    /// A load outside RAM, into the register with the given index.
     Load(GuestAddr, Width, u16),
-    /// A store of a slot that is not to RAM, or to where nothing may be written.
+    /// A store of a slot outside RAM, or to a protected address.
     Store(GuestAddr, Width, u64),
     /// A copy within memory.
     Copy { to: GuestAddr, from: GuestAddr, len: u16 },
@@ -146,7 +146,7 @@ pub(super) struct State<'m> {
     /// The registers of all calls.
     pub(super) registers: &'m [Cell<u64>],
     pub(super) calls: &'m mut Calls,
-    /// The reason why the execution ended, once it has.
+    /// The reason for which the execution ended, once it has.
     pub(super) exit: Option<Exit>,
     /// The accesses that are not reported again.
     pub(super) filter: Option<&'m AccessFilter>,
@@ -157,7 +157,7 @@ pub(super) struct Activation<'a, 'm> {
     pub(super) state: &'a mut State<'m>,
     pub(super) window: &'m Window,
     pub(super) sdram: &'a mut Sdram,
-    /// The words from the instruction that is executed on.
+    /// The words from the current instruction on.
     pub(super) code: &'a Words,
     /// The double that was assigned last.
     pub(super) double: f64,
@@ -178,9 +178,9 @@ impl<'a, 'm: 'a> Activation<'a, 'm> {
         self.state.words.get(to.0 as usize..).filter(|code| code.len() >= AHEAD)
     }
 
-    /// Puts into the register that is the operand at `place` what it holds, as it was assigned last.
+    /// Stores the last assigned value into the register of the operand at `place`, which already holds it.
     ///
-    /// Nothing changes in memory; the compiler knows from it what the register holds, and does not wait for memory.
+    /// Memory does not change; but the host's compiler now knows the value of the register and need not load it.
     #[inline(always)]
     pub(super) fn recall(&self, place: usize, slot: u64) {
         if let Some(word) = self.code.first() {

@@ -9,8 +9,8 @@ use crate::operand::{Bits32, Imm, Imm16, Pool, RegF32, RegF64, RegI32, RegI64};
 use crate::slot::Slot;
 use crate::trap::TrapKind;
 
-/// `name: operand classes -> class = function of the operands`, total or `None` for division by zero.
-/// Of 32 bits, the firmware's result is reported, too.
+/// `name: operand classes -> class = function of the operands`, total or `None` for division by zero. A 32-bit division
+/// also names the operation, for the result that the firmware yields for a zero divisor.
 macro_rules! operations {
     (unary { $($un:ident: $un_src:ident -> $un_dst:ident = $un_fn:expr;)* }
      binary { $($bin:ident: $bin_a:ident, $bin_b:ident -> $bin_dst:ident = $bin_fn:expr;)* }

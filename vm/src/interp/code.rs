@@ -1,7 +1,7 @@
 //! The code that the interpreter executes: the words of a program, each with its handler.
 //!
 //! The words of the image are kept as they are (`parts.rs`), with two changes made once: a function's word gets the
-//! facts that a call of it needs, and the operands of commutative instructions are swapped where the first is then the
+//! facts that its calls need, and the operands of commutative instructions are swapped if this makes the first one the
 //! register assigned last.
 
 use std::collections::BTreeSet;
@@ -28,7 +28,7 @@ use crate::shared::is_noticed;
 /// An instruction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Word {
-    /// The handler of the instruction, and maybe of those after it.
+    /// The handler of the instruction, and possibly of the instructions after it.
     pub(super) handler: Handler,
     /// The word of the image.
     pub(super) parts: Parts,
@@ -52,7 +52,7 @@ impl Word {
     /// The word at which a context is held.
     pub(super) const HELD: Self = Self::new(BREAK, [BREAK, 0, 0, 0]);
 
-    /// The word of an instruction whose accesses to shared memory are reported.
+    /// Encodes an instruction whose accesses to shared memory are reported.
     fn observed(op: &Op, has_call_back: bool) -> Self {
         let plain = Self::plain(op);
         let handler = match observe::place_of(op) {
@@ -108,7 +108,7 @@ pub(super) struct Encoded {
     words: Box<Words>,
     /// The accesses to shared memory that are reported.
     observed: Observed,
-    /// The loops that may only wait; none where all accesses are reported.
+    /// The waiting loops; none if all accesses are reported.
     loops: Arc<[PollingLoop]>,
 }
 
@@ -175,7 +175,7 @@ pub(super) struct Code {
     pub(super) words: Arc<Encoded>,
 }
 
-/// The words of a program, of which those that are held have a handler that stops a context.
+/// The words of a program; words at which contexts are held get a handler that stops a context.
 fn encode(program: &Program, is_held: &dyn Fn(usize, &Op) -> bool) -> Box<Words> {
     let ops = program.ops();
     let mut parts: Vec<Parts> = ops.iter().map(parts_of).collect();

@@ -18,16 +18,17 @@ use crate::verify::MAX_PARAMETERS;
 /// They are cells, as the windows of a caller and of its callee overlap.
 pub(super) type Window = [Cell<u64>; WINDOW];
 
-/// Number of registers in a window, with as many after those that can be named as are cleared at once.
+/// The number of registers in a window; after those that can be named, there is room for those that are cleared along
+/// with them.
 const WINDOW: usize = (1 << 16) + BLOCK;
 
-/// Registers that are cleared at once.
+/// The number of registers that are cleared at once.
 const BLOCK: usize = 8;
 
-/// Most registers of all calls together; a stack full of calls of ordinary functions has far fewer.
+/// The limit of registers of all calls together; a stack full of calls of ordinary functions has far fewer.
 const MAX_REGISTERS: usize = 1 << 24;
 
-/// Bytes that each call takes of the stack besides its frame, as on the board.
+/// Stack bytes that each call takes besides its frame, as on the board.
 const CALL_OVERHEAD: u32 = 16;
 
 /// A call that waits for its callee.
@@ -39,7 +40,7 @@ struct Frame {
     base: usize,
     /// Number of registers.
     registers: u16,
-    /// Tells the call from others, once `setjmp` was called in it; else 0.
+    /// Distinguishes the call from others, once `setjmp` was called in it; otherwise 0.
     mark: u16,
     /// Address of the frame in guest memory.
     stack_pointer: u32,
@@ -50,12 +51,12 @@ struct Frame {
 pub(super) struct Calls {
     /// The calls around the current one, outermost first.
     frames: Vec<Frame>,
-    /// The current call; its `pc` is kept in `pc`.
+    /// The current call, except for its program counter, which is in `pc`.
     current: Frame,
     stack: Stack,
     lowest: u32,
     jumps: Jumps,
-    /// The instruction to execute next, or the one that stopped the context.
+    /// The next instruction to execute, or the instruction that stopped the context.
     pub(super) pc: usize,
     /// Result of the last call, as a slot.
     pub(super) result: u64,
@@ -90,8 +91,8 @@ struct Room<'a> {
 }
 
 impl Calls {
-    /// Calls `function` from the instruction `pc`, if the stack, `registers` and the list of calls have room; its
-    /// window then.
+    /// Calls `function` from the instruction `pc`, if the stack, `registers` and the list of calls have room; returns
+    /// its window then.
     #[inline(always)]
     pub(super) fn call<'a>(
         &mut self,
@@ -109,7 +110,7 @@ impl Calls {
     }
 
     /// The room for a call, whose registers begin after those of the current call; `None` if the stack or the registers
-    /// do not suffice.
+    /// are not sufficient.
     #[inline(always)]
     fn room<'a>(&self, head: Head, registers: &'a [Cell<u64>]) -> Option<Room<'a>> {
         let base = self.current.base + usize::from(self.current.registers);
@@ -133,7 +134,7 @@ impl Calls {
         window
     }
 
-    /// Goes back to the caller, whose window among `registers` it yields; `None` if there is none.
+    /// Returns to the caller; yields the caller's window among `registers`, or `None` if there is no caller.
     #[inline(always)]
     pub(super) fn leave<'a>(&mut self, registers: &'a [Cell<u64>]) -> Option<&'a Window> {
         let caller = self.frames.pop()?;
@@ -142,7 +143,7 @@ impl Calls {
         self.window(registers)
     }
 
-    /// The registers of the current call and what is after them, among all `registers`.
+    /// The registers of the current call and all those after them, among all `registers`.
     #[inline(always)]
     pub(super) fn window<'a>(&self, registers: &'a [Cell<u64>]) -> Option<&'a Window> {
         registers.get(self.current.base..)?.first_chunk()
@@ -172,11 +173,11 @@ pub(super) struct Context {
     /// The registers of all calls, with a whole window after the first register of the current one.
     registers: Vec<u64>,
     pub(super) calls: Calls,
-    /// The entry function, until it is entered.
+    /// The entry function, until it has been entered.
     pub(super) pending: Option<FuncRef>,
     /// The segment that is executed in steps, if the slice ends or has ended in one.
     pub(super) split: Option<Split>,
-    /// The accesses of the slice that are not reported again; `None` where all are reported, or none.
+    /// The accesses of the slice that are not reported again; `None` if all accesses are reported, or none.
     pub(super) filter: Option<Box<AccessFilter>>,
 }
 
@@ -193,7 +194,7 @@ pub(super) struct Saved {
 }
 
 impl Context {
-    /// The context as it is.
+    /// Returns a copy of the context.
     pub(super) fn save(&self) -> Saved {
         let live = self.calls.current.base + usize::from(self.calls.current.registers) + MAX_PARAMETERS;
         Saved {
@@ -205,7 +206,7 @@ impl Context {
         }
     }
 
-    /// Makes the context what it was.
+    /// Restores the context from a copy.
     pub(super) fn put_back(&mut self, saved: &Saved) {
         let Saved { registers, calls, pending, split, filter } = saved;
         if self.registers.len() < registers.len() + WINDOW {
@@ -236,7 +237,7 @@ impl Context {
         }
     }
 
-    /// Forgets everything; the next step is entering `function`.
+    /// Clears the context; the next step enters `function`.
     pub(super) fn reset(&mut self, function: FuncRef, stack: Stack) {
         let calls = &mut self.calls;
         calls.frames.clear();
@@ -264,7 +265,7 @@ impl Context {
         Ok(())
     }
 
-    /// Calls `function` with the arguments that lie after the current registers.
+    /// Calls `function` with the arguments in the slots after the current registers.
     pub(super) fn call(&mut self, program: &Program, function: FuncRef) -> Result<(), TrapKind> {
         self.make_room(program, function)?;
         let (calls, registers) = self.parts();
@@ -289,13 +290,13 @@ impl Context {
         Ok(())
     }
 
-    /// Returns the calls, the registers of all of them, and the filter of accesses, for the execution of instructions.
+    /// Returns the calls, their registers, and the access filter, to execute instructions with them.
     pub(super) fn execution(&mut self) -> (&mut Calls, &[Cell<u64>], Option<&AccessFilter>) {
         let registers = Cell::from_mut(&mut self.registers[..]).as_slice_of_cells();
         (&mut self.calls, registers, self.filter.as_deref())
     }
 
-    /// The calls, and the registers of all of them.
+    /// Returns the calls and their registers.
     pub(super) fn parts(&mut self) -> (&mut Calls, &[Cell<u64>]) {
         (&mut self.calls, Cell::from_mut(&mut self.registers[..]).as_slice_of_cells())
     }
@@ -310,7 +311,8 @@ impl Context {
         self.registers[self.calls.current.base + usize::from(register)] = slot;
     }
 
-    /// Keeps the place after the current instruction, a call of `setjmp` that fills `place`; what the place is known by.
+    /// Saves a jump point after the current instruction, a call of `setjmp` that fills `place`; returns the number of
+    /// the jump point.
     ///
     /// # Errors
     /// [`TrapKind::TooManyJumpPlaces`]
@@ -329,7 +331,8 @@ impl Context {
         jumps.keep(point)
     }
 
-    /// Continues at the place that is known by `number`, in the call that it is of; whether that call has not returned.
+    /// Continues at the jump point with this number, in the call that it belongs to; returns whether that call is still
+    /// active.
     #[must_use]
     pub(super) fn long_jump(&mut self, number: u32) -> bool {
         let Calls { frames, current, jumps, pc, .. } = &mut self.calls;
@@ -364,7 +367,7 @@ impl Context {
         all.map(view).collect()
     }
 
-    /// Sets a register of the call `frame`, counted from the innermost; whether there is such a register.
+    /// Sets a register of the call `frame`, counted from the innermost; returns whether there is such a register.
     pub(super) fn set_in(&mut self, frame: usize, register: u16, slot: u64) -> bool {
         let Calls { frames, current, .. } = &self.calls;
         let frame = if frame == 0 { Some(current) } else { frames.iter().rev().nth(frame - 1) };
@@ -384,7 +387,7 @@ impl Context {
         self.calls.stack.top - self.calls.lowest
     }
 
-    /// The current instruction and the calls that led there, innermost first.
+    /// The current instruction and the calls that led to it, innermost first.
     pub(super) fn backtrace(&self) -> Vec<usize> {
         let callers = self.calls.frames.iter().rev().map(|frame| frame.pc - 1);
         std::iter::once(self.calls.pc).chain(callers).collect()
@@ -401,7 +404,7 @@ fn clear(registers: &[Cell<u64>], count: usize) {
     }
 }
 
-/// Bytes that a call takes of the stack whose frame has `frame` units.
+/// Stack bytes taken by a call whose frame has `frame` units.
 fn bytes_of(frame: u16) -> u32 {
     u32::from(frame) * 8 + CALL_OVERHEAD
 }

@@ -1,4 +1,4 @@
-//! Instructions that decide what is executed next: time, branches, calls, returns.
+//! Instructions that determine the next instruction: charges, branches, calls, returns.
 
 use kmotiondef::GuestAddr;
 
@@ -122,7 +122,7 @@ impl<'m> Activation<'_, 'm> {
         }
     }
 
-    /// Continues where the current call stands, whose registers are in `window`.
+    /// Continues at the position of the current call, whose registers are in `window`.
     #[inline(always)]
     fn go_to_call(&mut self, window: &'m Window) -> Flow {
         self.window = window;

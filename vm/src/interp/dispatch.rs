@@ -1,24 +1,22 @@
 //! Dispatch: from one instruction to the next.
 //!
-//! Each instruction has a handler, expanded from the instruction table: it takes its operands from the
-//! word, does what the method of its name does (`arith.rs`, `memory.rs`, `control.rs`) and continues with
-//! the handler of the next word. That call is the last thing it does, with the arguments in the same
-//! registers, so an optimising compiler makes a jump of it: no loop to go back to, and every instruction
-//! predicts its own successor.
+//! Each instruction has a handler, expanded from the instruction table: it takes its operands from the word, executes
+//! the method of the same name (`arith.rs`, `memory.rs`, `control.rs`) and continues with the handler of the next word.
+//! That call is its last action, with the arguments in the same registers, so an optimising compiler turns it into a
+//! jump: there is no central loop, and every instruction predicts its own successor.
 //!
-//! Rust does not promise that jump. Where the compiler is not known to make it (`tail_calls`, set by the
-//! build script), a handler returns instead and the loop in [`execute`] calls the next one. Where it is, a
-//! handler must own nothing that is dropped at its end and must lend nothing of its own to what it calls:
-//! what needs that leaves the execution instead, as a copy does ([`Exit::Copy`]). `tests/every.rs` executes
-//! every handler so often in one slice that the host's stack would not do without the jumps.
+//! Rust does not promise that jump. Where the compiler is not known to make it (`tail_calls`, set by the build script),
+//! a handler returns instead and the loop in [`execute`] calls the next one. Where it is, a handler must own nothing
+//! that is dropped at its end, and must not lend its own data to its callees; an instruction that needs this leaves the
+//! execution instead, as a block copy does ([`Exit::Copy`]). `tests/every.rs` executes every handler so many times in
+//! one slice that the host's stack would overflow without the jumps.
 //!
-//! What programs often do in a row has a handler for all of it (`sequences.rs`).
+//! Frequent sequences of instructions have one handler each (`sequences.rs`).
 //!
-//! How long an instruction takes is mostly how long it waits. The place of the next one is known as soon as one
-//! number is added to that of this one; a test whether it is there is predicted and costs no time. What was assigned
-//! last is handed on in registers of the processor, as far as it is floating: a load of what was just stored takes
-//! ten cycles there, and one of an integer next to none. Six numbers and addresses can be handed on so; what a
-//! handler needs rarely is in the [`State`].
+//! An instruction spends most of its time waiting. The address of the next word is one addition away; the test whether
+//! it is in range is predicted and costs no time. Floating-point values that were assigned last are passed on in
+//! processor registers: a load of a value that was just stored takes ten cycles for floating point, and almost none for
+//! an integer. Six numbers and addresses can be passed on this way; rarely needed values are in the [`State`].
 
 use super::activation::{Activation, Exit, Flow, State};
 use super::code::Words;
@@ -32,13 +30,13 @@ use crate::shared::is_noticed;
 use crate::slot::Slot;
 use crate::trap::TrapKind;
 
-/// Executes the first word of `code`, the rest of the words, and what comes then, until something leaves the state an
-/// exit; takes the double and the single that were assigned last.
+/// Executes the first word of `code`, then the following words, until the state has an exit. Takes the double and the
+/// single that were assigned last.
 pub(super) type Handler = for<'m> fn(&mut State<'m>, &'m Window, code: &Words, &mut Sdram, f64, f32);
 
-/// Executes one instruction after another; where one may go two ways, the next is there on both.
+/// Executes one instruction after another; after a conditional branch, the next instruction is the same on both paths.
 ///
-/// In brackets are the operands that are what the one before has assigned, and the one before that; these are the
+/// Brackets mark the operands that the previous instruction, or the one before it, has assigned; these are the
 /// registers `$assigned`.
 macro_rules! run {
     ($activation:ident, $assigned:expr, $last:ident $(($($link:ident),+))?) => {{
@@ -159,8 +157,8 @@ pub(super) const fn handler_of(code: u16) -> Handler {
     if code == BREAK { held } else { ROWS[code as usize] }
 }
 
-/// An access through a register, of which those to shared memory are reported; of a program that shares its own data
-/// with a call-back; and through a constant address in shared memory.
+/// Handlers of observed accesses: through a register; through a register in a program that shares its own data with a
+/// call-back; and through a constant address in shared memory.
 pub(super) const OBSERVED: Handler = observed_through_register::<false>;
 pub(super) const OBSERVED_WITH_CALL_BACK: Handler = observed_through_register::<true>;
 pub(super) const OBSERVED_AT: Handler = observed_at;
@@ -203,7 +201,7 @@ fn observed_at<'m>(
     ROWS[usize::from(opcode)](state, window, code, sdram, double, single);
 }
 
-/// Reports whether the first instruction of `code` has made its access in this slice.
+/// Reports whether the first instruction of `code` has already made its access in this slice.
 #[inline(always)]
 fn is_known(state: &State<'_>, code: &Words, address: u32) -> bool {
     state.filter.is_some_and(|filter| filter.knows(state.words.len() - code.len(), address))
@@ -264,7 +262,8 @@ fn held<'m>(
     leave(Activation { state, window, sdram, code, double, single }, Exit::Held);
 }
 
-/// Executes from where the calls stand; yields why that ended, with the instruction that did it in `pc`.
+/// Executes from the current position of the calls; returns the reason for which it ended, with the instruction that
+/// caused it in `pc`.
 pub(super) fn execute(state: &mut State<'_>, sdram: &mut Sdram) -> Exit {
     loop {
         let (words, pc) = (state.words, state.calls.pc);
@@ -274,7 +273,7 @@ pub(super) fn execute(state: &mut State<'_>, sdram: &mut Sdram) -> Exit {
         let Some((word, _)) = words.get(pc..).and_then(<[_]>::split_first) else {
             return Exit::Trap(TrapKind::Unreachable);
         };
-        // What the word before has assigned, if this one is linked with it.
+        // The value assigned by the previous word, if this one is linked with it.
         let last = pc.checked_sub(1).map_or(0, |before| window[usize::from(words[before].assigned())].get());
         (word.handler)(state, window, &words[pc..], sdram, f64::from_slot(last), f32::from_slot(last));
         if let Some(exit) = state.exit.take() {
@@ -283,7 +282,7 @@ pub(super) fn execute(state: &mut State<'_>, sdram: &mut Sdram) -> Exit {
     }
 }
 
-/// Continues `count` words further on.
+/// Continues `count` words later.
 #[inline(always)]
 fn go_on(activation: Activation<'_, '_>, count: usize) {
     match activation.code.get(count..) {

@@ -1,8 +1,8 @@
 //! The points at which a debugger holds contexts: before given instructions, after one, after a change in memory.
 //!
-//! A word at which a context is held gets an opcode that leaves the execution, in a copy of the encoded words; so code
-//! without holds runs at full speed. Watched bytes are compared after every instruction that can store; those get the
-//! opcode too.
+//! In a copy of the encoded words, a word at which a context is held gets an opcode that leaves the execution; so code
+//! without holds runs at full speed. Watched bytes are compared after every instruction that can store; such
+//! instructions get the opcode, too.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ use crate::op::Op;
 use crate::program::Program;
 use crate::trap::TrapKind;
 
-/// Bytes of memory that are compared with what they were.
+/// Bytes of memory that are compared with their earlier values.
 #[derive(Clone, Debug)]
 struct WatchedBytes {
     address: GuestAddr,
@@ -43,7 +43,7 @@ pub(super) struct Holds {
     watched: Vec<WatchedBytes>,
     accessed: Vec<AccessRange>,
     stepping: Option<ContextId>,
-    /// Contexts whose present instruction is executed without being held before.
+    /// Contexts whose current instruction is executed without being held first.
     pub(super) passes: [bool; ContextId::COUNT],
     pub(super) hold: Option<Hold>,
     patched: Vec<(Arc<Program>, Arc<Encoded>)>,
@@ -51,7 +51,7 @@ pub(super) struct Holds {
 }
 
 impl Holds {
-    /// Reports whether anything is held anywhere.
+    /// Reports whether a context can be held anywhere.
     pub(super) fn is_active(&self) -> bool {
         self.stepping.is_some() || !self.breakpoints.is_empty() || self.looks_at_memory()
     }
@@ -88,7 +88,7 @@ impl Holds {
         }
     }
 
-    /// Returns the index of the first watched range that has changed, and takes its present bytes as the new ones.
+    /// Returns the index of the first watched range that has changed, and updates its saved bytes.
     pub(super) fn take_change(&mut self, memory: &GuestMemory) -> Option<usize> {
         let index = self.watched.iter().position(|watched| watched.is_changed(memory))?;
         let WatchedBytes { address, bytes } = &mut self.watched[index];
@@ -98,7 +98,7 @@ impl Holds {
         Some(index)
     }
 
-    /// The words of a program with those at which contexts are held; `plain` are those without.
+    /// The words of a program, with the holds inserted; `plain` are the words without them.
     pub(super) fn words(&mut self, program: &Arc<Program>, plain: Arc<Encoded>) -> Arc<Encoded> {
         if self.breakpoints.is_empty() && !self.looks_at_memory() {
             return plain;
@@ -114,7 +114,7 @@ impl Holds {
         words
     }
 
-    /// Reports whether an instruction can access one of the ranges whose accesses are looked for.
+    /// Reports whether an instruction can access one of the watched ranges.
     fn may_access(&self, op: &Op) -> bool {
         let is_meant = |range: &AccessRange| match (observe::place_of(op), op.kind().width()) {
             (None, _) => false,
@@ -159,7 +159,7 @@ impl Holds {
                 let at = code.program.address_of(context.calls.pc);
                 let access = self.access(&code.program, context);
                 let stop = self.single(id, code, context, slice, steps);
-                // A call that waits is the same instruction when it is made again.
+                // A waiting call is repeated by the same instruction.
                 self.passes[me] = matches!(stop, Ok(Stop::Waiting(_)));
                 let stop = stop?;
                 if stop != Stop::Held {
@@ -209,7 +209,7 @@ impl Holds {
     }
 }
 
-/// Reports whether an access is one of those that are looked for in a range.
+/// Reports whether an access overlaps a watched range and is of a watched kind.
 fn overlaps(range: &AccessRange, part: &AccessPart) -> bool {
     let (one, other) = (range.address.get(), part.address.get());
     let is_inside = other.wrapping_sub(one) < range.size || one.wrapping_sub(other) < part.size;

@@ -1,9 +1,9 @@
-//! `setjmp` and `longjmp`: back into a call that has not returned, past those that it has made.
+//! `setjmp` and `longjmp`: return into an active call, past the calls that it has made.
 //!
 //! The state that `setjmp` saves is in the context, not in the guest's memory: a program can neither forge a jump point
 //! nor change the registers of a call. The `jmp_buf` holds a number, the context to which it belongs, and the
 //! complement of the number, which distinguishes it from uninitialised memory. A call with a jump point has a mark; the
-//! point is gone when the call of its depth has another one.
+//! point is dropped when the call at its depth has another mark.
 
 use kmotiondef::GuestAddr;
 use kmotiondef::jumps::JumpFunction;
@@ -19,7 +19,7 @@ use crate::trap::TrapKind;
 /// Most places of a context in calls that have not returned.
 const MOST: usize = 1000;
 
-/// A place that `longjmp` can go to.
+/// A target of `longjmp`.
 #[derive(Clone, Debug)]
 pub(super) struct JumpPoint {
     /// The `jmp_buf`.
@@ -44,12 +44,12 @@ pub(super) struct Jumps {
 }
 
 impl Jumps {
-    /// Forgets all places. Their numbers are not given again.
+    /// Drops all jump points. Their numbers are not reused.
     pub(super) fn forget(&mut self) {
         self.points.clear();
     }
 
-    /// Keeps the places alone that `is_live` says.
+    /// Keeps only the jump points that are live.
     pub(super) fn retain(&mut self, is_live: impl Fn(&JumpPoint) -> bool) {
         self.points.retain(|(_, point)| is_live(point));
     }
@@ -60,7 +60,8 @@ impl Jumps {
         (1..).find(is_free).expect("there are fewer places than marks")
     }
 
-    /// Keeps a place and yields its number: the same again where a loop comes by again.
+    /// Saves a jump point and returns its number; a jump point set again at the same place, as in a loop, keeps its
+    /// number.
     ///
     /// # Errors
     /// [`TrapKind::TooManyJumpPlaces`]
@@ -86,10 +87,12 @@ impl Jumps {
     }
 }
 
-/// Makes the call of `function` that `context` is at; it continues after this call, or where `longjmp` leads.
+/// Executes the call of `function` at the current instruction of `context`, which then continues after the call, or at
+/// the target of `longjmp`.
 ///
 /// # Errors
-/// That the place cannot be written, read or gone to, or that `called` is not the function's signature.
+/// The jump buffer cannot be written or read, its jump point is no longer valid, or `called` is not the function's
+/// signature.
 pub(super) fn call<F: Firmware + ?Sized>(
     id: ContextId,
     function: JumpFunction,

@@ -7,7 +7,7 @@ use crate::kind::Width;
 use crate::operand::{Addr, Count, Imm, Off, RegF32, RegF64, RegI32, RegI64};
 use crate::slot::Slot;
 
-/// Loads and stores in both address modes: what is in memory, and the value of the register.
+/// Loads and stores in both address modes: the type in memory, and the type of the register.
 macro_rules! accesses {
     (loads { $($load:ident, $load_at:ident: $load_width:ident, $from:ty => $dst:ident as $value:ty;)* }
      stores { $($store:ident, $store_at:ident: $store_width:ident, $src:ident => $to:ty;)* }) => {

@@ -1,7 +1,8 @@
 //! Accesses to memory that threads can share, reported to the firmware.
 //!
 //! A load or store through a register tests its address before it is executed; a constant address is tested once. An
-//! instruction with a shared access leaves the execution, is executed alone and reported; the results stay the same.
+//! instruction with a shared access leaves the fast execution, is executed as a single step and reported; the results
+//! stay the same.
 
 use std::sync::Arc;
 
@@ -64,10 +65,10 @@ pub(crate) struct AccessPart {
     pub(crate) is_store: bool,
 }
 
-/// The parts of an access: two of the copy of a block, otherwise one.
+/// The parts of an access: two for a block copy, otherwise one.
 pub(super) type AccessParts = [Option<AccessPart>; 2];
 
-/// The accesses that the present instruction of `context` is about to make.
+/// The accesses that the current instruction of `context` is about to make.
 pub(super) fn accesses(op: &Op, context: &Context) -> AccessParts {
     let pointer = |name| op.operand::<RegI32>(name).map(|register| context.get(register.0) as u32);
     let part = |address, size, is_store| AccessPart { address: GuestAddr::new(address), size, is_store };
@@ -91,9 +92,9 @@ pub(super) fn accesses(op: &Op, context: &Context) -> AccessParts {
 /// Facts about the text of programs, computed when first needed.
 #[derive(Debug, Default)]
 pub(crate) struct Observer {
-    /// True if all accesses are reported, those that are redundant too.
+    /// True if all accesses are reported, including redundant ones.
     reports_all: bool,
-    /// The contexts that alone access pages of SDRAM.
+    /// The contexts that are the only users of pages of SDRAM.
     owners: Arc<PageOwners>,
     /// The programs, by their start.
     programs: Vec<(GuestAddr, ProgramFacts)>,
@@ -104,7 +105,8 @@ pub(crate) struct Observer {
 struct ProgramFacts {
     /// True if it shares its own data with a call-back.
     has_call_back: bool,
-    /// By word, the loads that the stored value depends on, or that are used with the load; `None` before they are needed.
+    /// By word, the loads on which the stored value depends, or with which the loaded value is used; `None` until they
+    /// are needed.
     loads: Vec<Option<Box<[CodeAddr]>>>,
 }
 
@@ -113,7 +115,7 @@ impl ProgramFacts {
         Self { has_call_back: program.has_call_back(), loads: vec![None; program.ops().len()] }
     }
 
-    /// Returns the loads that the access of `word` is made of, or used with if it is a load.
+    /// Returns the loads on which the stored value of `word` depends, or with which its loaded value is used.
     fn loads_at(&mut self, program: &Program, word: usize, is_store: bool) -> &[CodeAddr] {
         if self.loads.get(word).is_some_and(Option::is_none) {
             self.find_loads(program, word, is_store);
@@ -171,7 +173,7 @@ impl Observer {
         self.reports_all
     }
 
-    /// The filter of the accesses of a new context, if not all of them are reported.
+    /// The access filter of a new context; `None` if all accesses are reported.
     pub(super) fn filter(&self, context: ContextId) -> Option<Box<AccessFilter>> {
         (!self.reports_all).then(|| Box::new(AccessFilter::with_owners(&self.owners, context)))
     }
@@ -187,7 +189,7 @@ impl Observer {
         Self { reports_all: self.reports_all, owners: Arc::clone(&self.owners), ..Self::default() }
     }
 
-    /// Forgets what it knows of programs.
+    /// Drops all knowledge of programs.
     pub(crate) fn forget(&mut self) {
         let owners = Arc::clone(&self.owners);
         *self = Self { reports_all: self.reports_all, owners, ..Self::default() };
@@ -204,7 +206,7 @@ impl Observer {
         &mut self.programs[place].1
     }
 
-    /// The access that the present instruction of `context` is about to make, if it is reported.
+    /// The access that the current instruction of `context` is about to make, if it is reported.
     pub(super) fn about_to(&mut self, program: &Program, context: &Context) -> Option<Pending> {
         let word = context.calls.pc;
         let op = *program.ops().get(word)?;
@@ -223,7 +225,7 @@ impl Observer {
         Some(Pending { op, word, parts, stored })
     }
 
-    /// Reports an access that has been made, unless it is not to be.
+    /// Reports an access that has been made, if it is observed.
     pub(crate) fn report<F: Firmware + ?Sized>(
         &mut self,
         id: ContextId,
@@ -265,7 +267,7 @@ impl Pending {
         slice.firmware.switch_at(&NextAccess { thread, at, address, size, is_store, now })
     }
 
-    /// Reports the access, which has been made.
+    /// Reports the access after it has been made.
     pub(super) fn report<F: Firmware + ?Sized>(
         &self,
         id: ContextId,

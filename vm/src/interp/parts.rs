@@ -1,7 +1,6 @@
 //! The words of a program as they lie in its image, and the operands in them.
 //!
-//! A word is four numbers of 16 bits, so that a handler takes each operand from memory by itself and need not ask
-//! which instruction it is.
+//! A word is four 16-bit numbers, so that a handler loads each operand directly from memory, without decoding.
 
 use crate::op::{Op, WORD};
 use crate::operand::OperandType;
@@ -27,14 +26,15 @@ pub(super) struct Operands<'a> {
     assigned: Assigned,
 }
 
-/// The places of two operands: of what the instruction before assigns and of what the one before that does; 0 for none.
+/// The positions of two operands: the one assigned by the previous instruction, and the one assigned by the instruction
+/// before it; 0 for none.
 pub(super) type Links = [usize; 2];
 
-/// The registers that the instruction before assigns and that the one before that does.
+/// The registers assigned by the previous instruction and by the one before it.
 pub(super) type Assigned = [u16; 2];
 
 impl<'a> Operands<'a> {
-    /// The operands of a word, of which the ones at `links` are the registers `assigned`.
+    /// The operands of a word; those at `links` are the registers `assigned`.
     #[inline(always)]
     pub(super) const fn of(parts: &'a Parts, links: Links, assigned: Assigned) -> Self {
         Self { parts, at: DST, links, assigned }
@@ -42,7 +42,7 @@ impl<'a> Operands<'a> {
 
     /// The next operand.
     ///
-    /// A linked one is taken from where the compiler knows it already, so that it knows what is in that register, too.
+    /// A linked operand is replaced by the known register, so that the host's compiler knows its value.
     #[inline(always)]
     pub(super) fn take<O: OperandType>(&mut self) -> O {
         let first = self.at;

@@ -1,15 +1,15 @@
 //! Sequences of instructions that programs often execute, and their positions in a program.
 //!
 //! One handler executes a whole sequence, so that only the last instruction dispatches to the next handler. The words
-//! stay as they are, only the first gets another opcode, so a jump into the middle works as before. After a branch a
-//! sequence continues at the branch's target, so it is one only if the next instruction is there on both paths.
+//! are unchanged except for the opcode of the first, so a jump into the middle works as before. A branch can be
+//! followed by another instruction of the sequence only if both of its paths lead to that instruction.
 //!
-//! In parentheses after an instruction is the operand that the one before it assigns; after a comma, the one that the
-//! one before that assigns. Their values never wait for memory. In brackets after the first is the operand that was
-//! assigned last before the sequence, and its kind; so there are rows of one instruction, too. Of several rows that
-//! begin alike, the first that fits counts.
+//! Parentheses after an instruction name the operand that the previous instruction assigns and, after a comma, the
+//! operand that the instruction before it assigns. These values never have to be loaded from memory. Brackets after the
+//! first instruction name the operand that was assigned last before the sequence, and its kind; so there are rows of a
+//! single instruction, too. The first matching row applies.
 //!
-//! The list is what was measured to be most frequent in `c-programs` and in `vm/benches`.
+//! The rows are the sequences measured to be most frequent in `c-programs` and `vm/benches`.
 
 use std::ops::Range;
 
@@ -20,7 +20,7 @@ use crate::op::{OPCODES, Op};
 use crate::operand::{FuncRef, Label, OperandType};
 use crate::program::body_of;
 
-/// Hands rows `name: instruction instruction(operand)…;` to the macro `$m`, after those given.
+/// Passes rows `name: instruction instruction(operand)…;` to the macro `$m`, after the rows given.
 macro_rules! for_each_sequence {
     ($m:ident $($rows:tt)*) => {
         $m! {
@@ -192,7 +192,7 @@ pub(super) const AHEAD: usize = 8;
 pub(super) struct LinkedOp {
     /// Its opcode.
     pub(super) code: u16,
-    /// The operands that are what the instructions before assign.
+    /// The operands that the previous instructions assign.
     pub(super) links: Links,
 }
 
@@ -251,7 +251,7 @@ macro_rules! define_places {
 }
 for_each_op!(define_places);
 
-/// For each opcode, the rows among which are those of the sequences that begin with it.
+/// For each opcode, the range of rows with the sequences that begin with it.
 const GROUPS: [Range<usize>; OPCODES as usize] = {
     let mut groups = [const { 0..0 }; OPCODES as usize];
     let mut row = 0;
@@ -269,7 +269,7 @@ const GROUPS: [Range<usize>; OPCODES as usize] = {
 /// The text in which sequences are searched.
 pub(super) struct Text<'a> {
     pub(super) ops: &'a [Op],
-    /// Their opcodes, [`BREAK`] where contexts are held.
+    /// Their opcodes; [`BREAK`] where contexts are held.
     pub(super) codes: &'a [u16],
     /// Their words.
     pub(super) parts: &'a [Parts],
@@ -278,7 +278,7 @@ pub(super) struct Text<'a> {
 }
 
 impl Text<'_> {
-    /// The opcode to execute at the word `pc`: that of a sequence, or its own.
+    /// The opcode to execute at the word `pc`: that of a sequence, or that of the word itself.
     pub(super) fn code_at(&self, pc: usize) -> u16 {
         let code = self.codes[pc];
         let Some(group) = GROUPS.get(usize::from(code)) else { return code };
@@ -286,7 +286,7 @@ impl Text<'_> {
         found.map_or(code, |row| OPCODES + row as u16)
     }
 
-    /// The word before `pc`, if it has assigned a register whenever execution comes to `pc`.
+    /// The word before `pc`, if it has assigned a register on every path to `pc`.
     fn before(&self, pc: usize) -> Option<usize> {
         let before = pc.checked_sub(1).filter(|_| !self.is_target[pc])?;
         match self.ops[before].kind() {
@@ -312,7 +312,7 @@ impl Text<'_> {
         }
     }
 
-    /// Reports whether `sequence` is executed from the word `pc` on, whatever the program computes.
+    /// Reports whether `sequence` is always executed from the word `pc` on, for any values.
     fn has(&self, sequence: &[LinkedOp], pc: usize, before: [Option<usize>; 2]) -> bool {
         let Some((first, then)) = sequence.split_first() else { return true };
         let ops = self.ops;
@@ -385,7 +385,7 @@ mod tests {
     use crate::op::WORD;
     use crate::operand::{Count, Pool, RegF32, RegF64, RegI32, SigRef};
 
-    /// The opcodes at all of `ops`, of which no branch goes to any.
+    /// The opcodes of `ops`, none of which is the target of a branch.
     fn opcodes(ops: &[Op]) -> Vec<u16> {
         let parts: Vec<Parts> = ops.iter().map(parts_of).collect();
         let codes: Vec<u16> = parts.iter().map(|parts| parts[0]).collect();
@@ -408,9 +408,9 @@ mod tests {
         (first.links != [0; 2]).then_some(if is_single { single } else { double })
     }
 
-    /// The instructions of `sequence`, each of which leads to the next; `start` are before them.
+    /// The instructions of `sequence`, each of which leads to the next; `start` words precede them.
     ///
-    /// An operand is register 0 where it is linked, and another elsewhere: the sequence, and no other, is there.
+    /// A linked operand is register 0, any other operand another register: so exactly this sequence matches.
     fn ops_of(sequence: Sequence, start: u32) -> Vec<Op> {
         let mut ops = Vec::new();
         for step in sequence {
@@ -430,7 +430,7 @@ mod tests {
         ops
     }
 
-    /// The instruction of a step, without a place to go to.
+    /// The instruction of a step, without a branch target.
     fn decoded(step: &LinkedOp) -> Op {
         let mut word = [0; WORD];
         word[..2].copy_from_slice(&step.code.to_le_bytes());
@@ -438,7 +438,7 @@ mod tests {
         for place in DST..WORD / 2 {
             word[2 * place] = if place == DST || step.links.contains(&place) { 0 } else { place as u8 };
         }
-        // What is not linked of those that assign nothing is another register, too.
+        // Unlinked operands of instructions that assign nothing are another register, too.
         let is_read = matches!(
             plain.kind(),
             OpKind::Store(_) | OpKind::Branch | OpKind::Argument(_) | OpKind::Return(_) | OpKind::Structure

@@ -1,4 +1,4 @@
-//! A segment that is executed in steps because the slice ends in it, or has ended there.
+//! A segment that is executed in steps because the slice ends, or has ended, within it.
 
 use std::sync::Arc;
 
@@ -11,17 +11,17 @@ use crate::program::Program;
 /// The rest of a segment that the budget did not cover.
 #[derive(Clone, Debug)]
 pub(super) struct Split {
-    /// The instructions, and what each takes.
+    /// The instructions, and the cycles of each.
     pub(super) steps: Arc<[(usize, u32)]>,
-    /// The one that comes next.
+    /// The index of the next step.
     pub(super) next: usize,
     /// The high word that the present instruction still has to store.
     pub(super) high_word: Option<HighWord>,
 }
 
 impl Split {
-    /// The steps of the segment whose charge has just overdrawn the budget: `None` if there are none. The charge is
-    /// given back except what passes before the first step.
+    /// The steps of the segment whose charge has just overdrawn the budget; `None` if there are none. The charge is
+    /// refunded, except for the cycles before the first step.
     pub(super) fn begin(program: &Program, charge: usize, budget: &mut Cycles) -> Option<Self> {
         let meter::Steps { head, steps } = meter::steps(program.ops(), charge);
         let all = head + steps.iter().map(|(_, cycles)| cycles).sum::<u32>();

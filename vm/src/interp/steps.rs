@@ -1,6 +1,7 @@
-//! Instructions executed one at a time: for a debugger, and up to the end of a slice that comes in the middle of a segment.
+//! Instructions executed one at a time: for a debugger, and up to the end of a slice that comes in the middle of a
+//! segment.
 //!
-//! To execute one instruction alone, it is the only one in a text of words at which contexts are held.
+//! A single instruction is executed in a text in which all other words hold the context.
 
 use std::sync::Arc;
 
@@ -19,7 +20,7 @@ use crate::polling::PollingLoop;
 use crate::program::Program;
 use crate::trap::TrapKind;
 
-/// A text in which one instruction alone can be executed.
+/// A text that contains a single instruction.
 #[derive(Debug, Default)]
 pub(super) struct SingleText(Vec<Word>);
 
@@ -36,8 +37,8 @@ impl SingleText {
         self.with_word(program, words, pc, Word::plain(op), work)
     }
 
-    /// As [`with`](Self::with), for an instruction whose access is reported if `is_observed`. Words of accesses are of single
-    /// instructions then.
+    /// As [`with`](Self::with), for an instruction whose access is reported if `is_observed`. Words with accesses then
+    /// do not form sequences.
     pub(super) fn with_observed<R>(
         &mut self,
         (program, words): (&Program, &Words),
@@ -63,7 +64,7 @@ impl SingleText {
             self.0.resize(words.len(), Word::HELD);
         }
         self.0[pc] = word;
-        // A call takes from there what it needs to know of the function.
+        // A call finds the facts about its callee there.
         let callee = op.operand::<FuncRef>(Name::Func).map(|function| function.0 as usize);
         if let Some(callee) = callee {
             self.0[callee] = words[callee];
@@ -115,7 +116,7 @@ pub(super) enum NextStep {
 }
 
 impl Context {
-    /// Goes on in the segment that is executed in steps, which there is.
+    /// Continues with the next step of the segment that is executed in steps.
     pub(super) fn next_step<F: Firmware + ?Sized>(
         &mut self,
         program: &Program,

@@ -1,4 +1,4 @@
-//! Loops that may only wait: one iteration is executed instruction by instruction, then those like it are passed over.
+//! Waiting loops: one iteration is executed instruction by instruction, then equal iterations are skipped.
 
 use std::sync::Arc;
 
@@ -20,8 +20,8 @@ fn ended_by(loops: &[PollingLoop], at: usize) -> Option<&PollingLoop> {
     loops.iter().find(|polling| polling.branches.contains(&at))
 }
 
-/// Goes back to the beginning of the waiting loop whose branch the context is at; executes an iteration and passes over
-/// those that follow. Returns how the context has stopped, if it has.
+/// Returns to the beginning of the waiting loop whose branch the context has reached, executes an iteration and skips
+/// the equal iterations that follow. Returns the reason if the context has stopped.
 pub(super) fn wait<F: Firmware + ?Sized>(
     id: ContextId,
     program: &Program,
@@ -88,7 +88,7 @@ impl WaitingContext<'_> {
                     slice.pass_iterations(&Iteration { start, clock, called, register: &register });
                     return Ok(None);
                 }
-                // A loop within this one, or the one around it.
+                // A loop within this one, or around it.
                 Some(ended) => (polling, start, called) = (ended, slice.budget, slice.budget),
                 None if !polling.words.contains(&next) => return Ok(None),
                 None => {}

@@ -23,7 +23,7 @@ impl Image {
         Self::among(text, true, returns_to)
     }
 
-    /// Code among `code` whose data may be there as well.
+    /// Code within `code`, a range that may also contain data.
     #[must_use]
     pub fn unprotected(code: Range<GuestAddr>, returns_to: GuestAddr) -> Self {
         Self::among(code, false, returns_to)
@@ -47,19 +47,19 @@ impl Image {
         self.functions.binary_search(&address).is_ok()
     }
 
-    /// Reports whether it is code for a Kogna, by its place.
+    /// Reports whether it is code for a Kogna, judging by its address.
     #[must_use]
     pub const fn is_for_kogna(&self) -> bool {
         KOGNA_PROGRAMS.holds(self.code.start.get())
     }
 
-    /// The addresses that its code lies among.
+    /// The range of addresses that contains its code.
     #[must_use]
     pub fn code(&self) -> Range<GuestAddr> {
         self.code.clone()
     }
 
-    /// The addresses that hold nothing but its code.
+    /// The addresses that hold only its code.
     #[must_use]
     pub fn text(&self) -> Range<GuestAddr> {
         if self.is_protected { self.code.clone() } else { self.code.start..self.code.start }

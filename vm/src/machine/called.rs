@@ -1,7 +1,7 @@
-//! Calls of functions that no program makes: a debugger evaluates an expression.
+//! Calls of functions by a debugger that evaluates an expression.
 //!
-//! The function runs beside the selected context, below its calls on its stack, and the board stands meanwhile:
-//! no tick passes, and no other thread runs. What the function stores and asks of the firmware takes effect.
+//! The function runs on the stack of the selected context, below its calls, while the board is stopped: no tick passes,
+//! and no other thread runs. Stores and firmware calls of the function take effect.
 
 use kmotiondef::{Cycles, GuestAddr};
 
@@ -13,14 +13,14 @@ use crate::loaded::Loaded;
 use crate::thread::{Progress, ThreadState};
 use crate::trap::Trap;
 
-/// The cycles after which a function counts as endless: a second.
+/// The limit of cycles after which a function counts as endless: one second.
 const CALL_LIMIT: Cycles = Cycles::PER_SECOND;
 
 impl<F: Firmware, E: Engine> Machine<F, E> {
     /// Calls a function of a loaded program or of the firmware with the arguments, each as a slot, in a context.
     ///
-    /// The instant, the threads and the context are then as they were; after another end than
-    /// [`CallEnd::Returned`], whatever the function has changed until then stays.
+    /// The time, the threads and the context are then as before. If the call does not end with [`CallEnd::Returned`],
+    /// its changes up to that point remain.
     pub fn call_function(&mut self, id: ContextId, function: GuestAddr, arguments: &[u64]) -> CallEnd {
         let start = self.held().map_or_else(|| end_of(self.tick), |(_, at)| at);
         let whole = id.stack_in(self.memory.map(), self.config.strict_stack);
@@ -63,7 +63,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     }
 }
 
-/// Calls a function of the firmware, in the name of no thread: none waits for what it asks.
+/// Calls a function of the firmware, not on behalf of any thread, so that no thread waits for it.
 fn call_firmware<F: Firmware + ?Sized>(
     function: GuestAddr,
     arguments: &[u64],

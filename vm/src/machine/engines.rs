@@ -9,7 +9,7 @@ use crate::loaded::Loaded;
 use crate::scheduler::ThreadSet;
 use crate::trap::TrapKind;
 
-/// The contexts of all engines as they were; `S` is what the engine of bytecode keeps of its own.
+/// A snapshot of the contexts of all engines; `S` is the snapshot of the bytecode engine.
 #[derive(Debug)]
 pub(super) struct EnginesSnapshot<S> {
     programs: S,
@@ -64,15 +64,15 @@ impl<E: Engine> Engines<E> {
         }
     }
 
-    /// All contexts as they are.
+    /// A snapshot of all contexts.
     pub(super) fn snapshot(&self) -> EnginesSnapshot<E::Snapshot> {
         EnginesSnapshot { programs: self.programs.snapshot(), images: self.images.snapshot() }
     }
 
-    /// Makes all contexts what they were.
+    /// Restores all contexts.
     ///
     /// # Errors
-    /// [`ForeignSnapshot`] if they cannot go on here; nothing has changed then.
+    /// [`ForeignSnapshot`] if they cannot continue here; nothing is changed in that case.
     pub(super) fn restore(&mut self, snapshot: &EnginesSnapshot<E::Snapshot>) -> Result<(), ForeignSnapshot> {
         self.programs.restore(&snapshot.programs)?;
         self.images.restore(&snapshot.images)
@@ -94,7 +94,7 @@ impl<E: Engine> Engines<E> {
         }
     }
 
-    /// The position of `id`: its instruction, then the calls that led there, innermost first.
+    /// The position of `id`: its instruction, then the calls that led to it, innermost first.
     pub(super) fn backtrace(&self, id: ContextId, loaded: &Loaded) -> Vec<CodeAddr> {
         match loaded {
             Loaded::Program(_) => self.programs.backtrace(id),

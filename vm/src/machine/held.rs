@@ -1,6 +1,6 @@
 //! A tick that a debugger holds: it stops between two instructions of a program and is continued later.
 //!
-//! Nothing else of the board moves meanwhile, and the tick continues as if it had never been held.
+//! The rest of the board is stopped meanwhile, and the tick continues as if it had never been held.
 
 use kmotiondef::{Cycles, GuestAddr, ThreadId};
 
@@ -10,12 +10,12 @@ use crate::firmware::Firmware;
 use crate::thread::{Progress, ThreadState};
 use crate::wake::Wake;
 
-/// The point in a tick at which it is held.
+/// The point at which a tick is held.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Held {
     /// In the call-back.
     Callback {
-        /// Its function.
+        /// The address of the call-back function.
         address: GuestAddr,
         /// The instant at which it began.
         begin: Cycles,
@@ -26,7 +26,7 @@ pub(super) enum Held {
     Slice {
         /// The thread.
         thread: ThreadId,
-        /// Its slice.
+        /// The slice of the thread.
         window: Window,
         /// The rest of its budget, in cycles.
         left: Cycles,
@@ -36,7 +36,7 @@ pub(super) enum Held {
 }
 
 impl<F: Firmware, E: Engine> Machine<F, E> {
-    /// The context in whose code the tick is held, and the instant; `None` between two ticks.
+    /// The context in whose code the tick is held, and the time; `None` between two ticks.
     #[must_use]
     pub fn held(&self) -> Option<(ContextId, Cycles)> {
         Some(match self.held? {
@@ -47,8 +47,8 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         })
     }
 
-    /// The work that a computer has done for the board since power-up, in cycles of programs; a tick counts as some of
-    /// them. Skipped time is not work. No snapshot sets it back.
+    /// The work that the host has done for the board since power-up, in program cycles; a tick counts as a fixed
+    /// amount. Skipped time is not work. Restoring a snapshot does not reset it.
     #[must_use]
     pub const fn work(&self) -> u64 {
         self.work
@@ -63,7 +63,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
                 }
             }
             Held::Slice { thread, window, left, woken } => {
-                // Somebody may have stopped or started the thread meanwhile.
+                // The thread may have been stopped or started meanwhile.
                 let state = self.threads.state(thread);
                 if matches!(state, ThreadState::Active(Progress::Going | Progress::Waiting(_))) {
                     self.run_thread(thread, window, left, woken);
@@ -74,7 +74,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
 }
 
 impl<F: Firmware, E: Engine> Machine<F, E> {
-    /// Holds contexts after these bytes, addresses and how many, are not what they are now; and after no others.
+    /// Holds contexts after a change of these bytes (address and length each), and after changes of no others.
     pub fn set_watched(&mut self, ranges: &[(GuestAddr, u32)]) {
         self.engines.programs.set_watched(&self.memory, ranges);
     }

@@ -1,8 +1,8 @@
-//! The cycles by which a servo interrupt comes late, where threads lose the processor as on the board.
+//! The latency of servo interrupts, where threads lose the processor as on the board.
 //!
-//! The processor takes an interrupt when the branches before it have been made. What it waits for that, the interrupted
-//! thread has and the next one lacks: so it is the code before a slice that decides where in its own code a thread is
-//! interrupted next. Bytecode has no shadows of branches; its slices are uneven by a number of their own.
+//! The processor takes an interrupt only after the delay slots of branches. The interrupted thread gains these cycles
+//! and the next thread loses them: so the code before a slice decides where the next thread is interrupted. Bytecode
+//! has no delay slots; a pseudo-random number makes its slices uneven instead.
 
 use kmotiondef::{Cycles, Ticks};
 
@@ -15,7 +15,8 @@ use crate::scheduler::Turn;
 /// The cycles by which servo interrupts differ for bytecode.
 const UNEVENNESS: u64 = 64;
 
-/// The most cycles for which the shadow of a branch holds off an interrupt; what is beyond is a function of the firmware.
+/// The most cycles for which the delay slots of a branch hold off an interrupt; longer delays come from firmware
+/// functions.
 const LONGEST_SHADOW: Cycles = Cycles::new(8);
 
 /// The lateness of the interrupt in the system's thread of the released firmware, each value about as often as in 102 slices
@@ -24,7 +25,8 @@ const IN_SYSTEM_THREAD: [i64; 32] =
     [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3, 4, 5, 5, 9, 10, 12, 12, 13];
 
 impl<F: Firmware, E: Engine> Machine<F, E> {
-    /// The cycles by which the present slice begins later than the interrupt takes, and forgets what they follow from.
+    /// Returns the cycles by which the slice begins late, in addition to the time of the interrupt, and clears their
+    /// cause.
     pub(super) fn take_lateness(&mut self) -> Cycles {
         let shadow = self.shadow.take();
         if self.config.preemption == Preemption::Segments {
@@ -38,7 +40,8 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         shadow.unwrap_or(Cycles::new(IN_SYSTEM_THREAD[number]))
     }
 
-    /// Notes how far the slice of a thread has gone beyond its end; returns what that thread's next slice lacks for it.
+    /// Notes how far the slice of a thread has run beyond its end; returns the cycles that the thread's next slice
+    /// loses for it.
     pub(super) fn overdrawn(&mut self, stop: &Stop, overdraft: Cycles) -> Cycles {
         let is_shadow = *stop == Stop::Preempted && overdraft <= LONGEST_SHADOW && self.is_image(self.turn);
         if !is_shadow || self.config.preemption == Preemption::Segments {
@@ -55,10 +58,10 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     }
 }
 
-/// A number that is as good as random and a function of the tick alone (the mixer of SplitMix64).
+/// A pseudo-random number that depends only on the tick (the mixer of SplitMix64).
 ///
-/// The firmware's interrupt is not always equally long. Slices that were would end in the same place of a loop each
-/// time, or never there.
+/// The length of the firmware's interrupt varies. Slices of equal length would end at the same point of a loop every
+/// time, or never at that point.
 fn mixed(tick: Ticks) -> u64 {
     let mut bits = tick.get().wrapping_mul(0x9e37_79b9_7f4a_7c15);
     bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -1,9 +1,8 @@
-//! Long slices: a thread that is alone computes through many ticks of a board that does nothing.
+//! Long slices: the only active thread computes through many ticks in which the board does nothing.
 //!
-//! The context gets the budget of all its slices at once. It stops before it would do anything but
-//! compute with registers and SDRAM; what it has spent until then says in which slice that is. So the
-//! ticks before can be made up for by [`Firmware::skip_ticks`], and everything happens at the instant at
-//! which it happens in slices of one tick each.
+//! The context gets the budget of all its slices at once. It stops before it does anything other than compute with
+//! registers and SDRAM; the cycles spent until then determine the slice in which this happens. [`Firmware::skip_ticks`]
+//! makes up for the ticks before, so everything happens at the same time as with slices of one tick each.
 
 use kmotiondef::{Cycles, ThreadId, Ticks};
 
@@ -13,7 +12,7 @@ use crate::firmware::Firmware;
 use crate::scheduler::Turn;
 use crate::thread::{Progress, ThreadState};
 
-/// The most slices that a long one stands for: a tenth of a second of the board's time.
+/// The most ordinary slices that a long slice replaces: a tenth of a second of board time.
 const MOST_SLICES: u64 = 512;
 
 /// A long slice.
@@ -22,16 +21,16 @@ struct LongSlice {
     slices: u64,
     /// The budget of each slice, in cycles.
     each: Cycles,
-    /// The overdraft of the last slice's block, taken from the first slice.
+    /// The overdraft of the previous slice, which is taken from the first slice.
     debt: Cycles,
 }
 
 impl<F: Firmware, E: Engine> Machine<F, E> {
-    /// Runs a long slice, if there can be one before tick `limit` is over; whether there was one.
+    /// Runs a long slice, if one is possible before tick `limit` is over; returns whether it did.
     pub(super) fn run_long_slice(&mut self, limit: Ticks) -> bool {
         let Some(plan) = self.plan_long_slice(limit) else { return false };
         let (stop, spent) = self.compute(&plan);
-        // A block that ends exactly with a slice belongs to it.
+        // A segment that ends exactly with a slice belongs to it.
         let whole = (spent.get() - 1).max(0) / plan.each.get();
         let whole = whole.min(plan.slices as i64 - 1);
         let left = Cycles::new(plan.each.get() * (whole + 1)) - spent;
@@ -46,10 +45,10 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         true
     }
 
-    /// The next slices as a long one: every other tick, the primary thread has those between them.
+    /// Combines the next slices into a long one: every other tick; the primary thread has the ticks between.
     fn plan_long_slice(&self, limit: Ticks) -> Option<LongSlice> {
         let active = self.threads.active();
-        // A slice that is over where it ends has to end there.
+        // A slice that is over must end exactly there.
         let is_split = self.config.preemption == Preemption::Instructions;
         if active.len() != 1 || self.turn != Turn::Primary || is_split {
             return None;
@@ -70,7 +69,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         (slices > 1 && longest < each && !is_callback_set).then_some(LongSlice { thread, slices, each, debt })
     }
 
-    /// Lets the thread compute; how it stopped, and what was spent with the debt.
+    /// Lets the thread compute; returns its stop, and the cycles spent including the debt.
     fn compute(&mut self, plan: &LongSlice) -> (Stop, Cycles) {
         let all = Cycles::new(plan.each.get() * plan.slices as i64);
         let Some(loaded) = self.loaded[plan.thread.index()].as_ref() else {

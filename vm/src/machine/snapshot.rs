@@ -13,7 +13,7 @@ use crate::memory::snapshot::MemorySnapshot;
 use crate::scheduler::{ThreadSet, Turn};
 use crate::thread::Threads;
 
-/// Everything that a machine holds besides its settings and its firmware; `S` is the snapshot of its engine.
+/// Everything that a machine holds except its settings and its firmware; `S` is the snapshot of its engine.
 #[derive(Debug)]
 pub struct Snapshot<S> {
     memory: MemorySnapshot,
@@ -49,7 +49,7 @@ impl<S> Snapshot<S> {
 }
 
 impl<F: Firmware, E: Engine> Machine<F, E> {
-    /// Saves the machine without its firmware, whose owner keeps a copy of it.
+    /// Saves the machine without its firmware, which its owner must copy.
     ///
     /// Memory is shared with earlier snapshots page by page, and so is the code of programs.
     pub fn snapshot(&mut self) -> Snapshot<E::Snapshot> {
@@ -67,13 +67,13 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         }
     }
 
-    /// Makes the machine what it was when `snapshot` was taken; it continues from there exactly as it continued then.
+    /// Restores the machine from `snapshot`; it continues exactly as it did after the snapshot was taken.
     ///
-    /// The firmware must be made what it was as well. Snapshots may be restored in any order, each as often as one
-    /// likes. One of a machine of bytecode may also be restored in another machine with the same settings.
+    /// The firmware must be restored as well. Snapshots may be restored in any order, any number of times. A snapshot
+    /// of a bytecode machine may also be restored in another machine with the same settings.
     ///
     /// # Errors
-    /// [`ForeignSnapshot`] for a snapshot of another machine with native threads; nothing has changed then.
+    /// [`ForeignSnapshot`] for a snapshot of another machine with native threads; nothing is changed in that case.
     pub fn restore(&mut self, snapshot: &Snapshot<E::Snapshot>) -> Result<(), ForeignSnapshot> {
         let Snapshot {
             memory,

@@ -1,4 +1,4 @@
-//! The board of a memory: what is at which address, and its axes.
+//! The board of a memory: its memory map and its axes.
 
 use std::ops::Range;
 
@@ -13,9 +13,10 @@ use crate::trap::Access;
 const UPPER_SIZE: usize = 0x40_0000;
 
 impl GuestMemory {
-    /// Makes this the memory of another board at power-up, whose objects [`set_places`](Self::set_places) tells.
+    /// Makes this the memory of another board at power-up; [`set_places`](Self::set_places) gives the addresses of its
+    /// objects.
     ///
-    /// Of SDRAM it has the first 20 MiB.
+    /// It has the first 20 MiB of SDRAM.
     pub fn set_map(&mut self, map: &'static MemoryMap) {
         if self.map != map {
             self.map = map;
@@ -143,7 +144,7 @@ impl GuestMemory {
         self.ram_by_map_mut(address)?.first_chunk_mut()
     }
 
-    /// Reports whether an access of `addr` goes to the bus: registers always, flash for a store.
+    /// Reports whether an access of `addr` goes to the bus: registers always, flash only for a store.
     #[must_use]
     pub fn is_on_bus(&self, addr: GuestAddr, access: Access) -> bool {
         let mut regions = self.map.regions().filter(|region| match region.kind {

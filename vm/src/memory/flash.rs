@@ -1,4 +1,4 @@
-//! The bytes of flash memory, which take no memory of the host until something is written.
+//! The bytes of flash memory, which take no host memory until something is written.
 
 use std::sync::LazyLock;
 

@@ -9,7 +9,7 @@ use kmotiondef::GuestAddr;
 
 use super::GuestMemory;
 
-/// An object, where the tables have it, and where it is.
+/// An object with its address in the tables and its address in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Object {
     table: u32,
@@ -17,7 +17,7 @@ struct Object {
     place: u32,
 }
 
-/// The places of objects; by default those of the tables.
+/// The addresses of objects; by default those of the tables.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Places(Option<Arc<[Object]>>);
 
@@ -43,7 +43,7 @@ impl Places {
         self.0.is_none()
     }
 
-    /// The place of an address of the tables; one that belongs to no object stays.
+    /// The address of an object from its address in the tables; addresses outside of any object are unchanged.
     #[inline(always)]
     #[must_use]
     pub fn of(&self, address: GuestAddr) -> GuestAddr {
@@ -53,7 +53,7 @@ impl Places {
         }
     }
 
-    /// The address of the tables for a place; one that belongs to no object stays.
+    /// The address in the tables for an address of an object; addresses outside of any object are unchanged.
     #[must_use]
     pub fn table_of(&self, place: GuestAddr) -> GuestAddr {
         let objects = self.0.iter().flat_map(|objects| objects.iter());

@@ -1,8 +1,8 @@
 //! Guest memory as it was at an instant, in pages that snapshots share.
 //!
-//! Compiled code writes to memory without saying where, so a snapshot compares every page with the one that the last
-//! snapshot has: a page that is the same is shared. RAM that nothing was ever written to is compared with one page of
-//! zeros, which takes the host next to no time.
+//! Compiled code does not report where it writes, so a snapshot compares every page with the page of the last snapshot:
+//! equal pages are shared. RAM that was never written to is compared with a single page of zeros, which takes almost no
+//! time.
 
 use std::fmt;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ const _: () = assert!(flash::SIZE.is_multiple_of(PAGE));
 #[derive(Clone)]
 struct Pages(Vec<Arc<Page>>);
 
-/// Shows the offset of each page that differs from the one before, and a checksum of it.
+/// Shows the offset and a checksum of each page that differs from the page before it.
 impl fmt::Debug for Pages {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut map = f.debug_map();
@@ -51,7 +51,7 @@ impl Pages {
         Self(vec![page; size / PAGE])
     }
 
-    /// The region as it is, sharing with `before` what is the same.
+    /// A snapshot of a region that shares equal pages with `before`.
     fn of(region: &[u8], before: &Self) -> Self {
         let pages = region.as_chunks::<PAGE>().0.iter().zip(&before.0);
         Self(
@@ -61,7 +61,7 @@ impl Pages {
         )
     }
 
-    /// Makes the region what it was; pages that are the same are not written to.
+    /// Restores the region; equal pages are not written to.
     fn put_back(&self, region: &mut [u8]) {
         for (page, saved) in region.as_chunks_mut::<PAGE>().0.iter_mut().zip(&self.0) {
             if *page != **saved {
@@ -105,7 +105,7 @@ pub struct MemorySnapshot {
 }
 
 impl MemorySnapshot {
-    /// Bytes of the pages that this snapshot has beside those that it shares with `other`.
+    /// Bytes of the pages that this snapshot does not share with `other`.
     #[must_use]
     pub fn bytes_beyond(&self, other: &Self) -> usize {
         let Regions { sdram, iram, flash } = &self.regions;
@@ -116,10 +116,10 @@ impl MemorySnapshot {
 }
 
 impl GuestMemory {
-    /// All of memory as it is, with the protection of program text.
+    /// A snapshot of all memory, with the protection of program text.
     ///
-    /// It takes as much of the host's memory as has changed since the last snapshot of this memory was taken or
-    /// restored, in pages of 4 KiB, and a list of the pages, which is less than 40 KiB.
+    /// It takes host memory for the pages of 4 KiB that have changed since the last snapshot was taken or restored, and
+    /// less than 40 KiB for the list of pages.
     pub fn snapshot(&mut self) -> MemorySnapshot {
         let before = self.last.take().unwrap_or_else(|| Regions::new(self.rest_bytes().len()));
         let regions = Regions {
@@ -140,7 +140,7 @@ impl GuestMemory {
         }
     }
 
-    /// Makes memory what it was when `snapshot` was taken, here or in another memory.
+    /// Restores memory from `snapshot`, which may come from another memory.
     pub fn restore(&mut self, snapshot: &MemorySnapshot) {
         let MemorySnapshot { regions, is_flash_erased, protection, is_touched } = snapshot;
         regions.sdram.put_back(&mut self.sdram[..]);

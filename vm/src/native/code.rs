@@ -21,15 +21,16 @@ use crate::program::Program;
 /// Bytes of address space for a piece.
 const PIECE_ROOM: usize = 0x10_0000;
 
-/// Bytes of native stack for what runs besides the program's functions: the way in, and requests.
+/// Bytes of native stack for everything except the program's functions: the entry code, and requests.
 const STACK_RESERVE: usize = 0x1_0000;
 
 /// Bytes of address space for the machine code of one function, and of one instruction word.
 const RESERVE_PER_FUNCTION: usize = 0x1000;
 const RESERVE_PER_WORD: usize = 0x400;
 
-/// Most words of a function that is translated when it is started: the time that Cranelift takes grows with their square,
-/// and this many take it a second or two. Longer ones are tables written as statements, which run once.
+/// The longest function, in words, that is translated when it is started: the time that Cranelift takes grows with the
+/// square of the length, and is a second or two at this limit. Longer functions are tables written as statements, which
+/// run once.
 const MAX_WORDS: usize = 0x4000;
 
 /// The entry of a function for calls through a pointer.
@@ -43,7 +44,7 @@ pub(super) struct Entry {
 
 /// The machine code of one program.
 pub(super) struct MachineCode {
-    /// The memory that the pointers point into.
+    /// The memory that holds the code.
     _memory: CodeMemory,
     begin: Begin,
     entries: Vec<Entry>,
@@ -51,9 +52,9 @@ pub(super) struct MachineCode {
     stack: StackUse,
 }
 
-// SAFETY: nothing changes after `compile`; the pointers are to memory that any thread may read and execute.
+// SAFETY: nothing changes after `compile`; the pointers lead to memory that any thread may read and execute.
 unsafe impl Send for MachineCode {}
-// SAFETY: as above; the module, whose methods are not for several threads, is not used before it is dropped.
+// SAFETY: as above; the module, whose methods are not thread-safe, is not used before it is dropped.
 unsafe impl Sync for MachineCode {}
 
 impl fmt::Debug for MachineCode {
@@ -73,7 +74,7 @@ impl CodeMemory {
         preemption: Preemption,
         is_observed: bool,
     ) -> Result<Self, CompileError> {
-        // A segment that may be split is there a second time.
+        // A segment that may be split is translated a second time.
         let copies = if preemption == Preemption::Instructions { 3 } else { 1 };
         // A report takes about as much as the access.
         let copies = copies * (1 + usize::from(is_observed));
@@ -100,8 +101,8 @@ impl Drop for CodeMemory {
     fn drop(&mut self) {
         // SAFETY: the module is taken once and not used again.
         let module = unsafe { ManuallyDrop::take(&mut self.0) };
-        // SAFETY: pointers to the code are handed out by `Code` only, and whoever runs the code (the
-        // fiber) holds the `Code`, and with it this, until it has stopped doing so.
+        // SAFETY: only `Code` gives out pointers to the code, and the fiber that runs the code holds the `Code`, and so
+        // this module, until it has stopped.
         unsafe { module.free_memory() };
     }
 }
@@ -145,8 +146,8 @@ impl MachineCode {
 
     /// Bytes of native stack that the program cannot exceed on a guest stack of `guest` bytes.
     ///
-    /// Compiled code checks the guest stack at every call, so the depth of calls is bounded, and
-    /// with it what they take of the native stack.
+    /// Compiled code checks the guest stack at every call, so the depth of calls is bounded, and with it their use of
+    /// the native stack.
     pub(super) fn stack_size(&self, guest: u32) -> usize {
         let StackUse { native_per_guest, largest_frame } = self.stack;
         guest as usize * native_per_guest as usize + largest_frame as usize + STACK_RESERVE
@@ -165,13 +166,13 @@ fn begin_at(pointer: *const u8) -> Begin {
     unsafe { std::mem::transmute::<*const u8, Begin>(pointer) }
 }
 
-/// A piece of machine code that works on what is handed over to it.
+/// A piece of machine code that works on a [`Handover`].
 pub(crate) struct Piece {
     _memory: CodeMemory,
     entry: RunPiece,
 }
 
-// SAFETY: nothing changes after `compile`; the pointer is to memory that any thread may read and execute.
+// SAFETY: nothing changes after `compile`; the pointer leads to memory that any thread may read and execute.
 unsafe impl Send for Piece {}
 // SAFETY: as above; the module is not used before it is dropped.
 unsafe impl Sync for Piece {}
@@ -183,11 +184,11 @@ impl fmt::Debug for Piece {
 }
 
 impl Piece {
-    /// Compiles what `translate` writes, if it does: a function of pointers to a [`Handover`] and to
-    /// [`Places`] that returns a number.
+    /// Compiles the function that `translate` writes, if it succeeds: it takes pointers to a [`Handover`] and to
+    /// [`Places`] and returns a number.
     ///
-    /// It must access nothing but those and what the [`Places`] are: 64 registers, both RAMs, a mark for
-    /// each line of them.
+    /// It must access nothing but these and the memory that the [`Places`] point to: 64 registers, both RAMs, and a
+    /// mark for each line of RAM.
     pub(crate) fn compile(
         translate: impl FnOnce(&mut Function, &mut FunctionBuilderContext, &dyn Module) -> bool,
     ) -> Result<Option<Self>, CompileError> {
@@ -223,7 +224,7 @@ impl Piece {
             iram: iram.as_mut_ptr(),
             marks: marks.as_ptr(),
         };
-        // SAFETY: the borrows last until it returns; its translation keeps to what they are of.
+        // SAFETY: the borrows last until it returns; the translated code accesses only the borrowed memory.
         unsafe { (self.entry)(handover, &raw const places) }
     }
 }

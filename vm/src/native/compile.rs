@@ -23,15 +23,15 @@ use crate::operand::Class;
 use crate::polling::PollingLoop;
 use crate::program::{Function, Program};
 
-/// Bytes of native stack that a call takes besides what Cranelift counts: return address, frame
-/// pointer and alignment.
+/// Bytes of native stack that a call takes in addition to the frame counted by Cranelift: return address, frame pointer
+/// and alignment.
 const NATIVE_CALL_OVERHEAD: u32 = 32;
 
-/// Most registers of a function: a stack full of calls of functions like that stays within the
-/// interpreter's bound on the registers of all calls together, of which compiled code knows nothing.
+/// The limit of registers in a function: a stack full of calls of such functions stays within the interpreter's limit
+/// on the registers of all calls together, which compiled code does not check.
 const MAX_REGISTERS: usize = 4096;
 
-/// The reason why a program cannot be compiled on this host; it runs on the bytecode engine then.
+/// The reason why a program cannot be compiled on this host; it then runs on the bytecode engine.
 #[derive(Debug, thiserror::Error)]
 pub enum CompileError {
     /// Cranelift has no code generator for the host.
@@ -43,7 +43,8 @@ pub enum CompileError {
     /// A function is so long that to translate it takes longer than to interpret it.
     #[error("a function of {0} words takes longer to translate than to interpret")]
     TooLong(usize),
-    /// Machine code of the host has its calls on a native stack, which nothing can leave in the middle.
+    /// The program uses jumps out of calls, but the calls of host code are on a native stack, which cannot be left in
+    /// the middle.
     #[error("a program with `setjmp` or `longjmp` is interpreted")]
     Jumps,
     /// Machine code of the host has the addresses of one board's memories in it.
@@ -87,7 +88,7 @@ pub(super) fn host_isa() -> Result<OwnedTargetIsa, CompileError> {
 pub(super) struct Functions {
     /// The function that begins the outermost call.
     pub(super) begin: FuncId,
-    /// For each function of the program, what passes it its arguments, and itself.
+    /// For each function of the program, the thunk that passes its arguments, and the function itself.
     pub(super) entries: Vec<(FuncId, FuncId)>,
     /// The native stack that calls use.
     pub(super) stack: StackUse,
@@ -163,13 +164,13 @@ impl Compiler<'_> {
         program.functions().iter().map(declare).collect()
     }
 
-    /// Compiles one function and yields what a call of it takes of the native stack.
+    /// Compiles one function and yields its use of the native stack for a call.
     fn function(&mut self, id: FuncId, translation: Translation<'_>) -> Result<u32, CompileError> {
         translate(&mut self.context.func, &mut self.builder, self.module, translation);
         self.define(id)
     }
 
-    /// Compiles what makes the rare requests of all functions.
+    /// Compiles the function that makes the rare requests of all functions.
     fn request(&mut self) -> Result<FuncId, CompileError> {
         let signature = request_signature();
         let id = self.module.declare_anonymous_function(&signature)?;
@@ -179,7 +180,7 @@ impl Compiler<'_> {
         Ok(id)
     }
 
-    /// Compiles what begins the outermost call.
+    /// Compiles the function that begins the outermost call.
     fn begin(&mut self) -> Result<FuncId, CompileError> {
         let signature = begin_signature(self.module);
         let id = self.module.declare_anonymous_function(&signature)?;
@@ -189,8 +190,8 @@ impl Compiler<'_> {
         Ok(id)
     }
 
-    /// Compiles a thunk for each list of parameters that a function of `program` has, and yields what one takes
-    /// of the native stack.
+    /// Compiles a thunk for each parameter list of the functions of `program`, and yields the native stack used by a
+    /// thunk.
     fn thunks(&mut self, program: &Program) -> Result<(BTreeMap<Vec<Class>, FuncId>, u32), CompileError> {
         let mut thunks = BTreeMap::new();
         let mut largest = 0;

@@ -22,7 +22,7 @@ use crate::slot::Slot;
 use crate::trap::TrapKind;
 use crate::wake::Wake;
 
-/// The continuation of a context when it is resumed.
+/// The way in which a resumed context continues.
 #[derive(Clone, Debug)]
 enum Next {
     /// Continue with the answer to its last request.
@@ -37,7 +37,7 @@ enum Next {
     Nothing(Stop),
 }
 
-/// The step after a request; small, because there is one at each request.
+/// The step after a request; small, because it is returned at every request.
 enum NextStep {
     /// Continue at once.
     Go(Answer),
@@ -65,7 +65,7 @@ impl From<Halt> for Stop {
     }
 }
 
-/// The calls of the firmware that were found to match the called function's signature, as many as a loop makes.
+/// The firmware calls that were found to match the called function's signature, enough for the calls of a loop.
 #[derive(Clone, Copy, Debug, Default)]
 struct CheckedCalls([Option<(GuestAddr, SigRef)>; 8]);
 
@@ -84,14 +84,14 @@ pub(super) struct Context {
     fiber: Fiber,
     program: Arc<Program>,
     stack: Stack,
-    /// The instruction to execute next, or the one that stopped the context.
+    /// The next instruction to execute, or the instruction that stopped the context.
     at: usize,
     /// Address of the current call's frame; the top of the stack outside all calls.
     stack_pointer: u32,
     next: Next,
-    /// The ranges of program text that the state's windows are for.
+    /// The generation of the protected ranges for which the state's windows were computed.
     protected: Option<u64>,
-    /// CallArguments of the firmware call being made.
+    /// The arguments of the firmware call in progress.
     arguments: ArgumentList,
     checked: CheckedCalls,
 }
@@ -108,7 +108,7 @@ pub(super) struct Saved {
 }
 
 impl Saved {
-    /// The context. There may be one at a time.
+    /// The context. Only one may exist at a time.
     pub(super) fn context(&self) -> Context {
         let Self { fiber, program, stack, at, stack_pointer, next } = self;
         Context {
@@ -126,7 +126,7 @@ impl Saved {
 }
 
 impl Context {
-    /// The context as it is.
+    /// Returns a copy of the context.
     pub(super) fn save(&self) -> Saved {
         Saved {
             fiber: self.fiber.save(),
@@ -153,7 +153,7 @@ impl Context {
         }
     }
 
-    /// The fiber, for what can be used of it again.
+    /// The fiber, so that its stack can be reused.
     pub(super) fn into_fiber(self) -> Fiber {
         self.fiber
     }
@@ -168,7 +168,7 @@ impl Context {
         self.fiber.state().stack_used()
     }
 
-    /// The current instruction and the calls that led there, innermost first.
+    /// The current instruction and the calls that led to it, innermost first.
     pub(super) fn backtrace(&self) -> Vec<CodeAddr> {
         let mut calls = vec![self.address()];
         let (mut at, mut frame) = (self.at, self.stack_pointer);
@@ -330,7 +330,7 @@ impl Context {
         Ok(NextStep::Go(Answer::Slot(slot)))
     }
 
-    /// Reports the access of a request, which has been made.
+    /// Reports the access of a request after it has been made.
     fn report<F: Firmware + ?Sized>(
         &self,
         id: ContextId,
@@ -374,7 +374,7 @@ impl Context {
         });
     }
 
-    /// A call that the stack has no room for: it is its caller that is shown.
+    /// Handles a call for which the stack has no room; the trap is attributed to the caller.
     fn overflow(&mut self, request: Request) -> TrapKind {
         if request.stack_pointer < self.stack.top {
             self.at = self.fiber.state().call_of(request.stack_pointer);
@@ -402,7 +402,7 @@ impl Context {
         self.call_firmware(id, slice, address, signature)
     }
 
-    /// Makes a firmware call whose arguments are in the state.
+    /// Makes the firmware call whose arguments are in the state.
     fn call_firmware<F: Firmware + ?Sized>(
         &mut self,
         id: ContextId,

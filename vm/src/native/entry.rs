@@ -13,26 +13,26 @@ pub(super) const WAYS_OUT: WaysOut = WaysOut { leave, convert };
 /// the stack that the state describes.
 pub(super) type Begin = unsafe extern "C" fn(*const State, *const u8);
 
-/// A piece of machine code; what it returns says how it ended.
+/// A piece of machine code; its result is the number of the exit it took.
 pub(super) type RunPiece = unsafe extern "C" fn(*mut Handover, *const Places) -> u32;
 
-/// Runs a function of a program to its end.
+/// Runs a function of a program until it returns.
 ///
 /// # Safety
-/// `begin`, `thunk` and the state's callee are compiled code of one program, the thunk is one for
-/// functions like the callee, and the code is kept until this returns. `state` is valid until then,
-/// and at each moment at which the fiber runs its pointers are those of guest memory.
+/// `begin`, `thunk` and the state's callee are compiled code of one program, the thunk is one for functions like the
+/// callee, and the code is kept until this returns. `state` is valid until then, and whenever the fiber runs, its
+/// pointers are those of guest memory.
 pub(super) unsafe fn enter(begin: Begin, thunk: *const u8, state: *const State) {
     // SAFETY: the caller vouches for the code and the state.
     unsafe { begin(state, thunk) }
 }
 
-/// Bytes of the stack between what `leave` has there and the end of what suspends a fiber; far more than it takes.
-/// A fiber that has not begun has not as many on its stack.
+/// An upper bound on the stack bytes from the frame of `leave` to the end of the code that suspends a fiber. A fiber
+/// that has not begun has fewer bytes on its stack.
 pub(super) const SUSPENSION: usize = 0x1000;
 
-/// Has the stack reach as far as a copy of the suspended fiber: Windows adds memory to a stack only when the stack itself
-/// grows into it, and stops everybody else who reads beyond.
+/// Makes the stack reach as far as a copy of the suspended fiber: Windows adds memory to a stack only when the stack
+/// itself grows, and faults if anything else reads beyond it.
 #[cfg(windows)]
 #[inline(never)]
 fn extend_stack() {
@@ -43,10 +43,10 @@ fn extend_stack() {
     std::hint::black_box(&room);
 }
 
-/// Suspends the fiber with a request and yields the answer.
+/// Suspends the fiber with a request and returns the answer.
 ///
 /// # Safety
-/// Called by compiled code only: `state` is the pointer that it was entered with.
+/// Only called by compiled code: `state` is the pointer with which the code was entered.
 unsafe extern "C" fn leave(
     state: *const State,
     code: u32,
@@ -55,7 +55,7 @@ unsafe extern "C" fn leave(
     a: u64,
     b: u64,
 ) -> u64 {
-    // SAFETY: compiled code passes on what `enter` gave it, which is valid while it runs.
+    // SAFETY: compiled code passes the pointer from `enter`, which is valid while the code runs.
     let state = unsafe { &*state };
     // SAFETY: the fiber's body sets the yielder, which lives on this fiber, before it enters compiled code.
     let yielder = unsafe { &*state.yielder.get() };
@@ -67,7 +67,7 @@ unsafe extern "C" fn leave(
     yielder.suspend(Request { code, at, stack_pointer, a, b })
 }
 
-/// Converts what compiled code cannot convert by one instruction.
+/// Converts numbers that compiled code cannot convert by a single instruction.
 extern "C" fn convert(value: f64) -> i64 {
     arith::i64_from_f64_u(value)
 }

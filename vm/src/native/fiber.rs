@@ -1,9 +1,9 @@
 //! A fiber: the native stack on which one context's compiled code runs.
 //!
-//! A fiber is never unwound. It runs until it has returned, or it is discarded where it is;
-//! the only Rust frames on it are the body below and [`leave`](super::entry::leave), and neither
-//! owns anything. So it can also be copied where it is suspended: the bytes on its stack and the state, which are put back
-//! to the same addresses when it is to continue from there again.
+//! A fiber is never unwound. It runs until it returns, or it is discarded where it is suspended; the only Rust frames
+//! on it are the body below and [`leave`](super::entry::leave), and neither owns anything. So a suspended fiber can
+//! also be copied: the bytes on its stack and the state, which are restored to the same addresses before the copy
+//! continues.
 #![expect(unsafe_code, reason = "runs compiled code and discards fibers without unwinding them")]
 
 use std::cell::Cell;
@@ -26,14 +26,14 @@ use crate::polling::PollingLoop;
 /// The answer to a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Answer {
-    /// A register slot; 0 where nothing is expected.
+    /// A register slot; 0 if no value is expected.
     Slot(u64),
     /// The function to call, as its index in the program; only for a pointer that should have been resolved.
     Function(usize),
 }
 
-/// The home of a fiber: a native stack, and the state of the context that runs on it. Compiled code knows both by their
-/// addresses, so a fiber and its copies are always in the same home; one of them at a time.
+/// The home of a fiber: a native stack, and the state of the context that runs on it. Compiled code holds the addresses
+/// of both, so a fiber and its copies always use the same home, one at a time.
 struct Home {
     stack: DefaultStack,
     /// Bytes of the stack.
@@ -65,12 +65,12 @@ impl Home {
     }
 }
 
-/// The stack of a place as a coroutine has it. It owns nothing: the fiber holds the place.
+/// The stack of a home as a coroutine sees it. It owns nothing: the fiber holds the home.
 struct View(*const Home);
 
 impl View {
     fn place(&self) -> &Home {
-        // SAFETY: views are in coroutines, coroutines in fibers and their copies, and each of those holds the place.
+        // SAFETY: views are in coroutines, coroutines in fibers and their copies, and each of those holds the home.
         unsafe { &*self.0 }
     }
 }
@@ -101,8 +101,8 @@ unsafe impl corosensei::stack::Stack for View {
     }
 }
 
-/// The coroutine on the stack. It is never dropped but discarded, and may be copied bit by bit: like all that lies on
-/// the stack it owns nothing.
+/// The coroutine on the stack. It is never dropped but discarded, and may be copied bit by bit: like everything on the
+/// stack, it owns nothing.
 type Running = ManuallyDrop<Coroutine<u64, Request, (), View>>;
 
 /// A native stack with one call of a program's function on it.
@@ -113,17 +113,17 @@ pub(super) struct Fiber {
 }
 
 // SAFETY: a fiber may be continued by another thread than the one that began it. Nothing on its stack belongs to a
-// thread: the frames are those of compiled code, which knows guest memory and the state by addresses, and of the body,
-// `enter` and `leave`, none of which has a thread-local. It is used through `&mut` alone, by one thread at a time. Its
-// home it shares with its own copies, which reach into the home only in `SavedFiber::fiber`, for the engine that the
-// fiber is in; the count of them is atomic.
+// thread: the frames are those of compiled code, which holds addresses of guest memory and the state, and of the body,
+// `enter` and `leave`, none of which uses thread-locals. It is used only through `&mut`, by one thread at a time. It
+// shares its home with its copies, which access the home only in `SavedFiber::fiber`, for the engine of the fiber;
+// their reference count is atomic.
 unsafe impl Send for Fiber {}
 
 /// The parts of a fiber besides its coroutine.
 #[derive(Clone)]
 struct Rest {
     code: Arc<MachineCode>,
-    /// The addresses of guest memory and of the map of protected blocks, as soon as it has begun.
+    /// The addresses of guest memory and of the map of protected blocks, once the fiber has begun.
     ram: Option<(*mut u8, *mut u8, *const u8)>,
     /// True if the last request was for the target of a call.
     resolving: bool,
@@ -138,7 +138,7 @@ impl fmt::Debug for Fiber {
 impl Fiber {
     /// A fiber that will call `function` of `code` on the guest stack `stack`; it has not begun.
     ///
-    /// `old` is discarded, and its place used again if it is large enough.
+    /// `old` is discarded, and its home is reused if it is large enough.
     pub(super) fn new(code: Arc<MachineCode>, function: usize, stack: Stack, old: Option<Self>) -> Self {
         let size = code.stack_size(stack.size());
         let kept = old.map(|old| Arc::clone(&old.place)).filter(|place| place.size >= size);
@@ -154,15 +154,15 @@ impl Fiber {
             // SAFETY: the fiber, of which this is the body, holds the place, and with it the state.
             let state = unsafe { &*shared };
             state.yielder.set(yielder);
-            // SAFETY: the entry is of the code that the fiber holds, together with the state;
-            // `resume` sets the state's pointers each time before this runs.
+            // SAFETY: the entry belongs to the code that the fiber holds, as does the state; `resume` sets the state's
+            // pointers each time before this runs.
             unsafe { entry::enter(begin, thunk, shared) };
         };
         let coroutine = ManuallyDrop::new(Coroutine::with_stack(View(Arc::as_ptr(&place)), body));
         Self { coroutine, place, rest: Rest { code, ram: None, resolving: false } }
     }
 
-    /// The fiber as it is, to continue from here again.
+    /// A copy of the fiber, which can later continue from this point.
     pub(super) fn save(&self) -> SavedFiber {
         let base = self.place.stack.base().get();
         let lowest = if self.coroutine.done() {
@@ -177,7 +177,7 @@ impl Fiber {
         let top = ptr::with_exposed_provenance::<MaybeUninit<u8>>(lowest);
         // SAFETY: these are the upper bytes of the stack, which is mapped, and nothing runs on it now.
         unsafe { ptr::copy_nonoverlapping(top, bytes.as_mut_ptr(), bytes.len()) };
-        // SAFETY: the copy is never dropped; it is used after a fiber has been made of it, when this one is gone.
+        // SAFETY: the copy is never dropped; it is only used once it has become a fiber, after this one is gone.
         let coroutine = unsafe { ptr::read(&raw const self.coroutine) };
         let (place, rest) = (Arc::clone(&self.place), self.rest.clone());
         SavedFiber { coroutine, bytes, state: Box::new(self.state().clone()), place, rest }
@@ -185,7 +185,7 @@ impl Fiber {
 
     /// Runs the fiber until its next request; `None` when the function has returned.
     ///
-    /// `answer` is that to the last request. A fiber that has returned does nothing.
+    /// `answer` is the answer to the last request. A fiber that has returned does nothing.
     pub(super) fn resume(
         &mut self,
         memory: &mut GuestMemory,
@@ -199,7 +199,7 @@ impl Fiber {
         // The borrows last until the fiber is suspended again, so the pointers are valid while it runs.
         let (sdram, iram) = memory.ram_mut();
         let ram = (sdram.as_mut_ptr(), iram.as_mut_ptr(), protected.marks().as_ptr());
-        // Compiled code may keep the pointers over a request.
+        // Compiled code may keep the pointers across a request.
         assert!(*self.rest.ram.get_or_insert(ram) == ram, "a context stays in the memory that it began in");
         let own = &self.place.state.ram;
         own.sdram.set(ram.0);
@@ -214,10 +214,10 @@ impl Fiber {
         }
     }
 
-    /// The answer as compiled code takes it.
+    /// Encodes the answer for compiled code.
     ///
-    /// A call through a pointer takes the address of a thunk, and finds the function in the state; or it
-    /// takes 0: this is where it is made certain.
+    /// A call through a pointer takes the address of a thunk, and finds the function in the state; or it takes 0. This
+    /// method guarantees it.
     fn encode(&self, answer: Answer) -> u64 {
         match (self.rest.resolving, answer) {
             (false, Answer::Slot(slot)) => slot,
@@ -245,8 +245,8 @@ impl Drop for Fiber {
     fn drop(&mut self) {
         // SAFETY: the coroutine is not used again.
         let mut coroutine = unsafe { ManuallyDrop::take(&mut self.coroutine) };
-        // SAFETY: nothing on the fiber needs `Drop`: the body, `enter` and `leave` own nothing, and
-        // compiled code knows no such thing.
+        // SAFETY: nothing on the fiber needs `Drop`: the body, `enter` and `leave` own nothing, and compiled code has
+        // no destructors.
         unsafe { coroutine.force_reset() };
         coroutine.into_stack();
         self.place.is_taken.set(false);
@@ -262,20 +262,20 @@ pub(super) struct SavedFiber {
     rest: Rest,
 }
 
-// SAFETY: as for `Fiber`. A copy is bytes and a state of its own; the home it only keeps, until its engine, which is then
-// used by the same thread, has it put back there.
+// SAFETY: as for `Fiber`. A copy owns its bytes and its state; it only keeps the home alive until its engine, used by
+// one thread at a time, restores it there.
 unsafe impl Send for SavedFiber {}
 
 impl SavedFiber {
-    /// The fiber. The one that is in its place must be gone.
+    /// The fiber. The fiber that occupies its home must be gone.
     pub(super) fn fiber(&self) -> Fiber {
         self.place.take();
         let lowest = self.place.stack.base().get() - self.bytes.len();
         let top = ptr::with_exposed_provenance_mut::<MaybeUninit<u8>>(lowest);
-        // SAFETY: that many bytes were there when they were copied, and the place is the fiber's alone.
+        // SAFETY: as many bytes were copied from there, and only this fiber uses the home.
         unsafe { ptr::copy_nonoverlapping(self.bytes.as_ptr(), top, self.bytes.len()) };
         self.place.state.put_back(&self.state);
-        // SAFETY: what the coroutine refers to is its stack, which is as it was when the copy was made.
+        // SAFETY: the coroutine refers only to its stack, which is as it was when the copy was made.
         let coroutine = unsafe { ptr::read(&raw const self.coroutine) };
         Fiber { coroutine, place: Arc::clone(&self.place), rest: self.rest.clone() }
     }

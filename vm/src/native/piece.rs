@@ -2,10 +2,10 @@
 
 use kmotiondef::map::{IRAM, SDRAM};
 
-/// The most values that are handed over besides registers.
+/// The limit of values that are passed besides registers.
 pub(crate) const VALUES: usize = 128;
 
-/// Bytes of RAM that one [mark](Handover::marks) is for, as a power of two.
+/// The bytes of RAM covered by one [mark](Handover::marks), as a power of two.
 pub(crate) const MARK_BITS: u32 = 5;
 
 /// Lines of both RAMs.
@@ -14,7 +14,7 @@ pub(crate) const LINES: usize = ((SDRAM.size + IRAM.size) >> MARK_BITS) as usize
 /// A mark for each line.
 pub(crate) type Marks = [u8; LINES];
 
-/// Registers, clock and memory of a processor. Machine code knows the layout.
+/// The registers, clock and memory of a processor. Machine code depends on the layout.
 #[derive(Debug)]
 #[repr(C)]
 pub(crate) struct Handover {
@@ -22,13 +22,13 @@ pub(crate) struct Handover {
     pub(crate) time: Time,
     /// The packets of the last two branches.
     pub(crate) branched_at: [u32; 2],
-    /// The address at which the processor continues, if that is not known beforehand.
+    /// The address at which the processor continues, if it is not a constant.
     pub(crate) target: u32,
     /// The watched stack.
     pub(crate) stack: Watch,
     /// Not 0 after a store to on-chip RAM.
     pub(crate) touched: u32,
-    /// Takes stores that are not made.
+    /// The destination of suppressed stores.
     pub(crate) scratch: u64,
     /// Values in flight.
     pub(crate) values: [u32; VALUES],
@@ -44,7 +44,7 @@ pub(crate) struct Places {
     pub(crate) sdram: *mut u8,
     /// The first byte of on-chip RAM.
     pub(crate) iram: *mut u8,
-    /// A byte for each line of SDRAM, then of on-chip RAM; not 0 where a store is not to be made.
+    /// A byte for each line of SDRAM, then of on-chip RAM; not 0 if machine code must not store to the line.
     pub(crate) marks: *const u8,
 }
 
@@ -66,9 +66,9 @@ pub(crate) struct Time {
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(crate) struct Watch {
-    /// The least it may be.
+    /// The lowest allowed value.
     pub(crate) limit: u32,
-    /// The most it may be.
+    /// The highest allowed value.
     pub(crate) top: u32,
     /// The least it was.
     pub(crate) lowest: u32,

@@ -1,7 +1,7 @@
 //! The blocks in which stores of compiled code must be checked: a coarse map of the protected program text.
 //!
-//! One byte stands for a block of SDRAM and is not 0 if some of the block is protected. A store
-//! to such a block goes the slow way, where guest memory decides exactly.
+//! Each byte stands for a block of SDRAM and is not 0 if some of the block is protected. A store to such a block takes
+//! the slow path, where guest memory checks it exactly.
 
 use std::ops::Range;
 
@@ -59,7 +59,8 @@ impl ProtectedBlocks {
         self.version
     }
 
-    /// Offsets in SDRAM without program text: from the end of the text at `own` on, and from the end of the last one.
+    /// Offsets in SDRAM without program text: from the end of the program's own text on, and from the end of the last
+    /// text.
     pub(super) fn windows(&self, own: u32) -> [Range<u32>; 2] {
         let texts = || self.texts.iter().filter(|text| text.start < text.end);
         let last = texts().map(|text| text.end).max().unwrap_or(SDRAM.base.get());

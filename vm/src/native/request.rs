@@ -1,7 +1,7 @@
 //! The requests of compiled code to the engine.
 //!
 //! Compiled code executes instructions that need only registers and RAM. For everything else it suspends its fiber with
-//! a [`Request`]: two numbers for the kind and the position, two for the operands. The engine answers it on the host's
+//! a [`Request`]: two numbers give the kind and the position, two the operands. The engine answers it on the host's
 //! stack, in safe code, and resumes the fiber.
 
 use kmotiondef::map::SDRAM;
@@ -9,13 +9,13 @@ use kmotiondef::map::SDRAM;
 use crate::arith::WordDivision;
 use crate::kind::Width;
 
-/// A request as it leaves compiled code. The layout is that of C, because compiled code writes the fields.
+/// A request from compiled code. The layout is that of C, because compiled code writes the fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub(super) struct Request {
     /// The kind of request, from [`Reason::with_width`].
     pub(super) code: u32,
-    /// The instruction at which the context stands while it waits for the answer.
+    /// The instruction at which the context waits for the answer.
     pub(super) at: u32,
     /// Address of the current call's frame.
     pub(super) stack_pointer: u32,
@@ -59,7 +59,7 @@ codes! {
         /// Store the low word of the register slot `b` to the address `a`, end the slice, and store the high word in the
         /// next.
         StoreLowWord,
-        /// Report the access of the address `a`, which was made with the register slot `b`.
+        /// Report the access to the address `a`, which was made with the register slot `b`.
         Accessed,
         /// Copy: `a` is the destination, with the source in its upper half; `b` the length.
         Copy,
@@ -71,12 +71,12 @@ codes! {
         /// Resolve the function pointer `a` for a call with signature `b`; the answer is the function, none
         /// for one of the firmware.
         CallPointer,
-        /// Pass over iterations of a waiting loop like the one that has ended: it began with `a` cycles left in the slice of
-        /// tick `b`. The state holds what it has done with the time.
+        /// Skip iterations of a waiting loop that equal the one that has ended, which began with `a` cycles left in the
+        /// slice of tick `b`. The state holds its use of the time.
         PassIterations,
         /// End the slice if it is a long one.
         NeedsBoard,
-        /// The stack has no room for the `a` bytes of a call; `stack_pointer` is that of the caller.
+        /// The stack has no room for the `a` bytes of a call; `stack_pointer` is the caller's.
         StackOverflow,
         /// An integer division of the slot `a` by zero, encoded by [`Request::of_division`]; the answer is its result.
         DivisionByZero,

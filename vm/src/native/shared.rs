@@ -1,4 +1,4 @@
-//! Machine code that several engines have in common: what many boards run one after another is compiled once.
+//! Machine code shared by several engines: a program that many boards run one after another is compiled once.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -6,13 +6,13 @@ use super::code::MachineCode;
 use crate::engine::Preemption;
 use crate::program::Program;
 
-/// Programs that are kept; the one that was used longest ago goes first.
+/// The number of programs that are kept; the least recently used one is dropped first.
 const MOST: usize = 32;
 
 /// A program, where its machine code loses the processor, and that code; `None` where it cannot be compiled.
 type Known = (Program, Preemption, Option<Arc<MachineCode>>);
 
-/// Machine code of the programs that were compiled last, for engines whose boards have the same firmware.
+/// Machine code of the most recently compiled programs, for engines whose boards have the same firmware.
 ///
 /// A program is identified by its contents, not by its address, so boards that are made from one image share its code.
 #[derive(Clone, Debug, Default)]

@@ -1,9 +1,9 @@
 //! The state of one context that compiled code and the engine share.
 //!
-//! Compiled code reaches every field by its offset from the pointer that is its first
-//! parameter. The engine reads and writes the same fields while the fiber is suspended.
-//! All of them are cells, so both sides may hold a shared reference for as long as they like. A snapshot copies
-//! them, and puts them back into the same state: compiled code knows its address.
+//! Compiled code reaches every field by its offset from the pointer that is its first parameter. The engine reads and
+//! writes the same fields while the fiber is suspended. All of them are cells, so both sides may hold a shared
+//! reference for as long as they like. A snapshot copies them, and restores them into the same state, because compiled
+//! code holds its address.
 
 use std::cell::Cell;
 use std::ops::Range;
@@ -15,7 +15,7 @@ use crate::engine::Stack;
 use crate::filter::AccessFilter;
 use crate::verify::MAX_PARAMETERS;
 
-/// Bytes of a stack that hold at most one call: a call takes at least as many.
+/// The minimum size of a call's frame: a stack of this many bytes holds at most one call.
 pub(super) const BYTES_PER_CALL: u32 = 16;
 
 /// Entries in the table of calls: one for each call that the largest stack can hold.
@@ -35,11 +35,11 @@ pub(super) type Convert = extern "C" fn(f64) -> i64;
 pub(super) struct WaysOut {
     /// The function by which compiled code makes a request.
     pub(super) leave: Leave,
-    /// The conversion of a double to 64 bits modulo 2⁶⁴ where it does not simply fit.
+    /// The conversion of a double to 64 bits modulo 2⁶⁴, for values out of range.
     pub(super) convert: Convert,
 }
 
-/// Gives cells the values that they had when a copy of them was made.
+/// Restores cells from a copy.
 pub(super) trait PutBack {
     /// Takes over all values of `saved`.
     fn put_back(&self, saved: &Self);
@@ -91,7 +91,7 @@ shared! {
         iram: Cell<*mut u8>,
         /// One byte for each block of SDRAM, not 0 where a store must be checked.
         protected: Cell<*const u8>,
-        /// One byte for each page of SDRAM, the mark of the context that alone accesses it.
+        /// One byte for each page of SDRAM: the mark of the only context that accesses it.
         owners: Cell<*const u8>,
         /// Stretches of SDRAM without program text; the first holds the program's own data, the second all stacks.
         windows: [Window; 2],
@@ -119,12 +119,12 @@ shared! {
         top: Cell<u32>,
     }
 
-    /// The values handed over with requests and calls.
+    /// The values exchanged in requests and calls.
     Exchange {
         /// The last of the requests that are rare, and the answer to it.
         request: Cell<Request>,
         answer: Cell<u64>,
-        /// A target for stores that a request has made already.
+        /// The destination of stores that a request has already made.
         scratch: Cell<u64>,
         /// The function that the next thunk calls.
         callee: Cell<*const u8>,
@@ -210,7 +210,7 @@ impl State {
         }
     }
 
-    /// Makes the state that of a context which has not begun and will run on `stack`.
+    /// Resets the state to that of a context that has not begun and will run on `stack`.
     pub(super) fn reset(&self, stack: Stack) {
         self.stack.limit.set(stack.limit);
         self.stack.lowest.set(stack.top);
@@ -240,8 +240,8 @@ impl State {
 
 /// The entry of [`State::calls`] that belongs to the frame at `stack_pointer`.
 ///
-/// No two frames of one stack have the same, since they lie at least [`BYTES_PER_CALL`] apart
-/// and no stack is larger than the table covers.
+/// Two frames of one stack never have the same entry, since they are at least [`BYTES_PER_CALL`] apart and no stack is
+/// larger than the table covers.
 const fn call_entry(stack_pointer: u32) -> usize {
     (stack_pointer / BYTES_PER_CALL) as usize % CALLS
 }

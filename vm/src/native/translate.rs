@@ -1,16 +1,16 @@
 //! Translation of a function of a program to Cranelift's IR.
 //!
-//! Each register becomes a variable of its class, so the frontend builds SSA form. The function's machine signature is
-//! that of the program's with three parameters before it and a result of its own: state, the caller's stack pointer and
-//! the budget go in, the budget comes back with the result as a register slot. So the budget stays in a processor
-//! register; it is written to the state for a request and read back after it.
+//! Each register becomes a variable of its class, so the frontend builds SSA form. The function's machine signature has
+//! three parameters before those of the program's function, and one more result: it takes the state, the caller's stack
+//! pointer and the budget, and returns the budget together with the result as a register slot. So the budget stays in a
+//! processor register; it is written to the state for a request and read back after it.
 //!
 //! A small loop is translated twice, and so is a region of code without calls: `candidates.rs` finds them, `unroll.rs`
-//! plans several iterations on one test of the budget and few checks of addresses, `fast.rs` translates them.
+//! plans several iterations with a single test of the budget and few address checks, and `fast.rs` translates them.
 //!
 //! Where threads lose the processor as on the board, a segment is translated twice, too: `split.rs`.
 //!
-//! The arms of the instructions are in `arith.rs`, `memory.rs` and `control.rs`, one method an instruction, named as in
+//! Instructions are translated in `arith.rs`, `memory.rs` and `control.rs`, by one method per instruction, named as in
 //! the table.
 
 #![deny(clippy::wildcard_enum_match_arm, reason = "a new instruction, operator or mode must be decided")]
@@ -62,7 +62,7 @@ use crate::program::{Function, Program};
 /// Reached only if the engine resumed a context that a trap has stopped.
 const RESUMED_BEHIND_TRAP: TrapCode = TrapCode::unwrap_user(1);
 
-/// The calling convention of a program's functions: the one with two results in registers on every host.
+/// The calling convention of a program's functions: it returns two results in registers on every host.
 const CONVENTION: CallConv = CallConv::Tail;
 
 /// Parameters of a machine function before those of the program: state, stack pointer, budget.
@@ -73,9 +73,9 @@ const OWN_PARAMETERS: usize = 3;
 pub(super) struct Translation<'a> {
     /// The program.
     pub(super) program: &'a Program,
-    /// Its function.
+    /// The function that is translated.
     pub(super) function: &'a Function,
-    /// All its functions, as the module knows them.
+    /// All functions of the program, as declared in the module.
     pub(super) functions: &'a [FuncId],
     /// The function made by [`translate_request`].
     pub(super) request: FuncId,
@@ -118,7 +118,7 @@ pub(super) fn begin_signature(module: &dyn Module) -> Signature {
     signature
 }
 
-/// The machine signature of a thunk: that of a function without parameters.
+/// The machine signature of a thunk: that of a program's function without parameters.
 pub(super) fn thunk_signature() -> Signature {
     function_signature(&[])
 }
@@ -134,9 +134,8 @@ fn leave_signature(convention: CallConv) -> Signature {
 
 /// The signature of the function through which compiled code makes its rare requests.
 ///
-/// It leaves every register as it was, so that the code around a request that is hardly ever
-/// made keeps its values where they are. For the same reason the state alone is passed: it holds
-/// the request, and afterwards the answer.
+/// It preserves every register, so that the code around a rare request keeps its values in place. For the same reason
+/// only the state is passed: it holds the request, and afterwards the answer.
 pub(super) fn request_signature() -> Signature {
     let mut signature = Signature::new(CallConv::PreserveAll);
     signature.params.push(AbiParam::new(types::I64));
@@ -233,8 +232,8 @@ pub(super) fn translate_begin(
     builder.finalize(module.target_config());
 }
 
-/// Translates the entry to functions with `parameters` into `ir`, whose signature is set: the state holds
-/// the function and the arguments.
+/// Translates the thunk of functions with `parameters` into `ir`, whose signature is set: the state holds the function
+/// and the arguments.
 ///
 /// So a call through a pointer need not know the function's parameters.
 pub(super) fn translate_thunk(
@@ -392,7 +391,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         self.clear_registers();
     }
 
-    /// Goes to `room` if `bytes` fit between `limit` and `stack_pointer`, else to `none`.
+    /// Branches to `room` if `bytes` fit between `limit` and `stack_pointer`, otherwise to `none`.
     fn branch_if_room(&mut self, stack_pointer: Value, limit: Value, bytes: i64, room: Block, none: Block) {
         let left = self.builder.ins().isub(stack_pointer, limit);
         let fits = self.builder.ins().icmp_imm_u(IntCC::UnsignedGreaterThanOrEqual, left, bytes);
@@ -458,7 +457,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         }
     }
 
-    /// Goes on in `block`, which has other predecessors too.
+    /// Continues in `block`, which has other predecessors too.
     fn begin(&mut self, block: Block) {
         if self.reachable {
             self.builder.ins().jump(block, &[]);
@@ -468,7 +467,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         self.registers.raw.clear();
     }
 
-    /// Makes a block for each word at which one begins.
+    /// Makes a block for each word that is the beginning of one.
     fn find_blocks(&mut self) {
         let mut begins = BTreeSet::new();
         for at in self.translation.function.body.clone() {
@@ -488,7 +487,8 @@ impl<'a, 'b> Translator<'a, 'b> {
         self.blocks = begins.into_iter().map(|at| (at, self.builder.create_block())).collect();
     }
 
-    /// The cycles of an instruction besides its charge, `None` for one that the fast iterations of a loop cannot hold.
+    /// The cycles of an instruction in addition to its charge; `None` for an instruction that the fast iterations of a
+    /// loop cannot contain.
     fn cost_in_iterations(&self, op: &Op) -> Option<u32> {
         match op.kind() {
             OpKind::Table | OpKind::Block => None,
@@ -515,7 +515,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         }
     }
 
-    /// Goes on in `block`, all of whose predecessors are known.
+    /// Continues in `block`, all of whose predecessors are known.
     fn enter(&mut self, block: Block) {
         if self.unroll.is_rare {
             self.builder.set_cold_block(block);
@@ -530,7 +530,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         self.enter(block);
     }
 
-    /// The value of a register; a NaN that arithmetic made is the one that it makes everywhere.
+    /// The value of a register; a NaN made by arithmetic is the canonical NaN.
     fn get<R: Register>(&mut self, register: R) -> Value {
         let value = self.builder.use_var(self.registers.variables[register.index()]);
         if self.registers.lax[register.index()] { self.canonical(R::CLASS, value) } else { value }
@@ -569,7 +569,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         }
     }
 
-    /// The value of `class` in a register slot, or as it is.
+    /// The value of `class` from a register slot; unchanged if it is not a slot.
     fn unslot(&mut self, class: Class, slot: Value) -> Value {
         if self.builder.func.dfg.value_type(slot) == type_of(class) {
             return slot;
@@ -604,7 +604,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         answer
     }
 
-    /// Makes a request that the program makes each time it executes this instruction.
+    /// Makes a request that the program makes every time it executes this instruction.
     fn usual_request(&mut self, code: u32, at: usize, a: Value, b: Value) -> Value {
         let arguments = self.request_arguments(code, at, a, b);
         let leave = self.load_pointer(offset_of!(State, ways_out.leave));
@@ -613,7 +613,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         self.builder.inst_results(call)[0]
     }
 
-    /// The arguments of a request; the budget goes to the state.
+    /// The arguments of a request; the budget is stored in the state.
     fn request_arguments(&mut self, code: u32, at: usize, a: Value, b: Value) -> [Value; 6] {
         let budget = self.builder.use_var(self.registers.budget);
         self.store_state(budget, offset_of!(State, budget));
@@ -627,7 +627,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         self.builder.def_var(self.registers.budget, budget);
     }
 
-    /// Ends the slice if it is a long one: what follows involves the board.
+    /// Ends the slice if it is a long one, because the next instruction involves the board.
     fn end_long_slice(&mut self) {
         let is_long = self.load_state(types::I32, offset_of!(State, signs.is_long));
         let (long, go_on) = (self.builder.create_block(), self.builder.create_block());
@@ -639,7 +639,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         self.enter(go_on);
     }
 
-    /// Says that what follows is rarely executed, like what came before.
+    /// Marks the current block as rarely executed, like its predecessor.
     fn stay_cold(&mut self) {
         let block = self.builder.current_block();
         block.into_iter().for_each(|block| self.builder.set_cold_block(block));
@@ -652,7 +652,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         self.builder.def_var(self.registers.budget, left);
     }
 
-    /// Ends the block with a request from which the context does not come back.
+    /// Ends the block with a request that never returns to the context.
     fn trap(&mut self, reason: Reason, a: Value) {
         self.settle();
         let none = self.builder.ins().iconst(types::I64, 0);

@@ -1,8 +1,8 @@
 //! The comparisons of a waiting loop with the time.
 //!
-//! All that a loop may do with the time is to add to it, subtract from it, and compare it with what stays the same. Each
-//! of these only grows with the time, or only falls. So a comparison changes its result once at most, and if it has
-//! the same result in two iterations, it has it in those between.
+//! A loop may only add to the time, subtract from it, and compare it with values that do not change. Each such value is
+//! monotonic in the time. So a comparison changes its result at most once, and if two iterations have the same result,
+//! so have those between.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,7 +14,7 @@ use crate::shared::registers;
 
 use super::{is_live, successors};
 
-/// A value that is made of the time and of registers that stay the same.
+/// A value computed from the time and from registers that do not change.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Term {
     Now,
@@ -35,7 +35,7 @@ impl Term {
         }
     }
 
-    /// Puts the registers that it is made of into `found`.
+    /// Adds the registers of the term to `found`.
     fn registers(&self, found: &mut BTreeSet<u16>) {
         match self {
             Self::Now => {}
@@ -55,7 +55,7 @@ enum Relation {
     LessOrEqual,
 }
 
-/// A comparison of the time with something.
+/// A comparison of the time with a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Comparison {
     left: Term,
@@ -63,7 +63,7 @@ struct Comparison {
     right: Term,
 }
 
-/// The use that the iterations of a loop make of the time.
+/// The time comparisons in the iterations of a loop.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct TimeTests {
     /// The call that yields the time.
@@ -72,8 +72,9 @@ pub(crate) struct TimeTests {
 }
 
 impl TimeTests {
-    /// The use that an iteration of `words` makes of the time, which the call `call` among them yields; `None` if it is
-    /// another one than described above, or not all in the straight code after the call.
+    /// The comparisons that an iteration of `words` makes with the time yielded by the call `call` among them; `None`
+    /// if it uses the time in any other way than described above, or not entirely in the straight-line code after the
+    /// call.
     pub(super) fn of(program: &Program, words: &BTreeSet<usize>, call: usize) -> Option<Self> {
         let ops = program.ops();
         let mut uses = Uses::default();
@@ -87,7 +88,7 @@ impl TimeTests {
             at += 1;
         }
         let clock = Self { call, comparisons: uses.comparisons };
-        // What comes then may branch on a result of a comparison, and make no other use of what the time has made.
+        // The code after that may branch on the result of a comparison, but use no other value derived from the time.
         let is_branch = words.contains(&at) && ops[at].kind() == OpKind::Branch;
         let after = if is_branch { successors(program, at) } else { vec![at] };
         let special = uses.terms.keys().chain(&uses.results);
@@ -123,10 +124,10 @@ impl TimeTests {
     }
 }
 
-/// The values that the time has made so far.
+/// The values computed from the time so far.
 #[derive(Default)]
 struct Uses {
-    /// The registers that hold something made of the time.
+    /// The registers that hold a term.
     terms: BTreeMap<u16, Term>,
     /// The registers that hold the result of a comparison.
     results: BTreeSet<u16>,
@@ -134,7 +135,7 @@ struct Uses {
 }
 
 impl Uses {
-    /// Follows an instruction; `None` if it uses the time otherwise than described above.
+    /// Follows an instruction; `None` if it uses the time in a way not described above.
     fn note(&mut self, op: &Op) -> Option<()> {
         let used = registers(op);
         if used.sources.iter().any(|register| self.results.contains(register)) {
@@ -155,7 +156,7 @@ impl Uses {
         Some(())
     }
 
-    /// The value that an instruction makes, which `is_timed` if it uses the time.
+    /// The result of an instruction, which `is_timed` if it uses the time.
     fn made(&self, op: &Op, is_timed: bool) -> Option<Made> {
         if !is_timed {
             return Some(Made::Other);
@@ -196,9 +197,9 @@ impl Uses {
     }
 }
 
-/// The value that an instruction makes.
+/// The result of an instruction.
 enum Made {
-    /// Something that the time has not made.
+    /// A value that does not depend on the time.
     Other,
     Term(Term),
     Comparison(Comparison),

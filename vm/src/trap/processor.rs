@@ -1,4 +1,4 @@
-//! The faults of the processor: code that no compiler makes.
+//! The faults of the processor: code that compilers do not generate.
 
 use c67x::Reg;
 
@@ -8,7 +8,7 @@ pub enum Fault {
     /// A word that is not an instruction.
     #[error("the word {word:08X} at 0x{at:08X} is not an instruction of this processor")]
     BadWord {
-        /// Its address.
+        /// The address of the word.
         at: u32,
         /// The word.
         word: u32,
@@ -25,7 +25,7 @@ pub enum Fault {
         /// The target.
         target: u32,
     },
-    /// Two branches taken at once.
+    /// Two branches are taken at the same time.
     #[error("two branches are taken in the same cycle, to 0x{first:08X} and 0x{second:08X}")]
     TwoBranches {
         /// The first target.
@@ -33,13 +33,13 @@ pub enum Fault {
         /// The second target.
         second: u32,
     },
-    /// Two results for one register at once.
+    /// Two results for the same register land at the same time.
     #[error("two results are written to {reg} in the same cycle")]
     TwoWriters {
         /// The register.
         reg: Reg,
     },
-    /// Code that keeps interrupts off forever, which on the board stops servo, console and all threads.
+    /// Code that blocks interrupts forever, which on the board stops servo, console and all threads.
     #[error("{cycles} cycles without a place where an interrupt is possible: the board's servo stops")]
     NoInterrupts {
         /// The duration, in cycles.

@@ -10,13 +10,13 @@ const ROW: usize = 8;
 pub struct Scene {
     /// The address of the instruction that did it, or of the packet that should have been next.
     pub at: u32,
-    /// Registers by name: A0 to A31, B0 to B31, and the control registers that matter.
+    /// Registers by name: A0 to A31, B0 to B31, and the control registers of interest.
     pub registers: Vec<(String, u32)>,
-    /// Words around the place: their addresses and what they say.
+    /// Words around the place: their addresses and their disassembly.
     pub code: Vec<(u32, String)>,
 }
 
-/// Rows of eight registers, those that are all 0 left out; then the code, with a mark at the place.
+/// Prints rows of eight registers, without rows that are all 0; then the code, with a mark at the place.
 impl fmt::Display for Scene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for row in self.registers.chunks(ROW).filter(|row| row.iter().any(|(_, value)| *value != 0)) {

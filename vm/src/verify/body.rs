@@ -34,13 +34,13 @@ struct Body<'a> {
 }
 
 impl Body<'_> {
-    /// The word `at`; after the body nothing, which is as good as `unreachable`.
+    /// The word `at`; after the body, a word that acts like `unreachable`.
     fn op(&self, at: usize) -> Op {
         let op = if self.function.body.contains(&at) { self.program.ops.get(at) } else { None };
         op.copied().unwrap_or(Op::Unreachable {})
     }
 
-    /// Checks that arguments, calls, results and tables are together.
+    /// Checks that the words of arguments, calls, results and tables are grouped correctly.
     fn check_groups(&mut self) -> Result<(), VerifyError> {
         let mut at = self.function.body.start;
         while at < self.function.body.end {
@@ -88,7 +88,7 @@ impl Body<'_> {
         if complete { Ok(1 + count) } else { Err(VerifyError { at, kind: VerifyErrorKind::Table(count) }) }
     }
 
-    /// The length of the call whose first argument, if it has any, is at `at`.
+    /// The length of the call whose first word, an argument or the call itself, is at `at`.
     fn call(&self, at: usize) -> Result<usize, VerifyError> {
         let mut classes = Vec::new();
         let mut next = at;
@@ -130,7 +130,7 @@ impl Body<'_> {
         function.map(|function| function.signature).ok_or(VerifyErrorKind::NoFunction(func.0))
     }
 
-    /// Checks what an instruction demands besides its operands.
+    /// Checks the requirements of an instruction that do not concern its operands.
     fn check_placement(&self, op: Op) -> Result<(), VerifyErrorKind> {
         let expected = signature(self.program, self.function.signature)?.result;
         let check_return = |class: Option<Class>| {
@@ -189,7 +189,7 @@ const fn result(op: &Op) -> Option<Class> {
 
 /// An operand that is checked by its type.
 trait Checked: OperandType {
-    /// Checks that the operand names something that exists.
+    /// Checks that the operand refers to something that exists.
     fn check(self, body: &Body<'_>) -> Result<(), VerifyErrorKind>;
 }
 

@@ -1,8 +1,8 @@
-//! The packets of a loop with their registers renamed, each once for every renaming with which it is reached.
+//! The packets of a loop with their registers renamed: one copy for each renaming with which a packet is reached.
 //!
-//! A loop is left before a packet that cannot be renamed, and the interpreter of single packets continues. Such packets
-//! have a result that comes later than in the first stage and only under a condition, a branch to the address in a
-//! register, or a double instruction whose high words are not in flight yet.
+//! A loop is left before a packet that cannot be renamed, and the interpreter of single packets continues. Such a
+//! packet has a conditional result that lands after the first stage, a branch to the address in a register, or a double
+//! instruction whose high words are not in flight yet.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::ops::RangeInclusive;
@@ -14,9 +14,9 @@ use super::super::pipeline::BRANCH;
 use super::super::work::Work;
 use super::renaming::{Decider, Flying, Jump, Landing, Renaming, Spares, Width};
 
-/// Most packets of a loop, counted once for each renaming.
+/// The limit of packets in a loop, counted once for each renaming.
 const MOST: usize = 512;
-/// Bytes from a branch that goes back to the end of the packets that are executed before it arrives.
+/// Bytes from a backward branch to the end of the packets that are executed before it arrives.
 const SHADOW: u32 = 6 * 32;
 
 /// A packet with its registers renamed, or a place where the loop is left.
@@ -30,7 +30,7 @@ pub(super) struct RenamedPacket {
     pub(super) is_exit: bool,
     /// True if it needs more work than continuing with the next packet.
     pub(super) is_special: bool,
-    /// The place of the stack pointer if it is written.
+    /// The location of the stack pointer, if the packet writes it.
     pub(super) stack: Option<u8>,
     /// The packet that follows if no branch arrives.
     pub(super) next: u32,
@@ -44,9 +44,9 @@ pub(super) struct Arrival {
     /// The condition; `None` for a branch that is always taken.
     pub(super) decider: Option<Decider>,
     pub(super) to: u32,
-    /// Its packet, if that should be noted.
+    /// The packet of the branch, if it should be noted.
     pub(super) from: Option<u32>,
-    /// Cycles that pass after it if it is not taken.
+    /// Cycles that pass after it if the branch is not taken.
     pub(super) rest: u8,
 }
 
@@ -87,8 +87,8 @@ struct Planner<'a, 'f> {
     open: VecDeque<u32>,
 }
 
-/// Plans the loop that is entered at `pc` with these effects in flight, and whose last branch is in the packet at
-/// `last`; `None` if its first packet cannot be part of one.
+/// Plans the loop that is entered at `pc` with these effects in flight and ends with the branch in the packet at
+/// `last`; `None` if its first packet cannot be part of a loop.
 pub(super) fn plan(pc: u32, last: u32, flying: &[Flying], find: &mut Find<'_>) -> Option<Planned> {
     let mut spares = Spares::new();
     let entry = Renaming::at_entry(flying, &mut spares)?;
@@ -116,8 +116,8 @@ pub(super) fn plan(pc: u32, last: u32, flying: &[Flying], find: &mut Find<'_>) -
 }
 
 impl Borders {
-    /// The locations of registers before the packet's instruction with this number, with the results that earlier ones
-    /// have issued.
+    /// The locations of registers before the packet's instruction with this number, including the results that earlier
+    /// instructions of the packet have issued.
     pub(super) fn before_instruction(&self, number: usize) -> Renaming {
         let mut renaming = self.issued.clone();
         renaming.landings.truncate(self.counts.get(number).copied().unwrap_or(usize::MAX));
@@ -155,7 +155,7 @@ impl Planner<'_, '_> {
         })
     }
 
-    /// Fills a packet in if it is one of the loop.
+    /// Fills in a packet if it belongs to the loop.
     fn fill(&mut self, index: usize) -> Option<()> {
         let pc = self.planned.packets[index].pc;
         if !self.range.contains(&pc) {
@@ -245,7 +245,7 @@ impl Planner<'_, '_> {
             [(reg, 1)] if !is_deferred => return (!issued.has_result(1, reg)).then_some(renamed),
             _ => {}
         }
-        // `MVKH` reads what it writes.
+        // `MVKH` reads its destination.
         if micro.pred != TRUE || micro.work == Work::Mvkh {
             return None;
         }
@@ -260,7 +260,7 @@ impl Planner<'_, '_> {
         Some(renamed)
     }
 
-    /// A branch: what executes it keeps its condition for when it arrives.
+    /// Adds a branch; its executor keeps the value of the condition until the branch arrives.
     fn branch(&mut self, pc: u32, before: &Renaming, issued: &mut Renaming, micro: Micro) -> Option<Micro> {
         let due = BRANCH as u8;
         if micro.work != Work::BranchTo || issued.has_branch(due) {
@@ -279,8 +279,8 @@ impl Planner<'_, '_> {
     }
 }
 
-/// The cycles after which an instruction reads the high words of s1 and of s2; `None` if they may differ from those in
-/// flight before its packet.
+/// The delays with which an instruction reads the high words of s1 and of s2; `None` if they may differ from the words
+/// in flight before its packet.
 fn later_reads(before: &Renaming, inst: Inst, micro: Micro) -> Option<[u8; 2]> {
     if inst.reads().all(|read| read.first == 1) {
         return Some([0, 0]);

@@ -1,14 +1,14 @@
-//! Renamed registers of a loop: the location of each register, and the results in flight to each.
+//! Renamed registers of a loop: the location of each register, and its results in flight.
 //!
-//! A result in flight is written to a location that no instruction reads; when it lands, the location becomes that of
-//! the register. So between two packets everything but the values follows from the packets executed before.
+//! A result in flight is written to a location that no instruction reads; when it lands, that location becomes the
+//! register's. So between two packets, everything except the values follows from the packets executed before.
 
 use super::super::flight::SLOTS;
 use super::super::pipeline::{BRANCH, State};
 
 /// Registers of the processor.
 const REGS: usize = 64;
-/// The first place that is not a register, a multiple of 2: those before it hold the constants.
+/// The first location that is not a register, a multiple of 2: the locations before it hold the constants.
 const FIRST: u8 = 66;
 
 /// A result in flight.
@@ -17,7 +17,7 @@ pub(super) struct Landing {
     /// Cycles until it lands.
     pub(super) due: u8,
     pub(super) reg: u8,
-    /// Its location until then and afterwards.
+    /// Its location before and after the result lands.
     pub(super) place: u8,
 }
 
@@ -29,7 +29,7 @@ pub(super) struct Jump {
     pub(super) target: u32,
     /// The condition; `None` for a branch that is always taken.
     pub(super) decider: Option<Decider>,
-    /// Its packet; `None` if the state knows of it already.
+    /// The packet of the branch; `None` if the state has noted it already.
     pub(super) from: Option<u32>,
 }
 
@@ -37,7 +37,7 @@ pub(super) struct Jump {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Decider {
     pub(super) place: u8,
-    /// True if the branch is taken when the value there is 0.
+    /// True if the branch is taken when that value is 0.
     pub(super) inverted: bool,
 }
 
@@ -123,12 +123,12 @@ impl Renaming {
         self.jumps.iter().any(|jump| jump.due == due)
     }
 
-    /// A packet has a branch, taken or not.
+    /// Called for a packet with a branch, taken or not: interrupts are held off.
     pub(super) fn hold_interrupts(&mut self) {
         self.held = BRANCH as u8;
     }
 
-    /// A cycle passes; the branch that arrives with its end, if there is one.
+    /// Lets a cycle pass; returns the branch that arrives at its end, if any.
     pub(super) fn pass(&mut self) -> Option<Jump> {
         self.held = self.held.saturating_sub(1);
         let map = &mut self.map;
@@ -143,7 +143,7 @@ impl Renaming {
         self.jumps.pop_if(|jump| jump.due == 0)
     }
 
-    /// Sorts the effects in flight: a branch that arrives earlier comes later.
+    /// Sorts the effects in flight; a branch that arrives earlier is placed later.
     pub(super) fn sort(&mut self) {
         self.landings.sort_unstable();
         self.jumps.sort_unstable_by(|one, other| other.cmp(one));
@@ -166,7 +166,7 @@ impl Renaming {
         state.flight.branches = 0;
     }
 
-    /// Brings the values back: the state is what it would be if the packets had been executed one by one.
+    /// Moves the values back: the state is then as if the packets had been executed one by one.
     pub(super) fn leave(&self, state: &mut State) {
         let places = state.regs;
         for (reg, place) in self.map.iter().enumerate() {
@@ -201,10 +201,10 @@ pub(super) enum Width {
     Pair,
 }
 
-/// The locations that results of each pair of registers have had: first the pair itself.
+/// The locations used by results of each pair of registers, beginning with the pair itself.
 ///
-/// Each has its own, so that in a loop every register comes back to the same one after a few iterations, whatever the
-/// others do.
+/// Each pair has its own list, so that every register of a loop returns to the same location after a few iterations,
+/// whatever the others do.
 #[derive(Debug)]
 pub(super) struct Spares {
     pairs: [Vec<u8>; REGS / 2],
@@ -218,7 +218,7 @@ impl Spares {
         Self { pairs: std::array::from_fn(|pair| vec![2 * pair as u8]), deciders: Vec::new(), next: FIRST }
     }
 
-    /// A place for a result, with the other word of its pair beside it; `None` if there are no more.
+    /// A location for a result, with the other word of its pair next to it; `None` if there is none left.
     pub(super) fn find(&mut self, renaming: &Renaming, reg: u8, width: Width) -> Option<u8> {
         let word = reg & 1;
         let own = self.pairs.get_mut(usize::from(reg / 2))?;

@@ -1,4 +1,4 @@
-//! Loads and stores: RAM is reached at once, everything else is the interpreter's.
+//! Loads and stores: RAM is accessed directly, everything else is left to the interpreter.
 
 use std::mem::offset_of;
 
@@ -71,7 +71,8 @@ impl Translator<'_, '_> {
         if bits == 0 { address } else { self.builder.ins().band_imm_s(address, -1 << bits) }
     }
 
-    /// Emits the host address of a guest address; for an access that is not made, the address of a scratch word.
+    /// Emits the host address of a guest address; for an access whose condition does not hold, the address of a scratch
+    /// word.
     fn pointer(&mut self, packet_state: &mut PacketState, address: Value, is_store: bool) -> Value {
         let after = self.builder.create_block();
         self.builder.append_block_param(after, types::I64);
@@ -105,8 +106,8 @@ impl Translator<'_, '_> {
         self.builder.block_params(after)[0]
     }
 
-    /// Continues with the pointer to an address, if it is in this RAM; the blocks are those for an address that is not,
-    /// for a store that is not to be made, and for the access.
+    /// Continues with the pointer to an address if it is in this RAM. The blocks are for an address outside, for a
+    /// store that must not be made, and for the access.
     fn in_region(
         &mut self,
         address: Value,

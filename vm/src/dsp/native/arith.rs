@@ -13,7 +13,7 @@ use super::region::{PairWord, Stopped, Translator};
 const LONG: i64 = 40;
 
 impl Translator<'_, '_> {
-    /// An instruction whose condition is known.
+    /// Translates an instruction whose condition is known.
     pub(super) fn micro(&mut self, packet_state: &mut PacketState, m: &Micro) -> Result<(), Stopped> {
         let base = self.read(packet_state, m.a);
         let s1 = if m.imm == 0 { base } else { self.builder.ins().iadd_imm_s(base, signed(m.imm)) };
@@ -127,7 +127,7 @@ impl Translator<'_, '_> {
             Work::BranchTo => self.branch(packet_state, Ok(m.imm)),
             Work::BranchRegister => self.branch(packet_state, Err(s2)),
             Work::Nop => Ok(()),
-            // Control registers, and what programs hardly do.
+            // Control registers, and rare instructions.
             Work::SaddLong
             | Work::SsubLong
             | Work::AbsLong
@@ -145,7 +145,7 @@ impl Translator<'_, '_> {
         }
     }
 
-    /// A word that is there in the first stage.
+    /// Adds a word that is available in the first stage.
     fn word(
         &mut self,
         packet_state: &PacketState,
@@ -368,7 +368,7 @@ impl Translator<'_, '_> {
 
     fn compare_long(&mut self, packet_state: &PacketState, m: &Micro) -> Value {
         let sources = self.long_sources(packet_state, m);
-        // The order of 40 bits without sign is that of their upper places.
+        // Unsigned 40-bit values compare like the same bits shifted to the top.
         let [one, two] = sources.map(|source| self.builder.ins().ishl_imm_u(source, 64 - LONG));
         let condition = match m.work {
             Work::CmpgtLong => IntCC::SignedGreaterThan,
@@ -388,7 +388,7 @@ impl Translator<'_, '_> {
         self.give(packet_state, m, m.dst | 1, high)
     }
 
-    /// A double whose low word is there in the first stage, the high one in the second.
+    /// Adds a double whose low word is available in the first stage, the high word in the second.
     fn give_double(
         &mut self,
         packet_state: &mut PacketState,
@@ -423,7 +423,7 @@ impl Translator<'_, '_> {
         (low, high)
     }
 
-    /// 64 bits of two words; those that the words are of, if they are both of the same.
+    /// The 64-bit value of two words; if both are halves of the same value, that value.
     pub(super) fn join(&mut self, low: Value, high: Value) -> Value {
         let of = |word| self.halves.get(&self.builder.func.dfg.resolve_aliases(word));
         if let (Some((whole, PairWord::Low)), Some((other, PairWord::High))) = (of(low), of(high))

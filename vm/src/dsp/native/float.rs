@@ -25,7 +25,7 @@ impl Translator<'_, '_> {
         self.builder.ins().bitcast(ty, MemFlagsData::new(), value)
     }
 
-    /// Bits whose denormal values are zeros of their sign.
+    /// The bits of a value with denormals replaced by zeros of the same sign.
     fn flushed(&mut self, bits: Value) -> Value {
         let ty = self.builder.func.dfg.value_type(bits);
         let is_single = ty == types::I32;
@@ -93,7 +93,7 @@ impl Translator<'_, '_> {
     pub(super) fn converted(&mut self, packet_state: &PacketState, m: &Micro, s2: Value) -> Value {
         match m.work {
             Work::Intsp | Work::Intspu => {
-                // Through a double that holds it exactly: rounded once.
+                // A double holds the intermediate value exactly, so it is rounded only once.
                 let wide = self
                     .double_of_integer(if m.work == Work::Intsp { Work::Intdp } else { Work::Intdpu }, s2);
                 let wide = self.cast(types::F64, wide);
@@ -149,7 +149,7 @@ impl Translator<'_, '_> {
         self.float_result(value)
     }
 
-    /// The bits of a double that is there in the first two stages.
+    /// The bits of a double that is available in the first two stages.
     pub(super) fn double_at_once(&mut self, packet_state: &PacketState, m: &Micro, s2: Value) -> Value {
         if m.work == Work::Spdp {
             let value = self.single_source(s2);
@@ -177,7 +177,7 @@ impl Translator<'_, '_> {
         self.builder.ins().band_imm_u(bits, 0xFFFF_8000)
     }
 
-    /// A double instruction with all of its words, low and high each.
+    /// Translates a double instruction with all of its words, a low and a high one for each source.
     pub(super) fn finish_double(
         &mut self,
         packet_state: &mut PacketState,
@@ -213,8 +213,8 @@ impl Translator<'_, '_> {
         self.push_pair(packet_state, [5, 6], m.dst, value)
     }
 
-    /// A sum, a difference or a product. Where zeros, denormal numbers or NaNs may be involved, it is
-    /// computed again with care.
+    /// Translates a sum, a difference or a product. If zeros, denormals or NaNs may be involved, a slow path computes
+    /// it again.
     fn arithmetic(&mut self, work: Work, s1: [Value; 2], s2: [Value; 2]) -> Value {
         let [bits1, bits2] = [s1, s2].map(|[low, high]| self.join(low, high));
         let [one, two] = [bits1, bits2].map(|bits| self.cast(types::F64, bits));
@@ -250,7 +250,7 @@ impl Translator<'_, '_> {
         }
     }
 
-    /// Emits the test whether the exponent of a double is less than `least`, or that of infinities and NaNs.
+    /// Emits the test whether a double's exponent is less than `least`, or is that of infinities and NaNs.
     fn is_outside(&mut self, bits: Value, least: i64) -> Value {
         let magnitude = self.builder.ins().ishl_imm_u(bits, 1);
         let least = least << 53;
@@ -259,7 +259,7 @@ impl Translator<'_, '_> {
         self.builder.ins().icmp(IntCC::UnsignedGreaterThanOrEqual, from_least, range)
     }
 
-    /// Emits the test whether the high word is that of a zero or a denormal number.
+    /// Emits the test whether a high word belongs to a zero or a denormal.
     fn is_small(&mut self, high: Value) -> Value {
         let exponent = self.builder.ins().band_imm_u(high, 0x7FF0_0000);
         self.builder.ins().icmp_imm_u(IntCC::Equal, exponent, 0)

@@ -1,4 +1,4 @@
-//! The effects in flight between two packets, without their values: the shape that a translation is made for.
+//! The effects in flight between two packets, without their values: the shape for which code is translated.
 //!
 //! Results in flight are known when code is translated: a load lands five cycles after its issue whatever it loads. So
 //! a translation begins with a list of the effects in flight, and only the values come from outside; at each exit
@@ -14,7 +14,7 @@ use crate::native::{Handover, VALUES};
 pub(super) struct Flying {
     /// Cycles until it arrives.
     pub(super) due: u8,
-    /// True if a value decides whether it arrives at all; that value comes first.
+    /// True if a condition decides whether it arrives at all; the condition is its first value.
     pub(super) is_conditional: bool,
     /// The effect.
     pub(super) what: Arriving,
@@ -44,7 +44,7 @@ impl Arriving {
         }
     }
 
-    /// Its place among those that arrive in the same cycle.
+    /// Its index among the effects that arrive in the same cycle.
     pub(super) const fn rank(self) -> u32 {
         match self {
             Self::Result(reg) => reg as u32,

@@ -36,7 +36,7 @@ pub(super) struct PacketState {
 }
 
 impl Translator<'_, '_> {
-    /// Translates the packet at the border, which moves on; `false` where no packet follows in this block.
+    /// Translates the packet at the border and advances the border; `false` if no packet follows in this block.
     pub(super) fn packet(&mut self, border: &mut Border) -> Result<bool, Stopped> {
         if border.pc & 3 != 0 {
             return Err(Stopped::Here);
@@ -66,7 +66,7 @@ impl Translator<'_, '_> {
         Ok(goes_on)
     }
 
-    /// The block where everything ends that is not to be done here.
+    /// The block of the exit for everything that the interpreter must execute.
     pub(super) fn side(&mut self, packet_state: &mut PacketState) -> Block {
         *packet_state.side.get_or_insert_with(|| self.cold())
     }
@@ -78,7 +78,7 @@ impl Translator<'_, '_> {
         self.continue_in(inside);
     }
 
-    /// The value that says if an instruction is executed; `None` if it always is.
+    /// The value that decides whether an instruction is executed; `None` if it always is.
     fn condition(&mut self, packet_state: &PacketState, micro: &Micro) -> Option<Value> {
         if micro.pred == TRUE {
             return None;
@@ -138,7 +138,7 @@ impl Translator<'_, '_> {
         Ok(())
     }
 
-    /// A result that lands in `due` cycles.
+    /// Adds a result that lands in `due` cycles.
     pub(super) fn push(
         &mut self,
         packet_state: &mut PacketState,
@@ -155,7 +155,7 @@ impl Translator<'_, '_> {
         };
         let (other, old) = (packet_state.flights[index].condition, packet_state.flights[index].values[0]);
         self.refuse_both(packet_state, other)?;
-        // Not both: where there are two conditions it is the result of the one that holds.
+        // Not both hold: with two conditions, the result is that of the condition that holds.
         let (condition, value) = match (packet_state.condition, other) {
             (Some(one), Some(two)) => {
                 (Some(self.builder.ins().bor(one, two)), self.builder.ins().select(one, value, old))
@@ -215,7 +215,7 @@ impl Translator<'_, '_> {
         self.builder.ins().store(self.own, lowest, handover, field);
     }
 
-    /// Makes everything true that the packet does in its first cycle.
+    /// Applies all effects of the packet in its first cycle.
     fn commit(&mut self, packet_state: &PacketState, border: &Border, has_branch: bool) {
         for (pointer, value, bytes) in &packet_state.stores {
             match bytes {
@@ -270,7 +270,7 @@ impl Translator<'_, '_> {
             let mut packet_state =
                 PacketState { flights: std::mem::take(&mut rest), ..PacketState::default() };
             for flight in &arrived {
-                // A second result for a register is found by the interpreter at the next packet: not here.
+                // A second result for the same register is reported by the interpreter, at the next packet, not here.
                 self.read_late(&mut packet_state, flight).map_err(|_| Stopped::Unusual)?;
             }
             if packet_state.side.is_some() {
@@ -337,7 +337,7 @@ impl Translator<'_, '_> {
     }
 }
 
-/// `flying` if it is a result for `reg` that is due then; else something that it is not.
+/// `flying` if it is a result for `reg` due in `due` cycles; otherwise a placeholder that matches nothing.
 fn strip(flying: Flying, due: u8, reg: u8) -> Flying {
     Flying { is_conditional: flying.is_conditional, ..result(due, reg) }
 }

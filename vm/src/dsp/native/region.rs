@@ -1,13 +1,13 @@
 //! A region: packets that are reached from one address, as one function of the host.
 //!
-//! A block of it begins at a packet with a list of the effects in flight there; the same packet with another list is
+//! Each block begins at a packet with a list of the effects in flight there; the same packet with another list is
 //! another block. It follows the packets in their order, and ends where a branch arrives. Effects in flight are passed
-//! from block to block as parameters, the words of a pair as one; the registers of the processor are variables, and
-//! each new value of one is stored as well, so that the registers are right wherever the function ends.
+//! from block to block as parameters, the words of a pair as one parameter; the processor's registers are variables,
+//! and each new value is also stored, so that the registers are right wherever the function ends.
 //!
 //! The function ends before a packet, never within one: everything that can go wrong is tested before any effect of the
 //! packet is stored. The interpreter executes the rest: accesses of devices, stores among code, control registers,
-//! faults. The function ends likewise where less time is left than a block may take, so that no packet begins too late.
+//! faults. The function also ends where less time is left than a block may take, so that no packet begins too late.
 
 use std::collections::BTreeMap;
 use std::mem::offset_of;
@@ -41,20 +41,20 @@ pub(super) type Find<'a> = dyn FnMut(u32) -> Option<(Packet, Vec<Micro>)> + 'a;
 pub(super) struct Region {
     /// The effects in flight at its entry.
     pub(super) entry: Vec<Flying>,
-    /// Its code; the number that it returns is that of an exit.
+    /// Its code, which returns the number of an exit.
     pub(super) piece: Piece,
     /// Its exits.
     pub(super) exits: Vec<Exit>,
 }
 
-/// A way out of a region.
+/// An exit of a region.
 #[derive(Debug)]
 pub(super) struct Exit {
     /// The next packet; `None` if the code computes it.
     pub(super) pc: Option<u32>,
-    /// The effects in flight there.
+    /// The effects in flight at the exit.
     pub(super) flying: Vec<Flying>,
-    /// True if another region may begin there.
+    /// True if another region may begin at the exit.
     pub(super) is_end: bool,
 }
 
@@ -157,10 +157,10 @@ pub(super) struct Translator<'a, 'f> {
     pub(super) regs: Vec<Variable>,
     pub(super) counters: Counters,
     pub(super) pointers: Pointers,
-    /// Whatever the function reads and writes is there; the guest's bytes have its order.
+    /// Flags of the function's own memory accesses: always mapped, little endian.
     pub(super) own: MemFlagsData,
     pub(super) guest: MemFlagsData,
-    /// Words of which it is known what they are a half of.
+    /// Words that are known to be halves of a 64-bit value.
     pub(super) halves: BTreeMap<Value, (Value, PairWord)>,
     nodes: Vec<Node>,
     translated: u32,
@@ -169,7 +169,7 @@ pub(super) struct Translator<'a, 'f> {
     pub(super) sides: Vec<(Block, Border)>,
 }
 
-/// The offset of a field of what is handed over.
+/// The offset of a field of the handover.
 pub(super) fn offset(field: usize) -> i32 {
     i32::try_from(field).expect("it is small")
 }
@@ -234,7 +234,7 @@ impl<'a, 'f> Translator<'a, 'f> {
         self.builder.finalize(module.target_config());
     }
 
-    /// Translates everything.
+    /// Translates the whole region.
     fn region(&mut self, pc: u32, entry: &[Flying]) -> Result<(), Unusual> {
         let mut values = Vec::new();
         let first = offset(offset_of!(Handover, values));
@@ -368,9 +368,9 @@ impl<'a, 'f> Translator<'a, 'f> {
         block
     }
 
-    /// Continues in a block that everything that leads to it has been written of.
+    /// Continues in a block all of whose predecessors have been written.
     ///
-    /// So a register that no way there has changed is the same value as before, and words of a pair are known as such.
+    /// So a register that no path has changed keeps its value, and the words of a pair are still known to be a pair.
     pub(super) fn continue_in(&mut self, block: Block) {
         self.builder.seal_block(block);
         self.builder.switch_to_block(block);
@@ -464,8 +464,8 @@ fn flights(flying: &[Flying], values: &mut impl Iterator<Item = Value>) -> Vec<F
     flying.iter().map(with_values).collect()
 }
 
-/// The results that are likely to be the words of one value, by the numbers of their values: those for an even register
-/// and for the next one that land in the same cycle, or the second a cycle later.
+/// The results that are likely to be the two words of one value, by the numbers of their values: results for an even
+/// register and the next one that land in the same cycle, or the second a cycle later.
 fn pairs(flying: &[Flying]) -> Vec<[usize; 2]> {
     let mut values = 0;
     let mut results = Vec::new();

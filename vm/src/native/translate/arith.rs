@@ -1,7 +1,7 @@
 //! Constants, copies, arithmetic, comparisons and conversions, with the semantics of [`crate::arith`].
 //!
-//! An operation that makes a NaN makes the same one everywhere, which takes a comparison and a selection. Registers
-//! whose bits are not observed put that off (`nan.rs`). For the others arithmetic of the same block reads the
+//! Every operation that makes a NaN makes the canonical one, which takes a comparison and a selection. For registers
+//! whose bits are not observed this is deferred (`nan.rs`). For the others, arithmetic in the same block reads the
 //! unselected result (`raw`), and Cranelift removes the selection if it is not used elsewhere.
 
 use std::mem::offset_of;
@@ -241,7 +241,7 @@ impl Translator<'_, '_> {
         self.registers.raw.get(&register.index()).copied().unwrap_or_else(held)
     }
 
-    /// Sets a floating register to what an operation has made.
+    /// Sets a floating-point register to the result of an operation.
     fn set_arithmetic<R: Register>(&mut self, dst: R, raw: Value) {
         if self.registers.lax[dst.index()] {
             return self.set(dst, raw);
@@ -257,7 +257,7 @@ impl Translator<'_, '_> {
         self.set(dst, value);
     }
 
-    /// The value with the one NaN that operations make in place of any NaN.
+    /// The value, with any NaN replaced by the canonical one.
     pub(super) fn canonical(&mut self, class: Class, value: Value) -> Value {
         let nan = if class == Class::F32 {
             self.builder.ins().f32const(Ieee32::with_bits(canonical_f32(f32::NAN).to_bits()))
@@ -273,7 +273,7 @@ impl Translator<'_, '_> {
         self.set(dst, value);
     }
 
-    /// Shifts of 32 bits go through 64, so that counts from 32 to 63 need no case of their own.
+    /// Shifts left in 64 bits, so that counts from 32 to 63 need no special case.
     fn shift_left(&mut self, a: Value, count: Value) -> Value {
         let wide = self.builder.ins().uextend(types::I64, a);
         let wide = self.builder.ins().ishl(wide, count);
@@ -292,8 +292,8 @@ impl Translator<'_, '_> {
         self.builder.ins().ireduce(types::I32, wide)
     }
 
-    /// Asks for the result of a division by zero, if it is one; returns the block after the division, whose parameter
-    /// is the answer. `None` in fast iterations, which leave it to the ordinary loop.
+    /// Requests the result of a division by zero, if the divisor is zero; returns the block after the division, whose
+    /// parameter is the answer. `None` in fast iterations, which leave this case to the ordinary loop.
     fn ask_if_zero(&mut self, class: Class, op: Option<WordDivision>, a: Value, b: Value) -> Option<Block> {
         let go_on = self.builder.create_block();
         if let Some(bail) = self.bail() {
@@ -315,7 +315,7 @@ impl Translator<'_, '_> {
         Some(done)
     }
 
-    /// The answer or `value`, whichever there is.
+    /// The answer if there is one, otherwise `value`.
     fn or_answer(&mut self, answered: Option<Block>, value: Value) -> Value {
         let Some(done) = answered else { return value };
         self.builder.ins().jump(done, &[value.into()]);
@@ -323,7 +323,7 @@ impl Translator<'_, '_> {
         self.builder.block_params(done)[0]
     }
 
-    /// A quotient that never overflows: by -1 it is the negative.
+    /// A quotient that never overflows: division by -1 is a negation.
     fn divide_signed(&mut self, a: Value, b: Value) -> Value {
         let (minus_one, safe) = self.without_minus_one(b);
         let quotient = self.builder.ins().sdiv(a, safe);
@@ -331,7 +331,7 @@ impl Translator<'_, '_> {
         self.builder.ins().select(minus_one, negative, quotient)
     }
 
-    /// A remainder that never overflows: by -1, as by 1, it is 0.
+    /// A remainder that never overflows: the remainder by -1, as by 1, is 0.
     fn remainder_signed(&mut self, a: Value, b: Value) -> Value {
         let (_, safe) = self.without_minus_one(b);
         self.builder.ins().srem(a, safe)
@@ -369,7 +369,7 @@ impl Translator<'_, '_> {
         let number = self.builder.ins().fcvt_to_sint_sat(types::I64, value);
         let (outside, behind) = (self.builder.create_block(), self.builder.create_block());
         let result = self.builder.append_block_param(behind, types::I64);
-        // What saturated is the smallest or the largest number.
+        // A saturated result is the smallest or the largest number.
         let distance = self.builder.ins().iadd_imm_s(number, i64::MAX.wrapping_neg());
         let saturated = self.builder.ins().icmp_imm_u(IntCC::UnsignedLessThanOrEqual, distance, 1);
         self.builder.ins().brif(saturated, outside, &[], behind, &[number.into()]);

@@ -12,10 +12,10 @@ use crate::program::{Function, Program};
 /// The most words that are translated twice at once.
 pub(super) const MAX_WORDS: usize = 160;
 
-/// The loops that hold no other, each with the word at which it is entered.
+/// The innermost loops, each with the word at which it is entered.
 ///
-/// A loop is the segment from the target of a backward branch to the branch. It may be entered at one word only, often
-/// where its condition is.
+/// A loop is the words from the target of a backward branch to the branch. It must have a single entry, which is often
+/// its condition.
 pub(super) fn innermost_loops(program: &Program, function: &Function) -> Vec<(RangeInclusive<usize>, usize)> {
     let branches: Vec<(usize, usize)> = (function.body.clone())
         .filter_map(|at| branch_target(&program.ops()[at]).map(|to| (at, to.0 as usize)))
@@ -38,7 +38,7 @@ pub(super) fn innermost_loops(program: &Program, function: &Function) -> Vec<(Ra
     ends.iter().filter_map(|(first, last)| entered(*first..=*last)).collect()
 }
 
-/// The words that execution enters otherwise than from the word before, each with the first and the last branch to it.
+/// The words that are entered by branches, each with the first and the last branch to it.
 struct Entries(BTreeMap<usize, RangeInclusive<usize>>);
 
 impl Entries {
@@ -53,16 +53,17 @@ impl Entries {
         Self(entries)
     }
 
-    /// Reports whether a branch to `at` comes from outside the words from `first` on, or from after.
+    /// Reports whether `at` is the target of a branch from before the word `first`, or from a later word.
     fn is_entered(&self, at: usize, first: usize) -> bool {
         self.0.get(&at).is_some_and(|from| *from.start() < first || *from.end() >= at)
     }
 }
 
-/// The regions: words in which execution only goes forward, that are entered at the first alone and charge more than
-/// once.
+/// The regions: words without backward branches, with the first word as their only entry, that contain more than one
+/// charge.
 ///
-/// One test of the budget, where a region is entered, stands for those of its charges. What `is_taken` is left out.
+/// One test of the budget at the entry of a region replaces the tests of its charges. Words that `is_taken` accepts are
+/// left out.
 pub(super) fn regions(
     program: &Program,
     function: &Function,
@@ -90,7 +91,7 @@ pub(super) fn regions(
     regions
 }
 
-/// The end of `words` without the arguments of a call after them, which belong to it.
+/// The end of `words`, before the arguments of the call after them, which belong to the call.
 fn without_arguments(program: &Program, words: Range<usize>) -> usize {
     let mut argument = None;
     for at in words.clone() {
@@ -117,7 +118,7 @@ pub(super) fn straight_segments(
         let op = program.ops()[at];
         let ends = !op.kind().is_straight() || cost(&op) != Some(0);
         if ends || begins.contains(&at) {
-            // What follows the last access is not translated twice.
+            // The words after the last access are not translated twice.
             if accesses > 1 {
                 segments.push(first..=last);
             }

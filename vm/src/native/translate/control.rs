@@ -1,4 +1,4 @@
-//! Instructions that decide what is executed next: time, branches, calls, returns.
+//! Instructions that determine the next instruction: charges, branches, calls, returns.
 
 use std::mem::offset_of;
 
@@ -103,7 +103,7 @@ impl Translator<'_, '_> {
         self.branch(cond, self.at + 1, to.0 as usize);
     }
 
-    /// Goes to the word `then` if the register is not 0, else to `otherwise`.
+    /// Branches to the word `then` if the register is not 0, otherwise to `otherwise`.
     fn branch(&mut self, cond: RegI32, then: usize, otherwise: usize) {
         let cond = self.get(cond);
         let (then, otherwise) = (self.edge(then), self.edge(otherwise));
@@ -177,7 +177,7 @@ impl Translator<'_, '_> {
         self.calls.result = Some(slot);
     }
 
-    /// The firmware function at `addr`, if it only computes and is called as it is.
+    /// The firmware function at `addr`, if it only computes and is called with its own signature.
     pub(super) fn pure_function(&self, sig: SigRef, addr: Addr) -> Option<Pure> {
         let pure = (self.translation.pure)(GuestAddr::new(addr.0))?;
         let called = &self.translation.program.signatures()[usize::from(sig.0)];
@@ -186,7 +186,7 @@ impl Translator<'_, '_> {
         is_same.then_some(pure)
     }
 
-    /// Does what the firmware function does; it takes as long as when the firmware does it.
+    /// Computes a pure firmware function inline; it takes as long as when the firmware executes it.
     fn call_pure(&mut self, pure: Pure) {
         let cycles = u32::try_from(pure.cost.get()).expect("functions cost little");
         if !self.defer(cycles) {
@@ -228,14 +228,14 @@ impl Translator<'_, '_> {
             .unwrap_or_else(|_| unreachable!("a function reference of a verified program"))
     }
 
-    /// The function with the given index as this function can call it.
+    /// The function with the given index, declared for calls from this function.
     fn callee(&mut self, index: usize) -> IrFuncRef {
         let id = self.translation.functions[index];
         let (module, builder) = (&mut *self.module, &mut self.builder);
         *self.calls.callees.entry(index).or_insert_with(|| module.declare_func_in_func(id, builder.func))
     }
 
-    /// Writes down where this function stands while its callee runs.
+    /// Records the position of this function while its callee runs.
     fn note_call(&mut self) {
         let at = self.builder.ins().iconst(types::I32, self.at as i64);
         let field = super::offset(offset_of!(State, calls));
@@ -250,7 +250,7 @@ impl Translator<'_, '_> {
         arguments
     }
 
-    /// Takes over what a function of the program returned.
+    /// Takes the budget and the result returned by a function of the program.
     fn take_results(&mut self, call: cranelift_codegen::ir::Inst) {
         let (budget, slot) = (self.builder.inst_results(call)[0], self.builder.inst_results(call)[1]);
         self.builder.def_var(self.registers.budget, budget);

@@ -24,14 +24,14 @@ use crate::operand::RegI32;
 pub(super) struct Fast {
     plan: Plan,
     iteration: usize,
-    /// Cycles that have been charged but not taken from the budget.
+    /// Cycles that have been charged but not yet subtracted from the budget.
     spent: u32,
     /// The roots that have been checked, with the address in the host of the first byte of their group.
     checked: BTreeMap<Root, Value>,
     /// The checked pointers on every path to a block that has been translated.
     arriving: BTreeMap<IterationWord, BTreeMap<Root, Value>>,
     blocks: BTreeMap<IterationWord, Block>,
-    /// The words at which the loop as it is takes over.
+    /// The words at which the ordinary loop takes over.
     bails: BTreeMap<usize, Block>,
 }
 
@@ -131,7 +131,7 @@ impl Translator<'_, '_> {
         self.word(at);
     }
 
-    /// Defers a charge to the end of the fast iterations; `false` outside them, where it must be taken at once.
+    /// Defers a charge to the end of the fast iterations; `false` outside them, where it must be subtracted at once.
     pub(super) fn defer(&mut self, cycles: u32) -> bool {
         self.unroll.fast.as_mut().map(|fast| fast.spent += cycles).is_some()
     }
@@ -220,7 +220,7 @@ impl Translator<'_, '_> {
         let access = *fast.plan.accesses.get(&(fast.iteration, self.at))?;
         let shared = fast.plan.groups.get(&access.root).copied();
         let shared = shared.filter(|group| group.covers(access.at, width, is_store));
-        // What is reported is accessed elsewhere: only the program's own memory is in the windows.
+        // Reported accesses are made elsewhere: the windows contain only the program's own memory.
         let in_windows = is_store || self.translation.observed.is_some();
         let shared = shared.map(|group| Group { has_store: group.has_store || in_windows, ..group });
         if let (Some(group), Some(pointer)) = (shared, fast.checked.get(&access.root)) {
@@ -255,8 +255,8 @@ impl Translator<'_, '_> {
         self.builder.ins().uextend(types::I64, step)
     }
 
-    /// Leaves the fast iterations unless all of the group, whose first byte is at offset `place` in SDRAM, may be
-    /// accessed, in the later iterations of a stride too.
+    /// Leaves the fast iterations unless all accesses of the group, whose first byte is at offset `place` in SDRAM, are
+    /// allowed, including those of later iterations of a stride.
     fn check(&mut self, place: Value, group: Group, stride: Option<Stride>) {
         let span = (group.end - group.first).cast_unsigned();
         let Some(stride) = stride else { return self.check_group(place, group, span) };

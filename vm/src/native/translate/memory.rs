@@ -1,9 +1,8 @@
 //! Loads and stores: RAM directly, everything else by a request.
 //!
-//! Whether an access stays in a region is one test: the offset in the region has none of the bits
-//! that are 0 in every aligned offset inside. SDRAM is tried first, out of line then on-chip RAM. A
-//! store to SDRAM also looks at the map of protected blocks. Where the address is a constant, all
-//! that is decided here.
+//! One test decides whether an access is in a region: the offset in the region must have none of the bits that are 0 in
+//! every aligned offset inside. SDRAM is tried first, then, out of line, on-chip RAM. A store to SDRAM also tests the
+//! map of protected blocks. For a constant address, all of this is decided at translation.
 
 use std::mem::offset_of;
 
@@ -19,7 +18,7 @@ use crate::kind::{Name, Width};
 use crate::op::Op;
 use crate::operand::{Addr, Class, Count, Imm, Off, RegF32, RegF64, RegI32, RegI64};
 
-/// Loads and stores in both address modes: what they move, and the register's class.
+/// Loads and stores in both address modes: the type in memory, and the register's class.
 macro_rules! accesses {
     (loads { $($load:ident, $load_at:ident: $dst:ident = $load_width:ident;)* }
      stores { $($store:ident, $store_at:ident: $src:ident = $store_width:ident;)* }) => {
@@ -181,7 +180,8 @@ impl Translator<'_, '_> {
 
     /// Loads the pointer to the marks of protected blocks.
     ///
-    /// Code for the rare case does so in the same place: what is moved out of a loop takes a register all through it.
+    /// The pointer is loaded where it is used, even in rare cases: if it were moved out of a loop, it would occupy a
+    /// register for the whole loop.
     fn load_marks(&mut self) -> Value {
         let field = offset_of!(State, ram.protected);
         if self.unroll.is_rare { self.load_state(types::I64, field) } else { self.load_pointer(field) }
@@ -226,18 +226,18 @@ impl Translator<'_, '_> {
         self.store_guest(value, pointer, 0, width);
     }
 
-    /// The blocks of an access: what is not in SDRAM, what is in no RAM, and the access itself, which takes the
-    /// offset from the beginning of SDRAM to where it should be made.
+    /// The blocks of an access: for an address outside SDRAM, for an address outside any RAM, and for the access
+    /// itself, whose parameter is the offset of the address from the beginning of SDRAM.
     ///
-    /// There is one place where the access is made, whatever path leads there: Cranelift computes a value where
-    /// it is first used, and what it computed on one of several ways it would compute again after them.
+    /// All paths lead to a single block with the access: Cranelift computes a value where it is first used, and would
+    /// compute it again after a join if only one of the paths had used it.
     fn access_blocks(&mut self) -> [Block; 3] {
         let behind = self.builder.create_block();
         self.builder.append_block_param(behind, types::I64);
         [self.builder.create_block(), self.builder.create_block(), behind]
     }
 
-    /// Continues the access; yields where it should be made.
+    /// Continues in the block `behind` of the access; returns the offset of the address.
     fn enter_access(&mut self, behind: Block) -> Value {
         self.enter(behind);
         let base = self.load_pointer(offset_of!(State, ram.sdram));
@@ -245,8 +245,8 @@ impl Translator<'_, '_> {
         self.builder.ins().iadd(base, place)
     }
 
-    /// Emits an access outside SDRAM: it continues at the access if the address is in on-chip RAM, else at `slow`;
-    /// returns the address.
+    /// Emits an access outside SDRAM, which continues at the access if the address is in on-chip RAM, otherwise at
+    /// `slow`; returns the address.
     fn elsewhere(
         &mut self,
         place: Value,
@@ -303,7 +303,7 @@ impl Translator<'_, '_> {
         self.wrong_bits(SDRAM, place, width)
     }
 
-    /// From an address to the offset in `region`, and back, since regions lie at multiples of their size.
+    /// Converts an address to the offset in `region`, or back, since regions start at multiples of their size.
     ///
     /// Not written as a sum: Cranelift would share it with the sum that made the address, and keep that over
     /// the access.
@@ -356,8 +356,8 @@ pub(super) fn is_in_sdram(op: &Op) -> bool {
     ram_field(addr, width).is_some_and(|(field, _)| field == offset_of!(State, ram.sdram))
 }
 
-/// The location of an aligned access of the constant address `addr`, if that is RAM: the field of the state that points
-/// to it, and the offset from there.
+/// The location of an aligned access to the constant address `addr`, if it is in RAM: the field of the state that
+/// points to that RAM, and the offset in it.
 fn ram_field(addr: Addr, width: Width) -> Option<(usize, i32)> {
     let place_in = |region: Region| {
         let place = addr.0.wrapping_sub(region.base.get());

@@ -1,20 +1,20 @@
-//! The floating registers that may hold NaNs as the processor makes them.
+//! The floating-point registers that may hold NaNs as the host processor makes them.
 //!
-//! An operation that makes a NaN makes the same one everywhere ([`crate::arith`]), which costs a
-//! comparison and a selection. What counts is only what the rest of the machine sees, so a
-//! register may hold the processor's NaN as long as arithmetic alone reads it: a sum that is
-//! built in a loop pays when it is stored, not in each round.
+//! Every operation that makes a NaN makes the canonical one ([`crate::arith`]), which costs a comparison and a
+//! selection. This only matters where the rest of the machine sees the value, so a register may hold the processor's
+//! NaN as long as only arithmetic reads it: a sum that is built in a loop pays when it is stored, not in each
+//! iteration.
 //!
-//! That works for a register to which nothing but arithmetic, numbers and such registers are
-//! ever assigned: any NaN in it then stands for the one NaN of arithmetic. A register that is
-//! also loaded from memory may hold a NaN whose bits belong to the program, and keeps it.
+//! That works for a register that is only ever assigned results of arithmetic, constants and other such registers: any
+//! NaN in it then stands for the canonical NaN. A register that is also loaded from memory may hold a NaN whose bits
+//! belong to the program, and keeps it.
 
 use crate::kind::{Name, OpKind};
 use crate::op::Op;
 use crate::operand::{Bits32, Class, Pool, RegF32, RegF64};
 use crate::program::{Function, Program};
 
-/// For each register of a function, whether a NaN in it stands for the one that arithmetic makes.
+/// For each register of a function: true if any NaN in it stands for the canonical NaN.
 pub(super) fn lax_registers(program: &Program, function: &Function, parameters: usize) -> Vec<bool> {
     let mut lax: Vec<_> =
         function.classes.iter().map(|class| matches!(class, Class::F32 | Class::F64)).collect();
@@ -28,7 +28,7 @@ pub(super) fn lax_registers(program: &Program, function: &Function, parameters: 
             Source::Bits => lax[destination] = false,
         }
     }
-    // A register that takes over the bits of another is as strict; until nothing changes.
+    // A register that receives a copy of another is as strict as that one; repeated until nothing changes.
     while moves.iter().any(|(to, from)| {
         let spreads = lax[*to] && !lax[*from];
         lax[*to] &= lax[*from];
@@ -43,7 +43,7 @@ enum Source {
     Arithmetic,
     /// The value of another register.
     Register(usize),
-    /// Bits that must stay as they are.
+    /// Bits that must be preserved.
     Bits,
 }
 

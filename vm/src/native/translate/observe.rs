@@ -1,8 +1,8 @@
 //! Reports of accesses to memory that threads can share.
 //!
-//! After the access, machine code looks whether it is in the table of those that tell nothing new; if not, it requests
-//! the report. Memory that only the program itself can reach costs a comparison where the address is in a register, and
-//! nothing where it is a constant.
+//! After the access, machine code looks it up in the table of redundant accesses; if it is not there, it requests the
+//! report. For memory that only the program itself can reach, this costs one comparison if the address is in a
+//! register, and nothing if it is a constant.
 
 use std::mem::offset_of;
 
@@ -22,7 +22,7 @@ use crate::shared::is_noticed;
 /// The programs whose accesses are reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) struct ObservedProgram {
-    /// True if it sets the call-back, which meets the thread in the program's own data.
+    /// True if it sets the call-back, which accesses the program's own data in parallel to the thread.
     pub(in super::super) has_call_back: bool,
 }
 
@@ -40,8 +40,8 @@ impl Translator<'_, '_> {
         observed.is_some_and(|observed| is_noticed(addr.0, observed.has_call_back))
     }
 
-    /// Returns whether an instruction must not be translated a second time for several iterations at once, as its access
-    /// may be reported; what it accesses through registers is checked there.
+    /// Returns whether an instruction cannot be part of fast iterations because its access may be reported; accesses
+    /// through registers are checked there.
     pub(super) fn is_always_observed(&self, op: &Op) -> bool {
         let Some(observed) = self.translation.observed else { return false };
         let through_register = op.operand::<RegI32>(Name::Base).is_some() && op.kind().width().is_some();
@@ -98,7 +98,7 @@ impl Translator<'_, '_> {
         self.enter(behind);
     }
 
-    /// Goes to `behind` if an address is from `base` on and below `limit`.
+    /// Branches to `behind` if an address is at least `base` and below `limit`.
     fn branch_if_own(&mut self, address: Value, limit: u32, base: u32, behind: Block) {
         let next = self.builder.create_block();
         let from = self.builder.ins().iadd_imm_s(address, -i64::from(base.cast_signed()));
@@ -107,11 +107,11 @@ impl Translator<'_, '_> {
         self.enter(next);
     }
 
-    /// Goes to `behind` if only this context has accessed the page of an address.
+    /// Branches to `behind` if only this context has accessed the page of an address.
     fn branch_if_owner(&mut self, address: Value, behind: Block) {
         let next = self.builder.create_block();
         let page = self.builder.ins().ushr_imm_u(address, i64::from(PAGE_BITS));
-        // SDRAM lies at a multiple of its size.
+        // SDRAM starts at a multiple of its size.
         let page = self.builder.ins().band_imm_u(page, i64::from((SDRAM.size >> PAGE_BITS) - 1));
         let page = self.builder.ins().uextend(types::I64, page);
         let owners = self.load_state(types::I64, offset_of!(State, ram.owners));

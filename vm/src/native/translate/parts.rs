@@ -14,17 +14,17 @@ use crate::polling::PollingLoop;
 pub(super) struct Registers {
     pub(super) variables: Vec<Variable>,
     pub(super) budget: Variable,
-    /// The floating registers in which any NaN is the one that arithmetic makes.
+    /// The floating-point registers in which any NaN stands for the canonical NaN.
     pub(super) lax: Vec<bool>,
-    /// Results of this block's floating arithmetic in other registers, before their NaNs were made the same.
+    /// Results of this block's floating-point arithmetic before canonicalisation of NaNs, in other registers.
     pub(super) raw: BTreeMap<usize, Value>,
 }
 
 /// The state for calls and requests.
 pub(super) struct CallParts {
-    /// The functions of the program that this one has called so far.
+    /// The functions of the program that this function has called so far.
     pub(super) callees: BTreeMap<usize, FuncRef>,
-    /// The words that callers inline of the callees, the number of such attempts so far, and the current attempt.
+    /// For each callee the words that callers inline; the number of attempts so far; and the current attempt.
     pub(super) shortcuts: BTreeMap<usize, Option<ShortcutWords>>,
     pub(super) attempts: usize,
     pub(super) attempt: Option<Attempt>,
@@ -32,14 +32,14 @@ pub(super) struct CallParts {
     pub(super) leave: SigRef,
     /// Arguments of the next call.
     pub(super) arguments: Vec<Value>,
-    /// Result of the call directly before, as a slot or as it is.
+    /// Result of the preceding call, as a slot or as a value.
     pub(super) result: Option<Value>,
 }
 
 /// The state for loops that are unrolled: their words are translated a second time.
 #[derive(Default)]
 pub(super) struct UnrollState {
-    /// The loops that are translated in several iterations at once, by their first word, and the current one.
+    /// The loops of which several iterations are translated at once, by their first word, and the current one.
     pub(super) plans: BTreeMap<usize, Plan>,
     pub(super) fast: Option<Fast>,
     /// True while code is translated for the rare case that fast iterations cannot continue.

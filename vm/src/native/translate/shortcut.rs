@@ -1,8 +1,8 @@
-//! Calls of functions that return soon, as a recursion at its end and a guard whose condition fails.
+//! Calls of functions that return early, such as the last call of a recursion, or a guard whose condition fails.
 //!
 //! If a path of few words leads from the beginning of a function to a return, without a store or a request, its callers
-//! inline it. This is an attempt: at the end the path must be covered by the budget, so that no charge on it could end
-//! the slice, and the frame by the deepest that the stack has been. In all other cases the call is made, and the state
+//! inline it. This is an attempt: at its end, the budget must cover the path, so that no charge on it could have ended
+//! the slice, and the stack must have been at least as deep before. In all other cases the call is made, and the state
 //! is unchanged.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -31,7 +31,7 @@ const MAX_REGISTERS: usize = 64;
 /// takes grow faster than their number.
 const MAX_ATTEMPTS: usize = 16;
 
-/// The words of a path to a return, in ascending order, which is that of execution.
+/// The words of a path to a return, in ascending order, which is the order of execution.
 pub(super) type ShortcutWords = Rc<BTreeSet<usize>>;
 
 /// The words of `function` from which an attempt gets to a return; `None` if its first word is not one.
@@ -88,7 +88,7 @@ impl ReturnSearch<'_> {
         }
     }
 
-    /// Reports whether the target of the branch `op` leads to a return, and lies ahead.
+    /// Reports whether the target of the branch `op` is a later word that leads to a return.
     fn branch(&mut self, at: usize, op: &Op) -> bool {
         let target = branch_target(op).map(|to| to.0 as usize).filter(|to| *to > at);
         target.is_some_and(|to| self.leads_to_return(to))
@@ -120,7 +120,7 @@ pub(super) struct Attempt {
 }
 
 impl<'a> Translator<'a, '_> {
-    /// The path to a return of the function with the given index, if callers attempt it.
+    /// The path to a return of the function with the given index, if callers attempt to inline it.
     fn shortcut_of(&mut self, index: usize) -> Option<ShortcutWords> {
         // Code for the rare case stays small.
         if self.unroll.is_rare || self.calls.attempts == MAX_ATTEMPTS {
@@ -211,7 +211,7 @@ impl<'a> Translator<'a, '_> {
         blocks
     }
 
-    /// Ends an attempt with the result `slot`, if it could be made.
+    /// Ends an attempt with the result `slot`, if it succeeds.
     pub(super) fn end_attempt(&mut self, attempt: Attempt, slot: Value) {
         let (paid, room) = (self.builder.create_block(), self.builder.create_block());
         let left = self.builder.use_var(self.registers.budget);
@@ -226,7 +226,7 @@ impl<'a> Translator<'a, '_> {
         self.reachable = false;
     }
 
-    /// Loads in an attempt, which is given up for what is not in SDRAM.
+    /// Loads in an attempt, which fails for an address outside SDRAM.
     pub(super) fn load_in_attempt(
         &mut self,
         attempt: Attempt,

@@ -30,8 +30,7 @@ impl Translator<'_, '_> {
         continues.then_some(next)
     }
 
-    /// Executes in steps the segment that is charged here, if `left`, what its charge would leave of the budget, is
-    /// below zero.
+    /// Executes in steps the segment that is charged here, if `left`, the budget after its charge, is below zero.
     pub(super) fn split(&mut self, left: Value) {
         let (steps, go_on) = (self.builder.create_block(), self.builder.create_block());
         let overdrawn = self.builder.ins().icmp_imm_s(IntCC::SignedLessThan, left, 0);
@@ -73,7 +72,7 @@ impl Translator<'_, '_> {
         }
     }
 
-    /// Ends the slice before the present word if nothing of the budget is left.
+    /// Ends the slice before the present word if no budget is left.
     fn end_slice_if_over(&mut self) {
         let left = self.builder.use_var(self.registers.budget);
         let over = self.builder.ins().icmp_imm_s(IntCC::SignedLessThanOrEqual, left, 0);

@@ -1,18 +1,18 @@
 //! Accesses whose address moves by a loop-invariant register in each iteration.
 //!
-//! One check covers them all: the step must be so small that even the last iteration's access is inside.
+//! One check covers them all: the step must be small enough for the last iteration's access to be inside.
 
 use std::collections::BTreeMap;
 
 use super::accesses::Root;
 use crate::operand::RegI32;
 
-/// A root among those at equal distances.
+/// One of several roots at equal distances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Stride {
     /// The register that is added in each iteration.
     pub(super) step: RegI32,
-    /// The root in the iteration before, unless this is the first.
+    /// The root in the previous iteration, unless this is the first one.
     pub(super) before: Option<Root>,
     /// Number of iterations that follow.
     pub(super) later: u32,
@@ -35,7 +35,7 @@ impl Strides {
         }
     }
 
-    /// The stride of `root`, if it is one of them.
+    /// The stride of `root`, if it has one.
     pub(super) fn get(&self, root: Root) -> Option<Stride> {
         self.0.get(&root).copied()
     }

@@ -1,13 +1,13 @@
 //! Loops translated a second time, with fewer tests, and the facts known inside them.
 //!
-//! An innermost loop without calls may run for several iterations as soon as the budget covers the most that they can
-//! cost: no charge in them could end the slice, so the charges are only added up, and the sum is taken where the fast
-//! iterations are left. The budget is exact wherever it can be observed. An acyclic region is treated alike,
+//! An innermost loop without calls may run for several iterations as soon as the budget covers their maximum cost: no
+//! charge in them could end the slice, so the charges are only added up, and the sum is subtracted where the fast
+//! iterations are left. The budget is exact wherever it can be observed. An acyclic region is treated in the same way,
 //! as one iteration.
 //!
-//! The same region of code reaches memory through few registers that move by constants. The [`Plan`] follows them: an
-//! access is at a [`Root`], some value that a register held, plus a constant. One check, where the first access through
-//! a root is made, covers all of that root.
+//! Such code accesses memory through a few registers that change by constants. The [`Plan`] follows them: the address
+//! of an access is a [`Root`], some value that a register held, plus a constant. One check at the first access through
+//! a root covers all accesses through it.
 //!
 //! For a case that the fast iterations cannot handle, an access outside plain RAM or a division by 0, the ordinary
 //! translation continues from that instruction on.
@@ -24,17 +24,18 @@ use crate::op::Op;
 use crate::operand::RegI32;
 use crate::program::{Function, Program};
 
-/// The most words of all fast iterations of a loop together.
+/// The limit of words in all fast iterations of a loop together.
 const MAX_WORDS_OF_ITERATIONS: usize = 128;
 
-/// The most iterations that run at once, and those of a loop of so few words that its test and its jump weigh more.
+/// The limit of iterations that run at once, and the higher limit for a loop so short that its test and its jump weigh
+/// more.
 ///
 /// With more iterations more values are live than there are registers.
 const MAX_ITERATIONS: usize = 4;
 const MAX_SMALL_ITERATIONS: usize = 8;
 const SMALL: usize = 8;
 
-/// The largest distance of an access from its root, in bytes, and the largest number of roots that a root is made of.
+/// The largest distance of an access from its root, in bytes, and the largest number of terms of a root.
 const MAX_DISTANCE: u32 = 1 << 16;
 const MAX_TERMS: usize = 12;
 
@@ -81,19 +82,19 @@ pub(super) struct Plan {
     pub(super) cost: u32,
     /// True for a loop with one exit, as counted loops are: most of their iterations do not leave it.
     pub(super) is_counted: bool,
-    /// The blocks that can be reached, with the cycles that were charged but not yet taken when they begin.
+    /// The reachable blocks, with the cycles that were charged but not yet subtracted when they begin.
     pub(super) entries: BTreeMap<IterationWord, u32>,
     /// The accesses through registers.
     pub(super) accesses: BTreeMap<IterationWord, Access>,
-    /// By root, those of their accesses that one check can cover.
+    /// By root, its accesses that one check can cover.
     pub(super) groups: BTreeMap<Root, Group>,
-    /// The roots that lie at equal distances.
+    /// The roots at equal distances.
     pub(super) strides: Strides,
 }
 
-/// The loops of a function that are worth it, by their first word.
+/// The loops of a function that are worth unrolling, by their first word.
 ///
-/// `cost` is what an instruction takes in cycles besides its charge, `None` for one that must not be there.
+/// `cost` is the cycles of an instruction in addition to its charge, `None` for one that such a loop cannot contain.
 pub(super) fn plans(
     program: &Program,
     function: &Function,
@@ -144,7 +145,7 @@ struct Known {
 /// The derivation of a root from others.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Made {
-    /// The sum of these in ascending order, none of which is a sum.
+    /// The sum of these roots in ascending order, none of which is a sum.
     Sum(Vec<Root>),
     Difference(Root, Root),
     Product(Root, i32),
@@ -256,7 +257,7 @@ impl<'a> Planner<'a> {
         words.clone().map(of).sum()
     }
 
-    /// Follows one instruction; yields what is known after it, if it continues there.
+    /// Follows one instruction; yields the facts known after it, if execution continues there.
     fn word(&mut self, iteration: usize, at: usize, mut known: Known) -> Option<Known> {
         let op = self.program.ops()[at];
         known.spent += (self.cost)(&op).unwrap_or(0);
@@ -310,14 +311,14 @@ impl<'a> Planner<'a> {
         (self.made(Made::Product(root, factor)), distance.wrapping_mul(factor))
     }
 
-    /// The sum of two roots, each of which may be one.
+    /// The sum of two roots, each of which may itself be a sum.
     fn sum(&mut self, a: Root, b: Root) -> Root {
         let mut terms = [self.terms(a), self.terms(b)].concat();
         terms.sort_unstable();
         if terms.len() > MAX_TERMS { self.root().0 } else { self.made(Made::Sum(terms)) }
     }
 
-    /// The roots that `root` is the sum of; itself if it is none.
+    /// The roots whose sum is `root`; `root` itself if it is not a sum.
     fn terms(&self, root: Root) -> Vec<Root> {
         self.sums.get(&root).cloned().unwrap_or_else(|| vec![root])
     }
@@ -340,7 +341,7 @@ impl<'a> Planner<'a> {
         let assigned: BTreeSet<usize> =
             self.plan.words.clone().filter_map(|at| int_destination(&self.program.ops()[at])).collect();
         let steps = |root: Root| {
-            // The first roots are what the registers hold when the iterations begin.
+            // The first roots are the values of the registers when the iterations begin.
             let register = (root as usize).checked_sub(1).filter(|register| *register < self.registers)?;
             (!assigned.contains(&register)).then_some(RegI32(register as u16))
         };
@@ -425,7 +426,8 @@ impl Plan {
         self.accesses.values().any(|access| !seen.insert(access.root))
     }
 
-    /// The position in the fast iterations at which a branch of `iteration` to the word `to` continues, if it is in them.
+    /// The position in the fast iterations at which a branch of `iteration` to the word `to` continues, if it is part
+    /// of them.
     pub(super) fn target(&self, iteration: usize, to: usize) -> Option<IterationWord> {
         if to == self.entry() {
             return (iteration + 1 < self.iterations).then_some((iteration + 1, to));

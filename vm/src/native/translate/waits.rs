@@ -1,7 +1,7 @@
-//! Loops that may only wait: their iterations are translated a second time, with requests to pass over those to come.
+//! Waiting loops: their iterations are translated a second time, with requests to skip the following iterations.
 //!
-//! The branches that end an iteration lead to the second translation, and all that leaves it to the first. So an
-//! iteration of the second has only been in the words of the loop when it ends.
+//! The branches that end an iteration lead to the second translation, and all branches out of it to the first. So an
+//! iteration of the second translation has executed only words of the loop when it ends.
 
 use std::mem::{offset_of, replace, take};
 
@@ -77,7 +77,7 @@ impl Translator<'_, '_> {
         }
     }
 
-    /// Puts the instant of the time, and the registers that it is compared with, into the state.
+    /// Stores the time, and the registers with which it is compared, in the state.
     fn pass_clock(&mut self, clock: &TimeTests) {
         let Some((_, called)) = self.waits.clock else { return };
         let called = self.builder.use_var(called);
@@ -97,7 +97,7 @@ impl Translator<'_, '_> {
         let blocks: Vec<Block> = inside.iter().map(|_| self.builder.create_block()).collect();
         let own = inside.into_iter().zip(blocks);
         let outside: Vec<_> = own.map(|(at, block)| (at, self.blocks.insert(at, block))).collect();
-        // Straight on from before, and only then.
+        // Falls through from the previous word, and only then.
         for at in polling.words.range(polling.first..).chain(polling.words.range(..polling.first)) {
             if *at != polling.first
                 && let Some(block) = self.blocks.get(at).copied()
