@@ -47,22 +47,23 @@ use crate::views::Typed;
 use crate::world::Moment;
 use crate::world::trace::{Record, View};
 
-/// The address after the gather buffer. Nothing but a program writes there.
+/// The address after the gather buffer. Only programs write there.
 const GATHER_END: GuestAddr = GuestAddr::new(0x8010_2010 + 8 * MAX_GATHER_DATA as u32);
 
-/// The address after `persist.UserData`, its elements, and words after it that nothing but a program writes.
+/// The address after `persist.UserData`, its elements, and the words after it that only programs write.
 const USER_DATA_END: u32 = 0x1001_7020;
 const USER_DATA_ELEMENTS: u32 = 200;
 const AFTER_USER_DATA: u32 = 100;
 
-/// The cost of a register access beyond the instruction if time is not the board's: 200 ns, a timer 100 ns.
+/// The cost of a register access in addition to the instruction, if time does not follow the board's: 200 ns, 100 ns
+/// for a timer.
 const FPGA_CYCLES: Cycles = Cycles::new(40);
 const TIMER_CYCLES: Cycles = Cycles::new(20);
 
-/// The board's firmware, and what is around the board.
+/// The board's firmware, and its surroundings.
 #[derive(Clone, Debug)]
 pub struct Kernel {
-    /// Those of the functions of the table, then those of later ones.
+    /// The signatures of the functions of the table, then those of later functions.
     signatures: Vec<Signature>,
     callees: Callees,
     pub(crate) parts: Parts,
@@ -98,7 +99,7 @@ impl Kernel {
         }
     }
 
-    /// Returns whether the function at an address takes a lock, if it is free.
+    /// Returns whether the function at an address takes a free lock.
     pub(crate) fn takes_lock(&self, address: GuestAddr) -> bool {
         self.row(address).is_some_and(|row| {
             matches!(row.attributes.polls, Some(Polled::Lock)) || row.name == Function::TestAndSet.name()
@@ -116,7 +117,7 @@ impl Kernel {
         (function.handler)(&mut self.parts, caller)
     }
 
-    /// Everything that the firmware keeps is as at power-up; what is outside the board is left alone.
+    /// Resets all state of the firmware to that at power-up; the surroundings of the board are unchanged.
     pub(crate) fn restart(&mut self) {
         let Self { parts, scripts, signatures: _, callees: _ } = self;
         parts.calls.restart();
@@ -141,13 +142,13 @@ impl Kernel {
             || world.is_busy(out)
     }
 
-    /// The run is over: what the stimulus expects then is checked.
+    /// Ends the run: the final expectations of the stimulus are checked.
     pub(crate) fn finish(&mut self, context: &TickContext<'_>) {
         let (world, mut access) = self.parts.access(context.now);
         world.finish(&mut access, context);
     }
 
-    /// Follows what a program does: whether it only waits, and for what.
+    /// Follows a call of a program, in order to find out whether it only waits, and for which event.
     fn note_call(&mut self, number: usize, caller: &Caller<'_>) {
         if caller.now() >= self.parts.calls.notices.due {
             self.settle_notices(caller.now());
@@ -161,7 +162,7 @@ impl Kernel {
         let calls = &mut self.parts.calls.waits;
         match (caller.thread, *polls) {
             (Some(thread), Some(state)) => calls.look(thread, state, caller),
-            // An engine may compute the pure ones without asking the firmware.
+            // An engine may compute pure functions without calling the firmware.
             (Some(thread), None) if !is_pure => {
                 calls.act(thread, caller.now(), Some(&FIRMWARE_FUNCTIONS[number]));
             }
@@ -175,7 +176,7 @@ impl Kernel {
         }
     }
 
-    /// Tells what only the end of a run makes certain.
+    /// Makes the remarks that are only certain at the end of a run.
     pub(crate) fn sum_up(&mut self, context: &TickContext<'_>) {
         self.settle_notices(context.now);
         axis_check::note_unwatched_limits(&mut self.parts, context.memory, context.now);
@@ -223,7 +224,7 @@ impl Kernel {
         }
     }
 
-    /// Reports a call-back of one thread that replaces that of another.
+    /// Makes a remark on a call-back that replaces another thread's.
     fn note_call_back(&mut self, call_back: GuestAddr, now: Cycles) {
         let owner = |address: GuestAddr| {
             let spaces = self.parts.level.board().programs();
@@ -283,7 +284,7 @@ fn note_overruns(parts: &mut Parts, context: &TickContext<'_>, words: u32) {
     }
 }
 
-/// Tells which locks threads have kept that have ended.
+/// Makes remarks on locks that are still held by threads that have ended.
 fn note_kept_locks(calls: &Calls, out: &mut Out, context: &TickContext<'_>) {
     for HeldLock { thread, lock, at } in calls.locks.held().iter().copied() {
         let has_ended = context.threads.state(thread).is_ready() && context.threads.has_run(thread);
@@ -294,7 +295,7 @@ fn note_kept_locks(calls: &Calls, out: &mut Out, context: &TickContext<'_>) {
     }
 }
 
-/// A bit is waited for: tells if the axes that would close its switches move the other way.
+/// Makes a remark if a bit is waited for while the axes that would close its switches move in the other direction.
 fn moves_away(machine: &Machine, io: &Io, memory: &GuestMemory, bit: Bit) -> Option<Message> {
     let mut away = None;
     for (axis, condition, active) in machine.mechanics.contacts(bit) {
@@ -318,8 +319,8 @@ fn moves_away(machine: &Machine, io: &Io, memory: &GuestMemory, bit: Bit) -> Opt
     away
 }
 
-/// Sends what waits in the console's queue: as much as the primary thread has time for in its slice, or one string if
-/// time is not the board's.
+/// Sends text from the console queue: as much as the primary thread has time for in its slice, or one string if time
+/// does not follow the board's.
 fn send_lines(parts: &mut Parts, now: Cycles) {
     let Some(waits) = parts.timing.wait_states() else {
         if let Some(line) = parts.out.console.send() {
@@ -501,7 +502,7 @@ impl Firmware for Kernel {
         let (world, mut access) = parts.access(context.now);
         let acted = world.tick(&mut access, context, moment);
         parts.pc.host.tick();
-        // What goes in here may be stored wherever a program has said.
+        // These may be stored at addresses chosen by a program.
         let received = serial::tick(parts, context) | parts.exchange(context);
         if acted || received || is_touched {
             parts.servo.cache.invalidate(Change::Memory);
@@ -543,7 +544,7 @@ impl Firmware for Kernel {
     fn primary_slice(&mut self, context: &mut TickContext<'_>) {
         let parts = &mut self.parts;
         if parts.pc.is_heard && !self.scripts.is_in_command() {
-            // Recorded: it comes before what programs have printed in the same slice.
+            // As recorded, it comes before the text printed by programs in the same slice.
             if let Some(message) = parts.out.console.take_servo_message() {
                 parts.send_line(message, context.now);
             }
@@ -626,7 +627,8 @@ impl Firmware for Kernel {
     }
 
     fn quiet_slices(&self, memory: &GuestMemory) -> u64 {
-        // The words that Konnect boards exchange lie where the program has said; all else is in on-chip RAM.
+        // The words that Konnect boards exchange are at addresses chosen by the program; everything else is in on-chip
+        // RAM.
         let world = &self.parts.world;
         let is_seen = world.is_recording() || world.is_watching() || self.parts.io.konnects.has_any();
         if is_seen { 0 } else { self.quiet_ticks(memory) }

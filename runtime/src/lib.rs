@@ -3,12 +3,12 @@
 //! A board is a stack of parts, each of which sees only those below it. At the bottom are the output ([`Event`]s) and
 //! typed views of guest memory. Above are inputs and outputs: pins, registers of the FPGA, lines, option boards. Next
 //! is the machine that the board moves: loads of the axes, switches that they trip, devices on the lines. Once a tick,
-//! the servo reads the axes from guest memory and moves destinations, loads and outputs; it knows nothing above it.
-//! Above the servo, side by side, are the PC, which answers requests and keeps files, and the world, which plays a
-//! stimulus on the lines and records events. Firmware functions (C calls) and script commands (words) are thin: each is
-//! a call of one part. The kernel makes the parts implement the traits of `vm` and defines their order in a tick.
-//! [`Board`] holds the kernel and the programs, and is the interface: load programs, start threads, run, and receive
-//! events.
+//! the servo reads the axes from guest memory and moves destinations, loads and outputs; it does not depend on anything
+//! above it. Above the servo, side by side, are the PC, which answers requests and keeps files, and the world, which
+//! plays a stimulus on the lines and records events. Firmware functions (C calls) and script commands (words) are thin:
+//! each is a call of one part. The kernel makes the parts implement the traits of `vm` and defines their order in a
+//! tick. [`Board`] holds the kernel and the programs, and is the interface: load programs, start threads, run, and
+//! receive events.
 //!
 //! | folder | contents | state |
 //! |---|---|---|

@@ -15,7 +15,7 @@ use crate::kernel::Kernel;
 use crate::out::{EventKind, Severity};
 use crate::pc::files::NoFiles;
 
-/// A board that calls come to by hand, from thread 1.
+/// A board on which the test makes calls, from thread 1.
 pub(crate) struct TestBench {
     pub(crate) kernel: Kernel,
     pub(crate) memory: GuestMemory,
@@ -62,7 +62,7 @@ impl TestBench {
         self.outcome_by(ThreadId::new(1), budget, name, arguments, woken)
     }
 
-    /// Another thread makes a call.
+    /// Makes a call from another thread.
     pub(crate) fn call_by(&mut self, thread: Option<ThreadId>, name: &str, arguments: &[u64]) {
         let outcome = self.outcome_by(thread, Cycles::PER_TICK, name, arguments, None);
         assert!(matches!(outcome, Outcome::Done(_)), "{name}: {outcome:?}");
@@ -100,7 +100,8 @@ impl TestBench {
         }
     }
 
-    /// Returns whether a call that a command makes is done at once: reading its line has left a part of the slice.
+    /// Returns whether a call made by a command is completed at once: after reading its line, a part of the slice is
+    /// left.
     pub(crate) fn is_done(&mut self, name: &str, arguments: &[u64]) -> bool {
         let left = Cycles::new(4500);
         matches!(self.outcome_within(left, name, arguments, None), Outcome::Done(_))
@@ -126,7 +127,7 @@ impl TestBench {
         }
     }
 
-    /// Makes a call again whose wake has come true; whether it is done then.
+    /// Repeats a call after its wake event; returns whether it is then completed.
     pub(crate) fn wake(&mut self, name: &str, arguments: &[u64]) -> bool {
         matches!(self.outcome(name, arguments, Some(Wake::Retry)), Outcome::Done(_))
     }
@@ -152,7 +153,7 @@ impl TestBench {
         }
     }
 
-    /// Runs this many ticks, every other one the primary thread's.
+    /// Runs this many ticks; every other one is the primary thread's.
     pub(crate) fn run(&mut self, ticks: u64) {
         for _ in 0..ticks {
             self.tick = self.tick.next();
@@ -207,7 +208,7 @@ impl TestBench {
         String::from_utf8(text).expect("text")
     }
 
-    /// The remarks of the simulation since the last call anything was requested.
+    /// The remarks of the simulation since the last call.
     pub(crate) fn diagnostics(&mut self) -> Vec<String> {
         let texts = self.kernel.parts.out.take_events().into_iter().filter_map(|event| match event.kind {
             EventKind::Remark(remark) if remark.message.severity() > Severity::Detail => {
@@ -218,7 +219,7 @@ impl TestBench {
         texts.collect()
     }
 
-    /// All console lines so far, the unfinished one included.
+    /// All console lines so far, including the unfinished one.
     pub(crate) fn printed(&mut self) -> Vec<String> {
         self.kernel.parts.flush_console(self.now);
         let lines = self.kernel.parts.out.take_events().into_iter().filter_map(|event| match event.kind {

@@ -36,7 +36,7 @@ pub(crate) trait Typed {
 impl Typed for GuestMemory {
     #[inline]
     fn chan(&self, axis: AxisId) -> Place<Chan> {
-        // Only a board whose objects are elsewhere has more axes than the tables.
+        // Only a board with objects at other addresses has more axes than the tables.
         if self.is_by_tables() { CHAN.element(axis.index()) } else { chan(axis) }
     }
 
@@ -72,14 +72,14 @@ impl Typed for GuestMemory {
 const CHAN_SIZE: usize = Chan::SIZE as usize;
 const CHANS_SIZE: usize = CHAN_SIZE * N_CHANNELS;
 
-/// The structure of an axis, found once for the many fields that a tick needs.
+/// The structure of an axis, located once for the many fields that a tick needs.
 pub(crate) struct AxisView<'a>(&'a mut [u8; CHAN_SIZE]);
 
 impl<'a> AxisView<'a> {
     /// The structure of `axis` in `memory`.
     #[inline(always)]
     pub(crate) fn of(memory: &'a mut GuestMemory, axis: AxisId) -> Self {
-        // All eight, because their address is a constant: where they lie is then known while this is compiled.
+        // All eight, because their address is a constant: their location is then known at compile time.
         if !memory.is_by_tables() {
             let place = memory.locate(chan(axis));
             return Self(memory.block_mut(place).expect("the axis structures lie in RAM"));

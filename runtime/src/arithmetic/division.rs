@@ -34,7 +34,7 @@ pub(super) fn reciprocal_of_single(divisor: f32, iterations: u32) -> f32 {
     reciprocal
 }
 
-/// The square root of a single as the board computes it; 0 of what has none.
+/// The square root of a single as the board computes it; 0 for a number without one.
 pub(crate) fn root(square: f64) -> f64 {
     let square = square as f32;
     if !square.is_normal() || square < 0.0 {

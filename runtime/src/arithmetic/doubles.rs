@@ -1,8 +1,8 @@
 //! The elementary functions of doubles, as the firmware's library computes them.
 //!
-//! They are those of Cody and Waite (Software Manual for the Elementary Functions), with the firmware's divisions; its
-//! square root, arc sine and arc tangent are of another make. Coefficients and the order of the operations are those of
-//! the released firmware; the board's tests have the share of equal bits.
+//! Most follow Cody and Waite (Software Manual for the Elementary Functions), with the firmware's divisions; its square
+//! root, arc sine and arc tangent use other algorithms. Coefficients and the order of operations are those of the
+//! released firmware; the board tests measure the share of identical results.
 
 use std::f64::consts::{
     FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4, FRAC_PI_6, LN_2, LN_10, LOG2_E, LOG10_E, PI, SQRT_2,
@@ -13,7 +13,7 @@ use super::division::divide;
 /// π in two parts, of which the first has few digits.
 const PI_HIGH: f64 = 3.141_601_562_5;
 const PI_LOW: f64 = -8.908_910_206_761_537e-6;
-/// From this on the number of turns does not fit into an integer, and the sine is 0.
+/// From here on the number of turns exceeds an integer, and the sine is 0.
 const TOO_LARGE: f64 = 2_147_483_648.0;
 /// Below this the sine is its angle.
 const SMALL_ANGLE: f64 = 1.490_116_119_384_765_6e-8;
@@ -72,7 +72,7 @@ const LN_2_LOW: f64 = -2.121_944_400_546_905_8e-4;
 const LARGEST: f64 = 709.782_712_893_384;
 const SMALLEST: f64 = -708.396_418_532_264_1;
 
-/// The largest power of two that the firmware multiplies with.
+/// The largest power of two by which the firmware multiplies.
 const LARGEST_POWER: f64 = 1023.0;
 
 pub(crate) fn exp(x: f64) -> f64 {
@@ -86,7 +86,7 @@ pub(crate) fn exp(x: f64) -> f64 {
     }
     let power = libm::copysign(libm::floor(x.abs() * LOG2_E + 0.5), x);
     if power > LARGEST_POWER {
-        // Odd and kept: the last of the results that there are overflow into the sign.
+        // Board quirk: the largest results overflow into the sign.
         return -0.0;
     }
     let rest = (x - power * LN_2_HIGH) - power * LN_2_LOW;
@@ -104,7 +104,7 @@ pub(crate) fn exp10(x: f64) -> f64 {
     exp(x * LN_10)
 }
 
-/// The natural logarithm; of what has none the lowest number.
+/// The natural logarithm; the lowest number where there is none.
 pub(crate) fn log(x: f64) -> f64 {
     const A: [f64; 3] = [-64.124_943_423_745_58, 16.383_943_563_021_534, -0.789_561_128_874_912_6];
     const B: [f64; 4] = [-769.499_321_084_948_8, 312.032_220_919_245_3, -35.667_977_739_034_65, 1.0];
@@ -123,7 +123,7 @@ pub(crate) fn log(x: f64) -> f64 {
     f64::from(power) * LN_2 + (z + z * (square * ratio))
 }
 
-/// The logarithm to base 2. Odd and kept: of what has none the product with the lowest number, which is infinite.
+/// The logarithm to base 2. Board quirk: where there is none, the product with the lowest number, which is infinite.
 pub(crate) fn log2(x: f64) -> f64 {
     log(x) * LOG2_E
 }
@@ -132,7 +132,7 @@ pub(crate) fn log10(x: f64) -> f64 {
     log(x) * LOG10_E
 }
 
-/// The arc sine of a number up to one half, and twice of the arc sine of a root.
+/// The arc sine of a number up to one half, and twice the arc sine of a root.
 fn arc(x: f64, square: f64) -> f64 {
     const COEFFICIENTS: [f64; 12] = [
         0.166_666_666_666_648_4,
@@ -151,7 +151,7 @@ fn arc(x: f64, square: f64) -> f64 {
     x + x * (polynomial(&COEFFICIENTS, square) * square)
 }
 
-/// The square root; 0 of what has none.
+/// The square root; 0 for a number without one.
 pub(crate) fn sqrt(x: f64) -> f64 {
     let x = flushed(x);
     if x.is_nan() || x <= 0.0 || x.is_infinite() {
@@ -178,7 +178,7 @@ fn beyond_half(x: f64) -> f64 {
     arc(-2.0 * sqrt(square), square)
 }
 
-/// The arc sine; of what has none that of the nearest number that has one.
+/// The arc sine; outside of its domain, the arc sine of the nearest number inside.
 pub(crate) fn asin(x: f64) -> f64 {
     let x = flushed(x);
     let magnitude = x.abs().min(1.0);
@@ -190,7 +190,7 @@ pub(crate) fn asin(x: f64) -> f64 {
     if x < 0.0 { -angle } else { angle }
 }
 
-/// The arc cosine; of what has none that of the nearest number that has one.
+/// The arc cosine; outside of its domain, the arc cosine of the nearest number inside.
 pub(crate) fn acos(x: f64) -> f64 {
     let magnitude = x.abs().min(1.0);
     if magnitude <= 0.5 {
@@ -217,7 +217,7 @@ pub(crate) fn atan(x: f64) -> f64 {
     ];
     /// The tangent of 15°, up to which the polynomial is good.
     const LIMIT: f64 = 0.267_949_192_431_122_7;
-    /// √3, and what is left of it without 1.
+    /// √3, and √3 − 1.
     const ROOT_3: f64 = 1.732_050_807_568_877_2;
     const ROOT_3_LESS_1: f64 = 0.732_050_807_568_877_3;
     /// The angles of the intervals: 0°, 30°, 90°, and 60° with the last bit of the board.
@@ -262,7 +262,7 @@ pub(crate) fn tan(x: f64) -> f64 {
         -0.311_815_319_070_100_27e-3,
         4.981_943_399_378_651e-7,
     ];
-    /// The second part of π/2, which is not that of π.
+    /// The second part of π/2, which is not half the second part of π.
     const HALF_PI_LOW: f64 = -4.454_455_103_380_769e-6;
     let x = flushed(x);
     let product = std::f64::consts::FRAC_2_PI * x;

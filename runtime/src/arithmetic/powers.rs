@@ -44,7 +44,7 @@ macro_rules! powers {
                 return $positive(base, exponent);
             }
             if base < 0.0 {
-                // Odd and kept: the power of a negative number is that with the nearest whole exponent.
+                // Board quirk: for a negative base, the exponent is rounded to the nearest integer.
                 let exponent = $rint(exponent);
                 let power = $positive(-base, exponent);
                 return if $fmod(exponent, 2.0) == 0.0 { power } else { -power };

@@ -1,7 +1,7 @@
 //! Functions of singles, as the firmware's library computes them.
 //!
 //! Exponentials and logarithms take their last steps in doubles. Coefficients and the order of the operations are those
-//! of the released firmware; the board's tests have the share of equal bits.
+//! of the released firmware; the board tests measure the share of identical results.
 
 #![expect(clippy::approx_constant, reason = "constants of the board have digits of their own")]
 
@@ -76,7 +76,7 @@ pub(crate) fn tan(x: f32) -> f32 {
     }
 }
 
-/// The arc sine of a number up to one half, and twice of the arc sine of a root.
+/// The arc sine of a number up to one half, and twice the arc sine of a root.
 fn arc(x: f32, square: f32) -> f32 {
     const COEFFICIENTS: [f32; 4] = [0.166_651_64, 0.075_464_79, 0.039_721_135, 0.050_505_362];
     x * (square * polynomial(&COEFFICIENTS, square)) + x
@@ -88,7 +88,7 @@ fn beyond_half(x: f32) -> f32 {
     arc(-2.0 * sqrt(square), square)
 }
 
-/// The arc sine; of what has none that of the nearest number that has one.
+/// The arc sine; outside of its domain, the arc sine of the nearest number inside.
 pub(crate) fn asin(x: f32) -> f32 {
     let x = flushed(x);
     let magnitude = x.abs().min(1.0);
@@ -100,7 +100,7 @@ pub(crate) fn asin(x: f32) -> f32 {
     if x < 0.0 { -angle } else { angle }
 }
 
-/// The arc cosine; of what has none that of the nearest number that has one.
+/// The arc cosine; outside of its domain, the arc cosine of the nearest number inside.
 pub(crate) fn acos(x: f32) -> f32 {
     let magnitude = x.abs().min(1.0);
     if magnitude <= 0.5 {
@@ -126,7 +126,7 @@ fn arc_tangent(x: f32) -> f32 {
 }
 
 pub(crate) fn atan(x: f32) -> f32 {
-    /// The quotients between which there is something to compute, and the one from which the reciprocal is taken.
+    /// The quotients below and above which the result is known, and the quotient from which the reciprocal is used.
     const SMALL: f32 = 1.220_703_1e-4;
     const LARGE: f32 = 67_108_864.0;
     const INVERTED: f32 = 1.05;
@@ -145,7 +145,7 @@ pub(crate) fn atan(x: f32) -> f32 {
 /// The angle of a point in all four quadrants.
 pub(crate) fn atan2(y: f32, x: f32) -> f32 {
     let [y, x] = [y, x].map(flushed);
-    // Odd and kept: the board's angle of a point on the negative axis is 0.
+    // Board quirk: the angle of a point on the negative axis is 0.
     if y == 0.0 {
         return 0.0;
     }
@@ -159,13 +159,13 @@ pub(crate) fn atan2(y: f32, x: f32) -> f32 {
     start + arc_tangent(quotient(y, x))
 }
 
-/// A quotient whose dividend is multiplied before the last of Newton's iterations.
+/// A quotient; the dividend is multiplied before the last Newton iteration.
 fn quotient(dividend: f32, divisor: f32) -> f32 {
     let reciprocal = reciprocal_of_single(divisor, 1);
     (reciprocal * dividend) * (2.0 - divisor * reciprocal)
 }
 
-/// The square root, which is that of the processor; of a negative number that of its magnitude.
+/// The square root of the processor; for a negative number, the root of its magnitude.
 pub(crate) fn sqrt(x: f32) -> f32 {
     root(f64::from(flushed(x.abs()))) as f32
 }
@@ -241,7 +241,7 @@ pub(crate) fn exp10(x: f32) -> f32 {
     numbers.of(x)
 }
 
-/// The logarithm in the base of a natural logarithm's factor, given as a single and as a double.
+/// The logarithm to a base, given as the factor of the natural logarithm in single and in double precision.
 fn scaled_log(x: f32, factor: f32, exact: f64) -> f32 {
     /// −ln(1 + k/8), with the board's digits.
     const EIGHTHS: [f64; 8] = [
@@ -258,7 +258,7 @@ fn scaled_log(x: f32, factor: f32, exact: f64) -> f32 {
     const P: [f32; 2] = [-0.250_590_53, 0.190_816_88];
     const SMALLEST: f32 = -87.336_55;
     const LARGEST: f32 = 88.722_84;
-    /// The bits of a reciprocal that are not looked up.
+    /// The bits of a reciprocal that do not come from the lookup table.
     const REST: u64 = (1 << 49) - 1;
     if x.is_sign_negative() || x == 0.0 {
         return -f32::MAX;

@@ -18,8 +18,8 @@ use crate::servo::moves::Planner;
 use crate::views::Typed;
 
 impl<E: Engine> Board<E> {
-    /// Fills memory from flash, or as it is when nothing was ever flashed, and starts the programs that start by
-    /// themselves. From then on a board that `is_strict` shows one bank of flash.
+    /// Fills memory from flash, or with the power-up values if nothing was flashed, and starts the programs that are
+    /// set to start by themselves. From then on a board that `is_strict` shows one bank of flash.
     pub(super) fn power_up(&mut self, is_strict: bool) {
         let memory = self.machine.memory_mut();
         let before = if flash::is_saved(memory) { Before::Flashed } else { Before::Zero };
@@ -48,7 +48,7 @@ impl<E: Engine> Board<E> {
         }
     }
 
-    /// Tells memory of which board it is: what is at which address, where the firmware keeps its variables, the axes.
+    /// Sets the board of memory: its map, the addresses of the firmware's variables, and its axes.
     pub(super) fn set_places(&mut self) {
         let (places, board) = (self.level().places(), self.level().board());
         let (map, axes) = (board.map(), board.axes);
@@ -58,7 +58,7 @@ impl<E: Engine> Board<E> {
         memory.set_axes(axes);
     }
 
-    /// Makes a program of what flash has brought back for a thread.
+    /// Makes a program from the flashed bytes of a thread.
     pub(super) fn load_flashed(&mut self, thread: ThreadId) {
         let Some(text) = flash::text(self.memory(), thread) else { return };
         let length = text.end.get() - text.start.get();
@@ -97,7 +97,7 @@ impl<E: Engine> Board<E> {
         programs.flashed = programs.loaded.each_ref().map(known);
     }
 
-    /// Makes programs of what was downloaded into threads that have not been started since.
+    /// Makes programs from the downloads into threads that have not been started since.
     fn take_downloads(&mut self) {
         for thread in ThreadId::all() {
             if self.machine.threads().state(thread).is_active() {

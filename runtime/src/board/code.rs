@@ -16,21 +16,20 @@ pub(super) fn program(bytes: &[u8], base: GuestAddr) -> Result<Code, VerifyError
     verify_image(bytes, base).map(|program| Code::Program(program.into()))
 }
 
-/// Code of the real processor, `length` bytes from `base` on, and where its functions begin; `board` is the one that
-/// executes it.
+/// Code of the real processor, `length` bytes from `base` on, and the addresses of its functions; `board` executes it.
 pub(super) fn image(base: GuestAddr, length: u32, functions: Vec<u32>, board: &ModelledBoard) -> Code {
     let image = Image::new(base..base.offset(length), thread_done(board));
     Code::Image(image.with_functions(functions).into())
 }
 
-/// Code of whatever kind that came without an image around it.
+/// Code of either kind that was downloaded without an image.
 ///
 /// # Errors
-/// The rule that it breaks as bytecode, if the real processor could not execute it either.
+/// The reason why it is not valid bytecode, if the real processor could not execute it either.
 pub(super) fn bare(bytes: &[u8], base: GuestAddr, board: &ModelledBoard) -> Result<Code, VerifyError> {
     match program(bytes, base) {
         Err(VerifyError { kind: VerifyErrorKind::NotAProgram, .. }) if dsp::is_code(bytes) => {
-            // Where the code ends and the data begins is not known: nothing is protected.
+            // The border between code and data is unknown, so nothing is protected.
             let code = base..base.offset(bytes.len() as u32);
             Ok(Code::Image(Image::unprotected(code, thread_done(board)).into()))
         }

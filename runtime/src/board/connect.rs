@@ -1,4 +1,4 @@
-//! Connects what a machine file describes to the board's parts.
+//! Connects the contents of a machine file to the parts of the board.
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ pub(crate) fn install(parts: &mut Parts, machine: &MachineFile) {
     connected.wiring = Wiring::new(&machine.axes);
     machine.connected.encoders.iter().for_each(|wheel| connected.wiring.turn_by_hand(wheel.channel));
     for spindle in &machine.connected.spindles {
-        // The load of that axis counts as its encoder does.
+        // The load of that axis counts in the same direction as its encoder.
         let connection = Connection { encoder: Encoder::Connected, ..Connection::default() };
         let load = Axis { model: Model::None, connection, ..Axis::default() };
         connected.loads[spindle.axis] = Plant::new(&load);
@@ -71,7 +71,7 @@ pub(crate) fn install(parts: &mut Parts, machine: &MachineFile) {
     }
 }
 
-/// Connects to the board all that acts without a program: wires, devices and the events of the machine file.
+/// Connects to the board everything that acts without a program: wires, devices and the events of the machine file.
 pub(crate) fn play(parts: &mut Parts, machine: &MachineFile, memory: &mut GuestMemory) {
     if machine.boards.has_kanalog || !machine.connected.analog.is_empty() {
         memory.set(KANALOG_PRESENT, 1);

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use kmotiondef::{CodeAddr, GuestAddr};
 
-/// A function and where it came from.
+/// A function and its source.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FunctionInfo {
     /// Its name.
@@ -46,14 +46,14 @@ pub struct SourcePlace<'a> {
     pub around: Option<&'a str>,
 }
 
-/// Details of the code at an address that the compiler knows and no image holds.
+/// Details about the code at an address that the compiler knows but no image contains.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CodeDetail {
     /// The address.
     pub address: u32,
     /// The column in its line, counted from 1.
     pub column: u32,
-    /// The function whose source it is, if another function contains it in place of a call.
+    /// The function that the source belongs to, if it was inlined into another function.
     pub inlined: Option<Arc<str>>,
 }
 
@@ -63,7 +63,7 @@ pub struct DebugInfo {
     functions: Vec<FunctionInfo>,
     lines: Vec<(u32, u32)>,
     objects: Vec<ObjectInfo>,
-    /// By address; empty where the compiler knows no more than the image.
+    /// By address; empty if the compiler knows no more than the image.
     details: Arc<[CodeDetail]>,
 }
 
@@ -81,7 +81,7 @@ impl DebugInfo {
         Self { functions, lines, objects, details: Arc::default() }
     }
 
-    /// The same with what the compiler knows besides, ascending by address.
+    /// Returns the facts with further details from the compiler, in ascending order of addresses.
     #[must_use]
     pub fn with_details(self, details: Arc<[CodeDetail]>) -> Self {
         debug_assert!(details.is_sorted_by_key(|detail| detail.address));
@@ -114,7 +114,7 @@ impl DebugInfo {
         Some(SourcePlace { function: name, file: &function.file, line, column, around })
     }
 
-    /// The statement that has begun before an address and is not over there; `None` where a line begins.
+    /// The statement that contains an address but begins before it; `None` at the beginning of a line.
     #[must_use]
     pub fn statement_around(&self, address: CodeAddr) -> Option<SourcePlace<'_>> {
         let is_start = self.lines.binary_search_by_key(&address.get(), |(start, _)| *start).is_ok();

@@ -1,8 +1,8 @@
-//! From the bytes of an image to a program in a thread; refuses before anything changes.
+//! Loads the bytes of an image as a program of a thread; an image is refused before anything changes.
 //!
-//! [`prepare`] checks everything that can be wrong with an image (`coff.md` sections 4 and 9,
-//! design.md D7) and yields a [`Prepared`] that the board can take without failing. The vendor's
-//! own loader checks next to nothing; a mistake there overwrites another thread's program.
+//! [`prepare`] checks everything that can be wrong with an image (`coff.md` sections 4 and 9, design.md D7) and yields
+//! a [`Prepared`] image, which the board can take without failing. The vendor's own loader checks almost nothing; with
+//! it, a mistake overwrites another thread's program.
 
 use std::ops::Range;
 
@@ -65,7 +65,7 @@ pub enum LoadError {
     /// The bytes are not a TI COFF image.
     #[error("not a KFLOP image: {0}")]
     NotAnImage(coff::Error),
-    /// Code for something else.
+    /// The code is for another target.
     #[error("code for target {0}, not for the simulated board")]
     OtherTarget(Target),
     /// Linked against another firmware.
@@ -96,7 +96,7 @@ pub enum LoadError {
         /// The version's number.
         number: &'static str,
     },
-    /// An object, or an image with something left to link.
+    /// An object file, or an image with unresolved symbols.
     #[error("an object that is not linked yet; `cc67 build` links it")]
     NotLinked,
     /// A part that every image has is missing.
@@ -108,9 +108,9 @@ pub enum LoadError {
          addresses of thread {linked}; load it there, or build it for thread {wanted}"
     )]
     OtherThread {
-        /// Thread it is linked for.
+        /// The thread that it is linked for.
         linked: ThreadId,
-        /// Thread it should go into.
+        /// The thread that it should be loaded into.
         wanted: ThreadId,
     },
     /// A section lies outside the memory for programs.
@@ -154,11 +154,11 @@ pub fn board_of(image: &[u8]) -> ModelledBoard {
     boards.find_map(ModelledBoard::of).unwrap_or_default()
 }
 
-/// Checks an image for `thread` of a board; `holds` names the threads whose spaces have a program, apart from the one
-/// that the image replaces.
+/// Checks an image for `thread` of a board; `holds` are the threads whose spaces contain a program, other than the
+/// program that the image replaces.
 ///
 /// # Errors
-/// The first reason found to refuse it.
+/// The first reason to refuse it.
 pub fn prepare(
     bytes: &[u8],
     thread: ThreadId,
@@ -216,14 +216,14 @@ fn check_origin(image: &Image, board: &TargetBoard) -> Result<(), LoadError> {
     }
 }
 
-/// The board that an image is linked for, if it has its programs elsewhere than `board`.
+/// The board that an image is linked for, if its programs are at other addresses than on `board`.
 fn other_board(image: &Image, board: &TargetBoard) -> Option<&'static TargetBoard> {
     let linked = TargetBoard::of_image(image.program?.version_stamp, image.section(".text")?.address)?;
     (linked.programs() != board.programs()).then_some(linked)
 }
 
-/// Returns whether the stamp of an image is the version of its firmware. Other linkers use the field for a stamp of
-/// their own.
+/// Returns whether the stamp of an image is the version of its firmware. Other linkers use the field for their own
+/// stamp.
 fn states_firmware(target: Target, stamp: i16) -> bool {
     /// The stamp of the vendor's compiler.
     const VENDOR: i16 = 0x190;
@@ -269,7 +269,7 @@ fn outside(section: &Section) -> LoadError {
     }
 }
 
-/// Every section inside the program area, none over another, none in a space that is taken.
+/// Checks that every section is inside the program area, that none overlap, and that none is in a space that is taken.
 fn check_sections(
     image: &Image,
     spaces: &ProgramSpaces,
@@ -327,8 +327,8 @@ fn place(section: &Section) -> PlacedSection {
 
 /// Collects functions, lines and objects from the symbol table.
 ///
-/// A file symbol names the file of the functions after it. The size of an object is in its
-/// auxiliary entry, where that of a function is too.
+/// A file symbol names the file of the functions after it. The size of an object is in its auxiliary entry, as is the
+/// size of a function.
 fn debug(image: &Image, spaces: &ProgramSpaces) -> DebugInfo {
     let mut file = String::new();
     let (mut functions, mut objects) = (Vec::new(), Vec::new());

@@ -62,8 +62,8 @@ pub struct Config {
     pub timing: Timing,
     /// The equipment that is connected to the board.
     pub machine_file: MachineFile,
-    /// The numbers of accesses to shared memory, from 1, before which a thread loses the processor; for a board whose
-    /// accesses are [observed](MachineConfig::observed).
+    /// The numbers of accesses to shared memory, from 1, before which a thread loses the processor; for a board with
+    /// [observed](MachineConfig::observed) accesses.
     pub switches: BTreeSet<u64>,
     /// The contents of flash memory, [`FLASH_SIZE`] bytes; `None` for a board whose flash was never written.
     pub flash: Option<Vec<u8>>,
@@ -92,7 +92,7 @@ const CYCLES_PER_US: f64 = Cycles::PER_SECOND.get() as f64 / 1e6;
 /// The reason for which a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunEnd {
-    /// No thread is active, and nothing moves, records, prints or waits for the PC.
+    /// No thread is active, and no motion, recording, printing or request to the PC is in progress.
     AllEnded,
     /// The limit is reached.
     Limit,
@@ -106,7 +106,7 @@ struct Loaded {
     extent: Range<u32>,
 }
 
-/// An image that a stimulus may load, and what is known about its code beyond it.
+/// An image that a stimulus may load, and further details about its code.
 type Offered = (Vec<u8>, Arc<[CodeDetail]>);
 
 /// Facts about the programs on the board.
@@ -115,7 +115,7 @@ struct Programs {
     loaded: [Option<Loaded>; ThreadId::MAX as usize],
     /// Debug information of the programs in flash.
     flashed: [Option<DebugInfo>; ThreadId::MAX as usize],
-    /// Images that a stimulus may load, by the thread they are linked for and what it calls them.
+    /// Images that a stimulus may load, by their thread and by their name in the stimulus.
     offered: BTreeMap<(ThreadId, Arc<str>), Offered>,
 }
 
@@ -128,7 +128,7 @@ pub struct Board<E = BytecodeEngine> {
     bss_fill: u8,
     /// The cost of an instruction, relative to its cost on the board.
     cost: f64,
-    /// The names of the axes in the machine file, and their units; an empty unit was not given.
+    /// The names of the axes in the machine file, and their units; a unit is empty if none was given.
     names: [(String, String); Axes::MAX],
 }
 
@@ -179,7 +179,7 @@ impl<E: Engine> Board<E> {
         board
     }
 
-    /// Runs to the end of tick `limit` or until everything has ended; `sink` receives what happens.
+    /// Runs to the end of tick `limit` or until everything has ended; `sink` receives the events.
     ///
     /// At the end the console lines still waiting are sent, and the expectations of the stimulus are checked.
     pub fn run(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) -> RunEnd {
@@ -212,7 +212,7 @@ impl<E: Engine> Board<E> {
         self.deliver(sink);
     }
 
-    /// Runs to the end of the next tick in which something can happen, and does what was requested there.
+    /// Runs to the end of the next tick in which something can happen, and executes the requests made in it.
     fn step(&mut self, limit: Ticks) {
         self.machine.step(limit);
         if self.machine.held().is_some() {
@@ -246,7 +246,7 @@ impl<E: Engine> Board<E> {
 
     /// Runs until `is_over` returns true for an event of a tick, or to the end of tick `limit`; returns whether it did.
     ///
-    /// Unlike [`run`](Self::run) it continues when all threads have ended, and leaves unfinished console lines alone.
+    /// Unlike [`run`](Self::run) it continues when all threads have ended, and does not send unfinished console lines.
     pub fn run_until(&mut self, limit: Ticks, is_over: &mut dyn FnMut(Event) -> bool) -> bool {
         while self.machine.tick() < limit {
             self.step(limit);
@@ -259,14 +259,14 @@ impl<E: Engine> Board<E> {
         false
     }
 
-    /// Returns whether no thread is active and nothing is in progress that a program has begun.
+    /// Returns whether no thread is active and nothing that a program has started is in progress.
     #[must_use]
     pub fn has_ended(&self) -> bool {
         let is_active = ThreadId::all().any(|thread| self.machine.threads().state(thread).is_active());
         !is_active && !self.machine.firmware().is_busy(self.machine.memory())
     }
 
-    /// Hands over the events since the last call, with the program's place where that is known.
+    /// Delivers the events since the last call, with their positions in the programs where known.
     fn deliver(&mut self, sink: &mut dyn FnMut(Event)) {
         for mut event in self.machine.firmware_mut().0.parts.out.take_events() {
             if let EventKind::Remark(Remark { speaker: Speaker::Thread(thread), place, .. }) = &mut event.kind
@@ -326,8 +326,9 @@ impl<E: Engine> Board<E> {
         self.machine.threads().state(thread)
     }
 
-    /// Two threads that have run bytecode and change the same cell by a load and a store, and the name of the cell; only
-    /// cells whose address is written in the programs are found. Programs that take locks are left out, as they may hold one then.
+    /// Two threads that have run bytecode and update the same cell by a load and a store, and the name of the cell.
+    /// Only cells whose addresses are constants in the programs are found. Programs that take locks are ignored, since
+    /// they may hold one during the update.
     #[must_use]
     pub fn contended_cell(&self) -> Option<(ThreadId, ThreadId, String)> {
         let ran = ThreadId::all().filter(|thread| self.machine.ran().contains(*thread));
@@ -345,14 +346,14 @@ impl<E: Engine> Board<E> {
         })
     }
 
-    /// An element of `persist.UserData`; `None` beyond the last.
+    /// An element of `persist.UserData`; `None` for an index out of range.
     #[must_use]
     pub fn user_data(&self, index: usize) -> Option<i32> {
         let data = PERSIST.field(Persist::USER_DATA);
         (index < kmotiondef::limits::N_USER_DATA_VARS).then(|| self.memory().get(data.element(index)))
     }
 
-    /// Stores an element of `persist.UserData`; `false` beyond the last.
+    /// Stores an element of `persist.UserData`; `false` for an index out of range.
     pub fn set_user_data(&mut self, index: usize, value: i32) -> bool {
         let is_inside = index < kmotiondef::limits::N_USER_DATA_VARS;
         if is_inside {
@@ -363,7 +364,7 @@ impl<E: Engine> Board<E> {
 }
 
 impl<E: Engine> Board<E> {
-    /// Holds programs after these bytes, addresses and how many, are not what they are now; and after no others.
+    /// Holds programs after a change of these bytes (address and length each), and after changes of no others.
     pub fn set_watched(&mut self, ranges: &[(GuestAddr, u32)]) {
         self.machine.set_watched(ranges);
     }

@@ -11,15 +11,15 @@ use crate::world::stimulus::Stimulus;
 use crate::world::trace;
 
 impl<E: Engine> Board<E> {
-    /// Bytes from the PC arrive on the USB link: command lines, ended by CR. A line that begins with 0x1B and a byte
-    /// that is discarded is not echoed; 0x03 drops what is under way.
+    /// Bytes from the PC arrive on the USB link: command lines, ended by CR. A line that begins with 0x1B and a second
+    /// byte, which is ignored, is not echoed; 0x03 drops the line or download in progress.
     pub fn receive(&mut self, bytes: &[u8]) {
         let (kernel, _) = self.machine.firmware_mut();
         kernel.parts.pc.usb.receive(bytes);
         kernel.parts.disturb();
     }
 
-    /// Returns whether bytes from the PC wait to be taken.
+    /// Returns whether the board has not yet taken all bytes from the PC.
     #[must_use]
     pub fn is_receiving(&self) -> bool {
         self.machine.firmware().parts.pc.usb.is_busy()
@@ -31,8 +31,8 @@ impl<E: Engine> Board<E> {
         self.machine.firmware().parts.out.console.unsent().map(<[u8]>::to_vec).collect()
     }
 
-    /// Says whether the PC takes console lines. If not, they wait in the board's queue, and once that is full, so do
-    /// the programs that print.
+    /// Sets whether the PC takes console lines. If not, they wait in the board's queue, and once that is full, programs
+    /// that print wait, too.
     pub fn listen(&mut self, listens: bool) {
         let (kernel, _) = self.machine.firmware_mut();
         kernel.parts.pc.is_heard = listens;
@@ -43,7 +43,7 @@ impl<E: Engine> Board<E> {
         self.machine.firmware_mut().0.parts.out.tap_wire();
     }
 
-    /// The bytes that the board has sent to the PC since the last call, as they are on the wire.
+    /// The bytes that the board has sent to the PC since the last call, exactly as on the wire.
     #[must_use]
     pub fn take_wire(&mut self) -> Vec<u8> {
         self.machine.firmware_mut().0.parts.out.take_wire()
@@ -61,20 +61,20 @@ impl<E: Engine> Board<E> {
         self.machine.firmware().parts.pc.host.open_box(self.machine.memory())
     }
 
-    /// Lets the world around the board act by a stimulus from now on.
+    /// Plays a stimulus to the board from now on.
     pub fn play(&mut self, stimulus: Stimulus) {
         let (kernel, context) = self.machine.firmware_mut();
         let (world, mut access) = kernel.parts.access(context.now);
         world.play(stimulus, &mut access, context.memory);
     }
 
-    /// Plays an operator for programs that wait on inputs nobody drives.
+    /// Plays an operator for programs that wait on undriven inputs.
     pub fn assist(&mut self) {
         let (kernel, context) = self.machine.firmware_mut();
         kernel.parts.world.assist(context.now);
     }
 
-    /// Records from now on what is requested; the records come as events.
+    /// Starts a recording; its records come as events.
     pub fn record(&mut self, request: trace::TraceRequest) {
         let (kernel, context) = self.machine.firmware_mut();
         let Parts { world, io, .. } = &mut kernel.parts;
@@ -95,13 +95,13 @@ impl<E: Engine> Board<E> {
         kernel.parts.disturb();
     }
 
-    /// Characters on the UART's line that have not arrived yet.
+    /// The number of characters on the UART's line that have not arrived yet.
     #[must_use]
     pub fn uart_backlog(&self) -> usize {
         self.machine.firmware().parts.io.uart.backlog()
     }
 
-    /// Tells every character that the UART sends from now on, as an event.
+    /// Reports every character that the UART sends from now on as an event.
     pub fn hear_uart(&mut self) {
         let Parts { world, io, .. } = &mut self.machine.firmware_mut().0.parts;
         world.hear_uart(io);
@@ -113,7 +113,7 @@ impl<E: Engine> Board<E> {
         item.read(&self.machine.firmware().parts.view(self.memory()))
     }
 
-    /// The axes that execute a motion of their own, such as a jog that nobody ends.
+    /// The axes that execute a motion of their own, such as a jog that is never ended.
     #[must_use]
     pub fn moving(&self) -> Vec<AxisId> {
         self.memory().axes().iter().filter(|&axis| independent::is_moving(self.memory(), axis)).collect()

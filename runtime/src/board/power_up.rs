@@ -17,9 +17,9 @@ use crate::views::{Typed, chan};
 /// The contents of memory before it is filled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Before {
-    /// Nothing: all of it is zero.
+    /// All zero.
     Zero,
-    /// The flashed contents; some values keep what is there.
+    /// The flashed contents; some values are kept from them.
     Flashed,
 }
 
@@ -32,7 +32,7 @@ impl Before {
 
 /// Stores the power-up value of every firmware variable.
 ///
-/// Addresses are those of the tables until a value is stored.
+/// Addresses are those of the tables; they are mapped when a value is stored.
 pub(crate) fn fill(memory: &mut GuestMemory, version: &str, before: Before) {
     for variable in FIRMWARE_VARIABLES {
         if !is_narrow(memory, variable) {
@@ -52,8 +52,8 @@ pub(crate) fn fill(memory: &mut GuestMemory, version: &str, before: Before) {
     }
 }
 
-/// Stores what the tables lack or have otherwise: the pointers to further axes, no axis for a letter of the primed
-/// coordinate system, analog inputs at zero.
+/// Stores values that the tables lack or that differ: the pointers to further axes, no axis for any letter of the
+/// primed coordinate system, analog inputs at zero.
 pub(crate) fn fill_later(memory: &mut GuestMemory, board: &TargetBoard) {
     if memory.has_other_map() {
         (0..ADC_CHANNELS).for_each(|channel| set_conversion(memory, channel, ZERO));
@@ -134,7 +134,7 @@ fn start_structure(
     }
 }
 
-/// Stores one value; memory is zero before.
+/// Stores one value in memory that is still zero.
 fn store(memory: &mut GuestMemory, address: GuestAddr, start: Start, ty: CType, index: u32) {
     let address = memory.place_of(address);
     match start {

@@ -25,15 +25,15 @@ impl<E: Engine> Board<E> {
     /// Loads an image into `thread`, which is stopped first.
     ///
     /// # Errors
-    /// Why the image is refused; nothing has changed then.
+    /// The reason for which the image is refused; nothing is changed in that case.
     pub fn load(&mut self, thread: ThreadId, image: &[u8]) -> Result<(), LoadError> {
         self.load_detailed(thread, image, Arc::default())
     }
 
-    /// The same with what the compiler knows about the code besides.
+    /// Loads an image, together with further details about its code from the compiler.
     ///
     /// # Errors
-    /// Why the image is refused; nothing has changed then.
+    /// The reason for which the image is refused; nothing is changed in that case.
     pub fn load_detailed(
         &mut self,
         thread: ThreadId,
@@ -70,7 +70,7 @@ impl<E: Engine> Board<E> {
         Ok(())
     }
 
-    /// The firmware that the board is modelled after.
+    /// The firmware that the board models.
     pub(super) fn level(&self) -> &ModelledBoard {
         &self.machine.firmware().parts.level
     }
@@ -80,12 +80,12 @@ impl<E: Engine> Board<E> {
         self.level().board().programs()
     }
 
-    /// Returns the facts about programs for a change; snapshots keep the old ones.
+    /// Returns the facts about programs, for changes; snapshots keep the old ones.
     pub(super) fn programs_mut(&mut self) -> &mut Programs {
         Arc::make_mut(&mut self.programs)
     }
 
-    /// Returns whether a program other than that of `except` lies in the space of `thread`.
+    /// Returns whether a program of a thread other than `except` is in the space of `thread`.
     pub(super) fn is_taken(&self, thread: ThreadId, except: ThreadId) -> bool {
         let space = self.spaces().space(thread);
         let others = ThreadId::all().filter(|&other| other != except);
@@ -93,7 +93,7 @@ impl<E: Engine> Board<E> {
         extents.any(|loaded| loaded.extent.start < space.end && loaded.extent.end > space.start)
     }
 
-    /// Puts a section into memory; the loader has checked that it fits.
+    /// Writes a section to memory; the loader has checked that it fits.
     pub(super) fn place(&mut self, thread: ThreadId, section: &PlacedSection, code: &Code) {
         let bytes = match &section.contents {
             Fill::Bytes(bytes) => bytes.clone(),
@@ -106,7 +106,7 @@ impl<E: Engine> Board<E> {
         }
     }
 
-    /// Takes out a call-back whose code a load has replaced; the board would run what is there now.
+    /// Removes a call-back whose code a load has replaced; the board would execute the new bytes.
     pub(super) fn drop_callback(&mut self, thread: ThreadId) {
         let callback = self.memory().get(USER_CALL_BACK);
         if self.spaces().space(thread).contains(&callback.get()) {
@@ -131,13 +131,13 @@ impl<E: Engine> Board<E> {
         self.programs.loaded[thread.index()].as_ref().map(|loaded| &loaded.debug)
     }
 
-    /// The source of a code address, in whatever thread's program it lies.
+    /// The source position of a code address in any thread's program.
     #[must_use]
     pub fn source(&self, address: CodeAddr) -> Option<SourcePlace<'_>> {
         self.programs.loaded.iter().flatten().find_map(|loaded| loaded.debug.place(address))
     }
 
-    /// Makes `thread` ready to run a program whose bytes are in guest memory.
+    /// Makes `thread` ready to run a program that is already in guest memory.
     pub fn load_program(&mut self, thread: ThreadId, program: Program, entry: GuestAddr) {
         self.load_code(thread, Code::Program(program.into()), entry);
     }
@@ -174,10 +174,10 @@ impl<E: Engine> Board<E> {
         self.machine.start(thread)
     }
 
-    /// Keeps an image that a stimulus may load into `thread` under this name; what is known about its program.
+    /// Keeps an image that a stimulus may load into `thread` under this name; returns the facts about its program.
     ///
     /// # Errors
-    /// Why the image would be refused.
+    /// The reason for which the image would be refused.
     pub fn offer(
         &mut self,
         thread: ThreadId,
@@ -210,7 +210,7 @@ impl<E: Engine> Board<E> {
         }
     }
 
-    /// Makes a program of what was downloaded into a thread that was started.
+    /// Makes a program from the download into a thread that was started.
     pub(super) fn adopt(&mut self, thread: ThreadId) {
         let error = match self.take_download(thread) {
             Ok(true) => {
@@ -228,7 +228,7 @@ impl<E: Engine> Board<E> {
         kernel.parts.out.remark(context.now, Message::NotStarted { thread, error });
     }
 
-    /// Makes a program of what was downloaded into a thread; returns whether anything was.
+    /// Makes a program from the download into a thread; returns whether there was one.
     pub(super) fn take_download(&mut self, thread: ThreadId) -> Result<bool, VerifyError> {
         let entry = self.machine.threads().entry(thread);
         let (kernel, _) = self.machine.firmware_mut();
@@ -241,7 +241,7 @@ impl<E: Engine> Board<E> {
         Ok(true)
     }
 
-    /// The program whose text ends at one of some places; `None` if nothing was downloaded.
+    /// The program whose text ends at one of several addresses; `None` if nothing was downloaded.
     pub(super) fn downloaded(
         &self,
         thread: ThreadId,
@@ -253,7 +253,7 @@ impl<E: Engine> Board<E> {
             let text = self.memory().read_bytes(base, end.get() - base.get()).unwrap_or_default();
             match code::bare(text, base, self.level()) {
                 Ok(code) => return Ok(Some(code)),
-                // What the longest range lacks is what the text lacks.
+                // The error of the longest range is the error of the text.
                 Err(wrong) => error = Some(wrong),
             }
         }

@@ -57,7 +57,7 @@ fn image(line: &Value) -> Vec<u8> {
     image.write().expect("it can be written")
 }
 
-/// Runs a program in thread 1; what it printed, and where it differs from the line.
+/// Runs a program in thread 1; returns its output and the differences from the recorded line.
 fn run(line: &Value, shortcuts: bool) -> Vec<String> {
     let machine = MachineConfig { shortcuts, ..MachineConfig::default() };
     let mut board: Board = Board::new(Config { machine, ..Config::default() });

@@ -10,16 +10,17 @@ use vm::machine::Snapshot as MachineSnapshot;
 use super::{Board, Programs};
 use crate::kernel::Kernel;
 
-/// Everything that a board holds besides its settings.
+/// Everything that a board holds except its settings.
 ///
-/// Guest memory is shared with earlier snapshots in pages of 4 KiB, and what is known about programs with the board.
+/// Guest memory is shared with earlier snapshots in pages of 4 KiB, and the facts about programs are shared with the
+/// board.
 pub struct BoardSnapshot<E: Engine> {
     machine: MachineSnapshot<<E as Executor>::Snapshot>,
     kernel: Kernel,
     programs: Arc<Programs>,
 }
 
-// Derived, it would ask the same of the engine.
+// A derived implementation would require `Debug` of the engine.
 impl<E: Engine> fmt::Debug for BoardSnapshot<E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("BoardSnapshot").field("machine", &self.machine).finish_non_exhaustive()
@@ -39,7 +40,7 @@ impl<E: Engine> BoardSnapshot<E> {
         self.machine.is_held()
     }
 
-    /// Bytes of guest memory that this snapshot has beside those that it shares with `other`.
+    /// Bytes of guest memory that this snapshot does not share with `other`.
     #[must_use]
     pub fn bytes_beyond(&self, other: &Self) -> usize {
         self.machine.memory().bytes_beyond(other.machine.memory())
@@ -47,11 +48,11 @@ impl<E: Engine> BoardSnapshot<E> {
 }
 
 impl<E: Engine> Board<E> {
-    /// The board as it is: guest memory, threads, servo, devices, the loads of the axes, the PC, console text and events
-    /// that nobody has received yet.
+    /// A snapshot of the board: guest memory, threads, servo, devices, the loads of the axes, the PC, console text and
+    /// events that have not been received yet.
     ///
-    /// Of files that the PC keeps in a [directory](crate::Directory) it has only which are open and what of them is read
-    /// already; the files themselves stay as they are when the board goes back.
+    /// For files that the PC keeps in a [directory](crate::Directory), it records only which are open and how much has
+    /// been read; restoring the board does not change the files themselves.
     pub fn snapshot(&mut self) -> BoardSnapshot<E> {
         BoardSnapshot {
             machine: self.machine.snapshot(),
@@ -60,13 +61,13 @@ impl<E: Engine> Board<E> {
         }
     }
 
-    /// Makes the board what it was when `snapshot` was taken; it continues from there byte for byte as it continued then.
+    /// Restores the board from `snapshot`; it continues byte for byte as it did after the snapshot was taken.
     ///
-    /// Snapshots may be restored in any order, each as often as one likes. One of a board on the interpreter may also be
-    /// restored in another board with the same settings.
+    /// Snapshots may be restored in any order, any number of times. A snapshot of a board on the interpreter may also
+    /// be restored in another board with the same settings.
     ///
     /// # Errors
-    /// [`ForeignSnapshot`] for a snapshot of another board with native threads; nothing has changed then.
+    /// [`ForeignSnapshot`] for a snapshot of another board with native threads; nothing is changed in that case.
     pub fn restore(&mut self, snapshot: &BoardSnapshot<E>) -> Result<(), ForeignSnapshot> {
         let BoardSnapshot { machine, kernel, programs } = snapshot;
         self.machine.restore(machine)?;

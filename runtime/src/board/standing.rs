@@ -1,6 +1,7 @@
-//! The state of the board when a run is over: what each thread waits for, what each axis does and why it does not move.
+//! The state of the board when a run is over: the event for which each thread waits, the activity of each axis and the
+//! reason why it does not move.
 //!
-//! Facts only; whoever tells them to a person finds the words.
+//! It contains only facts; reports put them into words.
 
 use std::fmt;
 
@@ -30,9 +31,9 @@ pub struct StandingThread {
     pub thread: ThreadId,
     /// Its state.
     pub state: Standing,
-    /// Its instruction, then the calls that led there, innermost first.
+    /// The current instruction, then the calls that led to it, innermost first.
     pub calls: Vec<CodeAddr>,
-    /// When it last did anything but look and wait.
+    /// The last time at which it did anything other than poll and wait.
     pub since: Cycles,
     /// The values that it has polled since.
     pub awaited: Vec<Awaited>,
@@ -55,12 +56,12 @@ pub enum Standing {
     Idle,
 }
 
-/// Something that a thread looks at while it waits.
+/// A state that a thread polls while it waits.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Awaited {
     /// The level of a bit.
     Bit(Bit, bool, Source),
-    /// The end of the motion of an axis, with what `CheckDone` returns.
+    /// The end of the motion of an axis, with the result of `CheckDone`.
     Motion(AxisId, i32),
     /// The end of a path.
     Path,
@@ -97,12 +98,12 @@ pub enum OwnerState {
 pub enum Source {
     /// Nothing drives the input.
     Nothing,
-    /// A switch, a probe or an index of an axis: where it is closed, its level there, where the axis is.
+    /// A switch, a probe or an index of an axis: its position, its level when closed, and the position of the axis.
     Contact(AxisId, String, bool, f64),
-    /// Something else drives the input: a wire, a device, the stimulus; with the beginning and end of its last pulse, if that
-    /// came before the wait.
+    /// Another source drives the input: a wire, a device, the stimulus; with the beginning and end of its last pulse,
+    /// if that came before the wait.
     Outside(Option<(Cycles, Cycles)>),
-    /// The program: it is an output.
+    /// The program itself: it is an output.
     Output,
     /// Any program: the bit is memory.
     Memory,
@@ -175,7 +176,7 @@ impl fmt::Display for Reason {
 }
 
 impl<E: Engine> Board<E> {
-    /// The threads that have not ended, each with what it waits for.
+    /// The threads that have not ended, and the event for which each waits.
     #[must_use]
     pub fn standing_threads(&self) -> Vec<StandingThread> {
         ThreadId::all().filter_map(|thread| self.standing(thread)).collect()
@@ -226,7 +227,7 @@ impl<E: Engine> Board<E> {
         }
     }
 
-    /// The thread that has a lock, as far as the word of the lock says it.
+    /// The owner of a lock, according to the word of the lock.
     fn owner(&self, lock: i32) -> Option<Owner> {
         let word: i32 = self.memory().peek(GuestAddr::new(lock.cast_unsigned()));
         let thread = ThreadId::new(word.checked_sub(1)?)?;

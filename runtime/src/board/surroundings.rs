@@ -3,8 +3,8 @@
 //!
 //! The parts are those of the modelled board, without its servo and its firmware functions: inputs and outputs answer
 //! the registers, loads move by what the firmware outputs, switches and encoders show them, the PC serves requests and
-//! files. All of them find the axes and other variables by the addresses of the tables; where a firmware keeps them in other
-//! places, its memory says so ([`place_of`](GuestMemory::place_of)).
+//! files. All of them find the axes and other variables by the addresses of the tables; if a firmware keeps them at
+//! other addresses, its memory maps them ([`place_of`](GuestMemory::place_of)).
 //!
 //! Source: `dsp-board.md` section 8.
 
@@ -36,7 +36,7 @@ use chips::fpga::register_address;
 use chips::kanalog::ADC_CHANNELS;
 use chips::stepgen::generator_of;
 
-/// First register, and how many, that something else than the board answers.
+/// The ranges of registers that are answered by the surroundings instead of the board itself.
 const ANSWERED: [std::ops::Range<usize>; 5] = [0x08..0x09, 0x88..0x8A, 0x90..0x99, 0xC0..0xC2, 0x130..0x136];
 /// An analog input of 0 V.
 const ADC_ZERO: i32 = 2048;
@@ -44,10 +44,10 @@ const ADC_ZERO: i32 = 2048;
 const CONVERTERS: usize = 0x90;
 /// Inputs of a KStep.
 const KSTEP_INPUTS: i32 = 168;
-/// Steps that a load can be moved by in a tick: as many as a generator makes.
+/// The limit of steps by which a load can be moved in a tick: as many as a generator makes.
 const ANY_STEPS: f64 = f64::MAX;
 
-/// The shortest interrupt: no thread has done what came earlier in a tick.
+/// The shortest interrupt, before whose end no thread has run in a tick.
 const INTERRUPT: Cycles = Cycles::new(2006);
 
 /// A request of a stimulus to the board.
@@ -81,7 +81,7 @@ pub struct Instant<'a> {
     pub now: Cycles,
     /// The time in ticks.
     pub tick: Ticks,
-    /// Steps that each generator has made.
+    /// The steps made by each generator.
     pub steps: [f64; N_CHANNELS],
     /// The count bytes of the encoders.
     pub encoders: &'a mut [u8; N_CHANNELS],
@@ -94,16 +94,16 @@ pub struct Instant<'a> {
 pub struct Surroundings {
     parts: Parts,
     threads: Threads,
-    /// Steps of each generator when they were last looked at.
+    /// The steps of each generator at the last update.
     steps: [f64; N_CHANNELS],
     /// The commanded position of each axis' step generator, in position units.
     stepped: [f64; Axes::MAX],
     /// The position of each axis after the interrupt, if no program writes it.
     positions: [f64; Axes::MAX],
     was_enabled: [bool; Axes::MAX],
-    /// The address of the word in which this firmware keeps the active threads.
+    /// The address of the word in which this firmware keeps the set of active threads.
     active: GuestAddr,
-    /// The results of the converters: those of one tick ago.
+    /// The results of the converters from the previous tick.
     conversions: [u16; ADC_CHANNELS],
     asked: Vec<Asked>,
 }
@@ -112,7 +112,7 @@ impl Surroundings {
     /// Creates the surroundings that a machine file describes, with a PC that keeps its files. The word at `active`
     /// holds the active threads.
     ///
-    /// What concerns the firmware and its memory comes with [`begin`](Self::begin).
+    /// [`begin`](Self::begin) sets up the firmware and its memory.
     #[must_use]
     pub fn new(config: Config, active: GuestAddr) -> Self {
         let machine = &config.machine_file;
@@ -133,11 +133,11 @@ impl Surroundings {
         }
     }
 
-    /// The firmware is ready: what the machine does by itself begins, and a stimulus.
+    /// Begins the actions of the machine itself, and a stimulus, once the firmware is ready.
     pub fn begin(&mut self, machine: &MachineFile, stimulus: Stimulus, memory: &mut GuestMemory) {
         let status = i32::from(self.parts.pc.host.has_job());
         memory.set(HOST_STATUS, status);
-        // Nothing fills them without a Kanalog: what they hold at power-up is an accident, and this is that of the model.
+        // Without a Kanalog nothing fills them: their contents at power-up are accidental, and these are the model's.
         (0..ADC_CHANNELS).for_each(|channel| memory.set(ADC_BUFFER_IN.element(channel), ADC_ZERO));
         // Firmware 5.3.2 loses the first jog of an axis if the mode of its first state happens to be 0.
         for axis in memory.axes().iter() {
@@ -156,7 +156,7 @@ impl Surroundings {
         });
     }
 
-    /// Acts by a further stimulus from now on.
+    /// Plays a further stimulus from now on.
     pub fn play(&mut self, stimulus: Stimulus, memory: &mut GuestMemory, now: Cycles) {
         let (world, mut access) = self.parts.access(now);
         world.play(stimulus, &mut access, memory);
@@ -172,7 +172,7 @@ impl Surroundings {
         self.parts.io.uart.arrive(bytes, now);
     }
 
-    /// Characters on the line to the serial port that have not arrived yet.
+    /// The number of characters on the line to the serial port that have not arrived yet.
     #[must_use]
     pub fn uart_backlog(&self) -> usize {
         self.parts.io.uart.backlog()
@@ -189,13 +189,13 @@ impl Surroundings {
         }
     }
 
-    /// Plays an operator, from the beginning of time, for programs that wait on inputs nobody drives; what they do is
+    /// Plays an operator, from power-up on, for programs that wait on undriven inputs; their calls are reported to
     /// [`called`](Self::called).
     pub fn assist(&mut self) {
         self.parts.world.assist(Cycles::default());
     }
 
-    /// A program calls the firmware: whether it only waits, and for what.
+    /// Notes that a program calls the firmware, in order to find out whether it only waits, and for which event.
     pub fn called(&mut self, call: ProgramCall, memory: &GuestMemory, now: Cycles) {
         let Parts { world, io, .. } = &mut self.parts;
         let Some(assist) = &mut world.assist else { return };
@@ -218,7 +218,7 @@ impl Surroundings {
         }
     }
 
-    /// Records from now on what is requested; the records come as events.
+    /// Starts a recording; its records come as events.
     pub fn record(&mut self, request: trace::TraceRequest, memory: &GuestMemory) {
         let Parts { world, io, .. } = &mut self.parts;
         world.record(request, io, memory);
@@ -243,12 +243,12 @@ impl Surroundings {
     /// The firmware writes a register.
     pub fn write(&mut self, register: usize, is_byte: bool, value: u16, now: Cycles) {
         let (fpga, chips) = self.parts.io.registers(now);
-        // The firmware knows its registers: what there would be to say concerns programs.
+        // The firmware knows its registers; remarks would only concern programs.
         let _ = fpga.write(chips, register_address(register as u32), size(is_byte), value.into());
         self.parts.lines(now).settle();
     }
 
-    /// The firmware has sent a console line; the PC keeps requests for files for itself.
+    /// Takes a console line sent by the firmware; the PC handles requests for files itself.
     pub fn hear(&mut self, line: Vec<u8>, now: Cycles) {
         self.parts.send_line(line, now);
     }
@@ -281,7 +281,8 @@ impl Surroundings {
         self.ask(active);
     }
 
-    /// Whose slice ends with a tick: that of the thread that the interrupt before has left the processor to.
+    /// The owner of the slice that ends with a tick: the thread to which the previous interrupt has given the
+    /// processor.
     ///
     fn slice(&mut self, instant: &Instant<'_>) -> Moment {
         let start = instant.now - Cycles::PER_TICK;
@@ -290,7 +291,7 @@ impl Surroundings {
         };
         let Parts { world, out, .. } = &mut self.parts;
         if world.records_changes() && start >= Cycles::default() {
-            // The place where the firmware keeps the thread's registers is not looked for here.
+            // The thread's registers, which the firmware saves, are not located here.
             let slice = trace::Record::Slice { thread, end: instant.now, interrupted_at: None };
             out.tell(start, EventKind::Trace(slice));
         }
@@ -300,7 +301,7 @@ impl Surroundings {
     /// The threads as the firmware has them.
     fn follow_threads(&mut self, active: ThreadSet) {
         for thread in ThreadId::all() {
-            // Whether there is a program, only the firmware knows.
+            // Only the firmware knows whether there is a program.
             if self.threads.entry(thread).is_null() {
                 self.threads.set_entry(thread, GuestAddr::new(1));
             }
@@ -315,7 +316,7 @@ impl Surroundings {
         }
     }
 
-    /// Moves each load by what the firmware has output for its axis in the last tick.
+    /// Moves each load by the outputs of the firmware for its axis in the last tick.
     fn move_loads(&mut self, instant: &mut Instant<'_>) {
         for axis in instant.memory.axes().iter() {
             let at = axis.index();
@@ -416,7 +417,7 @@ impl Surroundings {
         }
     }
 
-    /// Keeps what the stimulus wants of threads and of the PC.
+    /// Stores the requests of the stimulus to threads and to the PC.
     fn ask(&mut self, active: ThreadSet) {
         for thread in ThreadId::all() {
             match (active.contains(thread), self.threads.state(thread).is_active()) {
@@ -448,7 +449,7 @@ impl Surroundings {
     /// Takes the events since the last call.
     pub fn take_events(&mut self) -> Vec<Event> {
         let is_told = |event: &Event| match &event.kind {
-            // Of the programs on a booted board nothing is known that a remark could say.
+            // Remarks are about programs, and nothing is known about the programs on a booted board.
             EventKind::Remark(Remark { speaker: Speaker::Board, .. }) => true,
             EventKind::Remark(remark) => matches!(remark.message, Message::Assisted { .. }),
             _ => true,
@@ -458,15 +459,15 @@ impl Surroundings {
         events
     }
 
-    /// Returns whether something is still to come: a statement that starts something, or an answer that a program waits
-    /// for.
+    /// Returns whether something is still pending: a statement that starts something, or an answer for which a program
+    /// waits.
     #[must_use]
     pub fn is_busy(&self, memory: &GuestMemory) -> bool {
         let Parts { out, pc, world, .. } = &self.parts;
         pc.host.is_asked(memory) || world.is_busy(out)
     }
 
-    /// The run is over: what the stimulus expects then is checked.
+    /// Ends the run: the final expectations of the stimulus are checked.
     pub fn finish(&mut self, memory: &mut GuestMemory, now: Cycles) {
         self.follow_threads(active(memory, self.active));
         let context = TickContext { memory, threads: &mut self.threads, tick: Ticks::new(0), now };

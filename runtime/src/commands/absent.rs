@@ -1,8 +1,7 @@
-//! Unknown words that people send: explanations, and alternatives.
+//! Common unknown words in command lines: explanations and alternatives.
 //!
-//! The board answers them as it answers every unknown word; the simulation adds a remark beside it. The words are
-//! commands of the other firmware, those of the manual's command references that no modelled firmware has, some of them
-//! only misprinted there, and G code.
+//! The board answers them like every unknown word; the simulation adds a remark. The words are commands of the other
+//! firmware, commands in the manual's references that no modelled firmware has (some are misprints), and G code.
 
 use kmotiondef::boards::TargetBoard;
 
@@ -60,7 +59,7 @@ const WORDS: &[(&str, Why)] = &[
     ("SPISETMODE", OtherBoard),
 ];
 
-/// Letters that a block of G code begins with, and that a number follows.
+/// Letters with which a block of G code begins, followed by a number.
 const G_CODE: &[u8] = b"GMTSFN";
 
 /// Returns the message about a part, in upper case, that begins with no command of a board.

@@ -1,8 +1,8 @@
-//! Arguments of script commands: what each command takes, and how the board reads it.
+//! Arguments of script commands: their kinds, and how the board reads them.
 //!
-//! The rules, odd ones included, are those of the released firmware (host-protocol.md section 2): a number ends where
-//! it ends and what follows it is ignored; only spaces separate; a hexadecimal number takes the character after it
-//! along, whatever that is; a mistake is reported with the column where reading stopped.
+//! The rules, odd ones included, are those of the released firmware (host-protocol.md section 2): characters directly
+//! after a number are ignored; only spaces separate arguments; a hexadecimal number also consumes the character after
+//! it; a mistake is reported with the column where reading stopped.
 
 use kmotiondef::{AxisId, Bit, ThreadId};
 
@@ -22,15 +22,15 @@ pub enum Argument {
     Limited(f32, f32),
     /// A hexadecimal number of 32 bits.
     Hex,
-    /// A hexadecimal number that may be missing, with all after it.
+    /// A hexadecimal number that may be missing, together with all arguments after it.
     OptionalHex,
     /// An equals sign.
     Equals,
-    /// An equals sign that may be left out.
+    /// An equals sign that may be omitted.
     OptionalEquals,
     /// An equals sign; when the command ends before it, the present value is requested.
     Assign,
-    /// Nothing: the present value is requested, and the board stops if anything follows.
+    /// No argument: the current value is requested, and the board stops if anything follows.
     End,
 }
 
@@ -72,7 +72,7 @@ impl Message {
     }
 }
 
-/// An integer at the beginning of a text, and its characters: a sign alone is 0.
+/// The integer at the beginning of a text, and its length in characters; a sign without digits is 0.
 fn integer(text: &[u8]) -> (i32, usize) {
     let (value, used) = integer_prefix(text, 10);
     let sign = usize::from(matches!(text, [b'+' | b'-', ..]));
@@ -106,7 +106,7 @@ impl<'t> LineReader<'t> {
         Self { column: self.column + spaces, ..*self }
     }
 
-    /// Takes the characters of a number that `read` makes one of, if there are any; its value.
+    /// Takes the characters of a number, converted by `read`, if there are any; returns its value.
     fn number<V>(&mut self, read: impl FnOnce(&[u8]) -> (V, usize)) -> Result<V, Mistake> {
         let mut next = self.behind(b" \t");
         let (value, used) = read(next.rest());
@@ -122,7 +122,7 @@ impl<'t> LineReader<'t> {
         Mistake { column: self.column, message }
     }
 
-    /// A decimal integer; what cannot be read of it is 0.
+    /// A decimal integer; 0 if there are no digits.
     fn integer(&mut self, lo: i32, hi: i32) -> Result<i32, Mistake> {
         let value = self.number(integer)?;
         if !(lo..=hi).contains(&value) {
@@ -131,7 +131,7 @@ impl<'t> LineReader<'t> {
         Ok(value)
     }
 
-    /// A real number; what cannot be read of it is 0.
+    /// A real number; 0 if there are no digits.
     fn real(&mut self) -> Result<f64, Mistake> {
         self.number(float_value)
     }
@@ -193,7 +193,7 @@ enum ArgumentValue {
 
 /// The arguments of a command, as many as there are.
 ///
-/// The table says what a command takes; asking for another kind, or for more, yields 0.
+/// The table gives the kinds of a command's arguments; a request for another kind, or for more arguments, yields 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Values {
     values: Vec<ArgumentValue>,
@@ -201,7 +201,7 @@ pub(super) struct Values {
 }
 
 impl Values {
-    /// Reads what `arguments` ask for.
+    /// Reads the arguments that `arguments` lists.
     pub(super) fn read(
         arguments: &[Argument],
         set: CommandSet,
@@ -230,7 +230,7 @@ impl Values {
                     continue;
                 }
                 Argument::OptionalEquals => {
-                    // Its absence is no mistake.
+                    // It may be missing.
                     let _ = reader.equals();
                     continue;
                 }
@@ -253,7 +253,7 @@ impl Values {
         }
     }
 
-    /// An integer that the table keeps from being negative.
+    /// An integer that is not negative according to the table.
     pub(super) fn count(&self, index: usize) -> usize {
         usize::try_from(self.integer(index)).unwrap_or(0)
     }
@@ -282,7 +282,7 @@ impl Values {
         (0..self.values.len()).map(|index| self.integer(index)).collect()
     }
 
-    /// A hexadecimal number, if it is there.
+    /// A hexadecimal number, if it is present.
     pub(super) fn optional_word(&self, index: usize) -> Option<u32> {
         match self.values.get(index) {
             Some(ArgumentValue::Word(value)) => Some(*value),

@@ -62,7 +62,7 @@ pub(super) fn filter(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     Answer::Nothing
 }
 
-/// Reports whether an axis is enabled. The released firmware has nothing to set and stops at anything that follows.
+/// Reports whether an axis is enabled. The released firmware cannot set it, and stops at any further argument.
 pub(super) fn enabled(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     if values.is_question() {
         return session.memory().axis(values.axis(), Chan::ENABLE).into();

@@ -1,4 +1,4 @@
-//! The board as a whole: version, restart, flash, and which link it listens to.
+//! The board as a whole: version, restart, flash, and the link from which it takes commands.
 
 use kmotiondef::variables::DO_RS232_CMDS;
 
@@ -12,16 +12,17 @@ use crate::views::Typed;
 const FLASH_COMPLETE: &str = "Program Flash Image Complete";
 /// The board's message once it has read back the data written by `Flash` (dsp-board.md section 2.4).
 const VERIFIED: &str = "Verify Complete";
-/// The UART's clock, 16 of whose periods make the shortest bit.
+/// The UART's clock; 16 of its periods make the shortest bit.
 const UART_CLOCK: i32 = 16_666_666 / 16;
-/// The rates that the board knows.
+/// The baud rates that the board accepts.
 const RATES: [i32; 5] = [9600, 19_200, 38_400, 57_600, 115_200];
 
 pub(super) fn version(session: &mut Session<'_, '_>, _: &Values) -> Answer {
     session.parts.level.board().version.to_owned().into()
 }
 
-/// The rest of the command as a console line; without one, what an earlier command has left after it in the buffer.
+/// Prints the rest of the command as a console line; without a rest, the text that an earlier command has left in the
+/// buffer.
 pub(super) fn echo(session: &mut Session<'_, '_>, _: &Values) -> Answer {
     Answer::Console(session.rest.to_vec())
 }
@@ -44,18 +45,18 @@ pub(super) fn clear_flash_image(session: &mut Session<'_, '_>, _: &Values) -> An
     Answer::Nothing
 }
 
-/// A new firmware is taken and ignored; the answer is as if it were there.
+/// Takes a new firmware and ignores it; the answer is the same as with a complete image.
 pub(super) fn program_flash_image(_: &mut Session<'_, '_>, _: &Values) -> Answer {
     FLASH_COMPLETE.to_owned().into()
 }
 
-/// Replies go to the PC again.
+/// Sends replies to the PC again.
 pub(super) fn usb(session: &mut Session<'_, '_>, _: &Values) -> Answer {
     session.memory().set(DO_RS232_CMDS, 0);
     Answer::Nothing
 }
 
-/// Commands are taken from the UART, and replies go there.
+/// Takes commands from the UART, and sends replies there.
 pub(super) fn rs232(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let rate = values.integer(0);
     if !RATES.contains(&rate) {

@@ -1,6 +1,6 @@
-//! Data lines: what some commands ask for after their own line.
+//! Data lines: the further lines that some commands take.
 //!
-//! A data line holds a fixed count of hexadecimal numbers; what follows them on the line is ignored.
+//! A data line holds a fixed number of hexadecimal numbers; the rest of the line is ignored.
 
 use kmotiondef::GuestAddr;
 use kmotiondef::limits::N_BYTES_PER_LINE;
@@ -51,12 +51,12 @@ pub(super) struct Data {
     start: GuestAddr,
     /// The address of the next number.
     place: GuestAddr,
-    /// Numbers still to come.
+    /// The count of numbers that are still missing.
     left: usize,
 }
 
 impl Data {
-    /// `count` numbers that go to `start` and after.
+    /// Data of `count` numbers that are stored from `start` on.
     pub(super) const fn new(kind: DataKind, start: GuestAddr, count: usize) -> Self {
         Self { kind, start, place: start, left: count }
     }

@@ -1,8 +1,8 @@
 //! The gather buffer over the link: words, recorded motions, injected noise.
 //!
 //! `GatherMove` and `GatherStep` record an axis while it goes away and comes back: it rests for 0.02 s, moves (or
-//! jumps), and at half of the recording moves back. `Inject` disturbs an axis with filtered noise and records what
-//! comes of it; the noise is always the same, as every run is.
+//! jumps), and moves back halfway through the recording. `Inject` disturbs an axis with filtered noise and records the
+//! response; the noise is the same in every run.
 
 use std::f64::consts::TAU;
 
@@ -35,7 +35,7 @@ const NUMBERS_PER_LINE: usize = 24;
 /// Bytes of a double.
 const DOUBLE: u32 = 8;
 
-/// Begins the legs of an experiment whose time has come; it is over after the last one.
+/// Begins the legs of an experiment that are due; the experiment is over after the last leg.
 pub(crate) fn advance(running: &mut Option<Experiment>, parts: &mut Parts, context: &mut TickContext<'_>) {
     let Some(experiment) = running else { return };
     let Some(&due) = experiment.legs.get(experiment.done) else {
@@ -129,12 +129,12 @@ pub(super) fn set_decimal(session: &mut Session<'_, '_>, values: &Values) -> Ans
     Answer::Nothing
 }
 
-/// Words that the buffer has from the first one named on, of those requested.
+/// The number of requested words, from the first one on, that are inside the buffer.
 fn available(values: &Values) -> usize {
     values.count(1).min(GATHER_WORDS as usize - values.count(0))
 }
 
-/// Words, eight on a line; those after the end of the buffer are left out.
+/// Words, eight per line; words after the end of the buffer are omitted.
 pub(super) fn get_hex(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let start = word(session, values).address();
     let memory = &*session.memory();
@@ -167,8 +167,8 @@ pub(super) fn read_disk_data(session: &mut Session<'_, '_>, values: &Values) -> 
 /// The largest number of `rand`.
 const RAND_MAX: f32 = 32_767.0;
 
-/// Puts noise below a frequency into the buffer, and has the servo add it to an axis and record. The noise is that of
-/// `rand` through a low-pass filter of first order, as measured.
+/// Fills the buffer with noise below a frequency, and makes the servo add it to an axis and record. The noise is that
+/// of `rand` through a first-order low-pass filter, as measured.
 pub(super) fn inject(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (chan, cutoff, amplitude) = (chan(values.axis()), values.real(1), values.real(2));
     let start = session.memory().get(GATHER_BUFFER);

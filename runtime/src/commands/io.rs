@@ -14,7 +14,8 @@ use crate::views::Typed;
 const LED0: i32 = 46;
 /// The converters' word for zero.
 const ZERO: i32 = 2048;
-/// Characters for which the board has room where it puts words together; the next ones are where it returns to.
+/// The size of the board's buffer for the words of a reply, in characters; a longer reply overwrites the return
+/// address.
 const ANSWER_ROOM: usize = 84;
 
 pub(super) fn set_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
@@ -40,7 +41,7 @@ pub(super) fn led(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     Answer::Nothing
 }
 
-/// The level, without a remark about inputs that nothing drives: people look at them on purpose.
+/// The level, without a remark about undriven inputs: a user reads them on purpose.
 pub(super) fn read_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     i32::from(session.parts.level(session.context.memory, values.bit())).into()
 }
@@ -55,8 +56,8 @@ pub(super) fn get_bit_direction(session: &mut Session<'_, '_>, values: &Values) 
     session.call(|parts, caller| io::get_bit_direction(parts, caller, values.integer(0))).into()
 }
 
-/// Words of the extended virtual bits on one line. The released firmware continues reading after the last word, and
-/// hangs; a count of 0 yields nothing.
+/// Words of the extended virtual bits on one line. The released firmware reads on after the last word, and hangs; a
+/// count of 0 yields nothing.
 pub(super) fn get_virtual_bits(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (first, count) = (values.count(0), values.count(1));
     if count == 0 {
@@ -121,7 +122,7 @@ fn write(session: &mut Session<'_, '_>, values: &Values, size: AccessSize) -> An
     let (fpga, now) = (session.memory().map().fpga, session.context.now);
     let is_kogna = session.parts.io.kogna.is_some();
     let offset = if is_kogna { 2 * number } else { 4 * number + 2 };
-    // On a KFLOP the last number that the command takes lies outside.
+    // On a KFLOP the largest number that the command accepts is outside.
     if offset < fpga.size {
         let (address, parts) = (fpga.base.offset(offset), &mut *session.parts);
         if is_kogna {

@@ -22,7 +22,7 @@ use crate::pc::{Arrival, ByteLink, Pc};
 
 /// Characters of a line; the last of them ends it.
 const LINE_LIMIT: usize = 2560;
-/// Characters of `Echo` and the one after it.
+/// The length of `Echo` and the character after it.
 const ECHO: usize = 5;
 /// Characters of a data line.
 const DATA_LIMIT: usize = 256;
@@ -30,13 +30,13 @@ const DATA_LIMIT: usize = 256;
 /// The state of the command loop for one end of the link: the USB port, or the UART.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Link {
-    /// The buffer of lines, each with a 0 after it: what an earlier one has left stays after that.
+    /// The line buffer, with a 0 after each line: the rest of an earlier, longer line remains after that.
     buffer: Vec<u8>,
     /// The ranges of its commands that are still to be executed.
     parts: VecDeque<Range<usize>>,
-    /// The data that the command in progress waits for.
+    /// The data for which the command in progress waits.
     data: Option<Data>,
-    /// True if name and `Ready` are due when the line is done.
+    /// True if name and `Ready` are sent when the line is done.
     prompts: bool,
     geometry: Geometry,
 }
@@ -60,7 +60,7 @@ impl Link {
         }
     }
 
-    /// The text of the buffer from a place on.
+    /// The text of the buffer from an offset on.
     fn rest(&self, from: usize) -> Vec<u8> {
         let rest = self.buffer.get(from..).unwrap_or_default();
         rest.iter().copied().take_while(|&byte| byte != 0).collect()
@@ -114,7 +114,7 @@ fn board_name(board: &TargetBoard) -> &'static str {
     board.version.split_once(" Build").map_or(board.version, |(name, _)| name)
 }
 
-/// One end of the link, and the bytes on their way to it.
+/// One end of the link, with the bytes on their way to it.
 type Side = fn(&mut Pc) -> &mut ByteLink;
 
 /// Executes at most one line from one end of the link, in the primary thread's slice.
@@ -168,7 +168,7 @@ impl Turn<'_, '_> {
                 self.part(&text, &rest);
             }
         }
-        // The board queues what goes to the console, and sends it after the replies to the line.
+        // The board queues console text, and sends it after the replies to the line.
         self.out.sort_by_key(|output| matches!(output, Output::Console(_)));
         let is_alive = !(self.side)(&mut self.parts.pc).is_dead();
         if self.link.data.is_none() && std::mem::take(&mut self.link.prompts) && is_alive {
@@ -188,7 +188,7 @@ impl Turn<'_, '_> {
         }
     }
 
-    /// One command, and the text after what would be the word of `Echo`.
+    /// Executes one command; `rest` is the text after the word, if that is `Echo`.
     fn part(&mut self, part: &[u8], rest: &[u8]) {
         let set = self.parts.level.behaviour().commands;
         let Some((command, length)) = find(part, set) else {
@@ -241,7 +241,7 @@ impl Turn<'_, '_> {
         }
     }
 
-    /// The released firmware hangs here; so does the link, and the user gets a remark.
+    /// Stops the link, as the released firmware hangs here, and makes a remark.
     fn stop(&mut self, command: &Command) {
         self.link.parts.clear();
         (self.side)(&mut self.parts.pc).die();
@@ -249,7 +249,7 @@ impl Turn<'_, '_> {
         self.parts.out.remark(self.context.now, message);
     }
 
-    /// Three console lines; what was to come of the line is dropped.
+    /// Prints the three console lines of a mistake; the rest of the line is dropped.
     fn mistake(&mut self, text: &[u8], mistake: &Mistake) {
         let caret = [" ".repeat(mistake.column).into_bytes(), b"^".to_vec()].concat();
         let message = mistake.message.text().into_bytes();

@@ -1,4 +1,4 @@
-//! State that script commands keep from one to the next.
+//! State that script commands keep between commands.
 
 use kmotiondef::AxisId;
 

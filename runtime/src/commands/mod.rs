@@ -143,14 +143,14 @@ impl Argument {
     }
 }
 
-/// The command that a text in upper case begins with, and the length of its word: the longest that matches.
+/// The command with which a text in upper case begins, and the length of its word: the longest match.
 fn find(text: &[u8], set: CommandSet) -> Option<(&'static Command, usize)> {
     let matches = |command: &&Command| {
         let length = command.name.len();
         let word = text.get(..length).is_some_and(|word| word.eq_ignore_ascii_case(command.name.as_bytes()));
         let ends = |byte: &u8| match byte {
             b' ' | b'=' | b'0'..=b'9' => true,
-            // Odd and kept: a sign ends this one word, and anything a word that ends in a digit.
+            // Board quirk: a sign ends this one word, and any character ends a word that ends in a digit.
             b'-' => {
                 command.name == "DisableAxis" || command.name.ends_with(|last: char| last.is_ascii_digit())
             }
@@ -169,13 +169,13 @@ fn find(text: &[u8], set: CommandSet) -> Option<(&'static Command, usize)> {
     Some((longest, longest.name.len()))
 }
 
-/// The command that a line begins with, in whatever case.
+/// The command with which a line begins, in upper or lower case.
 #[must_use]
 pub fn command_at(line: &str) -> Option<&'static Command> {
     find(line.to_ascii_uppercase().as_bytes(), CommandSet::First).map(|(command, _)| command)
 }
 
-/// The boards whose firmware has a command of this name, in whatever case, each with the name as its manual writes it.
+/// The boards whose firmware has a command of this name, in upper or lower case, each with the spelling of its manual.
 pub fn boards_with(name: &str) -> impl Iterator<Item = (&'static str, &'static TargetBoard)> {
     let named = move |list: &'static [Command]| {
         list.iter().find(|command| command.name.eq_ignore_ascii_case(name)).map(|command| command.name)
@@ -191,7 +191,7 @@ pub fn boards_with(name: &str) -> impl Iterator<Item = (&'static str, &'static T
     })
 }
 
-/// The command of this name, in whatever case.
+/// The command of this name, in upper or lower case.
 #[must_use]
 pub fn command_named(name: &str) -> Option<&'static Command> {
     COMMANDS.iter().find(|command| command.name.eq_ignore_ascii_case(name))

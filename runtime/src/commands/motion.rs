@@ -10,7 +10,7 @@ use super::session::{Answer, Session};
 use crate::firmware::motion;
 use crate::views::Typed;
 
-/// A motion call as the primary thread makes it: it plans at once.
+/// A motion call from the primary thread, which plans at once.
 pub(super) fn planned(outcome: Outcome<()>) -> Answer {
     debug_assert_eq!(outcome, Outcome::Done(()), "only user threads wait for a slice to plan in");
     Answer::Nothing

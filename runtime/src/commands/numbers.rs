@@ -45,7 +45,7 @@ pub(super) fn limit(value: f32) -> String {
     if value < 0.0 { format!("-{text}") } else { text }
 }
 
-/// `%f`, or `%g` beyond a magnitude of 1e8.
+/// Formats with `%f`, or with `%g` for magnitudes above 1e8.
 pub(super) fn plain(value: f64) -> String {
     formatted(if value.abs() > 1e8 { "%g" } else { "%f" }, value)
 }

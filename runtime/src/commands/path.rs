@@ -1,7 +1,7 @@
-//! Coordinated motion: the coordinate system, the buffer and what fills it, overrides, spindle.
+//! Coordinated motion: the coordinate system, the buffer and its segments, overrides, spindle.
 //!
-//! A segment that is sent in hexadecimal leaves out what the board remembers: its beginning (`LHex1`), or its
-//! beginning and end (`LHex2`). [`Geometry`] is that memory.
+//! A segment that is sent in hexadecimal omits the points that the board remembers: its beginning (`LHex1`), or its
+//! beginning and end (`LHex2`). [`Geometry`] remembers them.
 
 use kmotiondef::structs::Spindle;
 use kmotiondef::variables::{CS0_STOPPING_STATE, SPINDLE};
@@ -31,7 +31,7 @@ fn timing(numbers: &[f32]) -> Timing {
     Timing { polynomial: std::array::from_fn(number), duration: number(4) }
 }
 
-/// Letters from `first` on; the others are at 0.
+/// The letters from `first` on, set from numbers; the others are 0.
 fn point(first: usize, numbers: &[f32]) -> Point {
     let mut point = [0.0; LETTERS];
     for (letter, number) in point.iter_mut().skip(first).zip(numbers) {
@@ -71,7 +71,7 @@ pub(super) fn linear_hex(session: &mut Session<'_, '_>, values: &Values, letters
     linear_again_with(session, timing)
 }
 
-/// `LHex1` and its variants: a line on from the end of the one before.
+/// Adds a line from the end of the previous segment: `LHex1` and its variants.
 pub(super) fn linear_on(session: &mut Session<'_, '_>, values: &Values, letters: usize) -> Answer {
     let numbers = values.singles();
     let (end, timing) = numbers.split_at(letters.min(numbers.len()));
@@ -103,7 +103,7 @@ pub(super) fn arc(session: &mut Session<'_, '_>, values: &Values, plane: Plane) 
     noted(session, result)
 }
 
-/// The letters outside an arc's plane: the one left of X, Y and Z comes first, then A and on.
+/// The letters outside an arc's plane: first the remaining one of X, Y and Z, then A and the following.
 fn outside(plane: Plane, numbers: &[f32]) -> Point {
     let mut letters = point(2, numbers);
     let rest = match plane {

@@ -45,7 +45,7 @@ pub(super) fn set_startup(session: &mut Session<'_, '_>, values: &Values) -> Ans
     Answer::Nothing
 }
 
-/// Takes data lines, unless the bytes would lie outside memory: the released firmware does not check that.
+/// Takes data lines, unless the bytes would be outside memory, which the released firmware does not check.
 pub(super) fn load_data(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (start, count) = (values.word(0), values.word(1));
     let end = u64::from(start) + u64::from(count);
@@ -61,7 +61,7 @@ pub(super) fn load_data(session: &mut Session<'_, '_>, values: &Values) -> Answe
     data(DataKind::Program, start, count)
 }
 
-/// Takes the data lines of a new firmware; there is nothing to do with them.
+/// Takes the data lines of a new firmware and ignores them.
 pub(super) fn load_flash(_: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (start, count) = (values.word(0), values.word(1));
     let end = u64::from(start) + u64::from(count);

@@ -1,4 +1,4 @@
-//! Replays what the released firmware was recorded to answer, byte for byte.
+//! Replays recorded answers of the released firmware, byte for byte.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +10,7 @@ use super::COMMANDS;
 use crate::testing::TestBench;
 use crate::text::vectors::rows;
 
-/// Answers that depend on when a line came, or on what is connected: only their form is compared.
+/// Answers that depend on timing or on connected hardware: only their form is compared.
 const BY_FORM: &[(&str, &str, &str)] = &[
     ("ADC", "ADC", "the recorded board has nothing connected, which reads as the lowest value"),
     ("GETSTATUS", "GETSTATUS", "analog inputs, time stamp"),
@@ -55,7 +55,7 @@ impl Wire {
         Self { bench: TestBench::new() }
     }
 
-    /// Sends bytes and returns what comes back.
+    /// Sends bytes and returns the reply.
     fn send(&mut self, bytes: &[u8]) -> String {
         self.bench.kernel.parts.pc.usb.receive(bytes);
         while self.bench.kernel.parts.pc.usb.is_busy() {
@@ -64,7 +64,7 @@ impl Wire {
         self.bench.kernel.parts.out.take_events().into_iter().map(wire).collect()
     }
 
-    /// Sends a recorded line, or does what is in its place in parentheses.
+    /// Sends a recorded line, or carries out the action given in parentheses instead.
     fn exchange(&mut self, line: &str) -> String {
         let Some(action) = line.strip_prefix('(').and_then(|line| line.strip_suffix(')')) else {
             return self.send(format!("\x1b\x01{line}\r").as_bytes());

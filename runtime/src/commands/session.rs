@@ -13,7 +13,7 @@ use crate::firmware::parts::Parts;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[must_use]
 pub(super) enum Answer {
-    /// No reply, as of every command that sets something.
+    /// No reply, as for every command that sets a value.
     Nothing,
     /// A reply of one line.
     Line(String),
@@ -25,7 +25,7 @@ pub(super) enum Answer {
     LineAndConsole(&'static str, &'static str),
     /// The command continues with data lines.
     Data(Data),
-    /// A console line with the reason for which nothing is done.
+    /// A console line with the reason for which the command was not executed.
     Refused(&'static str),
     /// The released firmware stops here, with a last answer.
     Stopped(Box<Answer>),

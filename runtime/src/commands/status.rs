@@ -147,7 +147,7 @@ fn axes(record: &mut Record, context: &TickContext<'_>) {
     record.set(MainStatus::AXIS_DONE, done);
 }
 
-/// The levels of some bits from one on.
+/// The levels of consecutive bits from a given one on.
 fn bits(parts: &Parts, memory: &GuestMemory, first: i32, count: i32) -> i32 {
     let is_high = |offset: &i32| Bit::new(first + offset).is_some_and(|bit| parts.level(memory, bit));
     (0..count).filter(is_high).fold(0, |word, offset| word | 1 << offset)

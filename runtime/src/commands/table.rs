@@ -1,6 +1,6 @@
 //! The table of script commands.
 //!
-//! Rows are in groups; the order means nothing, as the longest word that matches wins. Words, arguments and limits
+//! Rows are in groups; their order has no meaning, because the longest matching word wins. Words, arguments and limits
 //! are those of the released firmware (host-protocol.md section 3.2).
 
 use kmotiondef::structs::Chan;
@@ -21,7 +21,7 @@ const LETTER: Argument = Numbered(-1, 7, 15);
 const ELEMENT: Argument = Integer(0, 199);
 const WORD: Argument = Integer(0, GATHER_WORDS - 1);
 const SAMPLES: Argument = Integer(1, 40_000);
-/// Any magnitude that counts as one, with sign and without.
+/// Numbers of any plausible magnitude, with a sign and without.
 const SIGNED: Argument = Limited(-1e12, 1e12);
 const POSITIVE: Argument = Limited(0.0, 1e12);
 

@@ -22,7 +22,7 @@ use crate::text::{Arguments, Scanned, Sink, format_counted, scan};
 /// Longest string a `%s` reads.
 const LONGEST: u32 = 0x10_0000;
 
-/// The values after `...`, as they lie in guest memory: each aligned to its own size.
+/// The values after `...` in guest memory, each aligned to its own size.
 pub(crate) struct GuestArguments<'a> {
     memory: &'a mut GuestMemory,
     at: u32,
@@ -128,7 +128,7 @@ pub(crate) fn converted(
 /// The cost of a character for the console's queue, in cycles (costs.md section 4).
 const QUEUED_CHARACTER: i64 = 133;
 
-/// Spends what it costs to put text in the console's queue.
+/// Spends the cost of adding text to the console queue.
 pub(crate) fn spend_queueing(caller: &mut Caller<'_>, text: &[u8]) {
     caller.spend(Cycles::new(QUEUED_CHARACTER * text.len() as i64));
 }

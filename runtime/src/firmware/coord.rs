@@ -19,7 +19,7 @@ use crate::servo::independent::has_motion;
 use crate::servo::{hold, moves, planning};
 use crate::views::Typed;
 
-/// Assigns the letters from X on; the others keep theirs.
+/// Assigns the letters from X on; the other letters are unchanged.
 pub(crate) fn define(parts: &mut Parts, caller: &mut Caller<'_>, axes: &[i32]) {
     let valid = |&axis: &i32| axis == -1 || caller.memory.axes().get(axis).is_some();
     if !axes.iter().all(valid) {
@@ -75,7 +75,7 @@ pub(crate) fn define_coord_system8(
     define(parts, caller, &[x, y, z, a, b, c, u, v]);
 }
 
-/// −1 if an axis of the system is disabled, 0 while a buffer is executed, else 1.
+/// −1 if an axis of the system is disabled, 0 while a buffer is executed, otherwise 1.
 pub(crate) fn check_done_buf(parts: &mut Parts, caller: &mut Caller<'_>) -> i32 {
     let done = buffer::check_done(caller.memory);
     if let Some(letter) = first_disabled(caller.memory) {
@@ -102,8 +102,8 @@ fn note_others(parts: &mut Parts, caller: &Caller<'_>) {
     }
 }
 
-/// Begins a feedhold. The board computes it in slices of the caller: one to begin, one for each axis that moves by
-/// itself; the others run on meanwhile. Only a thread can wait for them.
+/// Begins a feedhold. The board computes it in slices of the caller: one to begin, and one for each axis that moves
+/// independently; the other axes continue to move meanwhile. Only a thread can wait for these slices.
 pub(crate) fn stop_coordinated_motion(parts: &mut Parts, caller: &mut Caller<'_>) -> Outcome<()> {
     if caller.thread.is_none() {
         hold::ask(&mut parts.servo, caller.memory);
@@ -118,7 +118,7 @@ pub(crate) fn stop_coordinated_motion(parts: &mut Parts, caller: &mut Caller<'_>
             }
             let mut moving = hold::moving_members(caller.memory);
             let is_moving = !moving.is_empty();
-            // Of an axis that is disabled the motion stays as it is, and takes no slice.
+            // The motion of a disabled axis is unchanged, and takes no slice.
             moving.retain(|&axis| caller.memory.axis(axis, Chan::ENABLE) != 0);
             if is_moving && moving.is_empty() {
                 caller.memory.set(CS0_STOPPING_STATE, HoldState::StoppingAxes.number());
@@ -168,7 +168,7 @@ pub(crate) fn update_stopping_state(_: &mut Parts, caller: &mut Caller<'_>) {
     hold::update_state(caller.memory);
 }
 
-/// Ends a feedhold: its axes move on in turn, each as a move of its own would.
+/// Ends a feedhold: its axes continue one by one, each planned like a separate move.
 pub(crate) fn resume_coordinated_motion(parts: &mut Parts, caller: &mut Caller<'_>) -> Outcome<()> {
     let (mut left, mut progress) = match (caller.woken, parts.calls.take(caller)) {
         (Some(_), Some(Continuation::Resume(left, progress))) => (left, progress),
@@ -223,7 +223,7 @@ pub(crate) fn exec_buf(_: &mut Parts, caller: &mut Caller<'_>) {
     buffer::execute(caller.memory);
 }
 
-/// An override that looks like a number of percents.
+/// Checks for an override that looks like a percentage.
 fn check_override(parts: &mut Parts, caller: &Caller<'_>, function: Function, value: f32) {
     const MOST: f32 = 10.0;
     if value >= MOST {

@@ -38,7 +38,7 @@ pub(super) const TO_INPUT: Ranges = &[(47, -6), (63, -102), (95, 153), (i32::MAX
 /// The plan of a move that reaches its full speed, in firmware 5.
 pub(super) const FULL_SPEED: i64 = 595;
 
-/// The plan of a motion after the wait for its slice, in firmware 5: of a move, a jog, several moves.
+/// The planning of a motion after the wait for its slice, in firmware 5: of a move, a jog, several moves.
 pub(super) const AFTER_MOVE: i64 = 4720;
 pub(super) const AFTER_JOG: i64 = 1500;
 pub(super) const AFTER_MOVES: i64 = 3475;
@@ -49,14 +49,14 @@ pub(super) const AFTER_EXP: i64 = 220;
 /// Cycles of a motion call before it waits for its slice.
 pub(super) const BEFORE_A_WAIT: i64 = 100;
 
-/// A motion call that does nothing: the axis is disabled, or beyond a limit.
+/// A motion call without effect: the axis is disabled, or beyond a limit.
 pub(super) const REFUSED: i64 = 76;
 
-/// `StopCoordinatedMotion` in its slice, and for each axis in a slice of its own besides the jog to rest.
+/// `StopCoordinatedMotion` in its slice, and in the separate slice of each axis in addition to the jog to rest.
 pub(super) const STOP: i64 = 327;
 pub(super) const STOP_AXIS: i64 = 176;
 
-/// `ResumeCoordinatedMotion` in a feedhold, besides the moves of its axes.
+/// `ResumeCoordinatedMotion` in a feedhold, without the moves of its axes.
 pub(super) const RESUME: i64 = 230;
 
 /// A jog of 0 of an axis at rest.
@@ -100,7 +100,7 @@ pub(super) fn of_arc_tangent(x: f64) -> i64 {
     }
 }
 
-/// `atan2`: the arc tangent of a quotient, if there is one.
+/// `atan2`: the cost of the arc tangent of a quotient, if there is one.
 pub(super) fn of_direction(y: f64, x: f64) -> i64 {
     match (y == 0.0, x == 0.0) {
         (true, true) => -528,
@@ -126,18 +126,18 @@ pub(super) const CHECK_BUF_LETTER: i64 = 24;
 /// `printf` of no character.
 pub(super) const NOTHING_PRINTED: i64 = -129;
 
-/// Spends what a function of the coordinate system takes for each of its axes.
+/// Spends the cost of a function of the coordinate system for each of its axes.
 pub(super) fn spend_axes(caller: &mut Caller<'_>, axes: usize, cycles: i64) {
     spend(caller, cycles * (axes as i64 - MEASURED_AXES));
 }
 
-/// Spends what a call with this bit costs.
+/// Spends the cost of a call for this bit.
 pub(super) fn spend_bit(caller: &mut Caller<'_>, ranges: Ranges, bit: i32) {
     let range = ranges.iter().find(|(last, _)| bit <= *last);
     spend(caller, range.map_or(0, |(_, cycles)| *cycles));
 }
 
-/// Spends what a motion call takes that does nothing.
+/// Spends the cost of a motion call without effect.
 pub(super) fn refused(caller: &mut Caller<'_>, function: Function) {
     spend(caller, REFUSED - function.row().cost.get());
 }

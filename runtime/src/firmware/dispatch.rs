@@ -1,8 +1,8 @@
-//! From a firmware address to the Rust function that answers, expanded from the table.
+//! Dispatches from a firmware address to its Rust function, expanded from the table.
 //!
-//! A firmware function takes the parts, the caller and its C arguments, and returns what it naturally returns:
-//! nothing, a number, a `Result` if it may trap, an `Outcome` if it may wait. A row of the table without a function,
-//! or a function whose arguments differ in number, is a compile error that names it.
+//! A firmware function takes the parts, the caller and its C arguments, and returns its natural type: nothing, a
+//! number, a `Result` if it may trap, an `Outcome` if it may wait. A row of the table without a function, or a function
+//! whose arguments differ in number, is a compile error that names it.
 
 use kmotiondef::GuestAddr;
 use vm::call::CallArguments;

@@ -1,9 +1,9 @@
 //! Text files on the PC. Source: gather-persist-console.md section 6, host-protocol.md section 6.
 //!
-//! Everything goes through the console's queue, as lines that begin with a code; so what programs write is in the
-//! order of all that is printed, and waits as prints do. Reading is one line ahead: `fopen` brings the first line into
-//! `read_disk_buffer`, and each line that is taken asks for the next. `FILE` is an int and the board keeps no table: one
-//! handle stands for the file open for reading, one for the file open for writing.
+//! Everything goes through the console queue, as lines that begin with a code; so file output is in order with printed
+//! text, and waits like it. Reading is one line ahead: `fopen` reads the first line into `read_disk_buffer`, and taking
+//! a line requests the next one. `FILE` is an int and the board keeps no table: one handle stands for the file open for
+//! reading, one for the file open for writing.
 
 use kmotiondef::firmware::Function;
 use kmotiondef::limits::MAX_READ_DISK_LENGTH;
@@ -27,7 +27,7 @@ const READING: GuestAddr = GuestAddr::new(0x1001_A418);
 /// The handle of the file open for writing.
 const WRITING: GuestAddr = GuestAddr::new(0x1001_A41C);
 
-/// Values for a text that is taken as a format again: there are none.
+/// Values for a text that is taken as a format a second time: there are none.
 struct Nothing;
 
 impl Arguments for Nothing {
@@ -50,13 +50,13 @@ impl Arguments for Nothing {
     }
 }
 
-/// A request as it is printed. Odd and kept: the text after the code is taken as a format a second time.
+/// A request as it is printed. Board quirk: the text after the code is taken as a format a second time.
 fn printed(request: DiskRequest, text: &[u8]) -> Result<Vec<u8>, TrapKind> {
     let text = format(&[&[request.code()], text].concat(), &mut Nothing)?;
     Ok(cut(&text).to_vec())
 }
 
-/// Sends a request and returns `result` when the queue has taken it.
+/// Sends a request and returns `result` once the queue has taken it.
 fn send(
     parts: &mut Parts,
     caller: &Caller<'_>,
@@ -76,7 +76,7 @@ fn address(outcome: Outcome<i32>) -> Outcome<GuestAddr> {
     }
 }
 
-/// Returns whether the last requested line has arrived: `None` while it is on its way.
+/// Returns whether the last requested line has arrived; `None` while it is still expected.
 fn arrival(parts: &mut Parts, caller: &Caller<'_>) -> Option<bool> {
     let status = caller.memory.get(READ_DISK_BUFFER_STATUS);
     if status == ASKED {
@@ -107,12 +107,12 @@ pub(crate) fn fopen(
         caller.memory.set(READ_DISK_BUFFER_STATUS, ASKED);
     }
     let outcome = put(parts, caller, &line, handle.get().cast_signed());
-    // The answer comes later than the request goes.
+    // The answer comes after the request has been sent.
     let waits = request == DiskRequest::Open && matches!(outcome, Outcome::Done(_));
     Ok(if waits { Outcome::Wait(Wake::Retry) } else { address(outcome) })
 }
 
-/// Continues an opening: the request is still to be sent, or its answer to come.
+/// Continues an opening: the request has not been sent, or its answer is still expected.
 fn opened(parts: &mut Parts, caller: &Caller<'_>) -> Outcome<GuestAddr> {
     if let Some(Continuation::Print { rest, result }) = parts.calls.take(caller) {
         let outcome = address(put(parts, caller, &rest, result));
@@ -134,7 +134,7 @@ pub(crate) fn fclose(parts: &mut Parts, caller: &mut Caller<'_>, file: GuestAddr
     put(parts, caller, &[request.code(), b'\n'], 0)
 }
 
-/// Returns whether there is a percent sign that no other one follows.
+/// Returns whether there is a single percent sign.
 fn has_conversion(text: &[u8]) -> bool {
     let mut rest = text;
     while let Some(at) = rest.iter().position(|byte| *byte == b'%') {
@@ -146,7 +146,7 @@ fn has_conversion(text: &[u8]) -> bool {
     false
 }
 
-/// Says once each what is odd about writing on the board.
+/// Makes remarks about the board's quirks in writing files, each once.
 fn warn(parts: &mut Parts, caller: &Caller<'_>, text: &[u8]) {
     if parts.out.console.is_holding() {
         parts.out.diagnose(caller, Message::LineInParts {});

@@ -12,7 +12,7 @@ use super::parts::Parts;
 use crate::out::Message;
 use crate::views::{Typed, chan};
 
-/// A place beyond any end: recording is idle.
+/// An address beyond any end: recording is idle.
 const IDLE: GuestAddr = GuestAddr::new(0xFFFF_FFFC);
 /// Bytes of a sample of six doubles.
 const SAMPLE: u32 = 48;
@@ -30,7 +30,7 @@ pub(crate) fn setup_gather_all_on_axis(parts: &mut Parts, caller: &mut Caller<'_
         (GatherType::Double, caller.memory.locate(chan.field(Chan::DEST))),
         (GatherType::Double, caller.memory.locate(chan.field(Chan::POSITION))),
         (GatherType::Float, caller.memory.locate(chan.field(Chan::OUTPUT))),
-        // The amplifier's analog words: a board without one reads a word of zeros, and nothing.
+        // The amplifier's analog words: a board without an amplifier reads zeros.
         (GatherType::Adc, GuestAddr::NULL),
         (GatherType::Null, GuestAddr::NULL),
         (GatherType::Null, GuestAddr::NULL),
@@ -60,7 +60,7 @@ pub(crate) fn trigger_gather(_: &mut Parts, caller: &mut Caller<'_>) {
 /// 1 when recording has reached its end.
 pub(crate) fn check_done_gather(parts: &mut Parts, caller: &mut Caller<'_>) -> i32 {
     let memory = &*caller.memory;
-    // The PC may ask at any time.
+    // The PC may request it at any time.
     if caller.thread.is_some() && memory.get(GATHER.field(Gather::BUFPTR)) == IDLE {
         parts.out.diagnose(caller, Message::NotRecording {});
     }

@@ -1,7 +1,8 @@
 //! Functions that only a Kogna has. Source: its header; never compared with a board.
 //!
-//! The pins of the fast PWM channels and of the SPI port are inputs and outputs; their devices drive nothing. Flash memory,
-//! the RS422 port and the primed coordinate system are not simulated: a program that calls them is told so, and ends.
+//! The pins of the fast PWM channels and of the SPI port are inputs and outputs; their devices drive nothing. Flash
+//! memory, the RS422 port and the primed coordinate system are not simulated: a program that calls them gets a message,
+//! and ends.
 
 use kmotiondef::GuestAddr;
 use vm::firmware::{Caller, Outcome};

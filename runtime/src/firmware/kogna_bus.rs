@@ -10,14 +10,14 @@ use super::parts::Parts;
 use crate::io::timer;
 use crate::out::Message;
 
-/// The register of a KFLOP that does what a register of a Kogna does, if there is one.
+/// The register of a KFLOP with the same function as a register of a Kogna, if there is one.
 const fn register_of_kflop(number: u32) -> Option<u32> {
     match number {
         // The prescaler of the PWM generators has moved.
         0x3F => Some(0x2F),
         // Rates of the generators; positions of generators 8 to 15; RS485 and differential step pulses.
         0x2F | 0x3C..=0x3E | 0x50..=0x5F | 0xA1..=0xA3 => None,
-        // Bits from 200 on, which functions serve.
+        // Bits from 200 on, which are accessed by functions.
         0x106..=0x10F | 0x116..=0x11F | 0x126..=0x12F | 0x136..=0x13F => None,
         0x140.. => None,
         number => Some(number),

@@ -36,7 +36,8 @@ pub(crate) fn add_konnect_aux0(
     add(parts, caller, Function::AddKonnect_Aux0, Port::Aux0, address, (outputs, inputs))
 }
 
-/// Serves a board from now on; words that are not there are the caller's mistake, not that of a later tick.
+/// Serves a board from now on; addresses of its words that are not mapped are reported as a mistake of the caller, not
+/// in a later tick.
 fn add(
     parts: &mut Parts,
     caller: &mut Caller<'_>,
@@ -50,7 +51,7 @@ fn add(
     if !(0..ADDRESSES).contains(&address) {
         parts.out.diagnose(caller, Message::KonnectAddress { function, address });
     }
-    // The address goes out on three lines.
+    // The address has three lines.
     let board = KonnectBoard { port, address: (address & (ADDRESSES - 1)) as u8 };
     if !parts.io.konnects.is_present(board) {
         parts.out.diagnose(caller, Message::KonnectAbsent { function, address });

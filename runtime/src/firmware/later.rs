@@ -17,7 +17,7 @@ use super::{kogna, motion, sync};
 pub(crate) struct LaterFunction {
     /// The name that programs use.
     pub(crate) name: &'static str,
-    /// The cycles of a call; not measured, those of the nearest function of 4.34.
+    /// The cost of a call in cycles; not measured, but taken from the nearest function of 4.34.
     pub(crate) cost: Cycles,
     /// The function.
     pub(crate) handler: Handler,
@@ -77,7 +77,7 @@ pub(crate) enum Callee {
     Later(usize),
 }
 
-/// The functions of a board by address; `None` for those of the table.
+/// The functions of a board by address; `None` for the functions of the table.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Callees(Option<Arc<BTreeMap<GuestAddr, Callee>>>);
 
@@ -103,7 +103,7 @@ impl Callees {
     }
 }
 
-/// The signatures of all of them, in order.
+/// All signatures, in order.
 pub(crate) fn signatures() -> Vec<Signature> {
     LATER_FUNCTIONS.iter().map(|function| (function.signature)()).collect()
 }

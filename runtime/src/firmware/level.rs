@@ -1,7 +1,8 @@
-//! The firmware that a board is modelled after: the addresses of its functions and variables, and all behaviours in which
-//! versions differ.
+//! The firmware that a board models: the addresses of its functions and variables, and all behaviour that differs
+//! between versions.
 //!
-//! [`Behaviour`] has one field for each difference and one value for each version; nothing else asks for a version.
+//! [`Behaviour`] has one field for each difference and one value for each version; no other code depends on the
+//! version.
 
 use kmotiondef::GuestAddr;
 use kmotiondef::boards::{StructureLayout, TargetBoard};
@@ -20,7 +21,7 @@ pub(crate) enum MutexRule {
     Counted,
 }
 
-/// The script commands of a firmware; each set has those of the one before.
+/// The script commands of a firmware; each set includes the previous one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum CommandSet {
     /// Those of firmware 4.34.
@@ -72,10 +73,10 @@ const FIRMWARE_5: Behaviour = Behaviour {
     has_kogna_devices: false,
 };
 
-/// Firmware 5.3.2 of a Kogna: that of a KFLOP with the differences that its header and manual state. Never compared.
+/// Firmware 5.3.2 of a Kogna: the KFLOP's with the differences stated in its header and manual. Never compared.
 const KOGNA_5: Behaviour = Behaviour { commands: CommandSet::Kogna, has_kogna_devices: true, ..FIRMWARE_5 };
 
-/// The board besides KFLOP whose devices are modelled.
+/// The board besides the KFLOP whose devices are modelled.
 const KOGNA: &str = "KOGNA";
 
 /// A board that can be simulated.
@@ -122,7 +123,7 @@ impl ModelledBoard {
         self.board.function(name).map(|function| function.address)
     }
 
-    /// The layout of the status record, if it is not that of the tables.
+    /// The layout of the status record, if it differs from the tables.
     pub(crate) fn status(&self) -> Option<&'static StructureLayout> {
         self.board.own_structures().iter().find(|layout| layout.name == MainStatus::STRUCTURE.name)
     }

@@ -1,4 +1,5 @@
-//! Mathematics, from `libm` so that every host computes the same; where the firmware's own results are known, those.
+//! Mathematics: the firmware's own results where they are known, otherwise `libm`, so that every host computes the
+//! same.
 
 use kmotiondef::GuestAddr;
 use vm::arith::{self, WordDivision, canonical_f32, canonical_f64};
@@ -11,7 +12,7 @@ use crate::arithmetic::division::{divide, divide_singles};
 use crate::arithmetic::{doubles, powers, singles};
 use crate::servo::sine::two_phases;
 
-/// A floating number, so that every NaN can be made that of all arithmetic: what `libm` makes differs between hosts.
+/// A floating-point number whose NaNs can be made canonical: NaNs from `libm` differ between hosts.
 trait Number {
     fn canonical(self) -> Self;
 }
@@ -50,7 +51,7 @@ macro_rules! functions {
     };
 }
 
-/// Functions whose cost depends on their arguments: an engine cannot call them without a caller who pays.
+/// Functions whose cost depends on their arguments: an engine cannot call them without a caller that pays the cost.
 macro_rules! varying {
     ($($(#[$doc:meta])+ $name:ident($($x:ident),+) -> $ty:ty = $value:expr, costs $cycles:expr;)*) => {
         $($(#[$doc])+
@@ -274,7 +275,7 @@ pub(crate) fn remu(_: &mut Parts, caller: &mut Caller<'_>, a: u32, b: u32) -> Re
     or_by_zero(caller, arith::rem_i32_u(a, b), WordDivision::UnsignedRemainder, a).map(i32::cast_unsigned)
 }
 
-/// The result of a division of `a`, which is none if it is by zero.
+/// The result of a division of `a`, where `None` means division by zero.
 fn or_by_zero(caller: &Caller<'_>, result: Option<i32>, op: WordDivision, a: i32) -> Result<i32, TrapKind> {
     result.map_or_else(|| caller.memory.divided_by_zero(op, a), Ok)
 }

@@ -33,7 +33,7 @@ pub(crate) mod waits;
 use kmotiondef::firmware::Function;
 use vm::trap::TrapKind;
 
-/// Marks a function that links but whose behaviour is still to come: calling it is a trap, never silently nothing.
+/// Marks a function that can be linked but is not modelled yet: a call traps instead of silently doing nothing.
 pub(crate) fn not_modelled<T>(function: Function) -> Result<T, TrapKind> {
     Err(TrapKind::NotModelled { name: function.name() })
 }

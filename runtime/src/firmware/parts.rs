@@ -1,6 +1,6 @@
-//! The parts of the board, side by side, as a firmware function or a script command reaches them.
+//! The parts of the board, as firmware functions and script commands access them.
 //!
-//! Nothing here does anything by itself: a call goes to one part, and hands over the others that the part works on.
+//! This type has no behaviour of its own: a call goes to one part, and passes the other parts that it works on.
 
 use kmotiondef::AccessSize;
 use kmotiondef::firmware::Function;
@@ -32,7 +32,7 @@ pub(crate) struct Clock {
     /// The beginning of the present slice.
     pub(crate) slice_start: Cycles,
     pub(crate) turn: Turn,
-    /// The time that the primary thread still needs for a string that it has begun to send.
+    /// The time that the primary thread still needs to send the string it has begun.
     pub(crate) sending: Cycles,
 }
 
@@ -46,12 +46,12 @@ pub(crate) struct Parts {
     pub(crate) pc: Pc,
     pub(crate) world: World,
     pub(crate) calls: Calls,
-    /// The firmware that it is modelled after.
+    /// The firmware that the board models.
     pub(crate) level: ModelledBoard,
     pub(crate) clock: Clock,
     /// Whose time is counted.
     pub(crate) timing: Timing,
-    /// The accesses of threads to shared memory, if races are looked for.
+    /// The accesses of threads to shared memory, if races are detected.
     pub(crate) races: Option<Box<Races>>,
     /// The switches of a schedule.
     pub(crate) switches: Option<Box<Switches>>,
@@ -97,7 +97,7 @@ impl Parts {
         }
     }
 
-    /// The world, and what it acts on.
+    /// The world, and the parts on which it acts.
     pub(crate) fn access(&mut self, now: Cycles) -> (&mut World, WorldAccess<'_>) {
         let access = WorldAccess {
             machine: &mut self.machine,
@@ -134,7 +134,7 @@ impl Parts {
         self.lines(now).settle();
     }
 
-    /// Sends a console line; the PC keeps those for itself that are requests for files.
+    /// Sends a console line; the PC handles requests for files itself.
     pub(crate) fn send_line(&mut self, line: Vec<u8>, now: Cycles) {
         self.pc.take_line(&mut self.out, line, now);
     }
@@ -146,7 +146,7 @@ impl Parts {
         }
     }
 
-    /// A call stores `size` bytes from an address on: whether the array that they begin in has room for them.
+    /// Checks that the array in which a store of `size` bytes begins has room for them, and makes a remark otherwise.
     pub(crate) fn check_room(&mut self, caller: &Caller<'_>, function: Function, to: GuestAddr, size: usize) {
         if let Some(array) = self.calls.notices.overrun(to, size) {
             let (name, room) = (array.name.clone(), array.size);
@@ -154,7 +154,7 @@ impl Parts {
         }
     }
 
-    /// Exchanges inputs and outputs with one of the Konnects, if there are any; whether that was done.
+    /// Exchanges inputs and outputs with one of the Konnects, if there are any; returns whether it did.
     pub(crate) fn exchange(&mut self, context: &mut TickContext<'_>) -> bool {
         let has_any = self.io.konnects.has_any();
         if has_any && let Some((board, outputs)) = self.io.konnects.tick(context.memory, context.tick) {
@@ -163,7 +163,7 @@ impl Parts {
         has_any
     }
 
-    /// Something outside has changed what the next tick may depend on.
+    /// Notes that something outside has changed a state on which the next tick may depend.
     pub(crate) fn disturb(&mut self) {
         self.servo.cache.invalidate(Change::Anything);
     }

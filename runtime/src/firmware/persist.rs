@@ -15,7 +15,7 @@ const PROGRAMMING: Cycles = Cycles::PER_SECOND;
 /// A block that is none, or words that are too many.
 const REFUSED: i32 = 1;
 
-/// Erases a block of the users' flash and programs it with 16-bit words; then prints a message, if there is one.
+/// Erases a block of the user flash and programs it with 16-bit words; then prints a message, if there is one.
 pub(crate) fn program_flash(
     parts: &mut Parts,
     caller: &mut Caller<'_>,
@@ -34,7 +34,7 @@ pub(crate) fn program_flash(
     }
 }
 
-/// Prints as much as the console has room for; the rest when there is some.
+/// Prints as much as the console has room for, and the rest when there is room again.
 fn print(parts: &mut Parts, caller: &mut Caller<'_>, message: &[u8], result: i32) -> Outcome<i32> {
     let rest = parts.out.console.put(message).to_vec();
     if rest.is_empty() || caller.thread.is_none() {
@@ -76,8 +76,8 @@ fn program(
     Ok(Outcome::Done(if done { 0 } else { REFUSED }))
 }
 
-/// Selects the bank that reads find, on a board that is strict about it; others show all of flash where it is. The
-/// board refuses its boot sector (devices.md section 7).
+/// Selects the bank for reads, on a board with strict flash; others show all of flash at its address. The board refuses
+/// its boot sector (devices.md section 7).
 pub(crate) fn set_flash_bank(parts: &mut Parts, caller: &mut Caller<'_>, address: GuestAddr) {
     if parts.io.flash.select(address, caller.memory) == Err(Refused) {
         parts.out.console.message(&format!("Attempted boot sector write : addr={:x}", address.get()));

@@ -71,7 +71,7 @@ pub(crate) fn write(parts: &mut Parts, memory: &mut GuestMemory, bytes: &[u8]) {
     fill(parts, memory);
 }
 
-/// Puts as much of the replies into the transmit ring as it has room for.
+/// Moves as much of the replies into the transmit ring as fits.
 fn fill(parts: &mut Parts, memory: &mut GuestMemory) {
     while let Some(&byte) = parts.calls.serial.replies.front() {
         let place = memory.get(P_RS232_TX_IN);
@@ -126,7 +126,7 @@ fn next(place: GuestAddr, ring: GuestAddr) -> GuestAddr {
     if (index as usize) < RS232BUFSZ { ring.offset(index) } else { ring }
 }
 
-/// The service of one tick: a character each way; whether there is any.
+/// The service of one tick: a character in each direction; returns whether there was any.
 pub(crate) fn tick(parts: &mut Parts, context: &mut TickContext<'_>) -> bool {
     if !parts.calls.serial.is_busy(context.memory, &parts.io.uart) {
         return false;
@@ -141,7 +141,7 @@ pub(crate) fn tick(parts: &mut Parts, context: &mut TickContext<'_>) -> bool {
     true
 }
 
-/// Puts a received character into its ring; a full ring starts again, as its two pointers are equal then.
+/// Puts a received character into its ring; a full ring becomes empty, because its two pointers are equal then.
 fn receive(parts: &mut Parts, context: &mut TickContext<'_>) {
     let Some(byte) = parts.io.uart.receive(context.now) else { return };
     let place = context.memory.get(P_RS232_REC_IN);
@@ -181,7 +181,7 @@ mod tests {
     use crate::out::EventKind;
     use crate::testing::TestBench;
 
-    /// A board whose service runs at 38400 baud for the program alone.
+    /// A board whose serial service runs at 38400 baud for a program only.
     fn bench() -> TestBench {
         let mut bench = TestBench::new();
         assert!(!bench.is_done("EnableRS232Cmds", &[26]));

@@ -30,7 +30,7 @@ pub(crate) fn configure_spindle(
     spindle::configure(caller.memory, &Setup { has_encoder: kind == 1, axis, update_time, tau, counts });
 }
 
-/// Compares the counts of a revolution with those that the machine has.
+/// Compares the given counts of a revolution with the machine's.
 fn check_counts(parts: &mut Parts, caller: &Caller<'_>, counts: f32, real: f64) {
     const TOLERANCE: f64 = 0.01;
     let is = |number: f64, wanted: f64| (number.abs() / wanted - 1.0).abs() < TOLERANCE;

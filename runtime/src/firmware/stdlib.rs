@@ -107,7 +107,7 @@ fn float(caller: &mut Caller<'_>, string: GuestAddr) -> Result<(f64, GuestAddr),
     Ok((value, string.offset(end as u32)))
 }
 
-/// Stores the end of a number where the program wants it.
+/// Stores the end of a number at the address given by the program.
 fn store_end(caller: &mut Caller<'_>, place: GuestAddr, end: GuestAddr) -> Result<(), TrapKind> {
     if place.is_null() { Ok(()) } else { caller.memory.store(place, end.get()) }
 }
@@ -208,10 +208,10 @@ pub(crate) fn ltoa(
     Ok(text.len() as i32 - 1)
 }
 
-/// The buffers of `ecvt` and `fcvt`; a text begins at the second byte, at the first where rounding has made it longer.
+/// The buffers of `ecvt` and `fcvt`; a text begins at the second byte, or at the first if rounding has made it longer.
 const ECVT: GuestAddr = GuestAddr::new(0x1001_AAAC);
 const FCVT: GuestAddr = GuestAddr::new(0x1001_A430);
-/// Digits that fit there: what the board stores beyond is lost here.
+/// The number of digits that fit there: the board stores further digits beyond, which are lost here.
 const MOST_DIGITS: usize = 380;
 
 /// A number as digits, and where its point is.
@@ -235,7 +235,7 @@ pub(crate) fn ecvt(
         Converted { text: vec![0; count.max(0) as usize], point: 1, has_grown: false }
     } else {
         let place = place_of_point(magnitude);
-        // Without a count the digits before the point are left, as they are.
+        // Without a count, the digits before the point remain unchanged.
         let rounded = usize::try_from(count).map(|count| digits(magnitude, Keep::Significant(count)));
         let Digits { digits: mut text, point, .. } = rounded.unwrap_or_else(|_| {
             let all = digits(magnitude, Keep::Significant(MOST_DIGITS));
@@ -260,7 +260,7 @@ pub(crate) fn fcvt(
         Converted { text: vec![0; decimals.max(0) as usize + 1], point: 1, has_grown: false }
     } else {
         let place = place_of_point(magnitude);
-        // Odd and kept: a number that is too small is rounded by its first digit, and one digit at most is left out.
+        // Board quirk: a number that is too small is rounded by its first digit, and at most one digit is omitted.
         let wanted = i64::from(place) + i64::from(decimals.max(-1));
         let Digits { digits: text, point, .. } = digits(magnitude, Keep::Significant(wanted.max(0) as usize));
         Converted { has_grown: point > place, text, point }

@@ -1,7 +1,7 @@
 //! Strings, blocks of memory and characters, as in standard C.
 //!
-//! Each function reads what C would read and traps where it leaves mapped memory. Copies cost a cycle for each byte
-//! beyond the call's own cost.
+//! Each function reads the bytes that C requires, and traps at unmapped memory. Copies cost a cycle for each byte, in
+//! addition to the cost of the call.
 
 use kmotiondef::firmware::Function;
 use kmotiondef::{Cycles, GuestAddr};
@@ -10,7 +10,7 @@ use vm::trap::TrapKind;
 
 use super::parts::Parts;
 
-/// Longest string that is read: all of SDRAM.
+/// The length of the longest string that is read: all of SDRAM.
 pub(super) const LONGEST: u32 = 0x100_0000;
 
 type Text = Result<Vec<u8>, TrapKind>;
@@ -42,13 +42,13 @@ fn write_text(caller: &mut Caller<'_>, address: GuestAddr, mut text: Vec<u8>) ->
     caller.memory.write_bytes(address, &text)
 }
 
-/// The address of a found index, or null.
+/// The address for an index that was found, or null.
 fn found(start: GuestAddr, index: Option<usize>) -> GuestAddr {
     index.map_or(GuestAddr::NULL, |index| start.offset(index as u32))
 }
 
-/// The result of a comparison of two byte strings, as the firmware has it: a sign, or the difference of the first bytes
-/// that differ, where a string that has ended counts as 0.
+/// The result of a comparison of two byte strings as in the firmware: a sign, or the difference of the first bytes that
+/// differ, where the end of a string counts as 0.
 fn order(parts: &Parts, a: &[u8], b: &[u8]) -> i32 {
     if !parts.level.behaviour().compares_by_difference {
         return a.cmp(b) as i32;
@@ -58,7 +58,7 @@ fn order(parts: &Parts, a: &[u8], b: &[u8]) -> i32 {
     at.map_or(0, |at| byte(a, at) - byte(b, at))
 }
 
-/// Returns the cost of `memcpy` beyond its 32 cycles (costs.md section 4).
+/// Returns the cost of `memcpy` in addition to its 32 cycles (costs.md section 4).
 fn copying(length: u32, is_alike: bool) -> Cycles {
     let length = i64::from(length);
     Cycles::new(match (length, is_alike) {
@@ -278,7 +278,7 @@ pub(crate) fn strpbrk(
     Ok(found(string, text.iter().position(|byte| set.contains(byte))))
 }
 
-/// The next token; the place to go on is the board's, shared by all threads as the C library has it.
+/// The next token; the position to continue from is shared by all threads of the board, as in the C library.
 pub(crate) fn strtok(
     parts: &mut Parts,
     caller: &mut Caller<'_>,

@@ -32,10 +32,10 @@ pub(crate) fn mutex_lock(
     }
 }
 
-/// The word of a lock after it is taken; `None` if another thread has it.
+/// The word of a lock after it is taken; `None` if another thread owns it.
 ///
-/// The word is the owner's number plus one. The board looks for the owner's bit by a shift, whose count has six bits: a word
-/// that shifts all out counts as free.
+/// The word is the owner's number plus one. The board tests the owner's bit by a shift with a six-bit count: a word
+/// that shifts all bits out counts as free.
 fn owned(word: i32, own: i32) -> Option<i32> {
     const COUNT: i32 = 63;
     let is_taken = word.wrapping_sub(1) & COUNT < 32 && word != own + 1;
@@ -59,14 +59,14 @@ fn counted(word: i32, own: i32, caller: &Caller<'_>) -> Option<i32> {
     // The primary thread is always active.
     let is_active =
         owner == 0 || ThreadId::new(owner).is_some_and(|owner| caller.threads.state(owner).is_active());
-    // Odd and kept: a lock that is taken over names the thread after the one that takes it.
+    // Board quirk: a lock that is taken over contains the number of the next thread instead of the one that takes it.
     if is_active && count == 0 {
         return Some((own << COUNT_BITS) + 1);
     }
     (!is_active).then_some(((own + 1) << COUNT_BITS) + 1)
 }
 
-/// Frees a lock: that of any owner, or one of the owner's locks.
+/// Frees a lock: any owner's, or one of the caller's own.
 pub(crate) fn mutex_unlock(
     parts: &mut Parts,
     caller: &mut Caller<'_>,
@@ -130,7 +130,7 @@ pub(crate) fn atomic_clear_16(
     caller.memory.store(place, value & mask as u16)
 }
 
-/// Stores `value` where 0 was; returns what was there.
+/// Stores `value` if the word is 0; returns the old word.
 pub(crate) fn test_and_set(
     _: &mut Parts,
     caller: &mut Caller<'_>,

@@ -12,12 +12,12 @@ use super::parts::Parts;
 use crate::out::{Message, Request};
 use crate::views::Typed;
 
-/// The entry point that a thread is started at.
+/// The entry point at which a thread is started.
 fn entry(memory: &GuestMemory, thread: ThreadId) -> GuestAddr {
     GuestAddr::new(memory.get(PERSIST.field(Persist::ENTRY_POINTS).element(thread.index())))
 }
 
-/// Starts a thread at its entry point; the board first looks at what was downloaded. `false` if there is nothing.
+/// Starts a thread at its entry point; the board first checks for a download. `false` if there is no program.
 pub(crate) fn start(
     parts: &mut Parts,
     memory: &GuestMemory,
@@ -36,7 +36,7 @@ pub(crate) fn start(
     threads.start(thread).is_ok()
 }
 
-/// The released firmware stops here: no thread runs any more, and nothing is answered.
+/// Stops the board as the released firmware stops here: no thread runs any more, and no command is answered.
 fn stop_board(parts: &mut Parts, caller: &mut Caller<'_>, function: Function) {
     parts.out.diagnose(caller, Message::FirmwareStops { command: function.name() });
     ThreadId::all().for_each(|thread| caller.threads.pause(thread));
@@ -62,7 +62,7 @@ pub(crate) fn start_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i
         notice_restart(parts, caller, id);
     }
     match ThreadId::new(thread) {
-        // The caller's number needs no start, which would look for a download there.
+        // For the caller itself nothing is started, which would check for a download.
         Some(id) if caller.thread != Some(id) && !start(parts, caller.memory, caller.threads, id) => {
             parts.out.diagnose(caller, Message::ThreadEmpty { thread: id });
         }
@@ -79,7 +79,7 @@ pub(crate) fn start_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i
     Outcome::Done(())
 }
 
-/// Stops a thread where it is. A thread that names itself continues to the end of its slice.
+/// Pauses a thread at its current position. A thread that names itself continues to the end of its slice.
 pub(crate) fn pause_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i32) {
     let Some(id) = ThreadId::new(thread) else {
         return invalid(parts, caller, Function::PauseThread, thread);
@@ -90,8 +90,8 @@ pub(crate) fn pause_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i
     caller.threads.pause(id);
 }
 
-/// Lets a paused thread continue: 0, or 1 when no program is loaded there. One that has never run has no place to
-/// continue from: the board stops there.
+/// Lets a paused thread continue: 0, or 1 if no program is loaded there. A thread that has never run has no position to
+/// continue from: the board stops.
 pub(crate) fn resume_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i32) -> i32 {
     match ThreadId::new(thread) {
         Some(id) if caller.threads.state(id).is_ready() && !caller.threads.has_run(id) => {

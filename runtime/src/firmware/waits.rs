@@ -1,7 +1,7 @@
 //! The work of waiting functions after their wait, and the work of the primary thread meanwhile, as on the board
 //! (costs.md sections 3 and 5).
 //!
-//! The table's cost is spent when the call is made; what is spent after the wait depends on why it waited.
+//! The cost in the table is spent when the call is made; the cost after the wait depends on the reason for the wait.
 
 use kmotiondef::Cycles;
 use kmotiondef::firmware::FirmwareFunction;
@@ -11,7 +11,7 @@ use vm::wake::Wake;
 
 /// The time that a function spends after its wait.
 ///
-/// Moves that are called in motion are planned when the next slice begins; the time functions look at the clock again.
+/// Moves that are called in motion are planned when the next slice begins; the time functions read the clock again.
 pub(crate) fn after(function: &FirmwareFunction, wake: Wake, waits: WaitStates) -> Cycles {
     let has_ended = |event| match event {
         WaitEnd::Slice => matches!(wake, Wake::NextSlice),

@@ -1,4 +1,4 @@
-//! Numbered inputs and outputs, wherever they are: pins, option boards, words of guest memory. Source: io.md.
+//! Numbered inputs and outputs of all kinds: pins, option boards, words of guest memory. Source: io.md.
 
 use chips::pins::PINS;
 use kmotiondef::bits::{BitKind, BitRange, kogna_range_of};
@@ -19,7 +19,7 @@ const VIRTUAL_EX: u16 = 1024;
 /// The first pin of SnapAmp 0 and of SnapAmp 1.
 const SNAP: [u16; 2] = [64, 96];
 
-/// The range that a bit is in, if anything on this board answers it.
+/// The range of a bit, if this board has one.
 pub(crate) fn range_of(io: &Io, bit: Bit) -> Option<&'static BitRange> {
     let of_kogna = || io.kogna.as_ref().and_then(|_| kogna_range_of(bit));
     kmotiondef::bits::range_of(bit).or_else(of_kogna)
@@ -37,16 +37,16 @@ fn memory_bit(bit: Bit, kind: BitKind) -> Option<(Place<i32>, i32)> {
     }
 }
 
-/// The place of the direction of a bit from 64 on.
+/// The location of the direction of a bit from 64 on.
 struct SnapDirection {
     word: Place<i32>,
-    /// By how many bits a mask is shifted there; from 32 on it is shifted out.
+    /// The number of bits by which a mask is shifted there; from 32 on it is shifted out.
     shift: u32,
 }
 
 impl SnapDirection {
-    /// Odd and kept: there are words for 64 bits, the processor shifts by six bits of a number, and bits after those are
-    /// noted where these are, or nowhere.
+    /// Board quirk: there are words for 64 bits, but the processor uses six bits of a shift count, so directions of
+    /// later bits are stored over these, or nowhere.
     fn of(bit: Bit) -> Self {
         if bit.get() < SNAP[1] {
             Self { word: BIT_DIR_SHADOW_SNAP0, shift: u32::from(bit.get() - SNAP[0]) }
@@ -62,8 +62,8 @@ fn change(memory: &mut GuestMemory, word: Place<i32>, mask: i32, set: bool) {
     memory.set(word, if set { value | mask } else { value & !mask });
 }
 
-/// Makes a pin an output or an input; virtual bits are what they are. Of other bits the direction is noted, whether
-/// there is a SnapAmp or not.
+/// Makes a pin an output or an input; virtual bits are unchanged. The direction of other bits is noted, even without a
+/// SnapAmp.
 pub(crate) fn set_direction(io: &mut Io, memory: &mut GuestMemory, bit: Bit, is_output: bool, now: Cycles) {
     if let Some(kogna) = &mut io.kogna
         && kogna_range_of(bit).is_some()
@@ -79,8 +79,8 @@ pub(crate) fn set_direction(io: &mut Io, memory: &mut GuestMemory, bit: Bit, is_
     }
 }
 
-/// Returns whether a bit is an output. Outputs of option boards count as inputs until a program says otherwise, as the
-/// board has it.
+/// Returns whether a bit is an output. Outputs of option boards count as inputs until a program sets their direction,
+/// as on the board.
 pub(crate) fn is_output(io: &Io, memory: &GuestMemory, bit: Bit) -> bool {
     if let Some(kogna) = &io.kogna
         && kogna_range_of(bit).is_some()
@@ -96,7 +96,7 @@ pub(crate) fn is_output(io: &Io, memory: &GuestMemory, bit: Bit) -> bool {
     }
 }
 
-/// Writes a bit; inputs and numbers that nothing answers ignore it. Devices on the bit have not seen it yet.
+/// Writes a bit; inputs and unused numbers ignore it. Devices on the bit are not notified yet.
 pub(crate) fn write_bit(
     io: &mut Io,
     out: &mut Out,
@@ -127,7 +127,7 @@ pub(crate) fn write_bit(
     }
 }
 
-/// The state of a bit and whether it is an input from outside.
+/// The level of a bit, and whether it is an input from outside.
 pub(crate) fn bit_state(io: &Io, memory: &GuestMemory, bit: Bit) -> (bool, bool) {
     let pins = &io.pins;
     let Some(kind) = range_of(io, bit).map(|range| range.kind) else { return (false, false) };
@@ -145,7 +145,7 @@ pub(crate) fn bit_state(io: &Io, memory: &GuestMemory, bit: Bit) -> (bool, bool)
             Some(kogna) if kogna.is_output(bit) => (pins.written(bit), false),
             _ => (pins.input(bit), true),
         },
-        // Nobody switches the banks of KStep's inputs through before it is announced.
+        // The banks of KStep's inputs are only switched through once a program announces the KStep.
         BitKind::KstepInput if memory.get(KSTEP_PRESENT) == 0 => (false, false),
         _ => match memory_bit(bit, kind) {
             Some((word, mask)) => (memory.get(word) & mask != 0, false),

@@ -1,4 +1,4 @@
-//! Changes of bits that live in guest memory, beside those of the pins.
+//! Changes of bits in guest memory, in addition to those of the pins.
 
 use chips::changes::Changes;
 use kmotiondef::Cycles;

@@ -1,8 +1,8 @@
 //! Flash memory: what survives power-off.
 //!
-//! The first megabyte is the system's. `Flash` saves there what the board starts from: on-chip memory with `persist` and
-//! the settings of the axes, and the seven program spaces. The second megabyte is the users'; programs write its blocks
-//! with `ProgramFlash` and read them where they are. All of it lies in guest memory, at [`FLASH`].
+//! The first megabyte is the system's. `Flash` saves the start state of the board there: on-chip memory with `persist`
+//! and the settings of the axes, and the seven program spaces. The second megabyte is the users'; programs write its
+//! blocks with `ProgramFlash` and read them directly. All of it is in guest memory, at [`FLASH`].
 
 mod banks;
 
@@ -28,7 +28,7 @@ const SAVED_IRAM: u32 = 0x1_0000;
 const SAVED_PROGRAMS: u32 = 0x8_0000;
 /// Bytes of the program spaces.
 const PROGRAMS: u32 = PROGRAM_SIZE * ThreadId::MAX as u32;
-/// Words that one call programs at most.
+/// The limit of words that one call programs.
 const WORD_LIMIT: i32 = 32_768;
 
 const _: () = assert!(SAVED_IRAM + IRAM.size <= SAVED_PROGRAMS && SAVED_PROGRAMS + PROGRAMS <= USER);
@@ -45,7 +45,7 @@ fn copy(memory: &mut GuestMemory, to: GuestAddr, from: GuestAddr, length: u32) {
     debug_assert!(stored.is_ok(), "{to} is mapped");
 }
 
-/// Saves what the board starts from; `texts` are the texts of the loaded programs.
+/// Saves the start state of the board; `texts` are the texts of the loaded programs.
 pub(crate) fn save(memory: &mut GuestMemory, texts: impl Fn(ThreadId) -> Option<Range<GuestAddr>>) {
     for (offset, byte) in (0..).zip(MAGIC) {
         memory.poke(at(offset), *byte);
@@ -64,7 +64,7 @@ pub(crate) fn is_saved(memory: &GuestMemory) -> bool {
     !memory.is_flash_erased() && begins_with_magic()
 }
 
-/// Brings back what was saved.
+/// Restores the saved state.
 pub(crate) fn restore(memory: &mut GuestMemory) {
     copy(memory, IRAM.base, at(SAVED_IRAM), IRAM.size);
     copy(memory, GuestAddr::new(PROGRAM_BASE), at(SAVED_PROGRAMS), PROGRAMS);

@@ -1,7 +1,7 @@
 //! Kanalog's conversions in guest memory, and its outputs.
 //!
-//! All inputs are converted again in each tick while the board's port serves it. The outputs are switched by groups of 16, of which
-//! the firmware keeps what it last wrote.
+//! All inputs are converted again in each tick while the board's port serves it. The outputs are switched in groups of
+//! 16, for each of which the firmware keeps the last written word.
 
 use chips::fpga::Fpga;
 use chips::kanalog::Kanalog;
@@ -16,7 +16,7 @@ use crate::views::Typed;
 /// Counts of an analog input in a volt: 2048 in 10 V.
 pub(crate) const COUNTS_PER_VOLT: f64 = 204.8;
 
-/// Reports whether a number of counts looks like one of volts: at most 10, with one digit after the point.
+/// Reports whether a number of counts looks like volts: at most 10, with one decimal digit.
 pub(crate) fn is_volts(value: f64) -> bool {
     const MOST: f64 = 10.0;
     const TENTHS: f64 = 10.0;
@@ -36,7 +36,7 @@ pub(crate) struct Outputs {
     groups: [u16; 2],
 }
 
-/// Outputs that are switched together, and their levels.
+/// A group of outputs that are switched together, and their levels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Group {
     index: u16,
@@ -75,7 +75,7 @@ impl Group {
     }
 }
 
-/// The group of an output and its mask there.
+/// The group of an output and its mask in the group.
 fn place(bit: Bit) -> Option<(u16, u16)> {
     let kind = range_of(bit)?.kind;
     let is_output = matches!(kind, BitKind::KanalogOptoOutput | BitKind::KanalogFet | BitKind::KanalogOutput);
@@ -100,7 +100,7 @@ pub(crate) fn set_conversion(memory: &mut GuestMemory, channel: usize, level: i3
     }
 }
 
-/// Converts all inputs, if something is connected to them and the port serves Kanalog.
+/// Converts all inputs, if anything is connected to them and the port serves Kanalog.
 pub(crate) fn tick(kanalog: &Kanalog, fpga: &Fpga, memory: &mut GuestMemory) {
     if !kanalog.is_driven() || !is_served(fpga, memory) {
         return;
@@ -110,7 +110,7 @@ pub(crate) fn tick(kanalog: &Kanalog, fpga: &Fpga, memory: &mut GuestMemory) {
     }
 }
 
-/// Returns whether the next tick converts what the last one did.
+/// Returns whether the next tick yields the same conversions as the last one.
 pub(crate) fn is_settled(kanalog: &Kanalog, fpga: &Fpga, memory: &GuestMemory) -> bool {
     let is_same = |(channel, level): (usize, i32)| conversion(memory, channel) == level;
     !kanalog.is_driven()
@@ -118,7 +118,7 @@ pub(crate) fn is_settled(kanalog: &Kanalog, fpga: &Fpga, memory: &GuestMemory) -
         || kanalog.conversions().into_iter().enumerate().all(is_same)
 }
 
-/// Returns whether the port serves Kanalog: found at power-up, or switched on by the program.
+/// Returns whether the port serves Kanalog: detected at power-up, or switched on by the program.
 pub(crate) fn is_served(fpga: &Fpga, memory: &GuestMemory) -> bool {
     fpga.serves_kanalog() || memory.get(KANALOG_PRESENT) != 0
 }

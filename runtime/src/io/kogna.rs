@@ -1,4 +1,4 @@
-//! Pins, fast PWM channels and converters that only a Kogna has. Source: its header; what their registers do
+//! Pins, fast PWM channels and converters that only a Kogna has. Source: its header; the function of their registers
 //! was never compared with a board.
 
 use std::collections::BTreeMap;
@@ -12,13 +12,13 @@ use vm::memory::GuestMemory;
 const FIRST_BIT: u16 = 200;
 const HRPWM_PIN: u16 = 280;
 const SPI_PIN: u16 = 284;
-/// Pins whose directions the variable `BitDirShadowAUX2_EXIO` has: one bit each, AUX2 first.
+/// The number of pins whose directions are in the variable `BitDirShadowAUX2_EXIO`: one bit each, AUX2 first.
 const SHADOWED: u16 = 24;
 
 /// Registers of the fast PWM channels: time base, periods, widths. The low parts of their addresses.
 const HRPWM_REGISTERS: [u32; 8] = [0x2000, 0x200A, 0x2012, 0x2014, 0x7010, 0x7014, 0x8010, 0x8014];
 
-/// Analog inputs and outputs that the board itself has, beside those of a Kanalog.
+/// Analog inputs and outputs on the board itself, in addition to those of a Kanalog.
 pub(crate) const INPUTS: usize = 4;
 pub(crate) const OUTPUTS: usize = 8;
 
@@ -48,7 +48,7 @@ pub(crate) enum PinGroup {
 }
 
 impl PinGroup {
-    /// The bit of one of the pins; `None` if there is none of that number.
+    /// The bit of a pin; `None` for an invalid number.
     pub(crate) fn bit(self, pin: i32) -> Option<Bit> {
         let (first, count) = match self {
             Self::Hrpwm => (HRPWM_PIN, 4),
@@ -70,7 +70,7 @@ impl Kogna {
         }
     }
 
-    /// Makes a pin an output or an input; other bits are what they are.
+    /// Makes a pin an output or an input; other bits are unchanged.
     pub(crate) fn set_output(&mut self, memory: &mut GuestMemory, bit: Bit, is_output: bool) {
         if kogna_range_of(bit).is_none_or(|range| range.kind != BitKind::KognaPin) {
             return;
@@ -94,7 +94,7 @@ impl Kogna {
         }
     }
 
-    /// The directions of the pins from a bit on, that one lowest.
+    /// The directions of 32 pins from a bit on, that bit lowest.
     pub(crate) fn directions_from(&self, first: u16) -> u32 {
         (self.outputs >> (first - FIRST_BIT)) as u32
     }
@@ -122,7 +122,7 @@ impl Kogna {
         memory.poke(self.dac.offset(2 * index as u32), word);
     }
 
-    /// Reads a register of a fast PWM channel; `None` for one that is not known.
+    /// Reads a register of a fast PWM channel; `None` for an unknown register.
     pub(crate) fn read(&self, address: GuestAddr, size: AccessSize) -> Option<u32> {
         let register = known(address)?;
         let half = |offset| u32::from(self.hrpwm.get(&(register + offset)).copied().unwrap_or(0));
@@ -132,7 +132,7 @@ impl Kogna {
         })
     }
 
-    /// Writes a register of a fast PWM channel; `None` for one that is not known.
+    /// Writes a register of a fast PWM channel; `None` for an unknown register.
     pub(crate) fn write(&mut self, address: GuestAddr, size: AccessSize, value: u32) -> Option<()> {
         let register = known(address)?;
         self.hrpwm.insert(register, value as u16);
@@ -143,7 +143,7 @@ impl Kogna {
     }
 }
 
-/// The low part of the address of a register that is known.
+/// The low part of the address of a known register.
 fn known(address: GuestAddr) -> Option<u32> {
     let register = address.get() & 0xFFFF;
     HRPWM_REGISTERS.contains(&register).then_some(register)

@@ -1,7 +1,7 @@
 //! Konnect boards on the auxiliary ports: the list of boards served, one of them in each tick.
 //!
-//! When its turn comes, a board takes the low 16 bits of its output word and gives its 32 inputs, 0 unless the world
-//! drives them. Every address is taken to be there unless a machine file names those that are. Source: devices.md
+//! In its tick, a board takes the low 16 bits of its output word and returns its 32 inputs, which are 0 unless the
+//! world drives them. A board is assumed at every address unless a machine file lists the addresses. Source: devices.md
 //! section 4.
 
 use std::collections::BTreeMap;
@@ -10,7 +10,7 @@ use std::ops::Range;
 use kmotiondef::{GuestAddr, Ticks};
 use vm::memory::GuestMemory;
 
-/// Boards that are served at most: 8 addresses on each of 2 ports.
+/// The limit of boards that are served: 8 addresses on each of 2 ports.
 const LIMIT: usize = 16;
 
 /// An auxiliary port.
@@ -39,7 +39,7 @@ pub(crate) struct Service {
     pub(crate) inputs: GuestAddr,
 }
 
-/// The boards served, and what is at their terminals.
+/// The boards that are served, and the levels of their terminals.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Konnects {
     services: Vec<Service>,
@@ -95,7 +95,7 @@ impl Konnects {
         *word = *word & !(1 << input) | u32::from(level) << input;
     }
 
-    /// Ends the services whose words lie in a space that is loaded again; whether there were any.
+    /// Stops serving boards whose words are in a space that is loaded again; returns whether there were any.
     pub(crate) fn drop_within(&mut self, space: &Range<u32>) -> bool {
         let before = self.services.len();
         self.services.retain(|service| {
@@ -104,7 +104,7 @@ impl Konnects {
         self.services.len() < before
     }
 
-    /// Exchanges the words of the board whose turn it is; the board whose outputs have changed by that.
+    /// Exchanges the words of the board that is due; returns the board if its outputs have changed.
     pub(crate) fn tick(&mut self, memory: &mut GuestMemory, tick: Ticks) -> Option<(KonnectBoard, u16)> {
         let count = self.services.len() as u64;
         let turn = tick.get().checked_rem(count)?;

@@ -1,8 +1,8 @@
-//! Everything but memory that a program can access: pins, registers of the FPGA, lines, step generators, option boards,
-//! flash.
+//! Everything except memory that a program can access: pins, registers of the FPGA, lines, step generators, option
+//! boards, flash.
 //!
-//! The chips that registers reach are those of [`chips`]; here is what concerns guest memory. These parts know each other.
-//! `machine` and `world` handle what is connected to them.
+//! The chips behind the registers are those of [`chips`]; this module adds the parts that use guest memory. These parts
+//! access each other. `machine` and `world` handle the equipment connected to them.
 
 pub(crate) mod amplifiers;
 pub(crate) mod bits;
@@ -49,7 +49,7 @@ pub(crate) struct Io {
 }
 
 impl Io {
-    /// The registers and what they act on.
+    /// The registers and the parts on which they act.
     pub(crate) fn registers(&mut self, now: Cycles) -> (&mut Fpga, RegisterChips<'_>) {
         let chips = RegisterChips {
             pins: &mut self.pins,
@@ -63,7 +63,7 @@ impl Io {
     }
 }
 
-/// The remark on something that a program has done in vain with a register.
+/// The remark on an action of a program on a register that has no effect.
 pub(crate) const fn remark_on(notice: Notice) -> Message {
     match notice {
         Notice::KanalogPin(bit) => Message::KanalogPins { bit },

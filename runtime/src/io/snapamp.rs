@@ -1,9 +1,9 @@
 //! Registers of the two SnapAmp boards: writes are stored, the world sets the measurements.
 //!
-//! Nothing runs while they work: faults are brought up to the instant of each access. More current than the limit of a
-//! side, or no limit at all, switches all bridges off for a quarter of a second beyond its end; a board that is not
-//! there has no faults. Sources: devices.md section 5, the manual's page on SnapAmp for the quarter of a second. The
-//! general pins are bits 80 and 112 and on, and belong to the digital outputs; the encoders are with those of the board.
+//! Nothing runs in between: faults are updated at the time of each access. More current than the limit of a side, or no
+//! limit at all, switches all bridges off until a quarter of a second after it ends; a missing board has no faults.
+//! Sources: devices.md section 5, the manual's page on SnapAmp for the quarter of a second. The general pins are bits
+//! 80 and 112 and on, and belong to the digital outputs; the encoders are with those of the board.
 
 use kmotiondef::Cycles;
 use kmotiondef::variables::ADC_BUFFER_IN_SNAP;
@@ -30,7 +30,7 @@ const FAULT_TIME: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 4);
 const CURRENTS: usize = 12;
 const CLAMP: usize = 20;
 const PEAK_LIMIT: usize = 24;
-/// The lowest level that is a limit: 2 A, each further one 4 A more.
+/// The lowest level that acts as a limit: 2 A, and 4 A more for each further level.
 const FIRST_LEVEL: u16 = 9;
 
 /// The encoders' registers: words of the four, and the levels of all inputs of the board.
@@ -115,7 +115,7 @@ impl SnapAmpBoard {
         self.is_present && (level < FIRST_LEVEL || self.sides[side].amps.abs() > limit)
     }
 
-    /// Brings the faults up to an instant, before anything changes and before they are read.
+    /// Updates the faults to the present, before anything changes and before they are read.
     fn advance(&mut self, now: Cycles) {
         for side in 0..2 {
             if self.is_over(side) {
@@ -133,7 +133,7 @@ impl SnapAmpBoard {
         if self.is_present { word } else { 0 }
     }
 
-    /// The supply's conversion, which the clamp keeps from rising.
+    /// The conversion of the supply voltage, which the clamp limits.
     fn voltage(&self, side: usize) -> u16 {
         let volts = convert(self.sides[side].volts / FULL_VOLTS * 65_536.0 + 256.0);
         let clamp = self.written[CLAMP + 2 * side];
@@ -168,8 +168,8 @@ impl SnapAmps {
         }
     }
 
-    /// Returns whether the bridges of an amplifier's channel are off after excessive current. Channels 8 and 9 are side
-    /// A of board 0, 10 and 11 its side B, and so on.
+    /// Returns whether the bridges of an amplifier's channel are off after excessive current. Channels 8 and 9 belong
+    /// to side A of board 0, 10 and 11 to its side B, and so on.
     pub(crate) fn is_off(&mut self, channel: i32, now: Cycles) -> bool {
         let Some(pair) = usize::try_from(channel).ok().and_then(|channel| channel.checked_sub(8)) else {
             return false;
@@ -179,7 +179,7 @@ impl SnapAmps {
         now < board.sides[pair % 4 / 2].off_until
     }
 
-    /// The board of an amplifier's channel whose bridges are off, and why.
+    /// The board of an amplifier channel whose bridges are off, and the reason.
     pub(crate) fn cause(&self, channel: i32, now: Cycles) -> Option<(usize, String)> {
         let pair = usize::try_from(channel).ok()?.checked_sub(8)?;
         let (number, index) = (pair / 4, pair % 4 / 2);
@@ -204,7 +204,7 @@ impl SnapAmps {
         self.0.iter().any(|board| board.is_present)
     }
 
-    /// Something outside changes what a side measures.
+    /// Changes a measurement of a side from outside.
     pub(crate) fn set(&mut self, board: usize, side: Side, quantity: Quantity, value: f64, now: Cycles) {
         let Some(board) = self.0.get_mut(board) else { return };
         board.advance(now);
@@ -223,7 +223,7 @@ impl SnapAmps {
         board.written[register.number] = value;
     }
 
-    /// A measurement, or what was written.
+    /// A measurement, or the value that was written.
     pub(crate) fn read(&mut self, register: Register, now: Cycles) -> u16 {
         let board = &mut self.0[register.board];
         board.advance(now);

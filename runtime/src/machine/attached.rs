@@ -1,7 +1,7 @@
 //! Devices on the board's lines: pins, Konnect outputs, the UART.
 //!
-//! They answer an edge at its very instant. When one is attached it gets every bit that is high, so that it can take
-//! all others for low. Without any, a tick costs nothing. Which devices there are is written in `world`.
+//! They respond to an edge immediately. A device that is attached gets every bit that is high, so that it can assume
+//! that all others are low. Without devices, a tick costs nothing. The devices are defined in `world`.
 
 use std::fmt::Debug;
 
@@ -71,7 +71,7 @@ pub(crate) trait Attached: Debug + Send + Copied {
         None
     }
 
-    /// Returns whether it takes every edge of a bit; otherwise one level a tick is enough.
+    /// Returns whether it needs every edge of a bit; otherwise one level per tick is enough.
     fn watches(&self, bit: Bit) -> bool {
         let _ = bit;
         false

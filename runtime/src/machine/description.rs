@@ -53,7 +53,7 @@ pub enum Encoder {
 pub struct Connection {
     /// The encoder.
     pub encoder: Encoder,
-    /// The input that the encoder is connected to, if the machine file names it.
+    /// The input to which the encoder is connected, if the machine file gives it.
     pub input: Option<usize>,
     /// The output that drives the motor, if the machine file names it.
     pub drive: Option<Channel>,
@@ -72,7 +72,7 @@ pub enum Channel {
     Dac(usize),
     /// A step generator.
     Generator(usize),
-    /// A PWM channel, from 8 on those of the SnapAmps.
+    /// A PWM channel; channels from 8 on belong to the SnapAmps.
     Pwm(usize),
     /// Two outputs, mostly relays: forward, and back.
     Relays(Bit, Bit),
@@ -129,7 +129,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Returns whether its encoder counts so that the position follows the command, whatever the gain.
+    /// Returns whether its encoder counts such that the position follows the command, whatever the gain.
     pub(crate) fn follows_gain(&self) -> bool {
         (self.connection.encoder, self.model) == (Encoder::Auto, Model::Follow)
     }
@@ -185,7 +185,7 @@ impl Default for Travel {
 pub struct Spring {
     /// Frequency in Hz at which the table swings, from above 0 to 500.
     pub hz: f64,
-    /// Damping ratio: the table swings without end at 0, and not at all from 1 on.
+    /// Damping ratio: at 0 the table swings forever, from 1 on it does not swing at all.
     pub damping: f64,
 }
 
@@ -194,7 +194,7 @@ pub struct Spring {
 pub struct Gantry {
     /// Their axes.
     pub axes: [AxisId; 2],
-    /// Difference in units that the beam bears.
+    /// The difference in units that the beam tolerates.
     pub most: f64,
 }
 
@@ -274,7 +274,7 @@ impl fmt::Display for Condition {
 }
 
 impl Condition {
-    /// The end of a travel that a load must pass to get there: its key in the machine file, and its place.
+    /// The end of a travel that a load must pass to reach the switch: its key in the machine file, and its position.
     pub(crate) fn beyond(self, travel: &Travel) -> Option<(&'static str, f64)> {
         let Travel { min, max, .. } = *travel;
         let (from, to) = match self {
@@ -305,7 +305,7 @@ pub struct Switch {
     pub axis: AxisId,
     /// The range in which it is active.
     pub when: Condition,
-    /// The level there.
+    /// The level while it is active.
     pub active: bool,
     /// The place of its description.
     pub place: KeyPlace,
@@ -324,7 +324,7 @@ pub struct Probe {
     pub place: KeyPlace,
 }
 
-/// An encoder that is turned by hand.
+/// An encoder turned by hand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Handwheel {
     /// Its input channel.

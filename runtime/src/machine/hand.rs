@@ -1,7 +1,7 @@
-//! Encoders that are turned from outside: hand wheels, and shafts that somebody turns.
+//! Encoders that are turned from outside: hand wheels, and shafts turned by hand.
 //!
-//! A count is a count of the input, whatever the axis that reads it makes of it. With the encoder turns the load that is
-//! on the same shaft, if there is one.
+//! Counts are counts of the input, whatever the gain of the axis that reads it. A load on the same shaft turns with the
+//! encoder.
 
 use kmotiondef::modes::InputMode;
 use kmotiondef::structs::Chan;
@@ -41,7 +41,8 @@ impl Machine {
         }
     }
 
-    /// The input that `encoder N` names: that of the number, or that of the axis of the number if nothing reads the first.
+    /// The input meant by `encoder N`: the input of that number or, if nothing reads it, the input of the axis of that
+    /// number.
     fn turned_input(&self, memory: &GuestMemory, number: usize) -> usize {
         let is_read = memory.axes().iter().any(|axis| reads(memory, axis, number));
         let axis = memory.axes().get(number as i32).filter(|_| !is_read);
@@ -52,10 +53,10 @@ impl Machine {
         of_axis.unwrap_or(number)
     }
 
-    /// Reports an encoder that has been turned although nothing reads it.
+    /// Makes a remark on an encoder that has been turned but is not read.
     pub(crate) fn check_read(&self, memory: &GuestMemory, out: &mut Out, input: usize, now: Cycles) {
         let input = self.turned_input(memory, input);
-        // Switches, sources and devices see the load that turns with it.
+        // Switches, sources and devices depend on the load that turns with it.
         let is_seen = |axis: AxisId| {
             let mode = memory.axis(axis, Chan::INPUT_MODE);
             self.has_mechanics() && self.mechanics.sees(axis)

@@ -1,7 +1,8 @@
-//! Mechanics that move by themselves or that the loads trip: handwheels, a spindle, switches, probes, analog sources.
+//! Mechanics that move independently or are tripped by the loads: handwheels, a spindle, switches, probes, analog
+//! sources.
 //!
-//! Nothing of it exists on a real board; a machine file describes it. It is moved once a tick, before the axes read
-//! their inputs.
+//! None of it is part of the board; a machine file describes it. It is moved once a tick, before the axes read their
+//! inputs.
 
 use kmotiondef::limits::TIMEBASE;
 use kmotiondef::structs::Chan;
@@ -20,16 +21,16 @@ use crate::out::Out;
 use crate::views::Typed;
 use chips::kanalog::conversion;
 
-/// Something that makes contact along an axis.
+/// A contact that is made at some position along an axis.
 #[derive(Clone, Copy, Debug)]
 struct Contact {
     bit: Bit,
     axis: AxisId,
     closes: Closes,
     active: bool,
-    /// When a program last read the bit, and where the load was then.
+    /// The time at which a program last read the bit, and the position of the load then.
     read: Option<(Cycles, f64)>,
-    /// The level that it read, if it is that of a switch.
+    /// The level that it read, if it was the switch's.
     level: Option<bool>,
 }
 
@@ -37,7 +38,7 @@ struct Contact {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LateRead {
     pub(crate) axis: AxisId,
-    /// Time since the read before, and units that the axis has moved since.
+    /// Time since the previous read, and the distance in units that the axis has moved since.
     pub(crate) ms: f64,
     pub(crate) step: f64,
 }
@@ -71,7 +72,7 @@ struct TurningSpindle {
     speed: f64,
 }
 
-/// Two sides of a gantry that are further apart than it bears.
+/// Two sides of a gantry that are further apart than it tolerates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Racked {
     pub(crate) gantry: Gantry,
@@ -96,7 +97,7 @@ pub struct Connected {
     pub gantries: Vec<Gantry>,
 }
 
-/// The same as the simulation moves it.
+/// The equipment of the machine file with its simulated state.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Mechanics {
     contacts: Vec<Contact>,
@@ -106,9 +107,9 @@ pub(crate) struct Mechanics {
     /// Tables that couplings with backlash or a spring move.
     tables: Vec<Table>,
     gantries: Vec<Gantry>,
-    /// A gantry whose sides are too far apart.
+    /// A gantry with its sides too far apart.
     racked: Option<Racked>,
-    /// Inputs that a stimulus has taken from their switches, and analog inputs from their sources.
+    /// Inputs that a stimulus has detached from their switches, and analog inputs detached from their sources.
     held: Vec<Bit>,
     held_analog: Vec<usize>,
     /// True if there is any such equipment.
@@ -171,19 +172,19 @@ impl Mechanics {
         self.contacts.iter().any(|contact| contact.axis == axis)
     }
 
-    /// Returns whether an axis trips something, or an analog input follows it.
+    /// Returns whether an axis trips a contact, or an analog input depends on it.
     pub(super) fn sees(&self, axis: AxisId) -> bool {
         let follows = |analog: &Analog| matches!(analog.source, AnalogSource::Follows { axis: seen, .. } if seen == axis);
         self.has_contacts(axis) || self.analog.iter().any(follows)
     }
 
-    /// Returns the contact on a bit: its axis, the range in which it is closed (`None` if it closes once in a
-    /// distance), and its level there.
+    /// Returns the contact on a bit: its axis, the range in which it is closed (`None` if it closes periodically), and
+    /// its level there.
     pub(crate) fn contact(&self, bit: Bit) -> Option<(AxisId, Option<Condition>, bool)> {
         self.contacts(bit).next()
     }
 
-    /// Everything that makes a contact on a bit, as [`contact`](Self::contact).
+    /// All contacts on a bit, as [`contact`](Self::contact) returns them.
     pub(crate) fn contacts(&self, bit: Bit) -> impl Iterator<Item = (AxisId, Option<Condition>, bool)> + '_ {
         self.contacts.iter().filter(move |contact| contact.bit == bit).map(|contact| {
             let condition = match contact.closes {
@@ -194,12 +195,12 @@ impl Mechanics {
         })
     }
 
-    /// The axes that make a contact on a bit.
+    /// The axes that trip contacts on a bit.
     pub(crate) fn owners(&self, bit: Bit) -> impl Iterator<Item = AxisId> + '_ {
         self.contacts(bit).map(|(axis, ..)| axis)
     }
 
-    /// The counts of a revolution of the spindle whose encoder is that of an axis.
+    /// The counts per revolution of the spindle that uses the encoder of an axis.
     pub(crate) fn spindle_counts(&self, axis: AxisId) -> Option<f64> {
         let mut spindles = self.spindles.iter().map(|turning| turning.spindle);
         spindles.find(|spindle| spindle.axis == axis).map(|spindle| spindle.counts_per_rev)
@@ -219,7 +220,7 @@ impl Mechanics {
         spindles.any(|spindle| spindle.drive == SpindleDrive::Dac(dac) && spindle.axis != axis)
     }
 
-    /// A gantry whose sides have been too far apart since the last time.
+    /// A gantry whose sides have been too far apart since the last call.
     #[inline]
     pub(crate) fn take_racked(&mut self) -> Option<Racked> {
         self.racked.take()
@@ -231,7 +232,7 @@ impl Mechanics {
         turning.for_each(|turning| turning.spindle.load = load);
     }
 
-    /// Takes an input from its switch; whether the switch has driven it so far.
+    /// Detaches an input from its switch; returns whether the switch has driven it so far.
     pub(crate) fn hold(&mut self, bit: Bit) -> bool {
         let is_new = !self.held.contains(&bit);
         if is_new {
@@ -240,7 +241,7 @@ impl Mechanics {
         is_new
     }
 
-    /// Returns whether an action has taken an input from its switch.
+    /// Returns whether an action has detached an input from its switch.
     pub(crate) fn is_held(&self, bit: Bit) -> bool {
         self.held.contains(&bit)
     }
@@ -250,7 +251,7 @@ impl Mechanics {
         self.analog.iter().any(|analog| analog.channel == channel)
     }
 
-    /// Takes an analog input from its source; whether it has one that has driven it so far.
+    /// Detaches an analog input from its source; returns whether a source has driven it so far.
     pub(crate) fn hold_analog(&mut self, channel: usize) -> bool {
         let is_new = self.has_source(channel) && !self.held_analog.contains(&channel);
         if is_new {
@@ -264,7 +265,7 @@ impl Mechanics {
         self.held.retain(|held| *held != bit);
     }
 
-    /// Returns whether it moves by itself after `time`, so that ticks cannot be skipped.
+    /// Returns whether it moves independently after `time`, so that ticks cannot be skipped.
     fn goes_on(&self, time: f64) -> bool {
         let turns =
             |wheel: &Handwheel| wheel.moves.iter().any(|[start, _, duration]| time <= start + duration);
@@ -279,10 +280,10 @@ impl Mechanics {
 }
 
 impl Machine {
-    /// A program reads a bit: whether an index pulse on it has passed since it last did so, a moment ago; the axis, the
-    /// width of the pulse and how far the axis has moved since.
+    /// Notes that a program reads a bit; if an index pulse on the bit has passed since its previous, recent read,
+    /// returns the axis, the width of the pulse and the distance that the axis has moved since.
     pub(crate) fn index_missed(&mut self, bit: Bit, now: Cycles) -> Option<(AxisId, f64, f64)> {
-        /// Reads that are further apart do not wait for a pulse.
+        /// Reads that are further apart than this do not wait for a pulse.
         const MOMENT: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 100);
         let contact = self.mechanics.contacts.iter_mut().find(|contact| contact.bit == bit)?;
         let Closes::Every(every, width, offset) = contact.closes else { return None };
@@ -303,7 +304,7 @@ impl Machine {
         now: Cycles,
         since: Option<Cycles>,
     ) -> Option<LateRead> {
-        /// Slices of other threads do not come into it.
+        /// Slices of other threads do not count.
         const LONG: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 50);
         const FAR: f64 = 100.0;
         let contact = self.mechanics.contacts.iter_mut().find(|contact| contact.bit == bit)?;
@@ -343,7 +344,7 @@ impl Machine {
             || spindles.iter().any(|turning| turning.spindle.axis == axis)
     }
 
-    /// Returns the outputs that the machine file connects a motor or a spindle to.
+    /// Returns the outputs to which the machine file connects a motor or a spindle.
     pub(crate) fn outputs(&self) -> Vec<Channel> {
         let spindles = self.mechanics.spindles.iter().filter_map(|turning| match turning.spindle.drive {
             SpindleDrive::Dac(number) => Some(Channel::Dac(number)),
@@ -353,14 +354,14 @@ impl Machine {
         AxisId::all().filter_map(|axis| self.wiring.drive(axis)).chain(spindles).collect()
     }
 
-    /// Returns whether a machine file connects any equipment besides the loads.
+    /// Returns whether a machine file connects any equipment other than the loads.
     #[inline]
     pub(crate) const fn has_mechanics(&self) -> bool {
         self.mechanics.is_any
     }
 
-    /// Moves all that depends on time and on outputs other than those of the axes; returns whether the next tick moves
-    /// something, too.
+    /// Moves everything that depends on time and on outputs other than those of the axes; returns whether the next tick
+    /// moves something, too.
     #[inline]
     pub(crate) fn drive(&mut self, io: &Io, out: &mut Out, memory: &GuestMemory, now: Cycles) -> bool {
         self.mechanics.is_any && self.turn(io, out, memory, now)
@@ -407,7 +408,7 @@ impl Machine {
         }
     }
 
-    /// Machine coordinate of what the load of an axis moves through a screw, which may have backlash.
+    /// Machine coordinate of the table that the load of an axis moves through a screw, which may have backlash.
     pub(crate) fn table(&self, axis: AxisId) -> f64 {
         table(&self.mechanics.tables, axis).unwrap_or(self.loads[axis].load)
     }
@@ -439,7 +440,7 @@ impl Machine {
         let mechanics = &self.mechanics;
         for (index, contact) in mechanics.contacts.iter().enumerate() {
             let mut others = mechanics.contacts.iter().filter(|other| other.bit == contact.bit);
-            // The first contact of a bit speaks for all of them: one that is closed decides.
+            // The first contact of a bit handles all of them: a closed one determines the level.
             if mechanics.held.contains(&contact.bit)
                 || mechanics.contacts[..index].iter().any(|before| before.bit == contact.bit)
             {

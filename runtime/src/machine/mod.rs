@@ -58,7 +58,7 @@ pub(crate) struct Loads {
     /// The counts of encoders that are turned by hand, and whether there are any.
     by_hand: [f64; ENCODERS],
     has_hands: bool,
-    /// True if something other than the servo has moved a load since the servo last asked.
+    /// True if a load was moved by anything other than the servo since the servo's last query.
     is_pushed: bool,
 }
 
@@ -69,7 +69,7 @@ impl Loads {
         self.is_pushed = true;
     }
 
-    /// A hand turns the encoder on an input.
+    /// Turns the encoder on an input by hand.
     fn turn(&mut self, input: usize, counts: f64) {
         self.by_hand[input] += counts;
         self.has_hands = true;
@@ -92,7 +92,7 @@ impl Loads {
         self.is_pushed = true;
     }
 
-    /// Returns whether something outside has moved a load since the last call.
+    /// Returns whether a load was moved from outside since the last call.
     #[inline]
     pub(crate) fn take_pushed(&mut self) -> bool {
         std::mem::take(&mut self.is_pushed)
@@ -140,7 +140,7 @@ pub(crate) struct Machine {
 }
 
 impl Machine {
-    /// Attaches a device and shows it what is high.
+    /// Attaches a device and reports the bits that are high to it.
     pub(crate) fn attach(
         &mut self,
         mut device: Box<dyn Attached>,
@@ -179,7 +179,7 @@ impl Machine {
         if self.attached.is_empty() {
             return;
         }
-        // Devices that answer each other for ever do so at one instant: that is where it is broken off.
+        // Devices that respond to each other endlessly do so at a single instant, where the exchange is cut off.
         for _ in 0..EDGES_AT_ONCE {
             let Some(change) = io.pins.changes.next_unseen() else { return };
             let (mut outside, devices) = self.outside(io);
@@ -191,8 +191,8 @@ impl Machine {
         out.remark(now, Message::DevicesEndless {});
     }
 
-    /// Runs the devices at the beginning of a tick; `hears_uart` if characters of the UART are reported. Returns what
-    /// it has sent since the last tick.
+    /// Runs the devices at the beginning of a tick; `hears_uart` if characters of the UART are reported. Returns the
+    /// characters that the UART has sent since the last tick.
     pub(crate) fn run_devices(
         &mut self,
         io: &mut Io,

@@ -1,4 +1,4 @@
-//! A motor with its load: what speed an amplifier's output comes to. Source: plant.md sections 3 and 4.
+//! A motor with its load: the speed that results from an amplifier's output. Source: plant.md sections 3 and 4.
 
 use std::f64::consts::TAU;
 
@@ -33,7 +33,7 @@ pub(crate) struct Motor {
     /// The speed that a constant load adds.
     pull: f64,
     ka: f64,
-    /// The fraction of the speed that remains after a tick of viscous friction alone.
+    /// The fraction of the speed that remains after a tick with viscous friction only.
     viscous: f64,
     cycles_per_unit: Option<f64>,
     rotor_phase: f64,
@@ -55,7 +55,7 @@ impl Motor {
         }
     }
 
-    /// Returns whether a constant load moves it while nothing drives it.
+    /// Returns whether a constant load moves it while it is not driven.
     #[inline(always)]
     pub(crate) fn is_pulled(&self) -> bool {
         self.pull != 0.0
@@ -104,7 +104,8 @@ impl Motor {
         self.rub(velocity, aim + (velocity - aim) * self.decay, target.abs() <= self.friction)
     }
 
-    /// Friction stops and does not reverse; crawling counts as standing once nothing drives.
+    /// Applies friction, which stops but does not reverse the motion; crawling counts as standing once the motor is not
+    /// driven.
     fn rub(&self, before: f64, after: f64, is_undriven: bool) -> f64 {
         const CRAWL: f64 = 1e-6;
         let reverses = before * after < 0.0;

@@ -12,7 +12,7 @@ use super::description::{Axis, KeyPlace};
 use super::mechanics::Connected;
 use crate::views::Typed;
 
-/// Units of lengths and angles: an axis has several counts or steps in each.
+/// Units of lengths and angles that equal several counts or steps of an axis.
 const COARSE: &[&str] = &[
     "mm", "cm", "m", "in", "inch", "inches", "deg", "degree", "degrees", "°", "rev", "revs", "turn", "turns",
 ];
@@ -44,7 +44,7 @@ struct AxisNotes {
 pub(crate) struct OtherUnits {
     /// The unit of the machine file.
     pub(crate) units: String,
-    /// Its place.
+    /// Its position in the file.
     pub(crate) place: String,
     /// The setting of the program by which its unit is a step or a count.
     pub(crate) field: &'static str,
@@ -63,12 +63,12 @@ impl Notes {
         Self { name, axes: axes.iter().map(AxisNotes::new).collect(), contacts }
     }
 
-    /// Returns whether the machine file says anything of an axis.
+    /// Returns whether the machine file describes an axis.
     pub(crate) fn has_axis(&self, axis: AxisId) -> bool {
         self.axis(axis).is_some_and(|notes| !notes.keys.is_empty())
     }
 
-    /// The key of an axis with its place, as messages have it; only its name if nothing sets it.
+    /// The key of an axis with its location, as in messages; only its name if nothing sets it.
     pub(crate) fn key(&self, axis: AxisId, key: &str) -> String {
         match self.axis(axis).and_then(|notes| notes.keys.get(key)) {
             Some(KeyPlace::Option) => format!("--set axis.{axis}.{key}"),
@@ -83,7 +83,7 @@ impl Notes {
         Some(self.shown(*place))
     }
 
-    /// The unit of the machine file where it cannot be the one in which a program moves an axis.
+    /// The unit of the machine file, if it cannot be the unit in which a program moves an axis.
     pub(crate) fn other_units(&self, memory: &GuestMemory, axis: AxisId) -> Option<OtherUnits> {
         let notes = self.axis(axis)?;
         let units = notes.units.clone()?;
@@ -120,7 +120,7 @@ impl AxisNotes {
 /// The unit of an axis with a step generator.
 const STEPS: &str = "steps";
 
-/// The unit in which a program moves an axis, if a gain of 1 makes it a step or a count, and the field of that gain.
+/// The unit in which a program moves an axis, if a gain of 1 makes it a step or a count; and the field of that gain.
 fn unit(memory: &GuestMemory, axis: AxisId) -> Option<(&'static str, &'static str)> {
     let mode =
         OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE)).filter(|mode| *mode != OutputMode::None)?;

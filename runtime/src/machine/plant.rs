@@ -1,8 +1,8 @@
 //! The load of one axis: its position, its drive, its encoder. Source: plant.md sections 1 to 4.
 //!
-//! An axis as it is without a machine file goes where it is commanded: step generators move it by their steps, one
-//! tick late; closed loops follow with a first-order lag, whatever their gains. With the model `motor` it is driven by
-//! what the board really outputs.
+//! Without a machine file, an axis goes where it is commanded: step generators move it by their steps, one tick late;
+//! closed loops follow with a first-order lag, whatever their gains. With the model `motor` it is driven by the board's
+//! actual outputs.
 
 use std::f64::consts::TAU;
 
@@ -13,9 +13,9 @@ use super::description::{Axis, Encoder, Model};
 use super::motor::{Applied, Motor};
 use crate::views::AxisView;
 
-/// Counts in one tick that an 8-bit encoder register can tell from going backwards, with some room.
+/// The most counts per tick for which an 8-bit encoder register can still distinguish the direction, with some margin.
 pub(crate) const COUNTS_PER_TICK: f64 = 120.0;
-/// A remaining distance that counts as none.
+/// A remaining distance that counts as zero.
 const NEGLIGIBLE: f64 = 1e-9;
 /// Time constant with which a rotor turns into a constant vector, in seconds.
 const DRAG_S: f64 = 0.01;
@@ -28,7 +28,7 @@ pub(crate) enum Drive {
     None,
     /// A step generator or microstepping: the command that it follows, in position units.
     Steps(f64),
-    /// A closed loop with this command, and what it outputs.
+    /// A closed loop with this command, and its output.
     Loop(f64, Applied),
     /// The output that reaches the motor of an axis that follows no command.
     Open(Applied),
@@ -48,10 +48,10 @@ struct Build {
     motor: Motor,
 }
 
-/// Position units of a count of the encoder that the load turns.
+/// Position units per count of the encoder that the load turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Scale {
-    /// The axis' own input gain: whatever that is, the position follows the load.
+    /// The axis' own input gain: whatever its value, the position follows the load.
     Axis,
     Units(f64),
     /// There is no encoder.
@@ -71,19 +71,20 @@ impl Scale {
 /// The count of the encoder that the load turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Counter {
-    /// Position units of one count, and what it has counted at the load `counted`.
+    /// Position units per count, and the load position at which the last count was made.
     gain: f64,
     register: i64,
     counted: f64,
     /// True if that gain allows counting.
     counts: bool,
-    /// The load's position when the gain last changed, and the count there.
+    /// The load's position at the last change of the gain, and the count at that time.
     base: f64,
     base_count: i64,
 }
 
 impl Counter {
-    /// Counts to where the load is. Another gain counts from here on: the register does not jump.
+    /// Counts up to the position of the load. After a change, the new gain counts from here on, so that the register
+    /// does not jump.
     #[inline(always)]
     fn count(&mut self, load: f64, gain: f64) {
         if gain != self.gain {
@@ -93,7 +94,7 @@ impl Counter {
         self.counted = load;
         if self.counts {
             let way = load - self.base;
-            // A division takes the board's tick longer here than everything else of an encoder.
+            // A division would take longer here than the rest of the encoder.
             let counts = if gain == 1.0 { way } else { way / gain } + 0.5;
             let whole = counts as i64;
             let whole = if counts < whole as f64 { whole - 1 } else { whole };
@@ -113,7 +114,7 @@ struct Steps {
     stepped: f64,
     has_stepped: bool,
     is_off: bool,
-    /// True if more steps were demanded than it can make.
+    /// True if more steps were commanded than it can make.
     is_behind: bool,
 }
 
@@ -142,7 +143,7 @@ pub(crate) struct Plant {
 /// The torque that a brushless motor that follows its command would have had.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Torque {
-    /// Sum over some ticks of what part of the current turns the motor.
+    /// Sum, over some ticks, of the fraction of the current that turns the motor.
     sum: f64,
     ticks: u32,
     is_told: bool,
@@ -188,7 +189,7 @@ impl Plant {
         }
     }
 
-    /// Position units of a count of the encoder that the load turns, if there is one; `gain` is the axis' input gain.
+    /// Position units per count of the encoder that the load turns, if there is one; `gain` is the axis' input gain.
     #[inline(always)]
     pub(crate) fn unit(&self, gain: f64) -> Option<f64> {
         match self.build.encoder {
@@ -209,7 +210,8 @@ impl Plant {
         counter.register as i8
     }
 
-    /// The load turns the encoder no longer: its register stays, and counts from here on if the load turns it again.
+    /// Detaches the encoder from the load: its register keeps its value, and continues from it if the load turns it
+    /// again.
     pub(crate) fn hold_encoder(&mut self) -> i8 {
         let counter = &mut self.counter;
         (counter.counted, counter.base, counter.base_count) = (self.load, self.load, counter.register);
@@ -241,17 +243,17 @@ impl Plant {
         self.position = position;
     }
 
-    /// The step generator is at this command: enabling moves nothing.
+    /// Sets the reference of the step generator to this command, so that enabling does not move the load.
     pub(crate) fn refer_to(&mut self, command: f64) {
         self.steps.reached = command;
         self.steps.origin = self.load - command;
-        // What was commanded in the last tick counts from there as well.
+        // The command of the last tick is also relative to it.
         if let Drive::Steps(last) = &mut self.drive {
             *last = command;
         }
     }
 
-    /// Something outside moves the load; step generators continue from there.
+    /// Moves the load from outside; step generators continue from the new position.
     pub(crate) fn push(&mut self, units: f64) {
         self.load += units;
         self.steps.origin += units;
@@ -279,7 +281,7 @@ impl Plant {
         self.build.motor.load_with(speed);
     }
 
-    /// The rest of its way to the command of its axis, if it goes there whatever the output is.
+    /// The remaining distance to the command of its axis, if it goes there regardless of the output.
     pub(crate) fn rest(&self) -> Option<f64> {
         match self.drive {
             Drive::Steps(command) => Some(command - self.steps.reached),
@@ -308,9 +310,8 @@ impl Plant {
         }
     }
 
-    /// Moves the load by what the last tick output, and takes up a position that a program has written; whether
-    /// anything changed. An encoder reaches as far as `reach` in a tick, a step generator makes at most
-    /// `steps_per_tick`.
+    /// Moves the load by the output of the last tick, and adopts a position that a program has written; returns whether
+    /// anything changed. An encoder can follow `reach` per tick, a step generator makes at most `steps_per_tick`.
     #[inline(always)]
     pub(crate) fn advance(
         &mut self,
@@ -349,7 +350,7 @@ impl Plant {
             (_, Drive::Steps(command)) => {
                 let steps_per_unit = f64::from(chan.get(Chan::OUTPUT_GAIN)).abs();
                 if steps_per_unit == 0.0 || !steps_per_unit.is_finite() {
-                    // Its command is no steps at all.
+                    // The command makes no steps.
                     self.refer_to(command);
                     return false;
                 }
@@ -398,7 +399,7 @@ impl Plant {
         self.steps.is_off = !is_on;
     }
 
-    /// Follows a command with a lag, by `reach` in a tick at most; 0 for no limit.
+    /// Follows a command with a lag, by at most `reach` per tick; 0 for no limit.
     #[inline(always)]
     fn follow(&mut self, command: f64, reach: f64) {
         let rest = command - (self.load + self.shift);

@@ -13,7 +13,7 @@ pub(crate) struct MissedPulse {
     pub(crate) gap_ms: f64,
 }
 
-/// The notice that a read gives of the time since the one before.
+/// The observation made by a read about the time since the previous one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ReadNotice {
     /// A pulse came and went.
@@ -41,20 +41,20 @@ struct Read {
     site: Option<CodeAddr>,
     at: Cycles,
     level: bool,
-    /// Changes until then.
+    /// Changes up to the read.
     count: u32,
-    /// Reads in a row from that place, and those of them that followed the one before at once.
+    /// Consecutive reads from the same place, and those among them that immediately followed the previous one.
     reads: u32,
     quick: u32,
 }
 
-/// Reads that follow each other so closely are those of a loop that does little else.
+/// Reads that follow each other this closely come from a loop that does little else.
 const QUICK: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 100);
 
 impl Driven {
-    /// The pulse that has come and gone since a read.
+    /// The pulse that has begun and ended since a read.
     fn missed(&self, before: &Read, level: bool, now: Cycles) -> Option<MissedPulse> {
-        /// Shorter ones are bounces, or meant for other hardware.
+        /// Shorter pulses are bounces, or meant for other hardware.
         const SHORTEST: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 1000);
         /// A program that reads less often does not poll.
         const RAREST: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 2);
@@ -70,8 +70,8 @@ impl Driven {
             .then(|| MissedPulse { width_ms: milliseconds(width), gap_ms: milliseconds(gap) })
     }
 
-    /// An input that has been on from the start falls for the first time, as a safety chain does, while the loop that has
-    /// watched it all the time waits for something else.
+    /// Handles the first fall of an input that has been on from the start, as in a safety chain, while the loop that
+    /// has always watched it waits for something else.
     fn late(&self, before: &Read, level: bool, now: Cycles) -> Option<ReadNotice> {
         const WATCHED: u32 = 100;
         const LATE: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 2);
@@ -85,7 +85,7 @@ impl Driven {
 }
 
 impl Pulses {
-    /// An input is on while nothing drives it.
+    /// Notes that an input is on while it is not driven.
     pub(crate) fn idle_high(&mut self, bit: Bit) {
         self.0.entry(bit).or_default().level = true;
     }
@@ -100,7 +100,7 @@ impl Pulses {
         }
     }
 
-    /// A program reads a bit; what has happened at it since it did so before, from the same place.
+    /// Notes that a program reads a bit; returns what has happened on it since the previous read from the same place.
     pub(crate) fn read(
         &mut self,
         bit: Bit,

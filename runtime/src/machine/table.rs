@@ -24,12 +24,12 @@ pub(crate) struct Table {
     coupling: Coupling,
     /// Its machine coordinate.
     pub(crate) place: f64,
-    /// Its velocity in units per second, with a spring.
+    /// The velocity in units per second, for a table with a spring.
     velocity: f64,
 }
 
 impl Table {
-    /// A way in units that counts as none for a spring.
+    /// A distance in units that counts as zero for a spring.
     const REST: f64 = 1e-3;
 
     /// Returns the table of an axis, if its coupling gives. A spring has no backlash.
@@ -93,7 +93,7 @@ mod tests {
             .collect();
         let peak = places.iter().copied().fold(0.0, f64::max);
         assert!((180.0..195.0).contains(&peak), "{peak}");
-        // Half a period after the step it is at its peak.
+        // Half a period after the step, the table is at its peak.
         let at = places.iter().position(|place| *place == peak).expect("it is there") as f64 * TIMEBASE;
         assert!((at - 0.025).abs() < 1e-3, "{at}");
         assert!(!table.is_moving() && table.place == 100.0, "{}", table.place);

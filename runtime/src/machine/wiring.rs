@@ -1,7 +1,7 @@
-//! The wiring of the machine: the encoder input that each motor's encoder is on, and the output that drives it.
+//! The wiring of the machine: the input of each motor's encoder, and the output that drives the motor.
 //!
-//! A machine file may say both. What it leaves open is taken from the program: the load of an axis follows the axis,
-//! whatever output it uses. The encoder of a load with a motor is on the input of its own number.
+//! A machine file may define both. Otherwise they follow from the program: the load of an axis follows the axis,
+//! whatever output it uses. The encoder of a load with a motor is on the input with the number of the axis.
 
 use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
@@ -26,7 +26,7 @@ pub(crate) struct Wiring {
     inputs: [Option<usize>; Axes::MAX],
     /// The output that drives each motor, if the machine file names it.
     drives: [Option<Channel>; Axes::MAX],
-    /// Axes whose encoder the machine file describes, and those that it describes without one.
+    /// Axes whose encoder the machine file describes, and axes that it describes without an encoder.
     has_encoder: [bool; Axes::MAX],
     has_none: [bool; Axes::MAX],
     /// Inputs with an encoder that a stimulus or the machine file turns.
@@ -48,7 +48,7 @@ impl Wiring {
         wiring
     }
 
-    /// The input that the encoder of an axis is on, if it is known.
+    /// The input of the encoder of an axis, if it is known.
     pub(crate) fn input(&self, axis: AxisId) -> Option<usize> {
         self.inputs[axis.index()]
     }
@@ -64,12 +64,12 @@ impl Wiring {
         self.drives.iter().any(Option::is_some)
     }
 
-    /// The axis whose motor is on a step generator.
+    /// The axis with its motor on a step generator.
     pub(crate) fn motor_on(&self, generator: usize) -> Option<AxisId> {
         AxisId::all().find(|axis| self.drive(*axis) == Some(Channel::Generator(generator)))
     }
 
-    /// The axis whose load turns the encoder that `axis` reads.
+    /// The axis whose load turns the encoder read by `axis`.
     pub(crate) fn turns(&self, memory: &GuestMemory, axis: AxisId) -> Option<AxisId> {
         let channel = memory.axis(axis, Chan::INPUT_CHAN0);
         let input = usize::try_from(channel).ok();
@@ -80,11 +80,11 @@ impl Wiring {
         if let Some(other) = AxisId::all().find(|other| input.is_some() && self.input(*other) == input) {
             return Some(other);
         }
-        // The axis' own encoder is known to be elsewhere.
+        // The axis' own encoder is known to be on another input.
         if self.input(axis).is_some() {
             return None;
         }
-        // An axis without a motor watches somebody else's encoder.
+        // An axis without a motor reads the encoder of another axis.
         let watches = channel != i32::from(axis.get())
             && memory.axis(axis, Chan::OUTPUT_MODE) == OutputMode::None.get();
         if watches {
@@ -94,7 +94,7 @@ impl Wiring {
         }
     }
 
-    /// An encoder on this input is turned by hand.
+    /// Notes that the encoder on this input is turned by hand.
     pub(crate) fn turn_by_hand(&mut self, input: usize) {
         self.by_hand[input] = true;
     }
@@ -105,7 +105,7 @@ impl Wiring {
         input.is_some_and(|input| self.by_hand.get(input) == Some(&true))
     }
 
-    /// Returns whether a hand turns the encoder that an axis reads, and no load.
+    /// Returns whether the encoder that an axis reads is turned only by hand, not by a load.
     pub(crate) fn is_hand_alone(&self, memory: &GuestMemory, axis: AxisId) -> bool {
         self.reads_hand(memory, axis)
             && self.shaft(memory, memory.axis(axis, Chan::INPUT_CHAN0) as usize).is_none()
@@ -116,10 +116,10 @@ impl Wiring {
         self.has_encoder[axis.index()]
     }
 
-    /// The axis whose load turns with the encoder on an input when that is turned from outside.
+    /// The axis whose load turns along when the encoder on an input is turned from outside.
     ///
-    /// It is the one that the machine file connects there, or an axis that has its own encoder there. A load that nobody
-    /// has described, whose axis goes without an encoder, leaves its input to a hand wheel.
+    /// It is the axis that the machine file connects there, or an axis with its own encoder there. A load without a
+    /// description, whose axis has no encoder, leaves its input to a hand wheel.
     pub(crate) fn shaft(&self, memory: &GuestMemory, input: usize) -> Option<AxisId> {
         let axes = || memory.axes().iter();
         if let Some(axis) = axes().find(|axis| self.input(*axis) == Some(input)) {
@@ -145,12 +145,12 @@ pub(crate) fn reads(memory: &GuestMemory, axis: AxisId, input: usize) -> bool {
         && usize::try_from(memory.axis(axis, Chan::INPUT_CHAN0)) == Ok(input)
 }
 
-/// The step generator that an output channel names: a Kogna has sixteen, of which the first eight have pins here.
+/// The step generator meant by an output channel: a Kogna has sixteen, of which only the first eight have pins here.
 pub(crate) fn generator(memory: &GuestMemory, channel: i32) -> usize {
     if memory.has_other_map() { (channel & 15) as usize } else { generator_of(channel) }
 }
 
-/// The output that an axis drives, if there is one of that number.
+/// The output driven by an axis, if its number is valid.
 pub(crate) fn channel_of(memory: &GuestMemory, axis: AxisId) -> Option<Channel> {
     let number = memory.axis(axis, Chan::OUTPUT_CHAN0);
     let index = usize::try_from(number).ok();

@@ -1,18 +1,18 @@
 //! Console text on its way to the PC: one holding buffer, one queue.
 //!
-//! Text is held until its line ends, or until 125 characters are held and another one comes. A queue of strings then
-//! waits for the primary thread, which sends one in each of its slices. All threads share the holding buffer.
+//! Text is held until its line ends, or until another character follows the 125th. A queue of strings then waits for
+//! the primary thread, which sends one in each of its slices. All threads share the holding buffer.
 
 use std::collections::VecDeque;
 
 use kmotiondef::limits::MAX_NSTRINGS;
 
-/// Characters of a line that are held at most.
+/// The limit of characters held for a line.
 pub(crate) const LINE_LIMIT: usize = 125;
-/// Strings the queue takes; a queue whose two indices are equal is empty, so one place stays free.
+/// The capacity of the queue; a queue with equal indices is empty, so one entry stays free.
 const QUEUE_LIMIT: usize = MAX_NSTRINGS - 1;
 
-/// The console as the board keeps it.
+/// The console of the board.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Console {
     held: Vec<u8>,
@@ -21,7 +21,7 @@ pub(crate) struct Console {
     servo: Option<String>,
     /// Strings queued since power-up.
     queued: u64,
-    /// True if nobody sends anything any more.
+    /// True if nothing is sent any more.
     is_dead: bool,
 }
 
@@ -63,7 +63,7 @@ impl Console {
         }
     }
 
-    /// The primary thread's slice: it sends what the servo reports, past the queue.
+    /// Returns the message of the servo that the primary thread sends in its slice, bypassing the queue.
     pub(crate) fn take_servo_message(&mut self) -> Option<Vec<u8>> {
         self.servo.take().map(String::into_bytes)
     }
@@ -73,12 +73,12 @@ impl Console {
         self.queue.pop_front()
     }
 
-    /// Nobody sends anything any more.
+    /// Stops sending for good.
     pub(crate) fn die(&mut self) {
         *self = Self { is_dead: true, queued: self.queued, ..Self::default() };
     }
 
-    /// Everything not sent yet. A line that has not ended stays: the board never sends it
+    /// Returns all text that has not been sent yet. An unfinished line is kept: the board never sends it
     /// (gather-persist-console.md section 4).
     pub(crate) fn drain(&mut self) -> Vec<Vec<u8>> {
         let servo = self.take_servo_message();
@@ -90,12 +90,12 @@ impl Console {
         self.queue.iter().map(Vec::as_slice)
     }
 
-    /// The line that was begun and has not ended.
+    /// The unfinished line.
     pub(crate) fn held(&self) -> &[u8] {
         &self.held
     }
 
-    /// Returns whether a line was begun and has not ended.
+    /// Returns whether there is an unfinished line.
     pub(crate) fn is_holding(&self) -> bool {
         !self.held.is_empty()
     }

@@ -1,7 +1,7 @@
 //! Events of a run, with the board time at which they happened.
 //!
-//! Every part of the board can report something. Nothing reported feeds back into the simulation, except console lines
-//! for which a stimulus waits.
+//! Every part of the board can report events. Events have no effect on the simulation, except for console lines for
+//! which a stimulus waits.
 
 mod console;
 mod record;
@@ -22,7 +22,7 @@ pub use remarks::{Message, OtherPlace, REMARKS, Remark, RemarkRow, Severity, Spe
 /// Begins a console line on the wire, and a line to the board that is not echoed.
 pub(crate) const ESCAPE: u8 = 0x1B;
 
-/// The output of a run: console text on its way, events not yet taken, requests to the board.
+/// The output of a run: console text in transit, events not yet taken, requests to the board.
 #[derive(Clone, Debug)]
 pub(crate) struct Out {
     pub(crate) console: Console,
@@ -36,9 +36,9 @@ pub(crate) struct Out {
     pub(crate) hints: bool,
     /// True while a script command is executed.
     pub(crate) is_commanding: bool,
-    /// Codes of remarks that nobody wants.
+    /// Codes of remarks that are switched off.
     unwanted: BTreeSet<&'static str>,
-    /// Remarks that are made once and were made: code and distinguishing key.
+    /// Remarks made once that have already been made: code and distinguishing key.
     made: BTreeSet<(&'static str, u64)>,
 }
 
@@ -70,12 +70,12 @@ impl Out {
         self.events.push(Event { at, kind });
     }
 
-    /// A remark about the board or what is around it.
+    /// Makes a remark about the board or its surroundings.
     pub(crate) fn remark(&mut self, at: Cycles, message: Message) {
         self.remark_of(at, Speaker::Board, None, message);
     }
 
-    /// Remarks of this code are not made any more.
+    /// Switches remarks of this code off.
     pub(crate) fn silence(&mut self, code: &'static str) {
         self.unwanted.insert(code);
     }
@@ -90,7 +90,7 @@ impl Out {
         self.remark_of(caller.now(), speaker, caller.at, message);
     }
 
-    /// Makes a remark about a subject, unless it was made before or is switched off.
+    /// Makes a remark about a subject, unless it was already made or is switched off.
     pub(crate) fn remark_of(
         &mut self,
         at: Cycles,
@@ -106,7 +106,7 @@ impl Out {
         }
     }
 
-    /// Remarks of these codes are made again.
+    /// Allows remarks of these codes to be made again.
     pub(crate) fn forget_remarks(&mut self, codes: &[&str]) {
         self.made.retain(|(code, _)| !codes.contains(code));
     }
@@ -116,7 +116,7 @@ impl Out {
         std::mem::take(&mut self.events)
     }
 
-    /// Asks the board as a whole for something, to be done after this tick.
+    /// Requests an action of the board as a whole, to be executed after this tick.
     pub(crate) fn ask(&mut self, request: Request) {
         self.requests.push(request);
     }
@@ -155,7 +155,7 @@ impl Out {
 /// A request to the board as a whole, which holds the programs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Request {
-    /// Make a program of what was downloaded into a thread that was started.
+    /// Make a program from the download into a thread that was started.
     Load(ThreadId),
     /// Save programs and settings in flash.
     Flash,
@@ -181,7 +181,7 @@ pub enum EventKind {
     ConsoleLine(Vec<u8>),
     /// The PC received a line of a reply, without its line end.
     Reply(Vec<u8>),
-    /// The PC received back what it sent: the characters of a line without an escape.
+    /// The echo to the PC: the characters of a line that did not begin with an escape.
     Echo(Vec<u8>),
     /// The PC received the answer to 0x03: the line or command in progress is dropped.
     Aborted,
@@ -191,13 +191,13 @@ pub enum EventKind {
     Loaded(ThreadId, Arc<str>),
     /// A thread was stopped by a trap.
     Trap(Trap),
-    /// Something that was asked to be recorded.
+    /// A record of a requested recording.
     Trace(Record),
     /// The UART has sent a character; reported on request.
     UartSent(u8),
     /// An expectation of the stimulus is not met.
     Unmet(String),
-    /// The PC did something that a program requested.
+    /// An action of the PC that a program requested.
     Host(String),
     /// The processor of the board has stopped for good: why, where, and its registers.
     Halted(String),

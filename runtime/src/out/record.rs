@@ -31,7 +31,7 @@ pub enum Record {
         address: CodeAddr,
         /// Its duration.
         cycles: Cycles,
-        /// Its instructions, bars between them.
+        /// Its instructions, separated by bars.
         text: String,
     },
     /// The quantities have these values, some of which are new.

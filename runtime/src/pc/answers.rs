@@ -1,6 +1,6 @@
 //! Settings of the PC's answers, of the form `key=value`.
 //!
-//! Several answers of one kind are given in turn, and the last one from then on. The keys are listed in [`HELP`].
+//! Several answers of one kind are used in turn; the last one is repeated. The keys are listed in [`HELP`].
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
@@ -27,16 +27,16 @@ const BUTTONS: [(&str, i32); 7] =
     [("ok", 1), ("cancel", 2), ("abort", 3), ("retry", 4), ("ignore", 5), ("yes", 6), ("no", 7)];
 /// Kinds of entries of the tool table, by the request that reads them.
 const TOOL_KINDS: [(&str, i32); 4] = [("length", 23), ("diameter", 30), ("xoffset", 32), ("yoffset", 34)];
-/// Counts per inch of an axis that nobody has set up.
+/// Counts per inch of an axis without a setup.
 const RESOLUTION: f32 = 1000.0;
 
-/// A setting that means nothing.
+/// An invalid setting.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AnswerError {
     /// There is no `=`.
     #[error("`{0}` is not `key=value`")]
     NotASetting(String),
-    /// The key is none of [`HELP`].
+    /// The key is not in [`HELP`].
     #[error(
         "there is no answer `{0}`; known: msgbox, input, boxes, mdi, request.N, var.N, tool.N.KIND, dro.AXIS, resolution.AXIS, cell.N, setup and job"
     )]
@@ -53,7 +53,7 @@ pub enum AnswerError {
     },
 }
 
-/// Answers that are given in turn.
+/// Answers that are used in turn.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Turns<T>(VecDeque<T>);
 
@@ -69,7 +69,7 @@ impl<T: Copy> Turns<T> {
         self.0.is_empty()
     }
 
-    /// The next answer; the last one stays. `None` if there was never one.
+    /// The next answer; the last one is repeated. `None` if there are no answers.
     pub(super) fn next(&mut self) -> Option<T> {
         if self.0.len() > 1 { self.0.pop_front() } else { self.0.front().copied() }
     }
@@ -102,7 +102,7 @@ impl Boxes {
 pub struct Answers {
     pub(super) boxes: Boxes,
     pub(super) mdi: Turns<i32>,
-    /// Answers to requests by number, instead of doing what they ask for.
+    /// Answers to requests by number, which replace the requested action.
     pub(super) results: BTreeMap<i32, i32>,
     /// Requests that are never answered.
     pub(super) silent: BTreeSet<i32>,
@@ -138,16 +138,16 @@ impl Answers {
     /// Reads a line of settings, as a file has them: `#` begins a comment, an empty line is ignored.
     ///
     /// # Errors
-    /// What is wrong with the line.
+    /// The error in the line.
     pub fn line(&mut self, line: &str) -> Result<(), AnswerError> {
         let line = line.trim();
         if line.is_empty() || line.starts_with('#') { Ok(()) } else { self.set(line) }
     }
 
-    /// Takes one setting whose answer is the next one, whatever was to come before it.
+    /// Takes one setting and makes its answer the next one, before all others.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The error in the setting.
     pub fn set_next(&mut self, setting: &str) -> Result<(), AnswerError> {
         match setting.split('=').next().map(str::trim) {
             Some("msgbox" | "message_box") => self.boxes.buttons.0.clear(),
@@ -161,11 +161,11 @@ impl Answers {
     /// Takes one setting, `key=value`.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The error in the setting.
     pub fn set(&mut self, setting: &str) -> Result<(), AnswerError> {
         let (key, value) =
             setting.split_once('=').ok_or_else(|| AnswerError::NotASetting(setting.to_owned()))?;
-        // `message_box` is what machine files say.
+        // Machine files call it `message_box`.
         let key = if key.trim() == "message_box" { "msgbox" } else { key.trim() };
         let value = value.trim();
         let bad = |expected| AnswerError::BadValue { key: key.to_owned(), value: value.to_owned(), expected };

@@ -1,6 +1,6 @@
 //! Message and input boxes that stay open until a person answers them.
 
-/// A box that a program has opened on the PC, and that nobody has answered.
+/// A box that a program has opened on the PC and that has not been answered.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OpenBox {
     /// A message; the answer is `msgbox=` and a button.

@@ -1,9 +1,9 @@
-//! A folder of the system as the PC's disk: programs reach the files in it, and nothing outside.
+//! A folder of the system as the PC's disk: programs can access the files in it, and nothing outside.
 //!
-//! The folder is a capability. Each part of a name is opened below the handle of the folder before it, and a link is
-//! not followed by the system call itself. No path is checked first and opened later, so another process that exchanges
-//! folders and links while a program runs gains nothing. What was opened is then judged by its handle: it is a regular
-//! file, and one with a second name (a hard link), which may be outside the folder, is not written.
+//! The folder is a capability. Each part of a name is opened relative to the handle of its parent folder, by a system
+//! call that does not follow links. No path is checked first and opened later, so another process gains nothing by
+//! exchanging folders and links while a program runs. The opened file is then checked by its handle: it must be a
+//! regular file, and a file with a second name (a hard link), which may be outside the folder, is not written.
 
 use std::ffi::{OsStr, OsString};
 use std::fs;
@@ -19,9 +19,9 @@ use crate::pc::files::{FILE_BYTES, FileError, HostFiles};
 
 /// Files below one folder, whatever path the program names.
 ///
-/// Names are those of a PC: a drive letter goes, backslashes become slashes, letter case does not matter. A name with
-/// `..` is refused, and so is one that passes through a link or ends at one, so that a program reaches nothing outside.
-/// A file with several names (hard links) is read, but not written.
+/// Names are those of a PC: drive letters are dropped, backslashes become slashes, letter case does not matter. A name
+/// with `..` is refused, and so is a name that passes through a link or ends at one, so that programs cannot access
+/// anything outside. A file with several names (hard links) is read, but not written.
 #[derive(Clone, Debug)]
 pub struct Directory {
     root: PathBuf,
@@ -33,13 +33,13 @@ pub struct Directory {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum OpenMode {
     Read,
-    /// Made with its folders where it is missing.
+    /// The file is created, together with missing folders.
     Create,
     Append,
 }
 
 impl OpenMode {
-    /// Options with which nothing is followed, waited for, or emptied before it is judged.
+    /// Options that do not follow links, do not block, and do not truncate the file before it is checked.
     fn options(self) -> OpenOptions {
         let mut options = OpenOptions::new();
         match self {
@@ -53,7 +53,7 @@ impl OpenMode {
 }
 
 impl Directory {
-    /// Files below `root`, which is made at the first write.
+    /// Files below `root`, which is created at the first write.
     pub fn new(root: impl Into<PathBuf>) -> Self {
         Self { root: root.into(), names: Vec::new() }
     }
@@ -79,7 +79,7 @@ impl Directory {
         Ok(parts.into_iter().map(str::to_owned).collect())
     }
 
-    /// Opens the root. It may be a link: the user names it, not the program.
+    /// Opens the root. It may be a link, because the user chooses it, not the program.
     fn open_root(&self) -> io::Result<Dir> {
         // A relative root may be empty: the current folder.
         let root = if self.root.as_os_str().is_empty() { Path::new(".") } else { &self.root };
@@ -111,10 +111,10 @@ impl Directory {
         Ok(file)
     }
 
-    /// Checks that a file of this name can be read, or could be made.
+    /// Checks that a file of this name can be read or created.
     ///
     /// # Errors
-    /// The name leads nowhere, through a link, or to what is not a file.
+    /// The name does not exist, passes through a link, or is not a file.
     pub(crate) fn check(&self, name: &str) -> Result<(), FileError> {
         match self.open(name, OpenMode::Read) {
             Ok(_) | Err(FileError::Missing) => Ok(()),
@@ -130,7 +130,7 @@ enum Wanted {
     File,
 }
 
-/// Opens a folder of a folder, which is made first where a file is created.
+/// Opens a folder of a folder; it is created first if a file is created.
 fn open_folder(folder: &Dir, part: &str, purpose: OpenMode) -> Result<Dir, FileError> {
     let name = spelling(folder, part);
     if purpose == OpenMode::Create
@@ -142,8 +142,8 @@ fn open_folder(folder: &Dir, part: &str, purpose: OpenMode) -> Result<Dir, FileE
     folder.open_dir_nofollow(&name).map_err(|error| reason(folder, &name, part, error, Wanted::Folder))
 }
 
-/// The reason why an entry is not opened. Systems name a link in several ways; this looks only for the words, after the
-/// entry has been refused.
+/// The reason why an entry is not opened. Systems report a link in several ways; this only determines the message,
+/// after the entry has been refused.
 fn reason(folder: &Dir, name: &OsStr, part: &str, error: io::Error, wanted: Wanted) -> FileError {
     match folder.symlink_metadata(name) {
         Ok(known) if known.is_symlink() => FileError::Link(part.to_owned()),
@@ -152,7 +152,7 @@ fn reason(folder: &Dir, name: &OsStr, part: &str, error: io::Error, wanted: Want
     }
 }
 
-/// The name of an entry of `folder`: with exactly this spelling, else the first in another letter case.
+/// The name of an entry of `folder`: with exactly this spelling, otherwise the first with another letter case.
 fn spelling(folder: &Dir, name: &str) -> OsString {
     if folder.symlink_metadata(name).is_ok() {
         return name.into();
@@ -161,7 +161,7 @@ fn spelling(folder: &Dir, name: &str) -> OsString {
     entries.filter(|found| found.eq_ignore_ascii_case(name)).min().unwrap_or_else(|| name.into())
 }
 
-/// Returns true for an ordinary name. What names a device on some PC is none on any.
+/// Returns true for an ordinary name. A name that is a device on some PC is refused on all of them.
 fn is_name(part: &str) -> bool {
     const DEVICES: [&str; 4] = ["CON", "PRN", "AUX", "NUL"];
     let stem = part.split('.').next().unwrap_or_default().trim_end().to_ascii_uppercase();
@@ -210,7 +210,7 @@ impl HostFiles for Directory {
 mod tests {
     use super::*;
 
-    /// A folder with a file inside and one beside it; removed at the end.
+    /// A temporary folder with a file inside and a file outside; removed at the end.
     struct Scratch(PathBuf);
 
     impl Scratch {
@@ -382,7 +382,7 @@ mod tests {
         std::thread::scope(|scope| {
             scope.spawn(|| {
                 for swap in 0..swaps {
-                    // An error here is found below: nothing is refused then.
+                    // An error here is detected below, because nothing is refused then.
                     let _ = renameat_with(CWD, &folder, CWD, &link, RenameFlags::EXCHANGE);
                     // The system refuses every read during which names change, so the folder and the link stay now and
                     // then for a moment.
@@ -398,7 +398,7 @@ mod tests {
                     Ok(_) => escaped += 1,
                     Err(_) => refused += 1,
                 }
-                // Refused or done: what matters is outside.
+                // It may succeed or be refused; only files outside matter.
                 let _ = directory.create("Temp/Log.txt", false);
                 let _ = directory.append("Temp/Log.txt", b"x");
                 let _ = directory.create("Temp/made.txt", false);

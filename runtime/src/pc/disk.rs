@@ -1,8 +1,8 @@
 //! The PC's side of disk files: requests that come among the console lines, and the answers to them.
 //!
 //! The board has no disk. `fopen` and similar functions send a console line whose first character is a code; the PC
-//! does what it says, and answers a reading one with a line of the file, which the board puts into `read_disk_buffer`.
-//! The PC has one file open for writing and one for reading. Source: host-protocol.md section 6.
+//! executes it, and answers a read with a line of the file, which the board puts into `read_disk_buffer`. The PC has
+//! one file open for writing and one for reading. Source: host-protocol.md section 6.
 
 use std::collections::VecDeque;
 
@@ -29,7 +29,7 @@ pub(crate) const NO_MORE: i32 = 3;
 /// A request of a program to the disk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum DiskRequest {
-    /// Open for writing, and make empty.
+    /// Open for writing, and truncate.
     Create = 1,
     /// Write a line.
     Write = 2,
@@ -41,7 +41,7 @@ pub(crate) enum DiskRequest {
     NextLine = 5,
     /// Close the file open for reading.
     CloseReading = 6,
-    /// Open for writing after what is there.
+    /// Open for appending.
     Append = 7,
 }
 
@@ -56,7 +56,7 @@ impl DiskRequest {
         Self::Append,
     ];
 
-    /// The request that a console line is, and what follows its code.
+    /// The request in a console line, and the text after its code.
     fn read(line: &[u8]) -> Option<(Self, &[u8])> {
         let (code, text) = line.split_first()?;
         Self::of_code(*code).map(|request| (request, text))
@@ -67,7 +67,7 @@ impl DiskRequest {
         Self::ALL.into_iter().find(|request| request.code() == code)
     }
 
-    /// The character that it is sent as.
+    /// The character with which it is sent.
     pub(crate) const fn code(self) -> u8 {
         self as u8
     }
@@ -93,7 +93,7 @@ pub struct ServedFile {
     pub remark: Option<String>,
 }
 
-/// The files of a PC to which a board is connected that is not simulated.
+/// The files of a PC for a board that is not simulated.
 ///
 /// Requests are those of `fopen`, `fprintf`, `fgets` and `fclose` in programs. Source: host-protocol.md section 6.
 #[derive(Clone, Debug)]
@@ -117,7 +117,7 @@ impl FileServer {
     }
 }
 
-/// The disk, and what is open on it.
+/// The disk, and its open files.
 #[derive(Clone, Debug)]
 pub(crate) struct Disk {
     files: Box<dyn HostFiles>,
@@ -126,7 +126,7 @@ pub(crate) struct Disk {
     writing: Option<String>,
     /// From a request to its answer.
     pub(crate) latency: Cycles,
-    /// Answers on their way, and when they arrive.
+    /// Answers in transit, with their arrival times.
     answers: VecDeque<(Cycles, FileAnswer)>,
 }
 
@@ -136,7 +136,7 @@ impl Disk {
         Self { files, reading: None, writing: None, latency: LATENCY, answers: VecDeque::new() }
     }
 
-    /// The board restarts: nothing is awaited any more.
+    /// Drops all answers, because the board restarts.
     pub(crate) fn forget_answers(&mut self) {
         self.answers.clear();
     }
@@ -205,7 +205,7 @@ impl Disk {
         written.err().map(|error| Message::FileNotWritten { name: name.clone(), error: error.to_string() })
     }
 
-    /// Sends the next line, or reports that there is none.
+    /// Sends the next line, or reports the end of the file.
     fn answer(&mut self, now: Cycles) {
         let answer = match &mut self.reading {
             None => FileAnswer::Failure,
@@ -220,7 +220,7 @@ impl Disk {
         if is_due { self.answers.pop_front().map(|(_, answer)| answer) } else { None }
     }
 
-    /// Takes a console line that is a request; whether it was one.
+    /// Takes a console line if it is a request; returns whether it was.
     pub(crate) fn take(&mut self, out: &mut Out, line: &[u8], now: Cycles) -> bool {
         let Some((request, text)) = DiskRequest::read(line) else { return false };
         let text = String::from_utf8_lossy(text);
@@ -233,7 +233,7 @@ impl Disk {
         true
     }
 
-    /// Puts an answer that has arrived into the board's line buffer; whether there was one.
+    /// Puts an answer that has arrived into the board's line buffer; returns whether there was one.
     #[inline]
     pub(crate) fn slice(&mut self, context: &mut TickContext<'_>) -> bool {
         let Some(answer) = self.arrived(context.now) else { return false };

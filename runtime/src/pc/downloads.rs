@@ -1,7 +1,7 @@
 //! Programs downloaded into threads word by word.
 //!
-//! A download is bytes in memory and an entry point; nothing says where the text of a program ends. What was stored in
-//! one go is kept here, so that the board can find the text among it when the thread is started.
+//! A download consists of bytes in memory and an entry point; nothing marks the end of a program's text. The ranges
+//! that were stored are kept here, so that the board can find the text in them when the thread is started.
 
 use kmotiondef::map::{MemoryMap, ProgramSpaces};
 use kmotiondef::{GuestAddr, ThreadId};
@@ -11,7 +11,7 @@ use kmotiondef::{GuestAddr, ThreadId};
 pub(crate) struct Downloads {
     /// The spaces of the threads.
     pub(crate) spaces: ProgramSpaces,
-    /// First address, and the one after the last.
+    /// First address, and the address after the last.
     stored: Vec<(GuestAddr, GuestAddr)>,
 }
 
@@ -21,7 +21,7 @@ impl Default for Downloads {
     }
 }
 
-/// Stretches that are kept: no program needs as many.
+/// The limit of ranges that are kept: no program needs as many.
 const MOST_STRETCHES: usize = 1000;
 
 impl Downloads {
@@ -54,7 +54,7 @@ impl Downloads {
         ends
     }
 
-    /// Forgets what was stored in the space of a thread.
+    /// Drops the ranges in the space of a thread.
     pub(crate) fn forget(&mut self, thread: ThreadId) {
         let space = self.spaces.space(thread);
         self.stored.retain(|(stored, _)| !space.contains(&stored.get()));

@@ -1,4 +1,4 @@
-//! Files of the PC: none, those of a folder, or a folder under a layer of written files that nobody else sees.
+//! Files of the PC: none, the files of a folder, or a folder below a private layer of written files.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -19,22 +19,22 @@ pub enum FileError {
     /// The name leads out of the folder, or is none.
     #[error("the name is outside the folder of the PC's files")]
     Outside,
-    /// Something on the way is a link, which may lead anywhere.
+    /// A part of the path is a link, which may lead anywhere.
     #[error("`{0}` is a link, and links are not followed")]
     Link(String),
-    /// The file has more names than this one, and may lie outside under another.
+    /// The file has further names, which may be outside the folder.
     #[error("`{0}` has a second name (a hard link), which may be outside the folder: it is only read")]
     HardLink(String),
     /// The path is a folder or a device, not a file.
     #[error("it is not a file")]
     NotAFile,
-    /// It does not fit into memory beside everything else.
+    /// It does not fit into the memory that is left.
     #[error("it is larger than {FILE_BYTES} bytes")]
     TooLarge,
     /// There is no such file.
     #[error("there is no such file")]
     Missing,
-    /// The system does not let us.
+    /// The system refused the operation.
     #[error("{0}")]
     System(ErrorKind),
 }
@@ -50,13 +50,13 @@ pub trait HostFiles: fmt::Debug + Send {
     /// The contents of a file.
     ///
     /// # Errors
-    /// Why it is not read.
+    /// The reason why it cannot be read.
     fn read(&mut self, name: &str) -> Result<Vec<u8>, FileError>;
 
-    /// Makes a file empty, or leaves what it holds if `keep` is set.
+    /// Creates a file or makes it empty; its contents are kept if `keep` is set.
     ///
     /// # Errors
-    /// Why it is not made.
+    /// The reason why it cannot be created.
     fn create(&mut self, name: &str, keep: bool) -> Result<(), FileError>;
 
     /// Adds to the end of a file.
@@ -65,7 +65,7 @@ pub trait HostFiles: fmt::Debug + Send {
     /// Why it cannot grow.
     fn append(&mut self, name: &str, bytes: &[u8]) -> Result<(), FileError>;
 
-    /// Returns the path at which the file of this name is looked for, if it has one.
+    /// Returns the path at which the file of this name is searched for, if it has one.
     fn place_of(&self, name: &str) -> Option<String> {
         let _ = name;
         None
@@ -103,7 +103,7 @@ impl HostFiles for NoFiles {
     }
 }
 
-/// Files as they are, and over them what programs write, which nobody else sees.
+/// Existing files below a private layer of the files that programs write.
 #[derive(Clone, Debug)]
 pub struct Overlay {
     below: Directory,
@@ -112,7 +112,7 @@ pub struct Overlay {
 }
 
 impl Overlay {
-    /// Nothing is written yet.
+    /// An overlay with nothing written yet.
     #[must_use]
     pub fn new(below: Directory) -> Self {
         Self { below, written: Arc::default() }

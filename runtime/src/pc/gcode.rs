@@ -2,8 +2,8 @@
 //!
 //! An expression is a number, a variable (`#5`, `##5`, `#[5+1]`), a sign, a function of a bracket, or a bracket of
 //! operators. As in the interpreter that the manual describes (RS274NGC), `**` binds closest, then `*`, `/` and `MOD`,
-//! then `+` and `-`, then comparisons, then `AND`, `OR` and `XOR`; operators of one kind go from left to right, angles
-//! are in degrees, and all assignments of a line happen after all values were found.
+//! then `+` and `-`, then comparisons, then `AND`, `OR` and `XOR`; operators of one level associate from left to right,
+//! angles are in degrees, and all assignments of a line happen after all values were computed.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ pub(super) struct Unknown(pub(super) String);
 /// The maximum nesting of brackets.
 const DEEPEST: usize = 50;
 
-/// The assignments of a line, in its order; nothing if one of them is not understood.
+/// The assignments of a line, in order; none if one of them is not understood.
 pub(super) fn assignments(line: &str, variables: &BTreeMap<i32, f64>) -> Result<Vec<(i32, f64)>, Unknown> {
     let text: String = without_comments(line).to_ascii_lowercase().split_whitespace().collect();
     if !text.contains('#') || !text.contains('=') {
@@ -36,7 +36,7 @@ pub(super) fn assignments(line: &str, variables: &BTreeMap<i32, f64>) -> Result<
     Ok(found)
 }
 
-/// Comments in parentheses, and from a semicolon on.
+/// The line without comments in parentheses or after a semicolon.
 fn without_comments(line: &str) -> String {
     let mut depth = 0_u32;
     let line = line.split(';').next().unwrap_or_default();
@@ -260,7 +260,7 @@ mod tests {
             assert_eq!(found(line), Ok(vec![(100, expect)]), "{line}");
         }
         assert!((found("#100 = SIN[30]").expect("a value")[0].1 - 0.5).abs() < 1e-12);
-        // All values are found first.
+        // All values are computed first.
         assert_eq!(found("#5 = 1 #6 = #5"), Ok(vec![(5, 1.0), (6, 2.5)]));
         assert_eq!(found("G28 Z0"), Ok(Vec::new()));
     }

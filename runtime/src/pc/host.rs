@@ -1,7 +1,7 @@
-//! The minimal PC: polls the board's status and answers what programs ask for.
+//! The minimal PC: polls the board's status and answers requests of programs.
 //!
-//! Source: gather-persist-console.md sections 7 and 8. A program stores parameters in `UserData[101]` and on, then a
-//! code in `UserData[100]`, and waits until that is no longer positive.
+//! Source: gather-persist-console.md sections 7 and 8. A program stores parameters from `UserData[101]` on, then a code
+//! in `UserData[100]`, and waits until the code is no longer positive.
 
 use kmotiondef::limits::{N_USER_DATA_VARS, PC_COMM_PERSIST};
 use kmotiondef::structs::Persist;
@@ -31,7 +31,7 @@ const PATIENCE: Cycles = Cycles::new(5 * Cycles::PER_SECOND.get());
 pub(super) const STRING_WORDS: u32 = 50;
 /// Success.
 const DONE: i32 = 0;
-/// The request cannot be met.
+/// The request is invalid.
 const INVALID: i32 = -1;
 /// A tool that does not exist.
 const BAD_TOOL: i32 = -2;
@@ -50,9 +50,9 @@ pub(crate) struct Host {
     jog_overrides: [f32; 6],
     /// The request that is not answered and was shown.
     unanswered: i32,
-    /// Since when a request waits for a PC that is not there; `None` once this was reported.
+    /// The time since which a request waits for a missing PC; `None` once this was reported.
     waits_since: Option<Cycles>,
-    /// The request that waits, and the thread that has made it.
+    /// The waiting request, and the thread that has made it.
     pending: Option<(i32, ThreadId)>,
 }
 
@@ -76,12 +76,12 @@ impl Host {
         self.is_connected = is_connected;
     }
 
-    /// Returns whether there is a PC, which serves files too.
+    /// Returns whether there is a PC, which also serves files.
     pub(crate) const fn is_connected(&self) -> bool {
         self.is_connected
     }
 
-    /// Says what it answers.
+    /// Sets its answers.
     pub(crate) fn answer_with(&mut self, answers: Answers) {
         self.answers = answers;
     }
@@ -91,7 +91,7 @@ impl Host {
         self.answers.set_next(setting)
     }
 
-    /// Returns what it answers and holds.
+    /// Returns its answers and variables.
     pub(super) const fn answers(&self) -> &Answers {
         &self.answers
     }
@@ -112,7 +112,7 @@ impl Host {
         self.is_connected && code > 0 && !self.answers.silent.contains(&code) && !self.is_for_person(code)
     }
 
-    /// The box that waits for a person, if there is one that the PC has shown.
+    /// The box that the PC shows and that waits for a person, if there is one.
     pub(crate) fn open_box(&self, memory: &GuestMemory) -> Option<OpenBox> {
         let code = memory.get(data(0));
         if !self.is_connected || self.unanswered != code || !self.is_for_person(code) {
@@ -147,17 +147,17 @@ impl Host {
         self.answers.boxes.waits = true;
     }
 
-    /// Returns how many ticks pass until it polls the board again.
+    /// Returns the number of ticks until it polls the board again.
     pub(crate) fn quiet_ticks(&self) -> u64 {
         if self.is_connected { self.until_poll.saturating_sub(2) } else { u64::MAX }
     }
 
-    /// This many ticks have passed at once.
+    /// Lets several ticks pass at once.
     pub(crate) fn skip(&mut self, ticks: u64) {
         self.until_poll = self.until_poll.saturating_sub(ticks);
     }
 
-    /// One tick has passed.
+    /// Lets one tick pass.
     pub(crate) fn tick(&mut self) {
         self.until_poll = self.until_poll.saturating_sub(1);
     }
@@ -175,7 +175,7 @@ impl Host {
         if by != thread {
             return Some(Message::RequestOverwritten { code: lost, by: code });
         }
-        // A stop need not wait for what comes before it.
+        // A stop need not wait for earlier requests.
         let stops = matches!(requests::action(code), Some(PcAction::EmergencyStop | PcAction::EndJob));
         (!stops).then_some(Message::RequestReplaced { code: lost, by: code })
     }
@@ -254,7 +254,7 @@ fn miss(host: &mut Host, out: &mut Out, context: &TickContext<'_>) {
     }
 }
 
-/// Meets a request; what it stores comes before the answer.
+/// Executes a request; its results are stored before the answer.
 pub(super) fn answer(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, code: i32) -> i32 {
     let parameters: [i32; 3] = std::array::from_fn(|index| context.memory.get(data(index + 1)));
     if let Some(text) = requests::shown(code, parameters[0]) {
@@ -342,7 +342,7 @@ fn set_job(memory: &mut GuestMemory, runs: bool) {
     memory.set(HOST_STATUS, status & !1 | i32::from(runs));
 }
 
-/// Says of a request without a text that there is one where its offset would count bytes, or doubles.
+/// Makes a remark about a request without a text, if there is a text at the same offset counted in bytes or in doubles.
 fn find_text(out: &mut Out, context: &TickContext<'_>, code: i32, offset: i32) {
     const LEAST: usize = 2;
     let memory = &*context.memory;
@@ -375,8 +375,8 @@ fn string(memory: &GuestMemory, offset: i32) -> String {
 /// Buttons of a message box.
 const BUTTONS: i32 = 0xf;
 
-/// Shows a box and presses the button that was named for it, or its first one that continues the program. The line says
-/// which button it was, unless there is only one.
+/// Shows a box and presses the button that was chosen for it, or its first one that continues the program. The line
+/// names the button, unless there is only one.
 fn message_box(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, [offset, flags, _]: [i32; 3]) {
     let text = string(context.memory, offset);
     let default = match flags & BUTTONS {
@@ -407,7 +407,7 @@ fn input_box(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, offs
     context.memory.set(data(3), i32::from(typed.is_none()));
 }
 
-/// Shows a line of G code. Only assignments to #variables are done, all of them or none.
+/// Shows a line of G code. Only assignments to #variables are executed, all of them or none.
 fn mdi(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, offset: i32) {
     let line = string(context.memory, offset);
     let found = gcode::assignments(&line, &host.answers.variables);
@@ -540,7 +540,8 @@ mod tests {
     fn every_request_gets_an_answer_that_lets_the_program_continue() {
         let mut bench = TestBench::new();
         for code in 1..=55 {
-            // An element of UserData, an index of doubles, a tool and a number: what the request takes of them is valid.
+            // An element of UserData, an index of doubles, a tool and a number: each is valid for requests that take
+            // it.
             let first = match code {
                 5..=12 | 21 | 22 | 46..=51 | 54 | 55 => 1.0_f32.to_bits().cast_signed(),
                 _ => 10,

@@ -1,7 +1,7 @@
-//! Bytes on their way to the board, and the lines that they are.
+//! Bytes in transit to the board, and the lines that they form.
 //!
 //! A line that begins with an escape is taken without echo; the byte after the escape is discarded. Any other line is
-//! echoed. 0x03 drops what is under way, wherever it comes. Rules: host-protocol.md sections 1 and 2.
+//! echoed. 0x03 drops the line in progress, wherever it appears. Rules: host-protocol.md sections 1 and 2.
 
 use std::collections::VecDeque;
 
@@ -29,7 +29,7 @@ enum Intake {
 /// An item that has arrived.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Arrival {
-    /// 0x03: what was under way is dropped.
+    /// 0x03: the line in progress is dropped.
     Abort,
     /// A line, and whether it was echoed.
     Line(Vec<u8>, bool),
@@ -41,7 +41,7 @@ pub(crate) struct ByteLink {
     input: VecDeque<u8>,
     intake: Intake,
     line: Vec<u8>,
-    /// True if nobody takes the bytes any more.
+    /// True if the bytes are no longer taken.
     is_dead: bool,
 }
 
@@ -53,18 +53,18 @@ impl ByteLink {
         }
     }
 
-    /// Takes everything that has arrived, for a board that reads its link by itself.
+    /// Takes all bytes that have arrived, for a board that reads its link by itself.
     pub(crate) fn take_all(&mut self) -> Vec<u8> {
         self.input.drain(..).collect()
     }
 
-    /// Returns whether bytes wait to be taken.
+    /// Returns whether there are bytes to be taken.
     pub(crate) fn is_busy(&self) -> bool {
         !self.input.is_empty()
     }
 
-    /// Takes bytes up to the end of a line, at most `limit` of its text, or to an abort; `None` when they run out before.
-    /// What should be echoed is added to `echo`.
+    /// Takes bytes up to the end of a line, at most `limit` of its text, or to an abort; `None` if there are too few.
+    /// Characters to be echoed are added to `echo`.
     pub(crate) fn next(&mut self, limit: usize, echo: &mut Vec<u8>) -> Option<Arrival> {
         loop {
             let byte = self.input.pop_front()?;
@@ -102,7 +102,7 @@ impl ByteLink {
         }
     }
 
-    /// The board takes nothing any more: what waits is lost, and what comes.
+    /// Stops taking bytes: waiting and future bytes are lost.
     pub(crate) fn die(&mut self) {
         self.input.clear();
         self.is_dead = true;

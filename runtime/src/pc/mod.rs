@@ -26,17 +26,17 @@ use crate::pc::disk::Disk;
 use crate::pc::files::HostFiles;
 use crate::pc::host::Host;
 
-/// The PC and what connects it to the board.
+/// The PC and its connections to the board.
 #[derive(Clone, Debug)]
 pub(crate) struct Pc {
     pub(crate) host: Host,
     pub(crate) disk: Disk,
-    /// The link over USB, and the one over the UART.
+    /// The links over USB and over the UART.
     pub(crate) usb: ByteLink,
     pub(crate) uart: ByteLink,
     /// The programs that it has downloaded into threads.
     pub(crate) downloads: Downloads,
-    /// True if it takes console lines; if not, they wait in the queue, and then programs do.
+    /// True if it takes console lines; otherwise they wait in the queue, and then programs wait, too.
     pub(crate) is_heard: bool,
 }
 
@@ -53,14 +53,14 @@ impl Pc {
         }
     }
 
-    /// A console line arrives. It keeps those for itself that are requests for files; the others are shown.
+    /// Takes a console line. Requests for files are handled here; other lines are shown.
     pub(crate) fn take_line(&mut self, out: &mut Out, line: Vec<u8>, now: Cycles) {
         if !self.host.is_connected() || !self.disk.take(out, &line, now) {
             out.tell(now, EventKind::ConsoleLine(line));
         }
     }
 
-    /// The board restarts: what it was sent and has not taken is lost.
+    /// Drops the bytes that the restarting board has not taken.
     pub(crate) fn restart(&mut self) {
         self.disk.forget_answers();
         self.usb = ByteLink::default();

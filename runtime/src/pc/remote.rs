@@ -1,7 +1,7 @@
 //! The PC's answers to a board that is not simulated: the same requests and answers, through commands.
 //!
-//! The data that a request reads are fetched into a copy of the board's memory, the answer is computed there, and what has changed
-//! is stored on the board; the element that the program waits for comes last.
+//! The data that a request reads are fetched into a copy of the board's memory, the answer is computed there, and the
+//! changes are stored on the board; the element for which the program waits comes last.
 
 use std::ops::Range;
 
@@ -113,8 +113,8 @@ impl RequestServer {
         self.host.answer_next(setting)
     }
 
-    /// Answers the request in these elements of `persist.UserData`, 100 and the seven after it; returns what the PC did,
-    /// in sentences.
+    /// Answers the request in these elements of `persist.UserData`, 100 and the seven after it; returns the actions of
+    /// the PC, as sentences.
     ///
     /// # Errors
     /// The board does not answer.
@@ -161,7 +161,7 @@ impl RequestServer {
         Ok(said.collect())
     }
 
-    /// The elements of `UserData` that a request names; none if they do not exist.
+    /// The elements of `UserData` that a request refers to; none if they do not exist.
     fn named(&self, code: i32, parameters: &[i32; 7]) -> Range<usize> {
         let [first, second, third, ..] = *parameters;
         let answers = self.host.answers();
@@ -181,7 +181,7 @@ impl RequestServer {
         }
     }
 
-    /// Fetches what a request reads.
+    /// Fetches the data that a request reads.
     fn fetch<B: RemoteBoard>(
         &mut self,
         board: &mut B,
@@ -211,14 +211,14 @@ impl RequestServer {
         Ok(())
     }
 
-    /// Stores on the board what the answer has changed.
+    /// Stores the changes made by the answer on the board.
     fn store<B: RemoteBoard>(&mut self, board: &mut B, code: i32, before: &Before) -> Result<(), B::Error> {
         let is_read = matches!(
             requests::action(code),
             Some(PcAction::Variables(Direction::Set) | PcAction::Tool(_, Direction::Set))
         );
         for (index, (old, new)) in before.user_data.iter().zip(self.user_data()).enumerate() {
-            // What the board has there now is not known unless it was read.
+            // The present value on the board is unknown unless it was read.
             if *old != new || !is_read && before.named.contains(&index) {
                 board.set_user_data(index, new)?;
             }
@@ -286,7 +286,7 @@ mod tests {
 
     use super::*;
 
-    /// A board that keeps what is stored.
+    /// A board that keeps the values that are stored.
     struct Words {
         data: [u32; N_USER_DATA_VARS],
         gather: Vec<u32>,

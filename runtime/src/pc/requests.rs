@@ -9,7 +9,7 @@ pub(super) enum Shown {
     Whole,
     /// The first one, a single.
     Single,
-    /// None here: what is done shows more than a number.
+    /// Not shown here: the action itself shows more than a number.
     Elsewhere,
 }
 
@@ -128,7 +128,7 @@ const REQUESTS: &[(i32, &str, Shown, PcAction)] = &[
     (55, "rapid override", Elsewhere, Override(Rate::Rapid, Change::By)),
 ];
 
-/// Returns whether a text shows a request that the PC knows.
+/// Returns whether a text is that of a request that the PC knows.
 #[must_use]
 pub fn is_request(text: &str) -> bool {
     let is_named = |name: &str| {

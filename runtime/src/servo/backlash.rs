@@ -1,15 +1,15 @@
 //! Backlash compensation: an offset that ramps with the direction of motion.
 //!
-//! The offset runs between 0 and the amount. One that is above the amount goes there at once, as when a program makes
-//! the amount smaller; with an amount below 0 it is either above it or below 0, and flips between the two while the
-//! axis goes back. The board does so too.
+//! The offset runs between 0 and the amount. An offset above the amount jumps to the amount, for instance when a
+//! program reduces the amount; with a negative amount, the offset is always either above the amount or below 0, and
+//! flips between the two while the axis moves backwards. The board does so, too.
 
 use kmotiondef::limits::TIMEBASE;
 use kmotiondef::structs::Chan;
 
 use crate::views::AxisView;
 
-/// The change of the destination that counts as one of direction, as a part of the amount.
+/// The change of the destination that counts as a change of direction, as a fraction of the amount.
 const LEAST_CHANGE: f32 = 0.005;
 
 /// Advances the offset of an axis that has one by one tick.

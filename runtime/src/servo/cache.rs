@@ -1,9 +1,8 @@
 //! Values derived from guest memory that the servo keeps from tick to tick, and the one way to invalidate them.
 //!
-//! Guest memory is the truth for everything that an axis is set to. Three things are derived from it: the plans of the
-//! axes, whether a tick would change anything at all, and whether the last tick left nothing to do. Whoever changes
-//! what they depend on says so with [`Cache::invalidate`] and a [`Change`]; what else should be forgotten for that
-//! follows here and nowhere else.
+//! Guest memory is the only source of an axis' settings. Three values are derived from it: the plans of the axes,
+//! whether a tick would change anything at all, and whether the last tick left nothing to do. Code that changes their
+//! inputs must call [`Cache::invalidate`] with a [`Change`]; only this file decides which values a change affects.
 
 use kmotiondef::timing::WaitStates;
 use kmotiondef::{Axes, AxisId, Cycles, GuestAddr};
@@ -20,9 +19,9 @@ use crate::machine::wiring::Wiring;
 pub(crate) enum Change {
     /// Anything may have: code outside the tick has had the board.
     Anything,
-    /// Memory may have been written, by programs or by what goes in at the beginning of a tick.
+    /// Memory may have been written, by programs or by inputs at the beginning of a tick.
     Memory,
-    /// Something moves, or what the servo or a load remembers of an axis was replaced.
+    /// Something moves, or the remembered state of an axis in the servo or in a load was replaced.
     Motion,
     /// An axis was switched off.
     SwitchedOff,
@@ -34,7 +33,8 @@ pub(crate) enum Change {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cache {
     plans: [AxisPlan; Axes::MAX],
-    /// The variable that says whether the derivative gain acts on the error; `None` in firmware 4.34, which has none.
+    /// The variable that selects whether the derivative gain acts on the error; `None` in firmware 4.34, which does not
+    /// have it.
     pub(crate) derivative_method: Option<GuestAddr>,
     /// True if the plans, and the values derived from them, agree with memory.
     has_plans: bool,
@@ -44,7 +44,7 @@ pub(crate) struct Cache {
     has_slaves: bool,
     /// The time of the interrupt with them.
     duration: Cycles,
-    /// The same as on the board, apart from the motion in progress.
+    /// The interrupt's duration on the board, apart from the motion in progress.
     interrupt: Interrupt,
     still: Stillness,
     /// True if the last tick changed nothing and no thread has run since.
@@ -52,7 +52,7 @@ pub(crate) struct Cache {
 }
 
 impl Cache {
-    /// Forgets what a change may have made wrong.
+    /// Drops the values that a change may have made wrong.
     #[inline]
     pub(crate) const fn invalidate(&mut self, change: Change) {
         match change {
@@ -103,7 +103,7 @@ impl Cache {
         }
     }
 
-    /// Works the plans out, unless they are known.
+    /// Computes the plans, unless they are known.
     pub(super) fn make_plans(&mut self, memory: &mut GuestMemory, wiring: &Wiring) {
         if !self.has_plans {
             for axis in memory.axes().iter() {
@@ -125,13 +125,13 @@ impl Cache {
     fn plans_hold(&self, memory: &mut GuestMemory, wiring: &Wiring) -> bool {
         memory.axes().iter().zip(&self.plans).all(|(axis, plan)| {
             let now = AxisPlan::of(memory, wiring, axis, self.derivative_method);
-            // A setting that is no number equals itself in print only.
+            // A setting that is NaN only equals itself in print.
             *plan == now || format!("{plan:?}") == format!("{now:?}")
         })
     }
 
-    /// Returns whether a tick of the axes would change nothing. Unless `is_touched`, nobody has written to the axis
-    /// structures.
+    /// Returns whether a tick of the axes would change nothing. If `is_touched` is false, the axis structures have not
+    /// been written to.
     #[inline]
     pub(super) fn is_still(&self, memory: &GuestMemory, is_touched: bool) -> bool {
         self.still.lasts(memory, is_touched)
@@ -157,7 +157,7 @@ impl Cache {
         !self.still.end(memory)
     }
 
-    /// The whole tick is over; whether the next one may be left out if no thread runs before.
+    /// Ends the whole tick; `is_settled` if the next one may be skipped unless a thread runs before.
     pub(crate) const fn settle(&mut self, is_settled: bool) {
         self.is_settled = is_settled;
     }

@@ -1,9 +1,9 @@
-//! Profiles against a calculation of their own: the textbook formulas of motion with limited jerk.
+//! Profiles compared with an independent calculation: the textbook formulas of jerk-limited motion.
 //!
-//! Nothing here knows how the profiles are planned. Random limits, distances and speeds over several decades; at every
-//! sample, and in every tick of the shorter motions, the limits hold, and the time is that of the formulas to a tick.
-//! A move from rest ends on its target exactly. One planned in motion ends as on the board, with the place of its last
-//! tick: within the last bits of the singles that the board computes with, and of what is left for a tick.
+//! Nothing here depends on the planner. Limits, distances and speeds are random over several decades; at every sample,
+//! and in every tick of the shorter motions, the limits hold, and the time equals that of the formulas to within a
+//! tick. A move from rest ends exactly on its target. A move planned in motion ends as on the board, at the position of
+//! its last tick: within the last bits of the board's singles, and of the distance left for a tick.
 
 use kmotiondef::limits::TIMEBASE;
 use proptest::prelude::*;
@@ -11,11 +11,11 @@ use proptest::prelude::*;
 use super::profile::{FOREVER, Limits, Mode, MotionState, Point, jog, move_from_rest, move_in_motion};
 use super::trajectory::{Cursor, Step, step};
 
-/// Planning time of the board in front of a motion planned while another is under way.
+/// Planning time of the board before a motion planned while another is in progress.
 const LEAD: f64 = 0.0018;
-/// The board keeps velocities and times of some profiles as singles: what their last bits add up to.
+/// The board keeps velocities and times of some profiles as singles: the sum of their rounding errors.
 const SINGLE: f64 = 8.0 / (1 << 23) as f64;
-/// Motions of more ticks are looked at in some places only.
+/// Motions of more ticks than this are only sampled.
 const MOST_TICKS: usize = 3000;
 
 /// Seconds of a change of speed, acceleration 0 at both ends.
@@ -25,7 +25,7 @@ fn change_time(by: f64, limits: &Limits) -> f64 {
     if by >= limits.a * ramp { by / limits.a + ramp } else { 2.0 * (by / limits.j).sqrt() }
 }
 
-/// The way of such a change: symmetric, so at the mean speed.
+/// The distance of such a change: symmetric, so at the mean speed.
 fn change_way(from: f64, to: f64, limits: &Limits) -> f64 {
     (from + to) / 2.0 * change_time(to - from, limits)
 }
@@ -36,7 +36,7 @@ fn move_time(length: f64, limits: &Limits) -> f64 {
     if length >= 2.0 * to_full {
         return 2.0 * change_time(limits.v, limits) + (length - 2.0 * to_full) / limits.v;
     }
-    // The speed that is just reached: the way grows with it.
+    // The speed that is just reached; the distance grows with it.
     let (mut low, mut high) = (0.0, limits.v);
     for _ in 0..200 {
         let middle = (low + high) / 2.0;
@@ -45,7 +45,8 @@ fn move_time(length: f64, limits: &Limits) -> f64 {
     2.0 * change_time(low, limits)
 }
 
-/// Seconds of a motion's states without the one tick at rest that the board appends, or the last without end.
+/// The duration of a motion in seconds, without the tick at rest that the board appends, or without the last, endless
+/// state.
 fn duration(states: &[MotionState]) -> f64 {
     let moving = states.iter().filter(|state| state.mode == Mode::Independent && state.t < FOREVER);
     moving.filter(|state| (state.a, state.b, state.c) != (0.0, 0.0, 0.0)).map(|state| state.t).sum()
@@ -58,15 +59,15 @@ fn is_on_border(length: f64, limits: &Limits) -> bool {
     (length - border).abs() <= 1e-5 * border
 }
 
-/// Checks that a point keeps the limits.
+/// Checks that a point is within the limits.
 fn check_point(point: Point, fastest: f64, limits: &Limits) -> Result<(), TestCaseError> {
     prop_assert!(point.v.abs() <= fastest * (1.0 + SINGLE), "speed {} of {fastest}", point.v);
     prop_assert!(point.a.abs() <= limits.a * (1.0 + SINGLE), "acceleration {} of {}", point.a, limits.a);
     Ok(())
 }
 
-/// Checks every state at its ends and between, and every tick of a short motion: limits, and no jump of place or speed.
-/// The result is the position of the last tick.
+/// Checks every state at its ends and in between, and every tick of a short motion: the limits hold, and position and
+/// speed do not jump. Returns the position of the last tick.
 fn check(start: Point, states: &[MotionState], limits: &Limits, scale: f64) -> Result<f64, TestCaseError> {
     const SAMPLES: usize = 40;
     let fastest = limits.v.max(start.v.abs());
@@ -153,7 +154,8 @@ proptest! {
     }
 }
 
-/// Seconds of a move planned at speed `v0`: the lead, then on at full speed if there is room, else a stop and a move.
+/// The duration of a move planned at speed `v0`, in seconds: the lead, then at full speed if there is room, otherwise a
+/// stop and a move.
 fn in_motion(v0: f64, way: f64, limits: &Limits) -> f64 {
     let lead = if v0 == 0.0 { 0.0 } else { LEAD };
     let stop = change_way(v0, 0.0, limits);

@@ -1,7 +1,7 @@
 //! The servo compensation: dead band, PID, feed forward and three filters.
 //!
-//! Source: axes-and-motion.md section 10. The board computes in singles from the error on; the order of its operations is that of
-//! the expressions here, measured with random gains and filters.
+//! Source: axes-and-motion.md section 10. The board computes in singles from the error on; the expressions here have
+//! the same order of operations, as measured with random gains and filters.
 
 use kmotiondef::Field;
 use kmotiondef::limits::TIMEBASE;
@@ -12,7 +12,7 @@ use super::state::AxisMemory;
 use super::trajectory::TICKS_PER_SECOND;
 use crate::views::AxisView;
 
-/// Limits `value` to ±`limit`, which is not below 0; what is not a number stays so.
+/// Limits `value` to ±`limit`, which is not below 0; NaN is unchanged.
 #[inline(always)]
 fn clamp(value: f32, limit: f32) -> f32 {
     let value = if limit < value { limit } else { value };
@@ -46,7 +46,7 @@ pub(crate) fn advance(own: &AxisMemory, gains: &Gains, chan: &mut AxisView<'_>, 
     let [first, second, last] = &gains.filters;
     let filtered = filter(chan, Chan::IIR.element(0), first, pid);
     let filtered = filter(chan, Chan::IIR.element(1), second, filtered);
-    // The feed forward sees the destination alone, without backlash and offset.
+    // The feed forward only depends on the destination, without backlash and offset.
     let mut forward = gains.ff_vel * own.velocity;
     if gains.ff_accel != 0.0 {
         let change = f64::from(own.velocity - own.last_velocity);
@@ -88,7 +88,7 @@ fn filter_with(
 ) -> f32 {
     let (d0, d1) = (chan.get(iir.field(Iir::D0)), chan.get(iir.field(Iir::D1)));
     chan.set(iir.field(Iir::D1), d0);
-    // What is no number, or infinite, comes through factors of 0 too.
+    // NaN and infinities also pass through factors of 0.
     if filter.is_plain && (d0 + d1).is_finite() {
         let output = add(input);
         chan.set(iir.field(Iir::D0), output);

@@ -1,14 +1,14 @@
-//! Profiles of firmware 5: a move goes straight to its target from any motion of the axis, and has its own acceleration
+//! Profiles of firmware 5: a move goes directly to its target from any motion of the axis, with separate acceleration
 //! and deceleration.
 //!
-//! Source: measurements of the released firmware 5.3.2, `fw5.jsonl`. Which speed a move reaches that has no room for its limit is searched
-//! for: the board solves equations of which only the solutions are known.
+//! Source: measurements of the released firmware 5.3.2, `fw5.jsonl`. The speed reached by a move that is too short for
+//! its limit is found by a search: the board solves equations of which only the solutions are known.
 
 use kmotiondef::limits::TIMEBASE;
 
 use super::profile::{FOREVER, Limits, Mode, MotionState, Path, Point, lead};
 
-/// Halvings of the range in which the speed of a move lies: all that a double distinguishes.
+/// Halvings of the range of a move's peak speed: the full resolution of a double.
 const HALVINGS: usize = 120;
 
 /// A move to `to`; it slows down with `decel`.
@@ -34,7 +34,7 @@ pub(crate) fn jog_direct(start: Point, velocity: f64, limits: &Limits) -> Vec<Mo
     states
 }
 
-/// The fastest way from the end of a path to rest at `to`, and the resting tick after it.
+/// The fastest way from the end of a path to rest at `to`, with the resting tick after it.
 fn directly(begin: Path, to: f64, limits: &Limits, decel: f64) -> Vec<MotionState> {
     let slowing = Limits { a: decel, ..*limits };
     let through = |speed: f64| {
@@ -76,7 +76,7 @@ fn highest(limit: f64, room: impl Fn(f64) -> f64) -> f64 {
     low
 }
 
-/// The states with neighbours of the same jerk made one.
+/// The states, with neighbours of the same jerk merged.
 fn joined(states: Vec<MotionState>) -> Vec<MotionState> {
     let mut joined: Vec<MotionState> = Vec::with_capacity(states.len());
     for state in states {

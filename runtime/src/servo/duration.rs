@@ -1,8 +1,8 @@
-//! The duration of the servo interrupt, and so the part of a tick that is left for the threads.
+//! The duration of the servo interrupt, which determines the part of a tick left for the threads.
 //!
-//! Measured on the released firmware: a constant, and for each enabled axis what its output
-//! and input modes need (`servo_cycles` of the recorded thread measurements; means at rest, by
-//! output mode, for an axis without input; reading an encoder adds to that).
+//! Measured on the released firmware: a constant, and for each enabled axis the time of its output and input modes
+//! (`servo_cycles` of the recorded thread measurements; means at rest, by output mode, for an axis without input;
+//! reading an encoder takes additional time).
 
 use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
@@ -22,7 +22,7 @@ pub(crate) fn duration(memory: &GuestMemory) -> Cycles {
     let chans = memory.axes().iter().filter_map(|axis| memory.block::<SIZE>(memory.locate(chan(axis))));
     let enabled = chans.filter(|chan| field_of(chan, Chan::ENABLE) != 0);
     let axes = enabled.map(|chan| {
-        // As measured: a number below the modes costs what the first one does, one above them nothing.
+        // As measured: a number below the valid modes costs as much as the first mode, a number above them nothing.
         let mode = OutputMode::new(field_of(chan, Chan::OUTPUT_MODE).max(0));
         let output = mode.map_or(0, |mode| mode.traits().cycles);
         let reads_encoder = InputMode::new(field_of(chan, Chan::INPUT_MODE)) == Some(InputMode::Encoder);

@@ -23,7 +23,7 @@ struct Coefficients {
     b2: f64,
 }
 
-/// A bench whose axis 0 has a position that the test writes.
+/// A test bench with an axis 0 whose position is set by the test.
 fn bench() -> TestBench {
     let mut bench = TestBench::new();
     bench.memory.set_axis(axis(), Chan::INPUT_MODE, InputMode::User.get());

@@ -1,4 +1,4 @@
-//! Feedhold of what moves in the coordinate system: of its path, or of its axes where each moves by itself.
+//! Feedhold of the coordinate system: of its path, or of its axes if they move independently.
 //!
 //! Source: coordinated-motion.md sections 4 and 5. The path's part is [`feedhold`].
 
@@ -18,15 +18,15 @@ use super::spindle;
 use super::state::Servo;
 use crate::views::Typed;
 
-/// Ends the path that an axis belongs to, whether one runs or not (coordinated-motion.md section 3.4): it is
-/// disabled or zeroed. A write to its `Enable` does not do that.
+/// Ends the path to which an axis belongs, running or not, when the axis is disabled or zeroed (coordinated-motion.md
+/// section 3.4). A write to its `Enable` field does not do that.
 pub(crate) fn abort_if_member(memory: &mut GuestMemory, axis: AxisId) {
     if is_member(memory, axis) {
         path::drop_all(memory);
     }
 }
 
-/// Returns whether there is something for a feedhold to stop. A path that the spindle drives is only held at its end.
+/// Returns whether there is a motion that a feedhold can stop. A path driven by the spindle is only held at its end.
 pub(crate) fn may_stop(memory: &GuestMemory) -> bool {
     HoldState::of(memory) == HoldState::Running && !spindle::is_threading(memory)
 }
@@ -38,8 +38,8 @@ pub(crate) fn prepare_stop(memory: &mut GuestMemory) {
     }
 }
 
-/// Begins a feedhold that was prepared, if something in the coordinate system moves; whether it does. Axes that move by
-/// themselves are stopped in the slices that follow.
+/// Begins a feedhold that was prepared, if something in the coordinate system moves; returns whether it does. Axes that
+/// move independently are stopped in the following slices.
 pub(super) fn begin(servo: &mut Servo, memory: &mut GuestMemory) -> bool {
     if !may_stop(memory) {
         return false;
@@ -57,7 +57,7 @@ pub(super) fn begin(servo: &mut Servo, memory: &mut GuestMemory) -> bool {
     moves
 }
 
-/// The next of the axes that a feedhold stops one by one; whether there was one.
+/// Stops the next of the axes that a feedhold stops one by one; returns whether there was one.
 pub(super) fn stop_next(servo: &mut Servo, memory: &mut GuestMemory) -> bool {
     let Some((axis, is_last)) = servo.stop_request.next_axis() else { return false };
     stop_axis(servo, memory, axis);
@@ -67,7 +67,7 @@ pub(super) fn stop_next(servo: &mut Servo, memory: &mut GuestMemory) -> bool {
     true
 }
 
-/// A command asks for a feedhold, which the primary thread begins in its next slice.
+/// Requests a feedhold for a command; the primary thread begins it in its next slice.
 pub(crate) fn ask(servo: &mut Servo, memory: &mut GuestMemory) {
     let moves = path::is_under_way(memory) || !moving_members(memory).is_empty();
     if moves && may_stop(memory) {
@@ -76,7 +76,7 @@ pub(crate) fn ask(servo: &mut Servo, memory: &mut GuestMemory) {
     }
 }
 
-/// Carries out at once what is left of a feedhold, for a command that ends it.
+/// Executes the rest of a feedhold immediately, for a command that ends it.
 pub(crate) fn complete(servo: &mut Servo, memory: &mut GuestMemory) {
     if servo.stop_request.take().is_some() {
         begin(servo, memory);
@@ -84,7 +84,7 @@ pub(crate) fn complete(servo: &mut Servo, memory: &mut GuestMemory) {
     while stop_next(servo, memory) {}
 }
 
-/// The axes of the coordinate system that have a motion of their own, also those that are disabled.
+/// The axes of the coordinate system with a motion of their own, including disabled ones.
 pub(crate) fn moving_members(memory: &GuestMemory) -> Vec<AxisId> {
     members(memory).filter(|&axis| has_motion(memory, axis)).collect()
 }
@@ -94,7 +94,7 @@ pub(crate) fn stop_axis(servo: &mut Servo, memory: &mut GuestMemory, axis: AxisI
     if let Some(limits) = limits(memory, axis, Some(1.0)) {
         let kind = LastMotion::new(memory.axis(axis, Chan::LAST_MOTION_TYPE));
         start_jog(memory, axis, 0.0, &limits, servo.planner);
-        // The axis is jogged to rest; what it did is kept for a resume.
+        // The axis is jogged to rest; its motion is kept for a resume.
         servo.axes[axis.index()].held = Some(kind.unwrap_or(LastMotion::Jog));
     }
 }
@@ -113,10 +113,10 @@ pub(crate) fn resumed_move(servo: &Servo, memory: &GuestMemory, axis: AxisId) ->
     Some((memory.axis(axis, Chan::LAST_MOTION_DEST), limits(memory, axis, None)?))
 }
 
-/// Restarts what a feedhold interrupted. A jog is not resumed; an exponential approach becomes a move.
+/// Restarts the motion that a feedhold interrupted. A jog is not resumed; an exponential approach becomes a move.
 pub(crate) fn resume_axis(servo: &mut Servo, memory: &mut GuestMemory, axis: AxisId) {
     let Some(kind) = servo.axes[axis.index()].held.take() else { return };
-    // Recorded: whatever it was, and whether it goes on or not, it counts as a part of a move of several axes.
+    // As recorded, it counts as part of a move of several axes, whatever it was and whether it continues or not.
     memory.set_axis(axis, Chan::LAST_MOTION_TYPE, LastMotion::Multi.get());
     if kind == LastMotion::Jog {
         return;
@@ -128,7 +128,7 @@ pub(crate) fn resume_axis(servo: &mut Servo, memory: &mut GuestMemory, axis: Axi
     }
 }
 
-/// Gives up what a feedhold holds, and the path.
+/// Drops the motions held by a feedhold, and the path.
 pub(crate) fn clear(servo: &mut Servo, memory: &mut GuestMemory) {
     feedhold::clear(memory);
     servo.axes.iter_mut().for_each(|axis| axis.held = None);

@@ -1,4 +1,4 @@
-//! Numbers that no machine has: not one may hang the servo, make it panic or move forever.
+//! Absurd numbers: none of them may hang the servo, make it panic or move forever.
 
 use kmotiondef::structs::{Chan, Iir};
 use kmotiondef::{AxisId, Field, GuestAddr};

@@ -14,7 +14,7 @@ fn list(memory: &GuestMemory, axis: AxisId) -> Place<[TripCoeff; MAX_STATES]> {
     Place::new(memory.axis(axis, Chan::C))
 }
 
-/// Reads one state; beyond the list, and outside memory, it has ended.
+/// Reads one state; beyond the list and outside of memory, the end of a list.
 #[inline(always)]
 fn read(memory: &GuestMemory, base: GuestAddr, index: usize) -> MotionState {
     const SIZE: usize = TripCoeff::SIZE as usize;
@@ -32,7 +32,7 @@ fn read(memory: &GuestMemory, base: GuestAddr, index: usize) -> MotionState {
     }
 }
 
-/// Writes states into an axis' list from `offset` on, as many as fit.
+/// Writes as many states as fit into an axis' list from `offset` on.
 pub(crate) fn write(memory: &mut GuestMemory, axis: AxisId, offset: usize, states: &[MotionState]) {
     let list = list(memory, axis);
     for (index, state) in (offset..MAX_STATES).zip(states) {
@@ -64,12 +64,12 @@ pub(crate) fn run(memory: &mut GuestMemory, axis: AxisId, states: &[MotionState]
     start(memory, axis);
 }
 
-/// The same, with the mode of the first state left as it is if that matters.
+/// Runs the list; the mode of the first state is kept if it matters.
 pub(crate) fn run_kept(memory: &mut GuestMemory, axis: AxisId, states: &[MotionState]) {
     let mode = list(memory, axis).element(0).field(TripCoeff::TRAJECTORY_MODE);
     let kept = memory.get(mode);
     write(memory, axis, 0, states);
-    // Any other number acts as that of a polynomial.
+    // Any other number acts like the polynomial mode.
     if kept == Mode::Off.number() || kept == Mode::Exponential.number() {
         memory.set(mode, kept);
     }
@@ -89,7 +89,7 @@ pub(crate) fn has_motion(memory: &GuestMemory, axis: AxisId) -> bool {
     !memory.axis(axis, Chan::PCOEFF).is_null()
 }
 
-/// Returns whether a motion that was called in motion has not begun: the axis keeps its speed while it is planned.
+/// Returns whether a motion that was called in motion has not begun yet: the axis keeps its speed while it is planned.
 pub(crate) fn is_planned(memory: &GuestMemory, axis: AxisId) -> bool {
     let first = state(memory, axis, 0);
     has_motion(memory, axis)
@@ -125,7 +125,7 @@ pub(crate) fn present(memory: &GuestMemory, axis: AxisId) -> Point {
     point(entered(cursor(memory, axis), read), dest, velocity, read)
 }
 
-/// Advances the motion of an axis by one tick; whether its pointer points at a state.
+/// Advances the motion of an axis by one tick; returns whether its pointer points to a state.
 #[inline(always)]
 pub(crate) fn advance(memory: &mut GuestMemory, axis: AxisId) -> bool {
     let (current, t) = (memory.axis(axis, Chan::PCOEFF), memory.axis(axis, Chan::T));
@@ -144,7 +144,7 @@ pub(crate) fn advance(memory: &mut GuestMemory, axis: AxisId) -> bool {
     true
 }
 
-/// Enters the states whose time has come: the board does so at the end of a tick, and of a new motion at its beginning.
+/// Enters the states that are due: the board does so at the end of a tick and, for a new motion, at its beginning.
 fn enter_reached(memory: &mut GuestMemory, axis: AxisId, current: GuestAddr) {
     let reached = entered(cursor(memory, axis), |index| read(memory, current, index));
     if reached.index > 0 {
@@ -154,7 +154,7 @@ fn enter_reached(memory: &mut GuestMemory, axis: AxisId, current: GuestAddr) {
     }
 }
 
-/// The same where another state begins, or something else than a polynomial follows.
+/// Enters a state; returns whether another state begins, or something other than a polynomial follows.
 fn enter(memory: &mut GuestMemory, axis: AxisId) -> bool {
     let current = memory.axis(axis, Chan::PCOEFF);
     let stepped = {

@@ -24,7 +24,7 @@ pub(crate) fn measure(input: Input, loads: &mut Loads, memory: &mut GuestMemory,
     }
 }
 
-/// The register of an encoder: the counts of the load that turns it, and those of a hand.
+/// The register of an encoder: the counts of the load that turns it, plus those made by hand.
 #[inline(always)]
 pub(crate) fn register(encoder: &Encoder, loads: &mut Loads) -> i8 {
     let by_load = match encoder.turned_by {
@@ -35,7 +35,7 @@ pub(crate) fn register(encoder: &Encoder, loads: &mut Loads) -> i8 {
     by_load.wrapping_add(loads.by_hand(encoder.channel))
 }
 
-/// Adds what the encoder's register has counted since the last tick. Reports the channel and register of one that has
+/// Adds the counts of the encoder's register since the last tick. Returns the channel and the register if it has
 /// counted.
 #[inline(always)]
 pub(crate) fn count(
@@ -89,7 +89,7 @@ fn resolver_angle(memory: &GuestMemory, axis: AxisId) -> (f32, f32) {
     (x, y)
 }
 
-/// Adds the turn of a resolver since the last reading to the position.
+/// Adds the rotation of a resolver since the last reading to the position.
 pub(crate) fn turn_resolver(memory: &mut GuestMemory, axis: AxisId, (x, y): (f32, f32)) {
     let angle = libm::atan2f(y, x) + memory.axis(axis, Chan::THETA_CORRECTION);
     let mut turned = angle - memory.axis(axis, Chan::LAST_THETA);

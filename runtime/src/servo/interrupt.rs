@@ -1,7 +1,7 @@
 //! The duration of the servo interrupt on the board: settings, motion, recording and the waits for memory.
 //!
-//! Measured on the released firmware (costs.md section 5): within 1 % up to eight axes. The other timing knows the
-//! settings alone ([`super::duration`]).
+//! Measured on the released firmware (costs.md section 5): within 1 % up to eight axes. The other timing only depends
+//! on the settings ([`super::duration`]).
 
 use kmotiondef::limits::MAX_GATHER_VALUES;
 use kmotiondef::modes::{GatherType, InputMode, OutputMode};
@@ -17,10 +17,10 @@ use super::profile::Mode;
 use super::recorder::is_recording;
 use crate::views::Typed;
 
-/// Without an enabled axis, and what it accesses then: eight encoders and two registers.
+/// The duration without an enabled axis, including its memory accesses: eight encoders and two registers.
 const IDLE: i64 = 2006;
 const IDLE_ACCESSES: i64 = 10;
-/// For calling the call-back; its own time is its own.
+/// The cost of calling the call-back; the call-back's own time is counted separately.
 const CALL_BACK: i64 = 6;
 /// For recording, and for each double of a sample.
 const RECORDING: i64 = 13;
@@ -33,7 +33,7 @@ const MOTION_WORDS: i64 = 11;
 /// The additional time of a motion that approaches its target by a time constant.
 const EXPONENTIAL: i64 = 91;
 
-/// The time that an axis adds while it is enabled.
+/// The time added by an enabled axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct AxisTime {
     cycles: i64,
@@ -73,7 +73,7 @@ fn input_cycles(mode: Option<InputMode>) -> i64 {
 pub(super) struct Interrupt {
     cycles: i64,
     accesses: i64,
-    /// By axis, what moving adds; nothing for a disabled one.
+    /// The time added by motion, for each axis; 0 for a disabled one.
     moving: [i64; Axes::MAX],
 }
 
@@ -82,7 +82,7 @@ impl Interrupt {
     pub(super) fn of(memory: &GuestMemory) -> Self {
         let mut interrupt = Self { cycles: IDLE, accesses: IDLE_ACCESSES, ..Self::default() };
         for axis in memory.axes().iter().filter(|axis| memory.axis(*axis, Chan::ENABLE) != 0) {
-            // As measured: a number below the modes costs what the first one does, one above them nothing.
+            // As measured: a number below the valid modes costs as much as the first mode, a number above them nothing.
             let output = OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE).max(0));
             let input = InputMode::new(memory.axis(axis, Chan::INPUT_MODE));
             let time = output_time(output, axis.index() >= 4);
@@ -139,7 +139,7 @@ mod tests {
     use crate::testing::powered_memory;
     use crate::text::vectors::rows;
 
-    /// The mode that the vectors call so.
+    /// The mode with this name in the vectors.
     fn input(name: &str) -> i32 {
         match name {
             "ENCODER" => 1,

@@ -27,7 +27,7 @@ const EXTENDED: i32 = 1 << 8;
 enum Action {
     /// Disables the axis.
     Kill,
-    /// Disables the axis when it is driven into the limit.
+    /// Disable the axis when it is driven into the limit.
     Disallow,
     /// Begins a feedhold when the axis is driven into the limit.
     Stop,
@@ -37,7 +37,7 @@ enum Action {
 struct End {
     name: &'static str,
     direction: i32,
-    /// Bit of `LimitSwitchOptions` that watches it; the polarity is two bits further.
+    /// The bit of `LimitSwitchOptions` that enables the watch; the polarity is two bits higher.
     watch: u32,
     packed_shift: u32,
     bit: Field<i32>,
@@ -63,14 +63,14 @@ const ENDS: [End; 2] = [
     },
 ];
 
-/// Returns whether a limit switch is watched or a soft limit is passed: only then [`check`] can do anything.
+/// Returns whether a limit switch is watched or a soft limit is passed: only then can [`check`] have an effect.
 #[inline(always)]
 pub(crate) fn may_act(chan: &AxisView<'_>, plan: &AxisPlan) -> bool {
     let dest = chan.get(Chan::DEST);
     plan.watches_switches || dest > plan.soft_limit_pos || dest < plan.soft_limit_neg
 }
 
-/// Notes the following error of an axis in a closed loop; whether it is too large.
+/// Notes the following error of a closed-loop axis; returns whether it is too large.
 #[inline(always)]
 pub(crate) fn follows_badly(chan: &mut AxisView<'_>, plan: &AxisPlan, command: f64) -> bool {
     let error = f64::from((command - chan.get(Chan::POSITION)) as f32);
@@ -78,8 +78,7 @@ pub(crate) fn follows_badly(chan: &mut AxisView<'_>, plan: &AxisPlan, command: f
     error.abs() > plan.max_following_error
 }
 
-/// Checks both ends of an enabled axis and, in a closed loop, whether it follows its command; whether it is enabled
-/// still.
+/// Checks both ends of an enabled axis and, in a closed loop, its following error; returns whether it is still enabled.
 pub(crate) fn check(
     tick: &mut Tick<'_>,
     memory: &mut GuestMemory,
@@ -95,7 +94,7 @@ pub(crate) fn check(
         let own = tick.servo.axes[axis.index()];
         let known = amplifier_off(tick, memory, axis);
         let known = known.or_else(|| scale(tick, memory, axis, &own));
-        // An axis at the end of its travel cannot follow, and that has been said.
+        // An axis at the end of its travel cannot follow, which has already been reported.
         if let Some(message) = known.or_else(|| cause(tick, memory, axis, &own)).filter(|_| !own.has_stopped)
         {
             tick.remark_on_axis(memory, axis, message);
@@ -114,14 +113,14 @@ fn amplifier_off(tick: &Tick<'_>, memory: &GuestMemory, axis: AxisId) -> Option<
     Some(Message::BridgesOff { axis, board, cause })
 }
 
-/// A scale or sign of the position that does not fit the motion of a load that goes where it is commanded: there the
-/// output says nothing.
+/// A scale or sign of the position that does not match a load that goes where it is commanded: for such a load the
+/// output is not significant.
 fn scale(tick: &Tick<'_>, memory: &GuestMemory, axis: AxisId, own: &AxisMemory) -> Option<Message> {
     /// Commanded units from which the motion shows it.
     const ENOUGH: f64 = 20.0;
     /// The part of the error by which the load itself may lag.
     const LAG: f64 = 0.2;
-    /// A part of the way that counts as motion, and a difference of scales.
+    /// The fraction of the distance that counts as motion, and a relative difference of scales.
     const LEAST: f64 = 0.02;
     const DIFFERENCE: f64 = 0.1;
     let error = memory.axis(axis, Chan::LAST_FOLLOWING_ERROR);
@@ -159,7 +158,7 @@ fn cause(tick: &Tick<'_>, memory: &GuestMemory, axis: AxisId, own: &AxisMemory) 
         return is_driven.then_some(Message::RunsAway { axis });
     }
     if response == 0.0 {
-        // Less than a count of the output moves nothing, and hardly any amplifier moves its motor at a few.
+        // Less than one count of the output moves nothing, and few amplifiers move their motor at a few counts.
         const WEAK: f32 = 0.02;
         let p = memory.axis(axis, Chan::P);
         let is_weak = output.abs() < WEAK * most || output.abs() < 1.0;
@@ -171,7 +170,7 @@ fn cause(tick: &Tick<'_>, memory: &GuestMemory, axis: AxisId, own: &AxisMemory) 
     if flips > MANY_FLIPS {
         return Some(Message::Chatters { axis, times: flips });
     }
-    // A destination that moves on in the direction of the error leaves the axis behind, unless that swings around it.
+    // The axis falls behind a destination that moves on in the direction of the error, unless it swings around it.
     let swings = ahead > SWINGS * error.abs();
     if f64::from(velocity) * error > 0.0 && !swings {
         let is_at_limit = output.abs() >= most;
@@ -205,7 +204,7 @@ pub(crate) fn active_switch(io: &Io, memory: &GuestMemory, axis: AxisId) -> Opti
     ENDS.iter().find_map(|end| active_bit(io, memory, axis, end))
 }
 
-/// The switch of an end if it is watched.
+/// The switch of an end, if it is watched.
 fn watched_bit(memory: &GuestMemory, axis: AxisId, end: &End) -> Option<Bit> {
     let options = memory.axis(axis, Chan::LIMIT_SWITCH_OPTIONS);
     if options >> end.watch & 1 == 0 {
@@ -216,7 +215,7 @@ fn watched_bit(memory: &GuestMemory, axis: AxisId, end: &End) -> Option<Bit> {
     Bit::new(number)
 }
 
-/// The switch of an end if it is watched and active.
+/// The switch of an end, if it is watched and active.
 fn active_bit(io: &Io, memory: &GuestMemory, axis: AxisId, end: &End) -> Option<Bit> {
     let bit = watched_bit(memory, axis, end)?;
     let is_active_low = memory.axis(axis, Chan::LIMIT_SWITCH_OPTIONS) >> (end.watch + 2) & 1 != 0;
@@ -228,13 +227,13 @@ pub(crate) struct WatchedLimit {
     /// `Neg` or `Pos`.
     pub(crate) end: &'static str,
     pub(crate) bit: Bit,
-    /// The number in the field of the end, whether it is used or not.
+    /// The number in the field of the end, used or not.
     pub(crate) field: i32,
     /// True if that is used.
     pub(crate) is_extended: bool,
-    /// The level at which it counts as active.
+    /// The level that counts as active.
     pub(crate) active: bool,
-    /// The bit of `LimitSwitchOptions` that says so.
+    /// The bit of `LimitSwitchOptions` that selects it.
     pub(crate) polarity: u32,
     /// True at the end where Dest is high.
     pub(crate) is_upper: bool,
@@ -280,7 +279,7 @@ fn check_switch(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, end
         return;
     }
     if action == Action::Stop {
-        // Nothing stops an axis outside the coordinate system, and nothing says so.
+        // Nothing stops an axis outside of the coordinate system, and nothing is reported.
         if !is_member(memory, axis) {
             return;
         }

@@ -1,4 +1,4 @@
-//! The servo interrupt: what the board does once a tick.
+//! The servo interrupt: the board's work in every tick.
 //!
 //! Measured order of the released firmware (`firmware.md` section 4): trajectories of all axes, slaves, then axis by
 //! axis position, backlash, limits, following error, compensation and output; then `prev_dest`, and the recorder last.
@@ -60,13 +60,13 @@ use chips::stepgen::{StepLimit, generator_of};
 pub(crate) use output::{driven, four_phase, three_phase};
 pub(crate) use state::{CallPlace, Servo, Tick};
 
-/// Step generators of a KStep, from 0 on, and the bit that enables its amplifiers.
+/// The number of step generators of a KStep, and the bit that enables its amplifiers.
 const ON_KSTEP: usize = 4;
 const KSTEP_ENABLE: i32 = 45;
 
-/// One tick of the servo; whether anything changed, so that the next tick may change something too.
+/// Executes one tick of the servo; returns whether anything changed, so that the next tick may change something, too.
 ///
-/// `is_touched` says whether anybody may have written to on-chip RAM since the last.
+/// `is_touched` is set if on-chip RAM may have been written to since the last tick.
 pub(crate) fn tick(tick: &mut Tick<'_>, memory: &mut GuestMemory, is_touched: bool) -> bool {
     let is_driven = tick.machine.drive(tick.io, tick.out, memory, tick.now);
     let turned = spindle::measure(memory);
@@ -85,14 +85,14 @@ pub(crate) fn tick(tick: &mut Tick<'_>, memory: &mut GuestMemory, is_touched: bo
     {
         tick.out.remark(tick.now, Message::GantryRacks { axis, other, apart, most });
     }
-    // What was written so far is the servo's own. A recording may write anywhere.
+    // The writes so far are the servo's own. A recording may write anywhere.
     memory.take_touched();
     let recorded = recorder::sample(memory);
     is_driven | turned | stepped | moved | recorded
 }
 
-/// Runs the step generators that programs drive by themselves, and what is connected to them: the axis that names a
-/// generator as its output, or else the one of its number.
+/// Runs the step generators that programs drive directly, and the loads connected to them: of the axis that names a
+/// generator as its output, otherwise of the axis with the same number.
 fn run_generators(tick: &mut Tick<'_>, memory: &GuestMemory) -> bool {
     let moved = tick.io.stepgens.run(TIMEBASE, &mut tick.io.pins, tick.now);
     let is_off = amplifiers_are_off(tick);
@@ -121,7 +121,7 @@ fn amplifiers_are_off(tick: &Tick<'_>) -> bool {
         && !Bit::new(KSTEP_ENABLE).is_some_and(|bit| tick.io.pins.is_output(bit) && tick.io.pins.level(bit))
 }
 
-/// Something outside may have moved a load: the axes should be computed again.
+/// Recomputes the axes if a load may have been moved from outside.
 #[inline]
 fn notice_pushes(tick: &mut Tick<'_>) {
     if tick.machine.loads.take_pushed() {
@@ -129,7 +129,7 @@ fn notice_pushes(tick: &mut Tick<'_>) {
     }
 }
 
-/// One tick of all axes; whether anything changed.
+/// Executes one tick of all axes; returns whether anything changed.
 fn run_axes(tick: &mut Tick<'_>, memory: &mut GuestMemory) -> bool {
     tick.servo.cache.begin(memory, &tick.machine.wiring);
     let mut changed = false;
@@ -148,13 +148,13 @@ fn run_axes(tick: &mut Tick<'_>, memory: &mut GuestMemory) -> bool {
     tick.servo.cache.end(memory, changed)
 }
 
-/// One tick of an axis that depends on nothing but itself; whether anything changed.
+/// Executes one tick of an axis that depends on no other axis; returns whether anything changed.
 #[inline(never)]
 fn run_alone(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId) -> bool {
     advance(tick, memory, axis) | run_axis(tick, memory, axis)
 }
 
-/// One tick of all axes, step by step, as each may depend on the others; whether anything changed.
+/// Executes one tick of all axes, step by step, as each may depend on the others; returns whether anything changed.
 fn run_together(tick: &mut Tick<'_>, memory: &mut GuestMemory) -> bool {
     let mut changed = false;
     for axis in memory.axes().iter() {
@@ -183,7 +183,7 @@ fn switch_amplifiers(tick: &mut Tick<'_>, memory: &mut GuestMemory) {
     }
 }
 
-/// Moves the load of an axis by what the last tick has output, and its destination by its command; returns whether that
+/// Moves the load of an axis by the output of the last tick, and its destination by its command; returns whether that
 /// changed anything.
 #[inline(always)]
 fn advance(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId) -> bool {
@@ -253,10 +253,10 @@ fn note_stopped(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, place: 
 /// The destination of an enabled axis was written: whether a motor could follow that.
 fn note_leap(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, from: f64) {
     const FAR: f64 = 100.0;
-    /// Time for the way at full speed that a motor may need.
+    /// The time at full speed within which a motor may follow a step.
     const SECONDS: f64 = 0.02;
     let to = memory.axis(axis, Chan::DEST);
-    // A closed loop may be told its step on purpose, to record its response.
+    // A closed loop may be given a step on purpose, to record its response.
     let plan = tick.servo.cache.plan(axis);
     let is_stepper = plan.is_open_loop && OutputMode::has_generator(plan.mode);
     let reach = SECONDS * f64::from(memory.axis(axis, Chan::VEL));
@@ -311,7 +311,7 @@ fn run_axis(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId) -> bool
     moves
 }
 
-/// The rest of a tick of an axis that its limits may stop; whether they did.
+/// Executes the rest of a tick of an axis that its limits may stop; returns whether they did.
 fn run_guarded(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, command: f64) -> bool {
     tick.servo.cache.watch();
     let is_open_loop = tick.servo.cache.plan(axis).is_open_loop;
@@ -356,7 +356,7 @@ fn command(chan: &AxisView<'_>) -> f64 {
     chan.get(Chan::DEST) + f64::from(chan.get(Chan::BACKLASH)) + chan.get(Chan::DEST_OFFSET)
 }
 
-/// Velocity and direction of the destination in this tick; whether its velocity changes.
+/// Updates velocity and direction of the destination in this tick; returns whether its velocity changes.
 #[inline]
 fn direction(own: &mut AxisMemory, chan: &mut AxisView<'_>) -> bool {
     let dest = chan.get(Chan::DEST);
@@ -371,7 +371,7 @@ fn direction(own: &mut AxisMemory, chan: &mut AxisView<'_>) -> bool {
     } else {
         own.velocity = ((dest - last) * TICKS_PER_SECOND) as f32;
         sign = i32::from(dest > last) - i32::from(dest < last);
-        // The first tick of a direction counts as standing still.
+        // The first tick in a new direction counts as standing still.
         goes_on = sign != 0 && chan.get(Chan::LAST_NON_ZERO_DIR) == sign;
         if sign != 0 {
             chan.set(Chan::LAST_NON_ZERO_DIR, sign);

@@ -13,14 +13,14 @@ use crate::views::Typed;
 /// The way in which moves and jogs are planned.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Planner {
-    /// That of firmware 4.34: a move in motion that does not fit stops the axis first, and every jog waits 20 ticks.
+    /// Firmware 4.34: a move in motion that does not fit stops the axis first, and every jog waits 20 ticks.
     #[default]
     Stopping,
-    /// That of firmware 5: a move goes straight to its target, and a jog from rest starts at once.
+    /// Firmware 5: a move goes directly to its target, and a jog from rest starts at once.
     Direct,
 }
 
-/// The accelerations of a move that has its own, and none that come from the axis.
+/// The accelerations of a move that has its own; none if they come from the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Accelerations {
     /// That with which it gets faster.
@@ -62,7 +62,7 @@ pub(crate) fn start_jog(
     let point = present(memory, axis);
     match planner {
         Planner::Stopping => run(memory, axis, &profile::jog(point, velocity, limits)),
-        // Odd and kept: at rest the mode of the first state stays what it was.
+        // Board quirk: at rest the mode of the first state is unchanged.
         Planner::Direct if point.v == 0.0 && point.a == 0.0 => {
             run_kept(memory, axis, &jog_direct(point, velocity, limits));
         }
@@ -71,7 +71,7 @@ pub(crate) fn start_jog(
     memory.set_axis(axis, Chan::LAST_MOTION_TYPE, LastMotion::Jog.get());
 }
 
-/// Starts a move to `target`, from rest or in motion; whether it reaches its full speed.
+/// Starts a move to `target`, from rest or in motion; returns whether it reaches full speed.
 pub(crate) fn start_move_to(
     memory: &mut GuestMemory,
     axis: AxisId,
@@ -88,7 +88,7 @@ pub(crate) fn start_move_to(
         _ => profile::move_in_motion(point, target, limits),
     };
     run(memory, axis, &states);
-    // A move in motion goes through the jog planner, and says so unless it is one of several axes (recorded).
+    // A move in motion uses the jog planner, and is marked as a jog unless it is one of several axes (recorded).
     let is_jog = planner == Planner::Stopping && !is_resting && kind != LastMotion::Multi;
     let kind = if is_jog { LastMotion::Jog } else { kind };
     memory.set_axis(axis, Chan::LAST_MOTION_TYPE, kind.get());

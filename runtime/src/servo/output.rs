@@ -1,4 +1,4 @@
-//! Output stages: what an axis' amplifier, analog output or step generator receives.
+//! Output stages: the signals to an axis' amplifier, analog output or step generator.
 //!
 //! Source: axes-and-motion.md sections 11 and 12.
 
@@ -26,7 +26,7 @@ const VECTOR_STEPS: f32 = 360.0;
 /// Marks a word of a brushless vector; the magnitude is in the low half.
 const VECTOR: u32 = 0x8000_0000;
 
-/// Ticks of its motion by which a brushless motor of four phases is led.
+/// The lead angle of a four-phase brushless motor, in ticks of its motion.
 const FOUR_PHASE_LEAD: f64 = 1.33;
 
 /// Outputs one tick of an enabled axis.
@@ -48,7 +48,7 @@ pub(crate) fn drive(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId,
     }
 }
 
-/// The same in any other mode than that of a brushed motor.
+/// Drives the output in any mode other than that of a brushed motor.
 fn drive_otherwise(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, command: f64, output: f32) {
     let mode = tick.servo.cache.plan(axis).mode;
     let has_more_generators = memory.has_other_map();
@@ -149,7 +149,7 @@ fn turn(
     (!is_faulted(tick, channel)).then_some(Applied::Vector(magnitude, angle))
 }
 
-/// Tells once of a brushless axis whose real motor would not follow as the simulated one does.
+/// Makes a remark, once, on a brushless axis whose real motor would not follow as the simulated one does.
 fn check_commutation(tick: &mut Tick<'_>, axis: AxisId, angle: f64, cycles: f64) {
     if tick.machine.loads[axis].would_not_turn(angle, cycles) {
         tick.out.remark(tick.now, Message::WouldNotTurn { axis });
@@ -185,7 +185,7 @@ pub(super) fn write_dac(memory: &mut GuestMemory, axis: AxisId, output: f32) -> 
     Some((channel, word))
 }
 
-/// Reports an analog output that was written since the axis wrote it, unless another axis has done so.
+/// Makes a remark on an analog output that was written since the axis wrote it, unless another axis has done so.
 fn note_overwritten(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId) {
     let Some((dac, word)) = tick.servo.axes[axis.index()].analog else { return };
     if memory.get(DAC_BUFFER.element(dac)) == word {
@@ -206,8 +206,8 @@ fn microstep(memory: &mut GuestMemory, axis: AxisId, position: f64) {
     four_phase(memory, axis, amplitude, angle);
 }
 
-/// Applies a three-phase vector, whose angle is in cycles: the phases are the amplifier's. On the board its magnitude is limited;
-/// the loops of a SnapAmp have limits of their own, and the phases are remembered.
+/// Applies a three-phase vector with an angle in cycles; the phases are the amplifier's. On the board its magnitude is
+/// limited; the loops of a SnapAmp have their own limits, and the phases are remembered.
 pub(crate) fn three_phase(memory: &mut GuestMemory, axis: AxisId, v: f32, angle: f64) {
     let channel = memory.axis(axis, Chan::OUTPUT_CHAN0);
     let is_snap_amp = channel >= SNAP_AMP;
@@ -222,8 +222,8 @@ pub(crate) fn three_phase(memory: &mut GuestMemory, axis: AxisId, v: f32, angle:
     }
 }
 
-/// Applies a vector to two coils a quarter of a cycle apart; the angle is in cycles. Each coil has its own limit. On the board's own
-/// channels there is lead compensation.
+/// Applies a vector to two coils a quarter of a cycle apart; the angle is in cycles. Each coil has its own limit. The
+/// board's own channels have lead compensation.
 pub(crate) fn four_phase(memory: &mut GuestMemory, axis: AxisId, v: f32, angle: f64) {
     let leads = memory.axis(axis, Chan::OUTPUT_CHAN0) < SNAP_AMP;
     let lead = memory.axis(axis, Chan::LEAD);

@@ -1,9 +1,8 @@
 //! Settings of an axis, prepared for a tick.
 //!
-//! The settings lie in guest memory, where programs write them at any time. A tick before which nobody but the
-//! servo had the board need not look at each of them: what they come to is kept from tick to tick, and worked out
-//! again as soon as a thread, the call-back, the PC or the world has done anything. Builds with debug assertions
-//! compare it in every tick.
+//! The settings are in guest memory, where programs can write them at any time. If only the servo has run since the
+//! last tick, they need not be read again: the values derived from them are kept, and recomputed as soon as a thread,
+//! the call-back, the PC or the world has run. Builds with debug assertions compare them in every tick.
 
 use kmotiondef::modes::{BacklashMode, InputMode, OutputMode};
 use kmotiondef::structs::{Chan, Iir};
@@ -30,13 +29,13 @@ pub(crate) enum Input {
 pub(crate) struct Encoder {
     /// Position units of a count.
     pub(crate) gain: f64,
-    /// Its channel, if there is one of that number.
+    /// The number of its channel, if that channel exists.
     pub(crate) channel: Option<u32>,
-    /// The axis whose load turns it; `None` if only a hand does.
+    /// The axis whose load turns it; `None` if it is only turned by hand.
     pub(crate) turned_by: Option<AxisId>,
     /// That axis' position units of a count.
     pub(crate) turned_gain: f64,
-    /// True if the input was left to a hand: the load of that axis turns it no longer.
+    /// True if the input is now turned by hand: the load of that axis no longer turns it.
     pub(crate) is_held: bool,
 }
 
@@ -58,7 +57,7 @@ pub(crate) struct Gains {
     pub(crate) p: f32,
     pub(crate) i: f32,
     pub(crate) d: f32,
-    /// True if the derivative gain acts on the error, not on the position alone.
+    /// True if the derivative gain acts on the error, false if only on the position.
     pub(crate) derives_error: bool,
     pub(crate) max_i: f32,
     pub(crate) max_err: f32,
@@ -75,7 +74,7 @@ pub(crate) struct Gains {
 pub(crate) struct AxisPlan {
     pub(crate) input: Input,
     pub(crate) mode: Option<OutputMode>,
-    /// True if nothing is compensated: steps and microsteps follow the command.
+    /// True if there is no compensation: steps and microsteps follow the command.
     pub(crate) is_open_loop: bool,
     pub(crate) is_slave: bool,
     /// True if a limit switch is watched.
@@ -144,7 +143,7 @@ fn input(memory: &mut GuestMemory, wiring: &Wiring, axis: AxisId) -> Input {
     }
 }
 
-/// The encoder that an axis reads, if there is one at its input.
+/// The encoder read by an axis, if there is one at its input.
 pub(crate) fn encoder(memory: &mut GuestMemory, wiring: &Wiring, axis: AxisId) -> Option<Encoder> {
     let turned_by = wiring.turns(memory, axis);
     if turned_by.is_none() && !wiring.reads_hand(memory, axis) {
@@ -162,7 +161,7 @@ pub(crate) fn encoder(memory: &mut GuestMemory, wiring: &Wiring, axis: AxisId) -
 #[inline(always)]
 fn gains(chan: &AxisView<'_>) -> Gains {
     let gain = |field: Field<f32>| chan.get(field);
-    // A limit below 0, or one that is no number, lets nothing through.
+    // A negative or NaN limit lets nothing through.
     let limit = |field| gain(field).max(0.0);
     let (range, slope) = (gain(Chan::DEAD_BAND_RANGE), gain(Chan::DEAD_BAND_GAIN));
     Gains {

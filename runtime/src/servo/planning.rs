@@ -1,8 +1,7 @@
-//! The time that firmware 4.34 plans a motion, by its kind.
+//! The time that firmware 4.34 takes to plan a motion, by its kind.
 //!
-//! Nothing but the phases of a motion decides how long it is planned (measured: 600 motions, each within a few cycles).
-//! A phase that comes to nothing takes longer than one that is there. Within a motion the time counts from the slice in
-//! which the board plans.
+//! Only the phases of a motion determine its planning time (measured: 600 motions, each within a few cycles). An empty
+//! phase takes longer than one that exists. In motion, the time counts from the slice in which the board plans.
 
 use kmotiondef::AxisId;
 use vm::memory::GuestMemory;
@@ -14,22 +13,22 @@ use super::profile::{self, Limits, Phases, Point, is_in_three};
 const NOWHERE: i64 = 2488;
 /// A move from rest that reaches its velocity.
 const FULL: i64 = 3345;
-/// Its two phases of constant acceleration, if there are none.
+/// The two phases of constant acceleration, if they are empty.
 const WITHOUT_CONSTANT: i64 = 692;
-/// A move from rest that reaches its acceleration alone, and one that reaches neither.
+/// A move from rest that only reaches its acceleration limit, and a move that reaches neither limit.
 const ACCELERATED: i64 = 3193;
 const SHORT: i64 = 3417;
-/// The phase of constant velocity, if there is none.
+/// The phase of constant velocity, if it is empty.
 const WITHOUT_CRUISE: i64 = 580;
 /// A move in the negative direction.
 const NEGATIVE: i64 = 25;
-/// A move from rest is planned in the slice after that of the call.
+/// A move from rest that is planned in the slice after the call.
 const LATER: i64 = 110;
 /// A move in motion that continues at full velocity.
 const CONTINUED: i64 = 4772;
 /// A move in motion that stops first, without the move from rest that follows.
 const STOPPED: i64 = 3290;
-/// A change of speed that reaches its acceleration: to see how long it is, and to write it down.
+/// A change of speed that reaches its acceleration limit: the time to find its duration, and to store it.
 const WEIGHED: i64 = 425;
 const WRITTEN: i64 = 560;
 /// A jog from rest, and in motion.

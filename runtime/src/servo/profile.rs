@@ -1,8 +1,9 @@
 //! Third-order (jerk-limited) profiles: lists of states of constant jerk.
 //!
 //! Source: measurements of the released firmware (`axes-and-motion.md` section 4, `motion.jsonl`). Some of its
-//! intermediate results are singles, and its divisions are those of [`division`](crate::arithmetic::division); they are so here too, because
-//! programs see the states, down to those of a few attoseconds that only rounding leaves.
+//! intermediate results are singles, and its divisions are those of [`division`](crate::arithmetic::division); both are
+//! reproduced here, because programs can read the states, even those of a few attoseconds that result only from
+//! rounding.
 
 use kmotiondef::limits::TIMEBASE;
 
@@ -36,7 +37,7 @@ impl Mode {
         }
     }
 
-    /// The mode of a number; anything unknown ends the list.
+    /// The mode with a number; an unknown number ends the list.
     pub(crate) fn from_number(number: i32) -> Self {
         match number {
             1 => Self::Independent,
@@ -152,14 +153,14 @@ impl Path {
         Self { root: libm::sqrt, ..self }
     }
 
-    /// Appends `duration` seconds of constant `jerk`; without a state where there is nothing to do.
+    /// Appends `duration` seconds of constant `jerk`; no state for a duration of 0.
     fn push(&mut self, duration: f64, jerk: f64) {
         if duration.is_nan() {
             return;
         }
         self.append(duration, jerk);
         if duration <= 0.0 {
-            // What lies behind it starts from its end all the same.
+            // The following states still start from its end.
             self.states.pop();
         }
     }
@@ -199,7 +200,7 @@ impl Path {
         } else {
             let peak = sign * limits.a;
             let first = divide(peak - a, jerk);
-            // Beyond the limit already: the acceleration comes down to it. Less than a nanosecond is rounding.
+            // Already beyond the limit: the acceleration decreases to it. Less than a nanosecond is rounding.
             let beyond = first < -1e-9;
             self.append(if beyond { -first } else { first }, if beyond { -jerk } else { jerk });
             let last = divide(limits.a, limits.j);
@@ -270,27 +271,27 @@ impl Phases {
         }
         let way = |v: f64| v * (divide(v, peak) + ramp);
         let constant = divide(v, peak) - ramp;
-        // Without a constant phase at full speed, there is none at a lower speed either.
+        // Without a constant phase at full speed, lower speeds have none either.
         if length > way(v) || constant <= 0.0 {
             let cruise = divide(length - way(v), v);
             return Self { ramp, constant, cruise, peak, is_full: true };
         }
-        // (J·r/2)·c² + (3·J·r²/2)·c + (J·r³ − L/2) = 0 for the constant phase c. The board's root is a single. Where
-        // it leaves no constant phase, at a length just between two cases, the board takes the other solution, a time
-        // before the start, and its list jumps: so it was recorded. Backwards the coefficients have the other sign, the
-        // other solution is the board's first choice, and what it falls back to is the right one.
+        // (J·r/2)·c² + (3·J·r²/2)·c + (J·r³ − L/2) = 0 for the constant phase c. The board's root is a single. If it
+        // leaves no constant phase, at a length just between two cases, the board takes the other solution, a time
+        // before the start, and its list jumps, as recorded. Backwards the coefficients have the opposite sign, so that
+        // the other solution is the board's first choice, and its fallback is the correct one.
         let half = peak * ramp / 2.0;
         let sum = root(half * half + peak * length);
         let constant = divide(sum - 3.0 * half, peak);
         let constant =
             if constant <= 0.0 && distance > 0.0 { -divide(sum + 3.0 * half, peak) } else { constant };
-        // What the single leaves over is covered at the limit of the velocity, even if that is not reached.
+        // The rest due to the rounding of the single is covered at the velocity limit, even if that is not reached.
         let cruise = divide(length - way(sum - half), v);
         Self { ramp, constant, cruise, peak: j * ramp, is_full: false }
     }
 }
 
-/// A move from rest, as a new axis or one standing still makes it.
+/// A move from rest, for a new axis or an axis at standstill.
 pub(crate) fn move_from_rest(from: f64, to: f64, limits: &Limits) -> Vec<MotionState> {
     if from.is_nan() {
         return move_from_nowhere(to, limits);
@@ -300,8 +301,8 @@ pub(crate) fn move_from_rest(from: f64, to: f64, limits: &Limits) -> Vec<MotionS
     states
 }
 
-/// A move of an axis whose destination is not a number: four phases of full length, and the last state that every move
-/// from rest has (coordinated-motion.md section 6).
+/// A move of an axis whose destination is NaN: four phases of full length, and the last state that every move from rest
+/// has (coordinated-motion.md section 6).
 fn move_from_nowhere(to: f64, limits: &Limits) -> Vec<MotionState> {
     let phase =
         MotionState { mode: Mode::Independent, t: limits.a / limits.j, a: 0.0, b: 0.0, c: 0.0, d: f64::NAN };
@@ -318,15 +319,15 @@ pub(crate) enum Ramp {
     Abrupt,
 }
 
-/// The states of a move from rest, each half with its own ramp, and the resting tick; without the end of the list.
+/// The states of a move from rest, each half with its own ramp, and the resting tick, but not the end of the list.
 pub(crate) fn bare_move(from: f64, to: f64, ramps: [Ramp; 2], limits: &Limits) -> Vec<MotionState> {
     let mut path = Path::from(Point::rest(from));
     path.move_from_rest(to, ramps, limits);
     path.states
 }
 
-/// A move planned while the axis moves: 20 ticks continue as they are, then either the target is approached at full
-/// speed or the axis stops and starts again.
+/// A move planned while the axis moves: 20 ticks continue unchanged, then the target is approached at full speed, or
+/// the axis stops and starts again.
 pub(crate) fn move_in_motion(start: Point, to: f64, limits: &Limits) -> Vec<MotionState> {
     let InMotion { mut path, sign, remaining, stop } = weigh(start, to, limits);
     if stop.is_some() {
@@ -340,7 +341,7 @@ pub(crate) fn move_in_motion(start: Point, to: f64, limits: &Limits) -> Vec<Moti
     path.states
 }
 
-/// The way in which a move in motion begins.
+/// The beginning of a move in motion.
 #[derive(Clone, Debug)]
 pub(super) struct InMotion {
     /// Its first phases: to full speed, or to rest.
@@ -384,7 +385,7 @@ pub(super) fn is_in_three(start: Point, velocity: f64, limits: &Limits) -> bool 
     path.states.len() > 2
 }
 
-/// A jog: 20 ticks as before, then the change to the new velocity, which lasts.
+/// A jog: 20 ticks unchanged, then the change to the new velocity, which lasts.
 pub(crate) fn jog(start: Point, velocity: f64, limits: &Limits) -> Vec<MotionState> {
     let mut path = lead(start);
     path.change(velocity, limits);
@@ -401,7 +402,7 @@ fn constant(point: &Point) -> MotionState {
     MotionState { mode: Mode::Independent, t: FOREVER, a: 0.0, b: 0.0, c: point.v, d: point.x }
 }
 
-/// The 20 ticks at constant velocity; the acceleration pauses meanwhile.
+/// The 20 ticks at constant velocity, during which the acceleration pauses.
 pub(super) fn lead(start: Point) -> Path {
     let mut path = Path::from(Point { a: 0.0, ..start });
     path.push(LEAD, 0.0);

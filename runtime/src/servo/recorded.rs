@@ -82,19 +82,20 @@ fn number(value: &Json) -> f64 {
     value.as_f64().expect("a number")
 }
 
-/// Equal to 1e-9, and to the rounding of numbers of the size `scale` of which it is the difference.
+/// Reports whether two numbers agree to 1e-9, and to the rounding of the numbers of size `scale` whose difference they
+/// are.
 fn close(found: f64, expect: f64, scale: f64) -> bool {
     (found - expect).abs() <= 1e-9 * expect.abs() + 1e-12 * scale
 }
 
-/// The farthest that a recorded motion goes from its start.
+/// The largest distance of a recorded motion from its start.
 fn travel(row: &Json) -> f64 {
     let start = number(&row["start_dest"]);
     let samples = row["samples"].as_array().expect("samples");
     samples.iter().map(|sample| (number(&sample[1]) - start).abs()).fold(0.0, f64::max)
 }
 
-/// The largest number in a column of a list, the one that stands for "without end" apart.
+/// The largest number in a column of a list, apart from the number that stands for "without end".
 fn largest(states: &[[f64; 5]], column: usize) -> f64 {
     states.iter().map(|state| state[column].abs()).filter(|&value| value < FOREVER).fold(0.0, f64::max)
 }

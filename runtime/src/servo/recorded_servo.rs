@@ -48,7 +48,7 @@ fn number(value: &Json) -> f64 {
     value.as_f64().expect("a number")
 }
 
-/// A bench with an axis enabled at 0 whose position programs write, and the row's parameters.
+/// A bench with an axis that is enabled at 0 and whose position programs write, and with the row's parameters.
 fn bench(row: &Json) -> TestBench {
     let mut bench = TestBench::new();
     poke(&mut bench, "InputMode", 4.0);
@@ -70,7 +70,7 @@ fn check_compensation(row: &Json) {
     let mut bench = bench(row);
     let columns: Vec<&str> =
         row["columns"].as_array().expect("columns").iter().filter_map(Json::as_str).collect();
-    // One recording changes the offset on the way, in the tick that shows an error of 6.
+    // One recording changes the offset during the run, in the tick with an error of 6.
     let has_offset = row["name"] == "DestOffset";
     for (tick, values) in row["rows"].as_array().expect("rows").iter().enumerate() {
         poke(&mut bench, "Position", number(&values[0]));
@@ -124,7 +124,7 @@ fn check_analog_input(row: &Json) {
     }
 }
 
-/// Encoder registers and positions: the load is turned to what the register showed.
+/// Checks encoder registers and positions: the load is turned to match the recorded register.
 fn check_encoder(row: &Json) {
     let channel = row["InputChan0"].as_i64().expect("a channel");
     let mut bench = TestBench::new();
@@ -135,7 +135,7 @@ fn check_encoder(row: &Json) {
     let mut last = 0_i8;
     for values in row["rows"].as_array().expect("rows") {
         let register = (number(&values[0]) as i64) as i8;
-        // A board without a SnapAmp has nothing behind channel 8. An encoder turns by counts of its own axis.
+        // A board without a SnapAmp has no channel after 8. An encoder turns by counts of its own axis.
         if let Some(turned) = AxisId::new(channel as i32) {
             let unit = if turned == axis() { gain } else { 1.0 };
             bench.kernel.parts.machine.loads.push(turned, f64::from(register.wrapping_sub(last)) * unit);
@@ -207,7 +207,7 @@ fn check_slave(row: &Json) {
     }
 }
 
-/// Following errors, by their destinations; limit switches, by what became of the axis.
+/// Checks following errors by their destinations, and limit switches by the resulting state of the axis.
 fn check_following_error(row: &Json) {
     let mut bench = TestBench::new();
     poke(&mut bench, "InputMode", 4.0);
@@ -237,7 +237,7 @@ fn check_limit_switch(row: &Json) {
     let before = |text: &str| row["before"].as_array().expect("a list").iter().any(|line| line == text);
     let mut bench = TestBench::new();
     poke(&mut bench, "InputMode", 4.0);
-    // The recording jogs an axis of the coordinate system while nobody asks for the status.
+    // The recording jogs an axis of the coordinate system while the status is not polled.
     bench.kernel.parts.pc.host.connect(false);
     for (name, value) in row["parameters"].as_object().expect("parameters") {
         poke(&mut bench, name, number(value));
@@ -285,9 +285,9 @@ fn command(bench: &mut TestBench, text: &str) {
     }
 }
 
-/// Following errors, limits packed in a word, and soft limits, of which the recording shows every tick.
+/// Checks following errors, limits packed in a word, and soft limits, which are recorded in every tick.
 ///
-/// The primary thread has every other tick; `wait` ticks pass before the first command, so that both cases come up.
+/// The primary thread has every other tick; `wait` ticks pass before the first command, so that both cases are tested.
 fn protects(row: &Json, wait: u64) -> Result<(), String> {
     let mut bench = TestBench::new();
     poke(&mut bench, "InputMode", 4.0);
@@ -299,7 +299,7 @@ fn protects(row: &Json, wait: u64) -> Result<(), String> {
     let before = row["before"].as_array().expect("a list");
     before.iter().for_each(|text| command(&mut bench, text.as_str().expect("a command")));
     let rows = row["rows"].as_array().expect("rows");
-    // The first row is some ticks behind the last command.
+    // The first row is some ticks after the last command.
     let is_at = |bench: &TestBench| (peek(bench, "Dest") - number(&rows[0][2])).abs() < 1e-12;
     for _ in 0..100 {
         if is_at(&bench) {
@@ -354,7 +354,7 @@ fn check_protection(row: &Json) {
     assert!(tried.iter().any(Result::is_ok), "{}: {tried:?}", row["name"]);
 }
 
-/// Calls of enable, disable and zero in motion: fields before and after.
+/// Checks calls of enable, disable and zero in motion: fields before and after.
 fn check_enable(row: &Json) {
     let mut bench = TestBench::new();
     let text = row["command"].as_str().expect("a command");
@@ -372,7 +372,7 @@ fn check_enable(row: &Json) {
         }
     }
     bench.call(name, &[0, value.to_bits()]);
-    // What the call alone leaves, where the recording's own tick behind it has not been at work.
+    // The effect of the call alone, for fields that the recording's next tick has not changed.
     let after = &row["after"];
     for field in ["Enable", "UnfilteredDest", "Position", "Backlash", "LastNonZeroDir", "DirectionOfMotion"] {
         if name != "DisableAxis" || matches!(field, "Enable" | "UnfilteredDest" | "Position") {
@@ -388,7 +388,7 @@ fn check_enable(row: &Json) {
     }
 }
 
-/// Rows whose name begins as those of limit switches of one axis alone.
+/// Returns whether a row is about the limit switches of a single axis, judging by its name.
 fn is_limit_switch(row: &Json) -> bool {
     row["name"].as_str().is_some_and(|name| name.starts_with("limit ") && name.contains("option 0x1"))
 }

@@ -19,13 +19,13 @@ fn injects(memory: &GuestMemory) -> bool {
     memory.get(GATHER.field(Gather::INJECT)) != 0
 }
 
-/// Returns the end of the recording: at most the end of the buffer, if it is written there.
+/// Returns the end of the recording: at most the end of the buffer, if it records there.
 fn end(memory: &GuestMemory) -> GuestAddr {
     let limit = memory.get(GATHER_BUFFER).offset(8 * MAX_GATHER_DATA as u32);
     memory.get(GATHER.field(Gather::ENDPTR)).min(limit)
 }
 
-/// Takes one sample if recording is on; whether it was.
+/// Takes one sample if recording is on; returns whether it was.
 pub(crate) fn sample(memory: &mut GuestMemory) -> bool {
     if !is_recording(memory) {
         return false;
@@ -36,7 +36,7 @@ pub(crate) fn sample(memory: &mut GuestMemory) -> bool {
         let target = memory.get(GATHER.field(Gather::LIST.element(0).field(GatherValueDef::ADDR)));
         let stimulus: f64 = memory.peek(place);
         memory.poke(target, stimulus);
-        // The stimulus keeps its place in the record.
+        // The stimulus keeps its position in the record.
         place = place.offset(8);
         first = 1;
     }

@@ -1,15 +1,16 @@
-//! The board's sine: 120 straight lines a turn, each with its slope and its value at angle 0, in single precision.
+//! The board's sine: 120 line segments per turn, each with its slope and its value at angle 0, in single precision.
 //!
-//! The lines go through sines that the firmware computes when it starts. Its sines of singles are not always the nearest,
-//! so they are values here that were measured in the memory of the booted firmware. 240 values of `Sine3PH` agree bit by bit, both phases.
+//! The lines go through sines that the firmware computes when it starts. Its single-precision sines are not always the
+//! nearest value, so the values here were measured in the memory of the booted firmware. 240 values of `Sine3PH` agree
+//! bit by bit, both phases.
 
 use std::sync::LazyLock;
 
-/// Lines of a turn; what is a third and a quarter of one.
+/// The number of lines per turn, and per third and quarter of a turn.
 const TURN: usize = 120;
 pub(crate) const THIRD: usize = TURN / 3;
 pub(crate) const QUARTER: usize = TURN / 4;
-/// Lines of the table, which reaches beyond a turn for what is ahead.
+/// The number of lines in the table, which extends beyond a turn for phases that lead.
 const LINES: usize = TURN + THIRD + 1;
 
 /// The sines between the lines, as bits of singles.
@@ -178,7 +179,7 @@ const SINES: [u32; LINES + 1] = [
     0x3F56_B31E,
 ];
 
-/// A line between two sines: its slope for a turn, and its value at 0.
+/// A line between two sines: its slope per turn, and its value at 0.
 #[derive(Clone, Copy, Debug, Default)]
 struct Secant {
     slope: f32,
@@ -193,13 +194,13 @@ static TABLE: LazyLock<[Secant; LINES]> = LazyLock::new(|| {
     })
 });
 
-/// The angle of a position in table entries, in turns.
+/// The angle of a number of table entries, in turns.
 fn along(lines: usize) -> f32 {
     const LINE: f32 = 1.0 / TURN as f32;
     lines as f32 * LINE
 }
 
-/// The sine of an angle in cycles, and its value a number of lines ahead.
+/// The sine of an angle in cycles, and the sine a number of lines ahead.
 pub(crate) fn sine(cycles: f64, ahead: usize) -> f32 {
     let fraction = (cycles - libm::trunc(cycles)) as f32;
     value(if fraction < 0.0 { fraction + 1.0 } else { fraction }, ahead)
@@ -213,15 +214,15 @@ fn value(angle: f32, ahead: usize) -> f32 {
     line.slope * (angle + along(ahead)) + line.origin
 }
 
-/// Pointers of the list that precedes the table in memory, each where a line would have its slope: those of the SnapAmps'
-/// bits and of what they read slowly.
+/// Pointers in the list that precedes the table in memory, at the positions where lines have their slopes: those of the
+/// SnapAmps' bits and of their slow measurements.
 const POINTERS: [u32; 8] =
     [0x1001_A904, 0x1001_A908, 0x1001_9058, 0x1001_905C, 0x1001_A90C, 0x1001_A910, 0x1001_9078, 0x1001_907C];
 /// The line of the first pointer.
 const FIRST_POINTER: i64 = -27;
 
-/// The line that the board takes for one of an angle below 0: it looks before its table. The numbers between the pointers are too
-/// small for singles; the rest is 0.
+/// The line that the board uses for an angle below 0: it reads before its table. The numbers between the pointers are
+/// too small for singles; the rest is 0.
 fn beyond(index: i64) -> Option<Secant> {
     let pointer = usize::try_from(index - FIRST_POINTER).ok().and_then(|at| POINTERS.get(at))?;
     Some(Secant { slope: f32::from_bits(*pointer), origin: 0.0 })
@@ -244,7 +245,7 @@ mod tests {
             let sine = libm::sin(TAU * index as f64 / TURN as f64);
             assert!((f64::from(f32::from_bits(bits)) - sine).abs() < 1e-6, "{index}");
         }
-        // Half way between two values: cos(1.5°) of the sine.
+        // Halfway between two values: the sine times cos(1.5°).
         let between = f64::from(sine(1.5 / 360.0, QUARTER));
         assert!((between - f64::midpoint(1.0, libm::cos(TAU / 120.0))).abs() < 1e-6, "{between}");
     }

@@ -8,7 +8,7 @@ use vm::memory::GuestMemory;
 use super::state::Servo;
 use crate::views::Typed;
 
-/// Applies the changes of all masters in this tick, whatever caused them.
+/// Applies the changes of all masters in this tick, whatever their cause.
 pub(crate) fn follow(servo: &Servo, memory: &mut GuestMemory) {
     let mut moved = [None; Axes::MAX];
     for axis in memory.axes().iter() {
@@ -31,7 +31,8 @@ fn change(
     let master = memory.axes().get(memory.axis(axis, Chan::MASTER_AXIS)).filter(|_| is_enabled && depth > 0);
     if let Some(master) = master {
         let moved = change(servo, memory, master, moved, depth - 1);
-        // A motion of its own does not know that: in the next tick the slave is where that says, and changes by that tick.
+        // Its own motion does not include this change: in the next tick the slave is at the position of that motion,
+        // and changes by that tick only.
         if moved != 0.0 {
             let dest = memory.axis(axis, Chan::DEST) + memory.axis(axis, Chan::SLAVE_GAIN) * moved;
             memory.set_axis(axis, Chan::DEST, dest);
@@ -42,7 +43,7 @@ fn change(
     change
 }
 
-/// The change of the destination since the last tick; of a closed-loop stepper that of its output as well.
+/// The change of the destination since the last tick; for a closed-loop stepper, also that of its output.
 fn own_change(servo: &Servo, memory: &GuestMemory, axis: AxisId) -> f64 {
     let change = memory.axis(axis, Chan::DEST) - servo.axes[axis.index()].dest;
     let mode = OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE));

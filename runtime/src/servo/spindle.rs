@@ -1,8 +1,8 @@
 //! Spindle measurement, and threading: the path's clock follows the spindle.
 //!
-//! Source: coordinated-motion.md section 7 and the recorded runs (`coord.jsonl`): the time that belongs to the spindle's
-//! angle goes through a low-pass filter; the speed, multiplied by the filter's time constant, is added before it,
-//! so that a constant speed is followed without lag.
+//! Source: coordinated-motion.md section 7 and the recorded runs (`coord.jsonl`): the time that corresponds to the
+//! spindle's angle goes through a low-pass filter; the speed, multiplied by the filter's time constant, is added before
+//! the filter, so that a constant speed is followed without lag.
 
 use kmotiondef::limits::TIMEBASE;
 use kmotiondef::structs::{Chan, Spindle};
@@ -29,7 +29,7 @@ fn set<T: Scalar>(memory: &mut GuestMemory, field: Field<T>, value: T::Value) {
 pub(crate) struct Setup {
     /// True if it has an encoder.
     pub(crate) has_encoder: bool,
-    /// The axis whose position is that encoder.
+    /// The axis with that encoder as its position.
     pub(crate) axis: AxisId,
     /// Seconds between two measurements of the speed.
     pub(crate) update_time: f32,
@@ -71,7 +71,7 @@ pub(crate) fn is_measured(memory: &GuestMemory) -> bool {
     get(memory, Spindle::TYPE) == ENCODER
 }
 
-/// One tick of the measurement; whether it changed anything.
+/// Executes one tick of the measurement; returns whether it changed anything.
 pub(crate) fn measure(memory: &mut GuestMemory) -> bool {
     if !is_measured(memory) {
         return false;
@@ -96,7 +96,7 @@ pub(crate) fn measure(memory: &mut GuestMemory) -> bool {
     changed || get(memory, Spindle::TRUE_SPEED_RPS) != 0.0
 }
 
-/// Starts the path in the buffer, to be driven by the spindle from a whole revolution on.
+/// Starts the path in the buffer, driven by the spindle from a whole revolution on.
 pub(crate) fn thread(memory: &mut GuestMemory, base_speed: f32) {
     let inverse = 1.0 / base_speed;
     let k = get(memory, Spindle::K);
@@ -116,7 +116,8 @@ pub(crate) fn is_threading(memory: &GuestMemory) -> bool {
     get(memory, Spindle::THREADING_ACTIVE) != 0
 }
 
-/// One tick of threading: how far the path is to go in this tick. It never goes back. The end of the path ends it.
+/// Executes one tick of threading: sets the advance of the path in this tick. It never goes back. The end of the path
+/// ends the threading.
 fn drive(memory: &mut GuestMemory) {
     let revolutions = get(memory, Spindle::POSITION) - get(memory, Spindle::START_POSITION);
     let ahead = f64::from(get(memory, Spindle::TRUE_SPEED_RPS) * get(memory, Spindle::TAU));

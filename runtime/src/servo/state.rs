@@ -16,26 +16,27 @@ use crate::machine::Machine;
 use crate::out::{Message, Out};
 use crate::views::Typed;
 
-/// The servo's state of an axis besides its structure.
+/// The servo's state of an axis in addition to its structure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct AxisMemory {
     /// Destination at the end of the last tick.
     pub(crate) dest: f64,
     /// True if the axis has been enabled since, so that another destination is one that a program has written.
     pub(super) knows_dest: bool,
-    /// Its velocity in the last tick, for the feed forward.
+    /// The velocity in the last tick, for the feed forward.
     pub(super) velocity: f32,
     /// Sum of output times motion since the axis was enabled: above 0 if the output moves the position in its own
     /// direction.
     pub(super) response: f64,
-    /// The way of the destination since the axis was enabled, and that of the position in the same direction.
+    /// The distance covered by the destination since the axis was enabled, and the distance of the position in the same
+    /// direction.
     pub(super) commanded: f64,
     pub(super) followed: f64,
-    /// Speed of the position in units per tick, over some ticks, whatever its direction.
+    /// Magnitude of the position's speed in units per tick, over some ticks.
     pub(super) speed: f64,
     /// True if its load has run into a hard stop since it was enabled.
     pub(super) has_stopped: bool,
-    /// The farthest that the position has been ahead of a destination that moves.
+    /// The farthest distance of the position ahead of a moving destination.
     pub(super) ahead: f64,
     /// Changes of the output from one half of its range to the other, in one tick each.
     pub(super) flips: u32,
@@ -43,7 +44,7 @@ pub(crate) struct AxisMemory {
     pub(super) moved: f64,
     /// True if the servo has run the axis since it was enabled.
     pub(super) has_run: bool,
-    /// The velocity in the tick before.
+    /// The velocity in the previous tick.
     pub(super) last_velocity: f32,
     /// The analog output that the axis wrote in the last tick, and the word.
     pub(super) analog: Option<(usize, i16)>,
@@ -70,8 +71,8 @@ impl AxisMemory {
         self.speed += (moved.abs() - self.speed) * WEIGHT;
     }
 
-    /// Returns whether a position that is `rest` away from its destination is on its way, as fast as for that way in a
-    /// second.
+    /// Returns whether a position at the distance `rest` from its destination is approaching it, fast enough to cover
+    /// that distance in a second.
     pub(crate) fn settles(&self, rest: f64) -> bool {
         self.speed * TICKS_PER_SECOND > rest
     }
@@ -84,10 +85,11 @@ pub(crate) struct CallPlace {
     pub(crate) at: Option<CodeAddr>,
 }
 
-/// The servo's state besides guest memory.
+/// The servo's state in addition to guest memory.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Servo {
-    /// The last call of a program, and the last that commanded each axis: what happens to an axis later comes of it.
+    /// The last call of a program, and the last call that commanded each axis, which later events of the axis are
+    /// attributed to.
     pub(crate) last_call: Option<CallPlace>,
     pub(crate) commands: [Option<CallPlace>; Axes::MAX],
     pub(crate) axes: [AxisMemory; Axes::MAX],
@@ -95,17 +97,17 @@ pub(crate) struct Servo {
     pub(crate) cache: Cache,
     pub(super) coordinated: Coordinated,
     pub(super) stop_request: StopRequest,
-    /// The way in which the firmware plans moves of single axes.
+    /// The planner of the firmware for moves of single axes.
     pub(crate) planner: Planner,
 }
 
 impl Servo {
-    /// Moves an axis to its destination at once: no velocity is seen.
+    /// Moves an axis to its destination in a single step, without a visible velocity.
     pub(crate) fn jump(&mut self, axis: AxisId, dest: f64) {
         self.axes[axis.index()] = AxisMemory::rest(dest);
     }
 
-    /// Returns whether a path or an axis on its own moves or something is being recorded.
+    /// Returns whether a path or a single axis moves, or a recording is in progress.
     pub(crate) fn is_busy(memory: &GuestMemory) -> bool {
         recorder::is_recording(memory)
             || path::is_under_way(memory)
@@ -113,7 +115,7 @@ impl Servo {
     }
 }
 
-/// The parts of the board that a tick of the servo works on, beside guest memory.
+/// The parts of the board on which a tick of the servo works, in addition to guest memory.
 #[derive(Debug)]
 pub(crate) struct Tick<'a> {
     pub(crate) servo: &'a mut Servo,
@@ -125,14 +127,14 @@ pub(crate) struct Tick<'a> {
 }
 
 impl Tick<'_> {
-    /// A remark about an axis, with the call that has commanded it; a path has come about by many calls.
+    /// Makes a remark about an axis, attributed to the call that has commanded it; a path is the result of many calls.
     pub(crate) fn remark_on_axis(&mut self, memory: &GuestMemory, axis: AxisId, message: Message) {
         let is_on_path = system::is_member(memory, axis) && !memory.get(COORD_SYSTEM0).is_null();
         let command = self.servo.commands[axis.index()].filter(|_| !is_on_path);
         self.remark_at(command, message);
     }
 
-    /// A remark about what a program has stored, with the call that it has made last.
+    /// Makes a remark about a value that a program has stored, attributed to its last call.
     pub(crate) fn remark_near(&mut self, message: Message) {
         self.remark_at(self.servo.last_call, message);
     }

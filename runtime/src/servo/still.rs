@@ -1,8 +1,8 @@
 //! Standing still: a tick that would change nothing is not computed.
 //!
-//! A tick of the axes is a function of what they have in guest memory and of what the servo remembers. If one tick has
-//! changed nothing, neither will the next, until somebody else writes there. So it is enough to compare: the axis
-//! structures, the words of the outputs, which an axis writes again in each tick, and the analog inputs.
+//! A tick of the axes is a function of their data in guest memory and of the state of the servo. If one tick has
+//! changed nothing, neither will the next, until other code writes there. So it is enough to compare the axis
+//! structures, the words of the outputs, which an axis writes in each tick, and the analog inputs.
 
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::{ADC_BUFFER_IN, CHAN, DAC_BUFFER, LAST_PWM};
@@ -23,9 +23,9 @@ pub(crate) struct Stillness {
     pwm: [u8; PWM_SIZE],
     dac: [u8; DAC_SIZE],
     adc: [u8; ADC_SIZE],
-    /// True if it is known.
+    /// True if the copy is valid.
     is_known: bool,
-    /// True if that tick began with it and changed nothing.
+    /// True if that tick began with this state and changed nothing.
     is_still: bool,
     is_watching: bool,
 }
@@ -45,8 +45,8 @@ impl Default for Stillness {
 }
 
 impl Stillness {
-    /// Returns whether the last tick changed nothing and nobody has written anything since. Unless `is_touched`, nobody
-    /// has written to the axis structures, which are most of it.
+    /// Returns whether the last tick changed nothing and nothing has been written since. If `is_touched` is false, the
+    /// axis structures, which are most of the data, have not been written to.
     pub(super) fn lasts(&self, memory: &GuestMemory, is_touched: bool) -> bool {
         debug_assert!(
             is_touched || !self.is_still || self.has_seen_axes(memory),
@@ -58,7 +58,7 @@ impl Stillness {
             && (!is_touched || self.has_seen_axes(memory))
     }
 
-    /// A tick is computed: notes whether it begins with what the last one has left.
+    /// Notes whether a tick that is computed begins with the state left by the last one.
     pub(super) fn begin(&mut self, memory: &GuestMemory) {
         self.is_known = self.is_known && self.is_seen(memory);
         self.is_still = false;
@@ -76,7 +76,7 @@ impl Stillness {
         self.is_watching = true;
     }
 
-    /// The tick has moved nothing: whether it has changed nothing at all.
+    /// Ends a tick that has moved nothing; returns whether it has changed nothing at all.
     pub(super) fn end(&mut self, memory: &GuestMemory) -> bool {
         self.is_still = self.is_known && self.is_seen(memory);
         if !self.is_still {

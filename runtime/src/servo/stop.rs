@@ -1,16 +1,16 @@
 //! A feedhold that the primary thread carries out: for the servo at a limit, or for a command.
 //!
-//! It takes several of its slices: in one it computes how long a stop takes, in the next it begins to stop a path, or
-//! each axis that moves by itself in one more (coordinated-motion.md section 5).
+//! It takes several of its slices: in the first it computes the duration of the stop, in the next it begins to stop a
+//! path; axes that move independently take one further slice each (coordinated-motion.md section 5).
 
 use kmotiondef::AxisId;
 
 /// The time at which a stop is reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Tells {
-    /// If something was stopped.
+    /// If a motion was stopped.
     Stop,
-    /// Whenever it was tried: again and again of an axis outside the coordinate system, which nothing stops.
+    /// At every attempt: repeatedly for an axis outside of the coordinate system, which cannot be stopped.
     Always,
     /// Never: it was requested.
     Never,
@@ -34,7 +34,7 @@ impl StopRequest {
         }
     }
 
-    /// A command asks, for whom the primary thread has computed the stop.
+    /// Notes the request of a command, for which the primary thread has computed the stop.
     pub(super) fn ask_by_command(&mut self) {
         self.ask(String::new(), Tells::Never);
         self.is_seen = true;
@@ -50,7 +50,7 @@ impl StopRequest {
         !std::mem::replace(&mut self.is_seen, true)
     }
 
-    /// The request, which is met.
+    /// Takes the request, which has been executed.
     pub(super) fn take(&mut self) -> Option<(String, Tells)> {
         self.is_seen = false;
         self.asked.take()

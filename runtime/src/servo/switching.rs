@@ -12,7 +12,7 @@ use crate::io::amplifiers::{recirculate, store_pwm};
 use crate::machine::{Drive, Machine};
 use crate::views::Typed;
 
-/// Puts an axis at a destination and turns it on.
+/// Puts an axis at a destination and enables it.
 pub(crate) fn enable(
     servo: &mut Servo,
     machine: &mut Machine,
@@ -49,7 +49,7 @@ pub(crate) fn zero(servo: &mut Servo, machine: &mut Machine, memory: &mut GuestM
     clear_filters(memory, axis);
     memory.set_axis(axis, Chan::LAST_NON_ZERO_DIR, 0);
     memory.set_axis(axis, Chan::DIRECTION_OF_MOTION, 0);
-    // An axis that is on is switched on again.
+    // An axis that is already enabled is enabled again.
     if memory.axis(axis, Chan::ENABLE) != 0 {
         memory.set_axis(axis, Chan::LAST_VEL, 0.0);
         clear_backlash(memory, axis, 0.0);
@@ -60,7 +60,7 @@ pub(crate) fn zero(servo: &mut Servo, machine: &mut Machine, memory: &mut GuestM
     machine.loads[axis].refer_to(0.0);
 }
 
-/// Clears what the compensation of an axis remembers; its feed forward continues.
+/// Clears the state of an axis' compensation; its feed forward continues.
 pub(crate) fn reset_filters(servo: &mut Servo, memory: &mut GuestMemory, axis: AxisId) {
     clear_filters(memory, axis);
     servo.cache.invalidate(Change::Motion);
@@ -73,7 +73,7 @@ fn clear_backlash(memory: &mut GuestMemory, axis: AxisId, dest: f64) {
     memory.set_axis(axis, Chan::PREV_BACKLASH_DEST, dest as f32);
 }
 
-/// Clears what the compensation remembers.
+/// Clears the state of the compensation.
 fn clear_filters(memory: &mut GuestMemory, axis: AxisId) {
     for field in [Chan::INTEGRATOR, Chan::OUTPUT, Chan::PREV_OUTPUT] {
         memory.set_axis(axis, field, 0.0);
@@ -86,7 +86,7 @@ fn clear_filters(memory: &mut GuestMemory, axis: AxisId) {
     memory.set_axis(axis, Chan::LAST_POSITION, position);
 }
 
-/// Disables an axis: its output goes to zero; profile, destination and filters stay as they are.
+/// Disables an axis: its output goes to zero; profile, destination and filters are unchanged.
 pub(crate) fn switch_off(servo: &mut Servo, machine: &mut Machine, memory: &mut GuestMemory, axis: AxisId) {
     memory.set_axis(axis, Chan::ENABLE, 0);
     servo.cache.invalidate(Change::SwitchedOff);

@@ -1,6 +1,6 @@
 //! Independent trajectories: one tick of a state list.
 //!
-//! `t` counts the seconds inside the current state. A tick first enters the states that `t` has passed, then takes
+//! `t` counts the seconds inside the current state. A tick first enters the states that `t` has reached, then computes
 //! the position at `t`, and advances `t` last; so a motion planned in tick k leaves its start in tick k + 2.
 
 use kmotiondef::limits::TIMEBASE;
@@ -17,7 +17,7 @@ pub(crate) struct Cursor {
     pub(crate) t: f64,
 }
 
-/// The inputs of an exponential approach besides its state.
+/// The inputs of an exponential approach in addition to its state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Approach {
     /// Destination before this tick.
@@ -45,7 +45,7 @@ pub(crate) enum Step {
     Ended(f64),
 }
 
-/// Advances a motion by one tick; `state` reads the list, `approach` what only an exponential state needs.
+/// Advances a motion by one tick; `state` reads the list, `approach` the further inputs of an exponential state.
 #[inline]
 pub(crate) fn step(
     cursor: Cursor,
@@ -57,7 +57,7 @@ pub(crate) fn step(
     let dest = match current.mode {
         Mode::Off => return Step::Ended(cursor.t),
         Mode::Independent => current.at(cursor.t).x,
-        // It has no time of its own.
+        // It does not use the time.
         Mode::Exponential => return exponential(&current, &approach()),
     };
     cursor.t += TIMEBASE;
@@ -91,9 +91,10 @@ pub(crate) const TICKS_PER_SECOND: f64 = 11_111.111_111_111_111;
 
 /// One tick of an exponential approach.
 ///
-/// The velocity of the approach is brought within what the acceleration allows from the last tick on, then within the limit of the
-/// velocity. While it is above that at which the approach begins, it is also below a root that brakes by itself. The board takes
-/// that in singles, and from the size of the square: near its target an axis that is still too fast is slowed down to it at once.
+/// The velocity of the approach is limited to the change that the acceleration allows since the last tick, then by the
+/// velocity limit. While it is above the velocity at which the approach begins, it is also limited by a root, which
+/// brakes. The board computes the root in singles, from the magnitude of the square: near its target, an axis that is
+/// still too fast is slowed down to it at once.
 fn exponential(state: &MotionState, approach: &Approach) -> Step {
     let Approach { dest, velocity, vc, xc, v, a } = *approach;
     let next = (1.0 - state.a) * state.b + state.a * dest;

@@ -1,4 +1,4 @@
-//! Motors that the machine file wires to an output: they are driven by the output's value, which anything may write.
+//! Motors that the machine file connects to an output: they are driven by the output's value, whoever writes it.
 //!
 //! The analog outputs and the words of the PWM channels are in guest memory, where the servo and programs write them. A
 //! load with a motor whose axis drives an analog output is driven by that in the same way.
@@ -17,7 +17,7 @@ use crate::machine::wiring::{channel_of, dac_value};
 use crate::machine::{Applied, Channel, Drive, Machine};
 use crate::views::{AxisView, Typed};
 
-/// Returns the drive of an axis' load in this tick, if it is not the output of the axis itself.
+/// Returns the drive of an axis' load in this tick, if it is not the axis' own output.
 #[inline(always)]
 pub(crate) fn drive(machine: &Machine, io: &Io, memory: &mut GuestMemory, axis: AxisId) -> Option<Drive> {
     let wired = machine.wiring.drive(axis);
@@ -27,11 +27,11 @@ pub(crate) fn drive(machine: &Machine, io: &Io, memory: &mut GuestMemory, axis: 
     carried_to(io, memory, axis, wired)
 }
 
-/// The same for an axis whose drive is wired, or whose load has a motor.
+/// Returns the drive of an axis whose drive is wired, or whose load has a motor.
 fn carried_to(io: &Io, memory: &mut GuestMemory, axis: AxisId, wired: Option<Channel>) -> Option<Drive> {
     let own = channel_of(memory, axis);
     match wired.or(own.filter(|channel| matches!(channel, Channel::Dac(_))))? {
-        // The steps of another axis come as pushes; those of its own axis as usual.
+        // The steps of another axis are applied as pushes, those of its own axis as usual.
         Channel::Generator(_) if matches!(own, Some(Channel::Generator(_))) => None,
         Channel::Generator(_) => Some(Drive::None),
         Channel::Dac(dac) => {
@@ -65,8 +65,7 @@ fn command(memory: &mut GuestMemory, axis: AxisId) -> f64 {
     super::command(&AxisView::of(memory, axis))
 }
 
-/// Returns the signal of a PWM channel's word to a motor. A vector turns nothing without the angle that an axis gives
-/// it.
+/// Returns the signal to a motor from a PWM channel's word. A vector turns nothing without an angle from an axis.
 fn decoded(word: i32) -> Applied {
     let within = |value: i32, limit: i32| (-limit..=limit).contains(&value).then(|| f64::from(value));
     let current = within(word.wrapping_sub(41_984), MAX_PWMC_VALUE).map(Applied::Current);
@@ -75,8 +74,8 @@ fn decoded(word: i32) -> Applied {
     current.unwrap_or_else(|| Applied::Pwm(antiphase.or(recirculate.filter(|_| word >= 0)).unwrap_or(0.0)))
 }
 
-/// Returns whether the steps of an axis move its own load: they do not if a machine file connects the generator or the
-/// motor to something else.
+/// Returns whether the steps of an axis move its own load, unless a machine file connects the generator or the motor
+/// elsewhere.
 pub(crate) fn steps_are_own(machine: &Machine, memory: &GuestMemory, axis: AxisId) -> bool {
     let Some(Channel::Generator(generator)) = channel_of(memory, axis) else { return true };
     let owner = machine.wiring.motor_on(generator);
@@ -85,7 +84,7 @@ pub(crate) fn steps_are_own(machine: &Machine, memory: &GuestMemory, axis: AxisI
         && wired.is_none_or(|wired| wired == Channel::Generator(generator))
 }
 
-/// Moves the load that a machine file connects to the generator of an axis, if it is that of another one.
+/// Moves the load that a machine file connects to the generator of an axis, if it belongs to another axis.
 pub(crate) fn step_other(machine: &mut Machine, memory: &GuestMemory, axis: AxisId, steps: f64) {
     if !OutputMode::has_generator(OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE))) {
         return;

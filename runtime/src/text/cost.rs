@@ -5,7 +5,7 @@
 
 use super::decimal::{Digits, Steps};
 
-/// The cost of a call of the formatter beyond its plain characters and conversions, if it has plain characters.
+/// The cost of a formatter call in addition to its plain characters and conversions, if it has plain characters.
 pub(super) const PLAIN_TEXT: u32 = 32;
 
 /// A plain character of a format.
@@ -93,7 +93,7 @@ pub(super) fn general(precision: Option<usize>, found: &Digits) -> u32 {
         - if_so(is_zero, 35)
 }
 
-/// `cost`, if there is a reason for it.
+/// `cost` if `reason` holds, otherwise 0.
 const fn if_so(reason: bool, cost: u32) -> u32 {
     if reason { cost } else { 0 }
 }
@@ -103,7 +103,8 @@ fn given(precision: Option<usize>, [cost, more]: [u32; 2]) -> u32 {
     if_so(precision.is_some(), cost) + if_so(precision.is_some_and(|precision| precision >= 10), more)
 }
 
-/// The digits in front of the point: none, a single one, each of them, and each bit that the divisions go through.
+/// The cost of the digits before the point: for none, for a single one, for each digit, and for each bit of the
+/// divisions.
 const fn integer_part(steps: &Steps, [none, single, each, divided]: [u32; 4]) -> u32 {
     match steps.whole {
         0 => none,

@@ -1,20 +1,20 @@
 //! Decimal digits of a double, as the board's library finds them.
 //!
-//! The board does not round correctly: it brings large values into the range of an `int` by multiplying with 0.1,
-//! takes the integer part as it is, and finds every further digit by multiplying the fraction by ten in double
-//! arithmetic; the one digit after the last one needed decides the rounding, halves going up. `%e` multiplies until
-//! a single digit is before the point. So 0.35 rounds to 0.4 and 2.675 to 2.67, `%f` of 123456789012345678 ends in
-//! 719.337463, and `%.16e` of 4462 is 4.4620000000000006e+03, as measured (gather-persist-console.md section 4.1).
-//! The same steps here give the same text.
+//! The board does not round correctly: it brings large values into the range of an `int` by multiplying by 0.1, takes
+//! the integer part exactly, and computes every further digit by multiplying the fraction by ten in double arithmetic;
+//! the digit after the last needed one decides the rounding, halves going up. `%e` multiplies until a single digit is
+//! before the point. So 0.35 rounds to 0.4 and 2.675 to 2.67, `%f` of 123456789012345678 ends in
+//! 719.337463, and `%.16e` of 4462 is 4.4620000000000006e+03, as measured (gather-persist-console.md section 4.1). The
+//! same steps here yield the same text.
 
-/// Decimal digits and where the point stands among them.
+/// Decimal digits and the position of the point among them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Digits {
     /// Digits as values 0 to 9; the first is not 0 unless the value is.
     pub(crate) digits: Vec<u8>,
     /// The number of digits before the decimal point; negative for zeros after it.
     pub(crate) point: i32,
-    /// The steps that found them.
+    /// The steps that computed them.
     pub(crate) steps: Steps,
 }
 
@@ -49,13 +49,13 @@ pub(crate) enum Keep {
 /// Above this, the largest `int`, a value is scaled down first.
 const WHOLE_MAX: f64 = 2_147_483_647.0;
 
-/// Half of what a value that is not finite counts as: 2 to the power of 1023.
+/// Half of the value of a number that is not finite: 2 to the power of 1023.
 const HALF_OF_INFINITE: f64 = f64::from_bits(0x7FE0_0000_0000_0000);
 
-/// Finds the digits of a magnitude, rounded at the last digit that `keep` names.
+/// Computes the digits of a magnitude, rounded at the last digit given by `keep`.
 ///
-/// Zero has no digits, nor has a denormal value, which the processor takes for zero. Values that are not finite count
-/// as 2 to the power of 1024.
+/// Zero has no digits, and neither has a denormal value, which the processor treats as zero. Values that are not finite
+/// count as 2 to the power of 1024.
 pub(crate) fn digits(magnitude: f64, keep: Keep) -> Digits {
     if magnitude < f64::MIN_POSITIVE {
         return Digits { digits: Vec::new(), point: 0, steps: Steps::default() };
@@ -75,7 +75,7 @@ pub(crate) fn digits(magnitude: f64, keep: Keep) -> Digits {
     round_at(digits, point, wanted, steps)
 }
 
-/// A magnitude whose first digits are found.
+/// A magnitude with its first digits.
 struct Split {
     digits: Vec<u8>,
     /// The rest after the first digits.
@@ -89,13 +89,13 @@ pub(crate) fn place_of_point(magnitude: f64) -> i32 {
     split(magnitude).point
 }
 
-/// The value after the first steps of scaling down, with the places it was moved by.
+/// The value after the first steps of scaling down, and the number of decimal places by which it was moved.
 fn finite(magnitude: f64) -> (f64, i32) {
-    // 2^1024 is no double, but a tenth of it is: 2^1023 times twice 0.1.
+    // 2^1024 is not a double, but a tenth of it is: 2^1023 times twice 0.1.
     if magnitude.is_finite() { (magnitude, 0) } else { (HALF_OF_INFINITE * 0.2, 1) }
 }
 
-/// With the digits of the integer part, if it is not 0.
+/// Splits off the digits of the integer part, if it is not 0.
 fn split(magnitude: f64) -> Split {
     let (mut value, mut point) = finite(magnitude);
     while value > WHOLE_MAX {
@@ -154,7 +154,7 @@ fn extend(digits: &mut Vec<u8>, mut fraction: f64, count: usize) {
     }
 }
 
-/// Cuts to `wanted` digits; the digit after them rounds up from 5.
+/// Cuts to `wanted` digits; rounds up if the next digit is at least 5.
 fn round_at(mut digits: Vec<u8>, mut point: i32, wanted: usize, mut steps: Steps) -> Digits {
     let up = digits.get(wanted).is_some_and(|&digit| digit >= 5);
     digits.truncate(wanted);
@@ -189,7 +189,7 @@ impl Digits {
         self.digits.iter().rev().take_while(|&&digit| digit == 0).count()
     }
 
-    /// The digit at `place` counted from the decimal point: 0 is the first after it, −1 the one before it.
+    /// The digit at `place`, counted from the decimal point: 0 is the first after it, −1 the one before it.
     fn at(&self, place: i64) -> u8 {
         let index = place + i64::from(self.point);
         usize::try_from(index)

@@ -1,10 +1,9 @@
 //! The formatter of `printf` and related functions.
 //!
-//! The board's results, odd ones included, are what programs see: halves round up, `%#06x` fills before its prefix,
-//! `%ld` takes 40 bits from two words, an unknown conversion prints nothing but its width
-//! (gather-persist-console.md section 4.1). They are recorded in the vectors `printf.jsonl`, `printf-scanf.jsonl` and
-//! `printf-edge.jsonl`, which the tests below replay. One thing is ours: `%lld` takes a `long long`, which the board's
-//! compiler has not.
+//! Programs get the board's results, including the odd ones: halves round up, `%#06x` fills before its prefix, `%ld`
+//! takes 40 bits from two words, an unknown conversion prints only its width (gather-persist-console.md section 4.1).
+//! They are recorded in the vectors `printf.jsonl`, `printf-scanf.jsonl` and `printf-edge.jsonl`, which the tests below
+//! replay. There is one extension: `%lld` takes a `long long`, which the board's compiler does not have.
 
 use super::decimal::{Digits, Keep, digits};
 use super::{Dialect, cost};
@@ -19,11 +18,11 @@ pub(crate) trait Arguments {
     fn long_long(&mut self) -> Result<u64, Self::Error>;
     /// The next double.
     fn double(&mut self) -> Result<f64, Self::Error>;
-    /// The next string, at most `limit` bytes of it; `None` for a null pointer.
+    /// The next string, truncated to `limit` bytes; `None` for a null pointer.
     fn text(&mut self, limit: usize) -> Result<Option<Vec<u8>>, Self::Error>;
 }
 
-/// Width and precision beyond this are cut: the board itself would overrun its memory.
+/// The largest width and precision: the board itself would overrun its memory beyond it.
 const MAX_FIELD: usize = 4096;
 
 /// One conversion between `%` and its letter.
@@ -49,17 +48,17 @@ impl Spec {
     }
 }
 
-/// A formatted text, and what the board would have spent on it.
+/// A formatted text, and its cost on the board.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Formatted {
     /// The text.
     pub(crate) text: Vec<u8>,
-    /// Cycles beyond those of a call with an empty format.
+    /// Cycles in addition to those of a call with an empty format.
     pub(crate) cycles: u32,
 }
 
 impl Formatted {
-    /// Counts what a part of the format costs.
+    /// Adds the cost of a part of the format.
     fn spend(&mut self, cycles: u32) {
         self.cycles = self.cycles.saturating_add(cycles);
     }
@@ -70,7 +69,7 @@ pub(crate) fn format<A: Arguments>(format: &[u8], arguments: &mut A) -> Result<V
     format_counted(Dialect::Firmware4, format, arguments).map(|formatted| formatted.text)
 }
 
-/// Formats `arguments` under `format`, and counts what that costs on the board.
+/// Formats `arguments` with `format`, and counts the cost on the board.
 pub(crate) fn format_counted<A: Arguments>(
     dialect: Dialect,
     format: &[u8],
@@ -135,7 +134,7 @@ fn parse<'f, A: Arguments>(
     }
 }
 
-/// Limits a width or precision to what can sensibly be printed.
+/// Limits a width or precision to a sensible size.
 fn field(size: u32) -> usize {
     (size as usize).min(MAX_FIELD)
 }
@@ -219,7 +218,7 @@ fn convert<A: Arguments>(
 /// The bits of the board's `long` in an eight-byte place.
 const LONG_MASK: u64 = (1 << 40) - 1;
 
-/// The board's `long`: 40 bits of two words. The words after a last argument are whatever the caller has there.
+/// The board's `long`: 40 bits of two words. The words after the last argument are whatever the caller has there.
 fn long<A: Arguments>(arguments: &mut A) -> Result<i64, A::Error> {
     const UNUSED: u32 = u64::BITS - LONG_MASK.count_ones();
     Ok((arguments.long_long()? << UNUSED).cast_signed() >> UNUSED)
@@ -245,14 +244,14 @@ fn signed(spec: &Spec, value: i64, out: &mut Formatted) {
     integer(spec, sign(spec, value < 0), &value.unsigned_abs().to_string(), out);
 }
 
-/// Returns the prefix of an unsigned number or a character: a blank, if there is the flag, whatever other flags say.
+/// Returns the prefix of an unsigned number or a character: a blank if that flag is given, whatever the other flags.
 fn blank(spec: &Spec) -> &'static [u8] {
     if spec.space { b" " } else { b"" }
 }
 
 /// `%u`, `%x`, `%X` and `%o`; `h` keeps 16 bits.
 ///
-/// Odd and kept: zeros that fill a width come before the prefix, and `%#o` always has one more zero.
+/// Board quirk: zeros that fill a width come before the prefix, and `%#o` always has one more zero.
 fn unsigned(spec: &Spec, value: u64, letter: u8, out: &mut Formatted) {
     let value = if spec.short { value & 0xffff } else { value };
     let (prefix, text) = match letter {
@@ -279,10 +278,10 @@ fn integer(spec: &Spec, head: &[u8], text: &str, out: &mut Formatted) {
     pad(&filled(spec), head, digits.as_bytes(), out);
 }
 
-/// Digits with the zeros that the precision asks for; 0 has none if it asks for none.
+/// Digits, with leading zeros up to the precision; 0 has none if the precision is 0.
 fn precise(spec: &Spec, text: &str) -> String {
     let precision = spec.precision.unwrap_or(1);
-    // Odd and kept: in firmware 5 it has one with the flag `#`.
+    // Board quirk: in firmware 5 it has one with the flag `#`.
     let is_shown = spec.is_nearer_to_c() && spec.alternate;
     if precision == 0 && text == "0" && !is_shown { String::new() } else { format!("{text:0>precision$}") }
 }
@@ -292,7 +291,7 @@ fn filled(spec: &Spec) -> Spec {
     if spec.precision.is_some() { unzeroed(spec) } else { *spec }
 }
 
-/// `%f`, `%e` and `%g`. What is not finite prints like 2 to the power of 1024, and that and zeros without a sign.
+/// `%f`, `%e` and `%g`. Values that are not finite print like 2 to the power of 1024; these and zeros have no sign.
 fn float(spec: &Spec, value: f64, letter: u8, out: &mut Formatted) {
     let magnitude = value.abs();
     let negative = value.is_finite() && value < 0.0 && magnitude >= f64::MIN_POSITIVE;
@@ -319,7 +318,7 @@ fn float(spec: &Spec, value: f64, letter: u8, out: &mut Formatted) {
     pad(spec, sign(spec, negative), &text, out);
 }
 
-/// `%f`. Odd and kept: without decimals, values below 0.1 show their first decimal or nothing behind the point.
+/// `%f`. Board quirk: without decimals, values below 0.1 show their first decimal, or nothing after the point.
 fn fixed(spec: &Spec, magnitude: f64, precision: usize, found: &Digits) -> Vec<u8> {
     let is_small = (f64::MIN_POSITIVE..0.1).contains(&magnitude);
     if precision > 0 || !is_small || spec.is_nearer_to_c() {
@@ -329,7 +328,7 @@ fn fixed(spec: &Spec, magnitude: f64, precision: usize, found: &Digits) -> Vec<u
     first.fixed(usize::from(!first.digits.is_empty()), true)
 }
 
-/// `%g`: `%e` for exponents below −4 or from the precision on, else `%f`, without the zeros at the end.
+/// `%g`: `%e` for exponents below −4 or from the precision on, otherwise `%f`, without trailing zeros.
 fn general(spec: &Spec, found: &Digits, precision: usize, letter: u8) -> Vec<u8> {
     let exponent = found.exponent();
     if found.is_scientific(precision) {
@@ -337,7 +336,7 @@ fn general(spec: &Spec, found: &Digits, precision: usize, letter: u8) -> Vec<u8>
         return found.scientific(shown - 1, spec.alternate, letter - (b'g' - b'e'));
     }
     if exponent < -1 && !spec.is_nearer_to_c() {
-        // Odd and kept: zeros at the end stay below 0.1, and as many zeros as digits are wanted end the text.
+        // Board quirk: trailing zeros are kept below 0.1, and as many zeros as requested digits end the text.
         let zeros = exponent.unsigned_abs() as usize - 1;
         let decimals = if zeros >= precision { precision } else { zeros + precision };
         return found.fixed(decimals, spec.alternate);
@@ -350,7 +349,7 @@ fn general(spec: &Spec, found: &Digits, precision: usize, letter: u8) -> Vec<u8>
     found.fixed(shown, false)
 }
 
-/// Returns the number of digits without the zeros at the end; at least one.
+/// Returns the number of digits without trailing zeros; at least one.
 fn significant(digits: &[u8]) -> usize {
     digits.iter().rposition(|&digit| digit != 0).map_or(1, |last| last + 1)
 }
@@ -390,7 +389,7 @@ pub(super) mod tests {
 
     struct List {
         list: std::vec::IntoIter<Argument>,
-        /// The number of words taken.
+        /// The number of words that were taken.
         taken: usize,
     }
 
@@ -443,7 +442,7 @@ pub(super) mod tests {
         text
     }
 
-    /// The text of a call and what it costs.
+    /// The text of a call and its cost.
     pub(in crate::text) fn counted(pattern: &[u8], list: Vec<Argument>) -> Formatted {
         let Ok(formatted) =
             format_counted(Dialect::Firmware4, pattern, &mut List { list: list.into_iter(), taken: 0 });

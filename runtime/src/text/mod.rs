@@ -1,4 +1,4 @@
-//! Text in and out of numbers: `printf` and `scanf`, free of where the text comes from or goes.
+//! Conversions between text and numbers: `printf` and `scanf`, independent of the source or destination of the text.
 
 mod cost;
 mod decimal;

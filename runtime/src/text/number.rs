@@ -4,8 +4,8 @@ use super::scanned::float_value;
 
 /// Reads an integer: optional sign, prefix where `base` allows it, digits.
 ///
-/// Returns the value modulo 2^64 and how many bytes it took; 0 bytes when there is no number. `base` 0 takes the
-/// base from the prefix.
+/// Returns the value modulo 2^64 and its length in bytes; 0 bytes if there is no number. For `base` 0 the prefix
+/// determines the base.
 pub(crate) fn integer_prefix(text: &[u8], base: u32) -> (i64, usize) {
     let IntegerText { negative, base, digits, used } = digits_of(text, base);
     let value = digits.iter().fold(0_i64, |sum, &byte| {
@@ -15,7 +15,7 @@ pub(crate) fn integer_prefix(text: &[u8], base: u32) -> (i64, usize) {
     (if negative { value.wrapping_neg() } else { value }, used)
 }
 
-/// Returns whether an integer is negative, and its magnitude; the greatest there is for all above.
+/// Returns whether an integer is negative, and its magnitude; larger ones are saturated.
 pub(crate) fn magnitude(text: &[u8], base: u32) -> (bool, u64) {
     let IntegerText { negative, base, digits, .. } = digits_of(text, base);
     let value = digits.iter().fold(0_u64, |sum, &byte| {
@@ -50,9 +50,10 @@ fn digits_of(text: &[u8], base: u32) -> IntegerText<'_> {
     IntegerText { negative, base, digits: &digits[..count], used }
 }
 
-/// Reads a decimal floating-point number as the board does; 0 bytes where none begins.
+/// Reads a decimal floating-point number as the board does; 0 bytes if there is none.
 ///
-/// A sign begins one, whatever comes after it. An exponent without digits makes the value 0, and does not belong to it.
+/// A sign alone counts as the beginning of a number. An exponent without digits makes the value 0, and is not part of
+/// it.
 pub(crate) fn float_prefix(text: &[u8]) -> (f64, usize) {
     let begins = match text {
         [b'+' | b'-', ..] => true,
@@ -69,7 +70,7 @@ pub(crate) fn float_prefix(text: &[u8]) -> (f64, usize) {
     (value, letter.filter(is_cut).unwrap_or(used))
 }
 
-/// Returns whether there is a minus sign, and how many bytes the sign takes.
+/// Returns whether there is a minus sign, and the length of the sign in bytes.
 fn sign(text: &[u8]) -> (bool, usize) {
     match text.first() {
         Some(b'-') => (true, 1),

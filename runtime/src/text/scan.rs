@@ -1,14 +1,14 @@
 //! The converter of `sscanf` and `fscanf`.
 //!
-//! The board's results, which are not C's: a conversion that finds nothing does not end the call and takes no
-//! argument, white space after an ordinary character is an ordinary character, sets have no ranges, floats ignore
-//! their width, `%ld` stores eight bytes (gather-persist-console.md section 4.2). Recorded in `scanf.jsonl` and
+//! The results are the board's, which differ from C: a conversion that finds nothing does not end the call and takes no
+//! argument, white space after an ordinary character is an ordinary character, sets have no ranges, floats ignore their
+//! width, `%ld` stores eight bytes (gather-persist-console.md section 4.2). Recorded in `scanf.jsonl` and
 //! `printf-scanf.jsonl`, which the tests below replay.
 
 use super::scanned::{Base, float_value, integer_value};
 use super::{Dialect, cost, strict};
 
-/// One converted value, as it is stored.
+/// One converted value, in the form in which it is stored.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Scanned<'t> {
     /// An 8-bit integer (`%hhd`).
@@ -37,17 +37,17 @@ pub(crate) trait Sink {
     fn store(&mut self, value: Scanned<'_>) -> Result<(), Self::Error>;
 }
 
-/// The letter before the conversion's that says how large its variable is.
+/// The length modifier of a conversion, which gives the size of its variable.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Length {
-    /// None, and for integers `L` and `ll`, which change nothing.
+    /// None; for integers also `L` and `ll`, which have no effect.
     #[default]
     Plain,
     /// `hh`, in firmware 5.
     Byte,
     /// `h`.
     Short,
-    /// `l`; for floats `L` too.
+    /// `l`; for floats also `L`.
     Long,
     /// `L` and `ll`.
     LongLong,
@@ -65,7 +65,7 @@ pub(super) struct Spec {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Next {
     Go,
-    /// It ends with the count so far.
+    /// The call ends with the count so far.
     End,
     /// It ends with −1.
     Fail,
@@ -76,7 +76,7 @@ enum Next {
 pub(crate) struct Conversions {
     /// The number of values stored, or −1.
     pub(crate) result: i32,
-    /// Cycles beyond those of a call without conversions.
+    /// Cycles in addition to those of a call without conversions.
     pub(crate) cycles: u32,
 }
 
@@ -145,7 +145,7 @@ pub(super) fn parse(format: &[u8], dialect: Dialect) -> (Spec, &[u8]) {
     (spec, &tail[taken..])
 }
 
-/// The characters up to `]`, a leading `]` or `^]` included, and what follows.
+/// The characters up to `]`, including a leading `]` or `^]`, and the rest of the format.
 pub(super) fn bracketed(format: &[u8]) -> (&[u8], &[u8]) {
     let first = usize::from(format.first() == Some(&b'^')) + 1;
     let end = format.iter().skip(first).position(|&byte| byte == b']').map(|index| index + first);
@@ -153,7 +153,7 @@ pub(super) fn bracketed(format: &[u8]) -> (&[u8], &[u8]) {
     (&format[..end], format.get(end + 1..).unwrap_or(&[]))
 }
 
-/// Reports whether the first directive is a conversion and the text is used up, by the white space before it at most.
+/// Reports whether the first directive is a conversion and the text is used up, except for white space.
 pub(super) fn has_nothing_for(text: &[u8], format: &[u8]) -> bool {
     let directives = format.trim_ascii_start();
     let text = if directives.len() < format.len() { text.trim_ascii_start() } else { text };
@@ -165,7 +165,7 @@ struct Scanner<'t> {
     at: usize,
     stored: i32,
     cycles: u32,
-    /// True if the directive before was an ordinary character: white space then is one too.
+    /// True if the previous directive was an ordinary character: white space is then one, too.
     behind_character: bool,
 }
 
@@ -192,13 +192,14 @@ impl<'t> Scanner<'t> {
         Next::Go
     }
 
-    /// At most `width` bytes of what is left.
+    /// At most `width` bytes of the remaining text.
     fn window(&self, width: Option<usize>) -> &'t [u8] {
         let rest = self.rest();
         &rest[..rest.len().min(width.unwrap_or(usize::MAX))]
     }
 
-    /// Performs one conversion. Most that find nothing store nothing, take no argument and do not end the call.
+    /// Performs one conversion. Most conversions that find nothing store nothing, take no argument and do not end the
+    /// call.
     fn convert<S: Sink>(
         &mut self,
         spec: &Spec,
@@ -231,8 +232,8 @@ impl<'t> Scanner<'t> {
             b'%' => return Ok(self.percent()),
             _ => return Ok(Next::Go),
         };
-        // Odd and kept: a set stores an empty string, counted, if nothing may be taken, and one character too many
-        // is used up at the end; a string stores one there too, not counted.
+        // Board quirk: a set that matches nothing stores an empty string, which counts, and consumes one character too
+        // many at the end; a string stores an empty one there, too, which does not count.
         self.cycles = self.cycles.saturating_add(cost::scanned(letter, used as u32));
         let at_end = self.rest().is_empty();
         let is_counted = used > 0 || letter == b'[' && (at_end || spec.width == Some(0));
@@ -244,7 +245,7 @@ impl<'t> Scanner<'t> {
         Ok(Next::Go)
     }
 
-    /// `%%`. Odd and kept: without a percent sign in the text the call fails, whatever was converted.
+    /// `%%`. Board quirk: without a percent sign in the text the call fails, whatever was converted.
     fn percent(&mut self) -> Next {
         if self.rest().first() != Some(&b'%') {
             return Next::Fail;
@@ -288,7 +289,7 @@ pub(super) fn float<'t>(spec: &Spec, text: &'t [u8]) -> (Scanned<'t>, usize) {
     (if is_double { Scanned::Double(value) } else { Scanned::Float(single(value)) }, used)
 }
 
-/// A double as the float that is stored: what is too large becomes infinite.
+/// A double as the float that is stored: too large a value becomes infinite.
 fn single(value: f64) -> f32 {
     value as f32
 }
@@ -363,7 +364,7 @@ mod tests {
                 Scanned::Chars(text) => text.to_vec(),
                 Scanned::Text(text) => [text, &[0]].concat(),
             };
-            // A row without its argument stores wherever the board's register points.
+            // A row without its argument stores to the address in some register of the board.
             let Some(target) = self.targets.next() else { return Ok(()) };
             let variable = self.variables.iter_mut().find(|(name, _)| *name == target).expect("a known one");
             variable.1[..bytes.len()].copy_from_slice(&bytes);
@@ -418,7 +419,7 @@ mod tests {
         }
     }
 
-    /// A row of the older vectors: all variables, as text; the ints lie one after another.
+    /// Checks a row of the older vectors: all variables, as text; the ints are consecutive in memory.
     fn check_text(row: &Json) {
         let (result, variables) = call(row, Dialect::Firmware4);
         let expect = |name: &str| row[name].as_str().unwrap_or_default();

@@ -1,8 +1,8 @@
-//! The numbers that `sscanf` makes of text.
+//! The numbers that `sscanf` reads from text.
 //!
-//! The board collects the characters that may belong to a number and converts what it has, however little: a sign
-//! alone is 0. Integers are computed in 40 bits. Floats are the integer of all digits times a power of ten from a
-//! table that ends at 10^32 (gather-persist-console.md section 4.2).
+//! The board collects the characters that may belong to a number and converts them, even incomplete ones: a sign alone
+//! is 0. Integers are computed in 40 bits. Floats are the integer of all digits times a power of ten from a table that
+//! ends at 10^32 (gather-persist-console.md section 4.2).
 
 /// The base of an integer's digits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +22,7 @@ pub(super) enum Base {
 /// Bits of the board's `long`.
 const LONG_BITS: u32 = 40;
 
-/// Reads an integer at the beginning of `text`: the 40 bits of the value, and how many bytes belong to it.
+/// Reads an integer at the beginning of `text`: the 40 bits of its value, and its length in bytes.
 pub(super) fn integer_value(text: &[u8], base: Base) -> (u64, usize) {
     let mut reader = Reader { text, at: 0 };
     let negative = reader.sign();
@@ -63,13 +63,13 @@ pub(super) fn limited(magnitude: u64, negative: bool, is_signed: bool) -> u64 {
     value & ((1 << LONG_BITS) - 1)
 }
 
-/// The powers of ten by the bits of the exponent, and what is after them in the board's memory.
+/// The powers of ten by the bits of the exponent, and the words after them in the board's memory.
 const POWERS: [f64; 9] = [1e1, 1e2, 1e4, 1e8, 1e16, 1e32, 0.0, 1.0, 2.0];
 
-/// The decimal exponents of doubles: what is beyond is the largest one, or 0.
+/// The limit of decimal exponents of doubles: beyond it, the value is the largest double, or 0.
 const EXPONENT_MAX: i64 = 308;
 
-/// Reads a float at the beginning of `text`: its value, and how many bytes belong to it.
+/// Reads a float at the beginning of `text`: its value, and its length in bytes.
 ///
 /// An exponent letter without digits makes the value 0.
 pub(crate) fn float_value(text: &[u8]) -> (f64, usize) {
@@ -92,7 +92,7 @@ pub(crate) fn float_value(text: &[u8]) -> (f64, usize) {
     let mantissa = digits.fold(0.0, |value: f64, digit| value * 10.0 + f64::from(digit - b'0'));
     let value =
         if is_number { scaled(mantissa, exponent.saturating_sub(decimals.len() as i64)) } else { 0.0 };
-    // Odd and kept: a value too small is 0 without a sign.
+    // Board quirk: a value that is too small is 0 without a sign.
     let negative = negative && exponent >= -EXPONENT_MAX;
     (if negative { -value } else { value }, reader.at)
 }
@@ -127,19 +127,19 @@ struct Reader<'t> {
 }
 
 impl<'t> Reader<'t> {
-    /// Takes one byte if it is one of these.
+    /// Takes one byte if it is one of `bytes`.
     fn one_of(&mut self, bytes: &[u8]) -> bool {
         let is_one = self.text.get(self.at).is_some_and(|byte| bytes.contains(byte));
         self.at += usize::from(is_one);
         is_one
     }
 
-    /// Takes one sign; whether it is a minus.
+    /// Takes one sign; returns whether it is a minus.
     fn sign(&mut self) -> bool {
         self.one_of(b"+-") && self.text[self.at - 1] == b'-'
     }
 
-    /// Takes all bytes that belong.
+    /// Takes all following bytes that belong.
     fn take(&mut self, belongs: impl Fn(&u8) -> bool) -> &'t [u8] {
         let taken = self.text[self.at..].iter().take_while(|byte| belongs(byte)).count();
         let begin = self.at;

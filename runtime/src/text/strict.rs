@@ -1,7 +1,7 @@
-//! The converter of `sscanf` and `fscanf` of firmware 5, which follows C: a conversion that finds nothing ends the call.
+//! The converter of `sscanf` and `fscanf` of firmware 5, which follows C: a conversion that finds nothing ends the
+//! call.
 //!
-//! Recorded in `fw5-text.jsonl`, which the test below replays. Values are those of firmware
-//! 4.34, whose numbers it reads.
+//! Recorded in `fw5-text.jsonl`, which the test below replays. Numbers have the same values as in firmware 4.34.
 
 use super::scan::{
     Conversions, Scanned, Sink, Spec, bracketed, converted, float, has_nothing_for, parse, span,
@@ -14,7 +14,7 @@ use super::{Dialect, cost};
 enum Refusal {
     /// The text does not match, or the format ends.
     Mismatch,
-    /// The text ends: the result is −1 if nothing was stored.
+    /// The text has ended: the result is −1 if nothing was stored.
     Input,
 }
 
@@ -40,7 +40,7 @@ pub(super) fn scan<S: Sink>(text: &[u8], format: &[u8], sink: &mut S) -> Result<
             scanner.skip_space();
             None
         } else {
-            // Odd and kept: white space after an ordinary character is one too.
+            // Board quirk: white space after an ordinary character is one, too.
             is_behind_character = true;
             scanner.character(byte)
         };
@@ -80,7 +80,7 @@ impl<'t> Scanner<'t> {
         }
     }
 
-    /// Performs one conversion; the reason to end the call after it, if there is one.
+    /// Performs one conversion; returns the reason to end the call after it, if there is one.
     fn convert<S: Sink>(
         &mut self,
         spec: &Spec,
@@ -111,7 +111,7 @@ impl<'t> Scanner<'t> {
                 (converted(spec, value), used)
             }
             b'f' | b'e' | b'E' | b'g' | b'G' => {
-                // An exponent letter without digits is used up and means nothing.
+                // An exponent letter without digits is consumed and ignored.
                 let (_, used) = float(spec, window);
                 let last = window[..used].iter().rposition(|byte| !b"eE+-".contains(byte));
                 let number = &window[..last.map_or(0, |last| last + 1)];
@@ -141,7 +141,7 @@ impl<'t> Scanner<'t> {
     }
 }
 
-/// Reads an integer: the 40 bits of its value, and how many bytes belong to it; none without a digit.
+/// Reads an integer: the 40 bits of its value, and its length in bytes; none without a digit.
 fn integer(text: &[u8], letter: u8) -> (u64, usize) {
     let signed = usize::from(matches!(text.first(), Some(b'+' | b'-')));
     let digits = &text[signed..];

@@ -1,4 +1,4 @@
-//! Devices around the board: each a file of `outside/` and a row of [`DEVICES`].
+//! Devices around the board: each has a file in `outside/` and a row in [`DEVICES`].
 //!
 //! A machine file or a stimulus describes one by its name and settings; `machine` keeps it while it is attached.
 
@@ -31,13 +31,13 @@ const DEVICES: &[Row] = &[
     Row { name: "spi", build: |settings| boxed(outside::spi::Spi::new(settings)) },
     // A low pass on outputs, its voltage on an analog input.
     Row { name: "rc", build: |settings| boxed(outside::rc::Filter::new(settings)) },
-    // An encoder that outputs turn.
+    // An encoder turned by outputs.
     Row { name: "quadrature", build: |settings| boxed(outside::quadrature::Quadrature::new(settings)) },
     // The analog output of KStep, on an analog input.
     Row { name: "kstep_analog", build: |settings| boxed(outside::kstep_analog::KStepAnalog::new(settings)) },
     // A resolver excited by an output, its two windings on analog inputs.
     Row { name: "resolver", build: |settings| boxed(outside::resolver::Resolver::new(settings)) },
-    // What the UART sends comes back.
+    // Echoes the characters that the UART sends.
     Row { name: "echo", build: |settings| boxed(outside::echo::Echo::new(settings)) },
     // A slave with registers on the UART.
     Row { name: "modbus", build: |settings| boxed(outside::modbus::Modbus::new(settings)) },
@@ -79,7 +79,7 @@ pub(crate) struct Settings<'a> {
 }
 
 impl Settings<'_> {
-    /// The value of a key, if it is given.
+    /// The value of a key, if it is present.
     fn find(&mut self, key: &'static str) -> Option<String> {
         self.known.push(key);
         let index = self.left.iter().position(|(name, _)| name == key)?;
@@ -100,7 +100,7 @@ impl Settings<'_> {
         }
     }
 
-    /// A value that must be given.
+    /// A value that must be present.
     fn required<T>(&self, key: &str, value: Option<T>) -> Result<T, String> {
         value.ok_or_else(|| format!("device `{}` needs `{key}=…`", self.device))
     }

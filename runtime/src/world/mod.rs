@@ -34,7 +34,7 @@ pub(crate) struct World {
 }
 
 impl World {
-    /// Acts as a stimulus says, beside what it does already.
+    /// Plays a further stimulus.
     pub(crate) fn play(
         &mut self,
         stimulus: Stimulus,
@@ -48,7 +48,7 @@ impl World {
         changes::switch_on(&mut access.io.pins.changes, memory);
     }
 
-    /// Acts at the beginning of a tick; returns whether anything was done.
+    /// Executes the actions due at the beginning of a tick; returns whether there were any.
     pub(crate) fn tick(
         &mut self,
         access: &mut WorldAccess<'_>,
@@ -103,7 +103,7 @@ impl World {
         true
     }
 
-    /// Records from now on.
+    /// Starts a recording.
     pub(crate) fn record(&mut self, request: trace::TraceRequest, io: &mut Io, memory: &GuestMemory) {
         if request.changes {
             changes::switch_on(&mut io.pins.changes, memory);
@@ -114,7 +114,7 @@ impl World {
         self.recorder = Some(Box::new(Recorder::new(request)));
     }
 
-    /// Samples what is recorded at the last of `count` ticks up to `context` that should be sampled.
+    /// Takes the sample of the last of `count` ticks up to `context` that should be sampled.
     #[inline]
     pub(crate) fn sample(&mut self, view: &View<'_>, out: &mut Out, context: &TickContext<'_>, count: u64) {
         let Some(recorder) = &mut self.recorder else { return };
@@ -126,7 +126,7 @@ impl World {
         }
     }
 
-    /// Returns whether anything is recorded.
+    /// Returns whether a recording is in progress.
     #[inline]
     pub(crate) const fn is_recording(&self) -> bool {
         self.recorder.is_some()
@@ -137,30 +137,30 @@ impl World {
         self.recorder.as_ref().is_some_and(|recorder| recorder.records_changes())
     }
 
-    /// Returns whether the packets of a thread are recorded, or those of the call-back for `None`.
+    /// Returns whether the packets of a thread, or of the call-back for `None`, are recorded.
     pub(crate) fn records_packets(&self, thread: Option<ThreadId>) -> bool {
         self.recorder.as_ref().is_some_and(|recorder| recorder.records_packets(thread))
     }
 
-    /// Returns whether a recorded value changes even when nothing happens.
+    /// Returns whether a recorded value changes even when nothing else happens.
     pub(crate) fn records_motion(&self, io: &Io, tick_start: Cycles) -> bool {
         io.fpga.is_telling(&io.pins)
             || self.recorder.as_ref().is_some_and(|recorder| recorder.samples("kstep_analog"))
                 && !io.fpga.kstep_output().is_settled(tick_start)
     }
 
-    /// Returns whether the stimulus still has something to do that the run must wait for.
+    /// Returns whether the stimulus still has actions for which the run must wait.
     pub(crate) fn is_busy(&self, out: &Out) -> bool {
         let has_shown_lines = out.has_shown_lines();
         self.stimulus.as_ref().is_some_and(|player| player.is_busy(has_shown_lines))
     }
 
-    /// Returns whether the stimulus looks at something in every tick.
+    /// Returns whether the stimulus checks a state in every tick.
     pub(crate) fn is_watching(&self) -> bool {
         self.stimulus.as_ref().is_some_and(|player| player.is_watching())
     }
 
-    /// Returns how many of the ticks after the one that began at `now` have nothing to do.
+    /// Returns the number of ticks without any action after the one that began at `now`.
     pub(crate) fn quiet_ticks(&self, out: &Out, now: Cycles) -> u64 {
         if !out.has_shown_lines() {
             return 0;
@@ -170,21 +170,21 @@ impl World {
         stimulus.min(assist)
     }
 
-    /// The run is over: what the stimulus expects then is checked.
+    /// Ends the run: the final expectations of the stimulus are checked.
     pub(crate) fn finish(&mut self, access: &mut WorldAccess<'_>, context: &TickContext<'_>) {
         if let Some(player) = &mut self.stimulus {
             player.finish(access, context);
         }
     }
 
-    /// Tells every character that the UART sends from now on.
+    /// Reports every character that the UART sends from now on.
     pub(crate) fn hear_uart(&mut self, io: &mut Io) {
         io.uart.listen();
         self.hears_uart = true;
     }
 }
 
-/// Tells a change of a bit, and the thread that had the processor then, unless a generator has made it.
+/// Records a change of a bit, with the thread that had the processor at the time, unless a generator has made it.
 fn tell_change(access: &mut WorldAccess<'_>, moment: Moment, BitChange { at, bit, level }: BitChange) {
     let is_generated = access.io.pins.is_watched(bit) && access.io.pins.is_generated(bit);
     let thread = match moment.turn {

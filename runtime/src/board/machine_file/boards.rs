@@ -23,7 +23,7 @@ pub(super) fn board(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
     Ok(())
 }
 
-/// The addresses that are there: all of them, or a list.
+/// The addresses at which boards are present: all of them, or a list.
 fn konnects(value: &Value<'_>) -> Read<u8> {
     if value.text().is_ok() {
         return value.choice(&[("any", u8::MAX)]);

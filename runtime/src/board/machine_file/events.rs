@@ -1,6 +1,7 @@
-//! `[[event]]` and `[[device]]`: what happens around the board, as statements of a stimulus.
+//! `[[event]]` and `[[device]]`: events around the board, as statements of a stimulus.
 //!
-//! Each key of an event is one statement of [`crate::world::stimulus`], which checks it; a mistake is reported at the key's value.
+//! Each key of an event is one statement of [`crate::world::stimulus`], which checks it; a mistake is reported at the
+//! key's value.
 
 use super::MachineFileError;
 use super::read::{Read, Table, Value, Wrong};
@@ -9,7 +10,7 @@ use crate::world::stimulus::{Form, KEYS, Rule, StatementPlace, Stimulus};
 /// The name under which messages about rules of a machine file cite their source.
 const SOURCE: &str = "machine file";
 
-/// A statement and where it is in the text.
+/// A statement and its offset in the text.
 type Statement = (usize, String);
 
 /// The statements of `[[event]]`.
@@ -98,7 +99,7 @@ fn write(form: Form, value: &Value<'_>, actions: &mut Vec<Statement>) -> Read<()
     Ok(())
 }
 
-/// The first template all of whose names the table has.
+/// The first template whose names are all keys of the table.
 fn fields(templates: &[&str], table: &Table<'_>) -> Read<String> {
     let names = |template: &str| -> Vec<String> {
         template.split('{').skip(1).filter_map(|part| part.split('}').next().map(str::to_owned)).collect()
@@ -132,7 +133,7 @@ fn device(table: &Table<'_>) -> Read<Statement> {
     for (key, value) in table.entries() {
         match key.text {
             "type" => name = Some(value.text()?),
-            // Where an echo is; there is only one place.
+            // The location of the echo; only the UART is possible.
             "on" => value.choice(&[("uart", ())])?,
             key => settings.push_str(&format!(" {key}={}", value.plain())),
         }

@@ -1,7 +1,7 @@
-//! The machine file: what is connected to the board, in TOML.
+//! The machine file: the equipment connected to the board, in TOML.
 //!
-//! Without one there are eight ideal axes and nothing else; each key changes one thing of that. Source: plant.md
-//! section 9. Every error names the line and column it is about, and a misspelt key the one that was meant.
+//! Without a machine file there are eight ideal axes and nothing else; each key changes one aspect of that. Source:
+//! plant.md section 9. Every error gives its line and column, and suggests the correct spelling of a misspelt key.
 
 mod boards;
 mod events;
@@ -35,7 +35,7 @@ pub struct MachineFile {
     pub board: &'static TargetBoard,
     /// The name of the file in messages, if it has one.
     pub name: Option<Arc<str>>,
-    /// The axes, those that the board lacks included.
+    /// The axes, including those that the board does not have.
     pub axes: [Axis; Axes::MAX],
     /// The equipment that is connected to the board, without the loads of the axes.
     pub connected: Connected,
@@ -43,9 +43,9 @@ pub struct MachineFile {
     pub wires: Vec<Wire>,
     /// The events of the file, and the devices on pins.
     pub stimulus: Stimulus,
-    /// Inputs that read 1 while nothing drives them.
+    /// Inputs that read 1 while they are not driven.
     pub idle_high: Vec<Bit>,
-    /// True if a remark is made when a program reads an input that nothing drives.
+    /// True if a remark is made when a program reads an input that is not driven.
     pub hints: bool,
     /// Codes of remarks that are switched off.
     pub unwanted_remarks: BTreeSet<&'static str>,
@@ -84,7 +84,7 @@ impl Default for MachineFile {
 pub struct Boards {
     /// SnapAmp boards on the bus.
     pub snapamps: usize,
-    /// True if a Kanalog is found at power-up.
+    /// True if a Kanalog is detected at power-up.
     pub has_kanalog: bool,
     /// The KStep on JP7, if there is one: true if its motors need the enable signal on bit 45.
     pub has_kstep: bool,
@@ -92,7 +92,7 @@ pub struct Boards {
     pub respect_enable: bool,
     /// Konnect boards that are there, a bit for each address: on JP4 and on JP6.
     pub konnects: [u8; 2],
-    /// File that keeps the flash; `None` for this run only.
+    /// The file that keeps flash memory; `None` if it is kept for this run only.
     pub flash: Option<String>,
     /// True if reads of flash find the bank that `SetFlashBank` has selected, as the board's address lines do.
     pub strict_flash: bool,
@@ -115,7 +115,7 @@ impl Default for Boards {
 /// The behaviour of the processor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cpu {
-    /// Microseconds of the servo interrupt; what was measured if absent.
+    /// The duration of the servo interrupt in microseconds; the measured duration if absent.
     pub servo_us: Option<f64>,
     /// Nanoseconds of an instruction on average.
     pub ns_per_instruction: f64,
@@ -127,7 +127,7 @@ pub struct Cpu {
     pub bss_fill: u8,
     /// True if stacks are as small as the board's.
     pub strict_stack: bool,
-    /// True if ROM, control registers and misaligned addresses answer as on the board; otherwise they trap.
+    /// True if ROM, control registers and misaligned addresses behave as on the board; otherwise accesses to them trap.
     pub board_faults: bool,
 }
 
@@ -185,7 +185,7 @@ impl MachineFile {
     /// Reads a machine file for the default board.
     ///
     /// # Errors
-    /// The first thing that is wrong, with its place.
+    /// The first error, with its location.
     pub fn parse(text: &str) -> Result<Self, MachineFileError> {
         Self::parse_for(TargetBoard::default_board(), text)
     }
@@ -228,7 +228,7 @@ impl MachineFile {
     /// Changes one key, given as `axis.0.model=motor`: the path of the key, and a value with or without quotes.
     ///
     /// # Errors
-    /// What is wrong with the key or its value.
+    /// The error in the key or its value.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), MachineFileError> {
         let plain = format!("{key} = {value}");
         let is_toml = toml::de::DeTable::parse(&plain).is_ok();

@@ -1,6 +1,6 @@
-//! `[host]`: what the PC answers, and its files.
+//! `[host]`: the answers of the PC, and its files.
 //!
-//! What it answers are the settings of [`Answers`], which checks them; a mistake is reported at the value.
+//! The answers are the settings of [`Answers`], which checks them; a mistake is reported at the value.
 
 use super::boards::file;
 use super::read::{Read, Table, Value, Wrong, keys};
@@ -31,7 +31,7 @@ pub(super) fn host(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
     Ok(())
 }
 
-/// A value, or those of a list.
+/// A value, or the values of a list.
 fn one_or_more<'a>(value: &Value<'a>) -> Vec<Value<'a>> {
     value.array().unwrap_or_else(|_| vec![value.clone()])
 }

@@ -1,4 +1,4 @@
-//! Reading values of TOML, with the place of everything that is wrong.
+//! Reads values of TOML, and reports errors with their location.
 
 use kmotiondef::bits::BitDirection;
 use kmotiondef::boards::TargetBoard;
@@ -40,7 +40,7 @@ fn line(text: &str, offset: usize) -> usize {
     text.get(..offset).unwrap_or(text).matches('\n').count() + 1
 }
 
-/// The text that is read, and the board that the machine is for.
+/// The text, and the board that the machine is for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Source<'a> {
     /// The text of a machine file; `None` of a key that an option sets.
@@ -54,7 +54,7 @@ impl Source<'_> {
     }
 }
 
-/// A table, with what a user calls it.
+/// A table, with its name for messages.
 #[derive(Clone, Debug)]
 pub(super) struct Table<'a> {
     pub(super) name: String,
@@ -73,7 +73,7 @@ impl<'a> Table<'a> {
         self.from.place(self.offset)
     }
 
-    /// Its keys with their values.
+    /// The keys with their values.
     pub(super) fn entries(&self) -> impl Iterator<Item = (Key<'a>, Value<'a>)> {
         let (name, from) = (self.name.clone(), self.from);
         self.entries.iter().map(move |(key, value)| {
@@ -104,7 +104,7 @@ impl Key<'_> {
         self.from.place(self.offset)
     }
 
-    /// It is none of those that exist.
+    /// The error for a word that is not one of those `known`.
     pub(super) fn is_unknown(&self, known: &[&str]) -> Wrong {
         let place = if self.table.is_empty() { String::new() } else { format!(" in `{}`", self.table) };
         let near = known.iter().min_by_key(|name| levenshtein(self.text, name));
@@ -152,7 +152,7 @@ impl<'a> Value<'a> {
         self.source.span().start
     }
 
-    /// A word or number as it is there.
+    /// The text of a word or number, unchanged.
     pub(super) fn plain(&self) -> String {
         match self.source.get_ref() {
             DeValue::String(text) => text.to_string(),
@@ -243,7 +243,7 @@ impl<'a> Value<'a> {
         number.ok_or_else(|| self.is_wrong(&format!("an axis, 0 to {}", self.from.board.axes.last())))
     }
 
-    /// A bit that something outside can drive.
+    /// A bit that can be driven from outside.
     pub(super) fn input(&self) -> Read<Bit> {
         self.bit_that("an input", |direction| {
             matches!(direction, BitDirection::Input | BitDirection::Programmable)
@@ -296,7 +296,7 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// A table of tables, whose keys are numbers.
+    /// A table of tables that have numbers as keys.
     pub(super) fn numbered(&self) -> Read<Table<'a>> {
         match self.source.get_ref() {
             DeValue::Table(_) => self.table(),

@@ -1,4 +1,4 @@
-//! The tables of a machine file: what each key changes.
+//! The tables of a machine file, and the effects of their keys.
 
 use kmotiondef::{AxisId, Bit};
 use toml::de::DeTable;
@@ -172,7 +172,7 @@ fn encoder_input(table: &Table<'_>) -> Read<usize> {
 /// `{ dac = 0 }`, `{ step = 8 }`, `{ pwm = 8 }` or `{ pwm = 0, amplifier = "snapamp" }` with the numbers of `OutputChan0`,
 /// or `{ forward = 152, back = 153 }`.
 fn channel(table: &Table<'_>) -> Read<Channel> {
-    /// PWM channels before those of the SnapAmps.
+    /// The number of PWM channels before those of the SnapAmps.
     const ON_BOARD: usize = 8;
     let (mut channel, mut is_snapamp) = (None, false);
     let (mut forward, mut back) = (None, None);

@@ -10,14 +10,14 @@ use crate::firmware::parts::Parts;
 use crate::io::kogna::{INPUTS, Kogna, OUTPUTS};
 use crate::views::Typed;
 
-/// The bits whose states and directions the record has, and the words of the states.
+/// The bits whose states and directions the record contains, and the words of their states.
 const FIRST_BIT: u16 = 200;
 const STATE_WORDS: u16 = 3;
 const FIRST_PIN: u16 = 280;
 /// The converters' word for zero.
 const ZERO: i32 = 2048;
 
-/// A record whose common fields are filled.
+/// A record with its common fields filled.
 struct Record<'a> {
     bytes: Vec<u8>,
     layout: &'a StructureLayout,
@@ -42,7 +42,7 @@ impl Record<'_> {
     }
 }
 
-/// Fills what a KFLOP leaves empty: axes 8 to 15, bits from 200 on, converters of the board.
+/// Fills the fields that a KFLOP leaves empty: axes 8 to 15, bits from 200 on, converters of the board.
 pub(super) fn complete(
     bytes: Vec<u8>,
     layout: &StructureLayout,

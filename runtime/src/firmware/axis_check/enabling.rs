@@ -17,7 +17,7 @@ use crate::servo::limits::{WatchedLimit, watched_limits};
 use crate::views::Typed;
 use chips::kanalog::ADC_CHANNELS;
 
-/// PWM channels that belong to no option board.
+/// PWM channels that do not belong to an option board.
 const WITHOUT_AMPLIFIER: std::ops::Range<usize> = 0..8;
 /// The drive of a load with the model `motor`, if the machine file names no channel.
 const SERVO: &str = "a servo amplifier (model = \"motor\"), which steps do not turn";
@@ -54,7 +54,7 @@ pub(super) fn messages(
     .collect()
 }
 
-/// Numbers of limit switches in fields that `LimitSwitchOptions` does not refer to.
+/// Limit switches whose bit numbers are in fields that `LimitSwitchOptions` does not select.
 fn limit_fields(memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
     let unused = |limit: &WatchedLimit| !limit.is_extended && limit.bit.get() == 0 && limit.field > 0;
     let WatchedLimit { end, field: bit, bit: used, .. } =
@@ -62,7 +62,7 @@ fn limit_fields(memory: &GuestMemory, function: Function, axis: AxisId) -> Optio
     Some(Message::LimitFields { function, axis, end, bit, used })
 }
 
-/// A limit switch that counts as active although its axis is not there, or nothing is connected to its input.
+/// A limit switch that counts as active although the axis is not at it, or although nothing is connected to its input.
 pub(super) fn limit_active(
     parts: &Parts,
     memory: &GuestMemory,
@@ -93,7 +93,7 @@ fn shared_channel(memory: &GuestMemory, function: Function, axis: AxisId) -> Opt
     Some(Message::ChannelShared { function, axis, other, channel: channel.to_string() })
 }
 
-/// The encoder input of an axis whose loop closes over it.
+/// The encoder input of a closed-loop axis.
 pub(super) fn loop_input(memory: &GuestMemory, axis: AxisId) -> Option<i32> {
     let mode = OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE));
     let is_loop = mode.is_some_and(|mode| mode != OutputMode::None) && !OutputMode::is_open_loop(mode);
@@ -125,8 +125,8 @@ fn wrong_output(parts: &Parts, memory: &GuestMemory, function: Function, axis: A
     (channel != wired).then_some(Message::WrongOutput { function, axis, channel, wired })
 }
 
-/// A PWM channel on which nothing is: a machine with a Kanalog or a SnapAmp has its amplifiers there. One that the
-/// machine file connects to the channel is an external bridge.
+/// A PWM channel without an amplifier: a machine with a Kanalog or a SnapAmp has its amplifiers there. A channel that
+/// the machine file connects drives an external bridge.
 fn no_amplifier(parts: &Parts, memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
     let Some(Channel::Pwm(channel)) = channel_of(memory, axis) else { return None };
     let is_described = |axis: AxisId| parts.machine.wiring.drive(axis) == Some(Channel::Pwm(channel));
@@ -138,7 +138,7 @@ fn no_amplifier(parts: &Parts, memory: &GuestMemory, function: Function, axis: A
         return Some(Message::NoSnapAmp { function, axis, channel });
     }
     let has_kanalog = kanalog::is_served(&parts.io.fpga, memory);
-    // A motor that needs currents in several coils is not driven by the pins of a KFLOP.
+    // The pins of a KFLOP cannot drive a motor that needs currents in several coils.
     let mode = OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE));
     let has_coils = mode != Some(OutputMode::DcServo) && has_motor;
     let has_other = has_kanalog || parts.io.snapamps.is_present();
@@ -149,7 +149,7 @@ fn no_amplifier(parts: &Parts, memory: &GuestMemory, function: Function, axis: A
     })
 }
 
-/// An analog output that drives the spindle as well.
+/// An analog output that also drives the spindle.
 fn spindle_shared(parts: &Parts, memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
     let Some(Channel::Dac(dac)) = channel_of(memory, axis) else { return None };
     parts.machine.mechanics.has_spindle_on(dac, axis).then_some(Message::SpindleShared {
@@ -159,7 +159,7 @@ fn spindle_shared(parts: &Parts, memory: &GuestMemory, function: Function, axis:
     })
 }
 
-/// A motor whose loop is closed over an analog input on which nothing is.
+/// A closed-loop motor whose analog feedback input is not connected.
 fn no_feedback(parts: &Parts, memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
     let mode = OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE));
     let is_analog = memory.axis(axis, Chan::INPUT_MODE) == InputMode::Adc.get();
@@ -170,7 +170,7 @@ fn no_feedback(parts: &Parts, memory: &GuestMemory, function: Function, axis: Ax
         .then_some(Message::NoFeedback { function, axis, channel })
 }
 
-/// An axis in a closed loop that is enabled far from where it is.
+/// A closed-loop axis that is enabled far from its commanded position.
 fn leap(memory: &GuestMemory, function: Function, axis: AxisId, dest: f64) -> Option<Message> {
     const FAR: f64 = 100.0;
     loop_input(memory, axis)?;
@@ -178,7 +178,7 @@ fn leap(memory: &GuestMemory, function: Function, axis: AxisId, dest: f64) -> Op
     ((position - dest).abs() > FAR).then_some(Message::Leap { function, axis, position, dest })
 }
 
-/// The pulses of power-up on a KStep, whose inputs need longer ones of the other polarity.
+/// The power-up pulse settings on a KStep, whose inputs need longer pulses of the other polarity.
 fn short_pulses(parts: &Parts, memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
     let Some(Channel::Generator(generator)) = channel_of(memory, axis) else { return None };
     let is_kstep = memory.get(KSTEP_PRESENT) != 0 && ON_KSTEP.contains(&generator);

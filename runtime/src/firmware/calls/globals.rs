@@ -1,12 +1,12 @@
-//! The initial data of programs, for boards whose programs start afresh.
+//! The initial data of programs, for boards that reinitialise globals at each start.
 //!
-//! On a real board only a load writes it: globals of a program that is started again hold what the run before has
-//! left. `cpu.fresh_globals` of a machine file shows what would be if it were otherwise.
+//! On a real board only a load writes it: globals of a restarted program keep their values from the previous run.
+//! `cpu.fresh_globals` in a machine file restores them instead.
 
 use kmotiondef::{GuestAddr, ThreadId};
 use vm::memory::GuestMemory;
 
-/// The initial data of each program; empty unless programs get fresh globals when they are started again.
+/// The initial data of each program; empty unless programs get fresh globals at each start.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Globals {
     is_kept: bool,
@@ -14,7 +14,7 @@ pub(crate) struct Globals {
 }
 
 impl Globals {
-    /// Keeps what is loaded from now on.
+    /// Keeps the data of programs that are loaded from now on.
     pub(crate) fn keep(&mut self) {
         self.is_kept = true;
     }
@@ -31,7 +31,7 @@ impl Globals {
         }
     }
 
-    /// Brings the data of a thread's program back to what it was.
+    /// Restores the initial data of a thread's program.
     pub(crate) fn restore(&self, thread: ThreadId, memory: &mut GuestMemory) {
         for (address, bytes) in &self.sections[thread.index()] {
             let placed = memory.poke_bytes(*address, bytes);

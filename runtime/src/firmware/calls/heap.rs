@@ -1,9 +1,8 @@
 //! The firmware's heap: the SDRAM that the board's own buffers leave free.
 //!
-//! Sizes are rounded up to 8 bytes and each block has 8 bytes in front, as the board has it. Free blocks are in a list in
-//! the order of their sizes, from which the first that is large enough is taken; of two of the same size the one that was
-//! given back last. Neighbours that are free are one block. Where the blocks are is kept here, so that no program can
-//! damage the heap.
+//! Sizes are rounded up to 8 bytes and each block has 8 bytes in front, as the board has it. Free blocks are in a list
+//! ordered by size, and the first that is large enough is taken; of blocks of the same size, the one freed last.
+//! Adjacent free blocks are merged. The list of blocks is kept here, so that programs cannot damage the heap.
 
 use std::collections::BTreeMap;
 
@@ -25,7 +24,7 @@ struct Free {
     size: u32,
 }
 
-/// The blocks: those in use by address, with their sizes without header, and those that are free.
+/// The blocks: allocated ones by address, with their sizes without header, and free ones.
 #[derive(Clone, Debug)]
 pub(crate) struct Heap {
     used: BTreeMap<u32, u32>,
@@ -40,7 +39,7 @@ impl Default for Heap {
 }
 
 impl Heap {
-    /// Takes a block; none of no bytes.
+    /// Allocates a block; `None` for a size of 0.
     pub(crate) fn take(&mut self, size: u32) -> Option<GuestAddr> {
         let size = rounded(size)?;
         let place = self.free.iter().position(|free| free.size >= size)?;
@@ -54,7 +53,7 @@ impl Heap {
         let size = rounded(size)?;
         let begin = |free: &Free| {
             let aligned = free.block.checked_next_multiple_of(alignment.max(8))?;
-            // What is left before it is a block of its own.
+            // The rest before it becomes a separate block.
             let begin = if aligned == free.block || aligned - free.block >= LEAST {
                 aligned
             } else {
@@ -72,7 +71,7 @@ impl Heap {
         Some(GuestAddr::new(begin))
     }
 
-    /// Marks a block as used, whose rest is free if it is large enough.
+    /// Allocates a part of a free block; the rest remains free if it is large enough.
     fn use_part(&mut self, block: u32, found: u32, size: u32) {
         if found - size < LEAST {
             self.used.insert(block, found);
@@ -82,7 +81,7 @@ impl Heap {
         self.insert(Free { block: block + size + HEADER, size: found - size - HEADER });
     }
 
-    /// Puts a free block before those that are as large.
+    /// Inserts a free block before others of the same size.
     fn insert(&mut self, free: Free) {
         let place = self.free.iter().position(|other| other.size >= free.size);
         self.free.insert(place.unwrap_or(self.free.len()), free);
@@ -93,7 +92,7 @@ impl Heap {
         self.free.iter().position(is_it).map(|place| self.free.remove(place))
     }
 
-    /// Changes the size of a block where it is; whether that was possible.
+    /// Changes the size of a block in place; returns whether that was possible.
     pub(crate) fn resize(&mut self, block: GuestAddr, size: u32) -> bool {
         let (Some(old), Some(size)) = (self.size(block), rounded(size)) else { return false };
         let block = block.get();
@@ -119,14 +118,14 @@ impl Heap {
         self.used.get(&block.get()).copied()
     }
 
-    /// Gives a block back; `false` if there is none at that address.
+    /// Frees a block; `false` if there is none at that address.
     pub(crate) fn give(&mut self, block: GuestAddr) -> bool {
         let Some(size) = self.used.remove(&block.get()) else { return false };
         self.release(Free { block: block.get(), size });
         true
     }
 
-    /// Makes a block free, together with neighbours that are.
+    /// Adds a free block, merged with adjacent free blocks.
     fn release(&mut self, mut released: Free) {
         let end = released.block + released.size + HEADER;
         if let Some(next) = self.remove(|free| free.block == end) {
@@ -140,7 +139,7 @@ impl Heap {
     }
 }
 
-/// The size of the block for a number of bytes; none for no bytes.
+/// The size of the block for a number of bytes; `None` for 0 bytes.
 fn rounded(size: u32) -> Option<u32> {
     if size == 0 { None } else { size.checked_next_multiple_of(8) }
 }

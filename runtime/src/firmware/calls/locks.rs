@@ -23,7 +23,7 @@ impl Locks {
         self.0.push(held);
     }
 
-    /// A lock is free again.
+    /// Notes that a lock is free again.
     pub(crate) fn freed(&mut self, lock: GuestAddr) {
         self.0.retain(|held| held.lock != lock);
     }

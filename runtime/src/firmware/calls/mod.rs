@@ -24,32 +24,33 @@ pub(crate) use reading::Reading;
 pub(crate) use serial::SerialService;
 pub(crate) use waits::{Repeated, Wait, Waits};
 
-/// The state of a waiting call until it is made again.
+/// The state of a waiting call until it is repeated.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Continuation {
-    /// Text that the console queue had no room for, and what the call returns.
+    /// The text for which the console queue had no room, and the result of the call.
     Print {
         /// The text.
         rest: Vec<u8>,
         /// The result.
         result: i32,
     },
-    /// The target or velocity of a motion, as it was when the call began, and how far the call has come.
+    /// The target or velocity of a motion when the call began, and the progress of the call.
     Motion(f64, PlanningStage),
-    /// The axes that `MoveXYZABC` has still to move with their targets, the first last, and how far that one has come.
+    /// The axes that `MoveXYZABC` has yet to move, with their targets, the first axis last; and the progress of that
+    /// one.
     Moves(Vec<(AxisId, f64)>, PlanningStage),
-    /// That a stop was begun, and the axes that are still to be stopped once those are known.
+    /// A stop that has begun, with the axes that are still to be stopped once they are known.
     Stop(Option<Vec<AxisId>>),
-    /// The axes that are still to continue after a feedhold, the first last, and how far that one has come.
+    /// The axes that are still to continue after a feedhold, the first axis last; and the progress of that one.
     Resume(Vec<AxisId>, PlanningStage),
-    /// The levels of Kanalog's outputs that the call has computed, and how far it has come.
+    /// The levels of Kanalog's outputs that the call has computed, and the progress of the call.
     Output(Group, OutputStage),
 }
 
 /// The progress of a call that switches one of Kanalog's outputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum OutputStage {
-    /// It has read what was last written.
+    /// It has read the last written value.
     Read,
     /// It has stored the new levels, and read them again to put them out.
     Stored,
@@ -70,9 +71,9 @@ pub(crate) struct Calls {
     pub(crate) token: GuestAddr,
     /// Ticks that a motion call plans before its motion begins.
     pub(crate) plan_ticks: u32,
-    /// True if slices end between any two accesses to memory, in the middle of a call, too.
+    /// True if slices can end between any two memory accesses, even within a call.
     pub(crate) are_split: bool,
-    /// Motion calls in a row that each came while the one before was planned, of each axis.
+    /// For each axis, the number of consecutive motion calls that came while the previous one was still being planned.
     pub(crate) hurried_calls: [u8; Axes::MAX],
     /// The calls for which threads wait.
     pub(crate) waits: Waits,
@@ -115,7 +116,7 @@ impl Calls {
         (self.seed >> 16 & 0x7fff).cast_signed()
     }
 
-    /// Remembers something for the call that is made again when its wake comes true.
+    /// Keeps state for the repetition of the call after its wake event.
     pub(crate) fn keep(&mut self, caller: &Caller<'_>, continuation: Continuation) {
         self.continuations[slot(caller.thread)] = Some(continuation);
     }
@@ -125,7 +126,7 @@ impl Calls {
         self.continuations[slot(caller.thread)].take()
     }
 
-    /// The board restarts: everything that the firmware keeps is as at power-up.
+    /// Restarts the board: all state of the firmware is as at power-up.
     pub(crate) fn restart(&mut self) {
         self.continuations = Default::default();
         self.reading = Reading::default();

@@ -1,7 +1,7 @@
 //! Remarks that depend on earlier or later calls.
 //!
-//! A level written to a pin that is still an input is as it should be if the pin becomes an output soon; a move called
-//! while another one has just begun replaces it; a text longer than its array is known by the arrays of the programs.
+//! A level written to a pin that is still an input is correct if the pin becomes an output soon; a move called while
+//! another one has just begun replaces it; a text is known to be too long by the arrays of the programs.
 
 use std::sync::Arc;
 
@@ -59,10 +59,10 @@ pub(crate) struct Called {
     /// Dest at the call, and its time.
     pub(crate) dest: f64,
     pub(crate) called: Cycles,
-    /// The instant at which the thread had last waited or looked at anything, and the number of times that it had.
+    /// The last time at which the thread had waited or polled anything, and the number of times it had done so.
     pub(crate) looked: Cycles,
     pub(crate) looks: u32,
-    /// The counts of looks at motions, and at anything else but the time, before it; true once it has looked at this one.
+    /// The number of polls of motions, and of anything except the time, before it; true once it has polled this one.
     pub(crate) motion_looks: u32,
     pub(crate) other_looks: u32,
     pub(crate) is_asked: bool,
@@ -72,7 +72,7 @@ pub(crate) struct Called {
 #[derive(Clone, Debug)]
 pub(crate) struct Notices {
     latches: Vec<Latch>,
-    /// When the levels are looked at.
+    /// When the levels are checked.
     pub(crate) due: Cycles,
     moves: [Option<Called>; Axes::MAX],
     /// The last call that printed.
@@ -103,7 +103,7 @@ impl Default for Notices {
 }
 
 impl Notices {
-    /// A thread prints; the other thread whose line that continues.
+    /// Notes that a thread prints; returns the other thread whose line is continued by that.
     pub(crate) fn prints(
         &mut self,
         thread: Option<ThreadId>,
@@ -136,12 +136,12 @@ impl Notices {
         }
     }
 
-    /// A motion of an axis is called, or ended for `None`; the one before.
+    /// Notes that a motion of an axis is called, or ended for `None`; returns the previous one.
     pub(crate) fn moves(&mut self, axis: AxisId, called: Option<Called>) -> Option<Called> {
         std::mem::replace(&mut self.moves[axis.index()], called)
     }
 
-    /// A thread asks about the motion of an axis.
+    /// Notes that a thread polls the motion of an axis.
     pub(crate) fn asks(&mut self, thread: ThreadId, axis: AxisId) {
         if let Some(called) = &mut self.moves[axis.index()] {
             called.is_asked |= called.thread == thread;
@@ -166,7 +166,7 @@ impl Notices {
         )
     }
 
-    /// The object that some bytes begin in and go beyond.
+    /// The object in which a range of bytes begins, if the range exceeds it.
     pub(crate) fn overrun(&self, to: GuestAddr, size: usize) -> Option<&Named> {
         let begin = u64::from(to.get());
         let end = begin + size as u64;

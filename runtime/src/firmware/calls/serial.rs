@@ -8,11 +8,11 @@ use vm::memory::GuestMemory;
 use crate::views::Typed;
 use chips::uart::Uart;
 
-/// The service, which a program switches on.
+/// The serial service, which a program starts.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SerialService {
     pub(crate) is_on: bool,
-    /// Replies that the transmit ring has no room for yet.
+    /// Replies for which the transmit ring has no room yet.
     pub(crate) replies: VecDeque<u8>,
 }
 

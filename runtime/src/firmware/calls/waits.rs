@@ -1,6 +1,6 @@
 //! The calls for which each thread waits: those that it repeats while it does nothing else.
 //!
-//! A thread waits as long as it calls nothing but functions that look or let time pass. Any other call ends the wait.
+//! A thread waits as long as it calls only functions that poll or let time pass. Any other call ends the wait.
 
 use kmotiondef::firmware::FirmwareFunction;
 use kmotiondef::function::Polled;
@@ -10,7 +10,7 @@ use vm::firmware::Caller;
 /// Calls of a wait that are remembered.
 const MOST: usize = 16;
 
-/// A look at anything but the time, as a number of looks.
+/// The weight of polling anything other than the time; polling the time counts 1.
 const MANY_LOOKS: u32 = 100;
 
 /// A call that a thread repeats while it waits.
@@ -35,19 +35,19 @@ impl Repeated {
 /// The wait of one thread.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Wait {
-    /// When the thread last did anything else.
+    /// When the thread last did anything other than poll.
     pub(crate) since: Cycles,
-    /// When it last looked at anything.
+    /// When it last polled anything.
     pub(crate) looked: Cycles,
-    /// A measure of how often it has looked at anything; a look at the time counts least.
+    /// A measure of the frequency of polling; polling the time has the lowest weight.
     pub(crate) looks: u32,
-    /// True if it has read a bit since it last did anything else; and if it had before that.
+    /// True if it has read a bit since its last other action; and if it had before that.
     reads: bool,
     pub(crate) has_read: bool,
-    /// The number of times that it has looked at motions, and at anything else but the time.
+    /// The number of polls of motions, and of anything else except the time.
     pub(crate) motion_looks: u32,
     pub(crate) other_looks: u32,
-    /// True if it has read a bit again since it last did anything else; and if it had before that.
+    /// True if it has read a bit repeatedly since its last other action; and if it had before that.
     repeats: bool,
     pub(crate) has_repeated: bool,
     /// The bit that it has read last.
@@ -67,7 +67,7 @@ pub(crate) struct Waits {
 }
 
 impl Waits {
-    /// A thread looks at something or lets time pass.
+    /// Notes that a thread polls something or lets time pass.
     pub(crate) fn look(&mut self, thread: ThreadId, polls: Polled, caller: &Caller<'_>) {
         let wait = &mut self.threads[thread.index()];
         wait.looked = caller.now();
@@ -91,7 +91,7 @@ impl Waits {
         }
     }
 
-    /// A thread does anything else: it calls a function, which the firmware's table has.
+    /// Notes any other action of a thread: it calls a function of the firmware's table.
     pub(crate) fn act(&mut self, thread: ThreadId, now: Cycles, called: Option<&'static FirmwareFunction>) {
         let wait = &mut self.threads[thread.index()];
         wait.called = called;

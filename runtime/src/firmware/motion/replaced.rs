@@ -1,7 +1,7 @@
-//! Motions that a thread replaces or ends before the axis has come anywhere, or before it has arrived.
+//! Motions that a thread replaces or ends before the axis has moved noticeably, or before it has arrived.
 //!
-//! A thread that has looked at anything since, at a bit or at the axis, has had its reason; one that has only let a
-//! little time pass has meant to wait.
+//! A thread that has polled a bit or the axis since then had a reason; a thread that has only let a little time pass
+//! probably meant to wait.
 
 use kmotiondef::firmware::Function;
 use kmotiondef::modes::LastMotion;
@@ -15,14 +15,14 @@ use crate::out::{Message, OtherPlace};
 use crate::servo::independent::has_motion;
 use crate::views::Typed;
 
-/// A thread that has looked at the time more often waits for something.
+/// A thread that has polled the time more often waits for something.
 const DELAYS: u32 = 3;
-/// A part of the way that may be left, or that is not worth a word.
+/// The fraction of the distance that may be left, or that is too short for a remark.
 const REST: f64 = 0.01;
 /// The time in which a thread has hardly waited: 50 ms.
 const HARDLY: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 20);
 
-/// A motion that the thread has begun and that is still under way.
+/// A motion that the thread has begun and that is still in progress.
 struct Interrupted {
     called: Called,
     dest: f64,
@@ -80,7 +80,7 @@ pub(super) fn begins(
     parts.out.diagnose(caller, message);
 }
 
-/// A thread ends the motion of an axis: whether that has come anywhere.
+/// Makes a remark if a thread ends the motion of an axis before the axis has moved noticeably.
 pub(super) fn ends(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Function) {
     let Some(Interrupted { called, dest, is_at_start, is_after_delay }) =
         interrupted(parts, caller, axis, None)
@@ -102,8 +102,7 @@ pub(super) fn ends(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, functio
     parts.out.diagnose(caller, message);
 }
 
-/// The motion of an axis that the calling thread has begun itself and that is under way. `motion` is the one that it
-/// begins now.
+/// The motion in progress that the calling thread itself has begun on an axis. `motion` is the one that it begins now.
 fn interrupted(
     parts: &mut Parts,
     caller: &Caller<'_>,
@@ -144,7 +143,7 @@ fn interrupted(
     let is_at_start = called.looked == looked && is_near && now - called.called < HARDLY;
     let is_move = memory.axis(axis, Chan::LAST_MOTION_TYPE) == LastMotion::Move.get();
     let is_delay = (1..=DELAYS).contains(&looks.wrapping_sub(called.looks));
-    // It has waited for other axes alone.
+    // It has only waited for other axes.
     let is_forgotten =
         !called.is_asked && called.motion_looks != motion_looks && called.other_looks == other_looks;
     let is_after_delay = (is_delay || is_forgotten) && is_far && is_move;

@@ -1,7 +1,7 @@
 //! The slices in which the board plans a motion.
 //!
-//! The motion of an axis at rest is planned at once; it begins when it is planned, which is in the next slice if this one
-//! does not suffice. An axis in motion is planned in the next slice of the caller. The call-back cannot wait.
+//! The motion of an axis at rest is planned at once; it begins when the plan is complete, in the next slice if this one
+//! is too short. An axis in motion is planned in the next slice of the caller. The call-back cannot wait.
 
 use kmotiondef::firmware::Function;
 use kmotiondef::{AxisId, Cycles};
@@ -23,7 +23,7 @@ pub(crate) enum PlanningStage {
     Planned,
 }
 
-/// A wait of a motion call, and how far the call has come after it.
+/// The wait of a motion call, and the progress of the call after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Pause {
     pub(crate) wake: Wake,
@@ -40,9 +40,9 @@ pub(super) fn planning_wait(parts: &Parts, caller: &Caller<'_>, axis: AxisId) ->
     has_motion(caller.memory, axis).then_some(Wake::NextSlice)
 }
 
-/// Spends the time in which a motion of an axis is planned; the wait before it continues, if there is one.
+/// Spends the time for planning the motion of an axis; returns the wait before it continues, if there is one.
 ///
-/// `charged` is what the call has spent already, `planning` the cycles that it takes in all.
+/// `charged` is the cycles that the call has already spent, `planning` the cycles of the whole planning.
 pub(crate) fn plan(
     parts: &Parts,
     caller: &mut Caller<'_>,

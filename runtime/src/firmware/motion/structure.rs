@@ -21,7 +21,7 @@ use crate::servo::profile::{self, MAX_STATES, MotionState, Ramp};
 use crate::servo::{four_phase, three_phase};
 use crate::views::{Typed, axis_at};
 
-/// The axis whose structure a program points at.
+/// The axis to whose structure a program's pointer leads.
 fn pointed(parts: &mut Parts, caller: &Caller<'_>, function: Function, chan: GuestAddr) -> Option<AxisId> {
     let axis = axis_at(caller.memory, chan);
     if axis.is_none() {
@@ -56,12 +56,12 @@ pub(crate) fn setup_for_move(
         return Ok(());
     };
     let ramps = [abrupt_start, abrupt_end].map(|flag| if flag != 0 { Ramp::Abrupt } else { Ramp::Smooth });
-    // Without the end, which comes from SetupForMotionEnd.
+    // Without the end state, which comes from SetupForMotionEnd.
     let mut states = profile::bare_move(from, to, ramps, &limits);
     if !count.is_null() {
         caller.memory.store(count, states.len() as i32)?;
     }
-    // Odd and kept: the resting tick stands once more after the end, uncounted.
+    // Board quirk: the resting tick is repeated after the end, uncounted.
     states.extend([MotionState::END, MotionState::hold(to, TIMEBASE)]);
     write(caller.memory, axis, index(offset), &states);
     if starts != 0 {
@@ -70,7 +70,7 @@ pub(crate) fn setup_for_move(
     Ok(())
 }
 
-/// An index into a state list; out of range it writes nothing.
+/// The index into a state list of an offset; out of range, nothing is written.
 fn index(offset: i32) -> usize {
     usize::try_from(offset).unwrap_or(MAX_STATES)
 }
@@ -113,7 +113,7 @@ pub(crate) fn write_4ph(parts: &mut Parts, caller: &mut Caller<'_>, chan: GuestA
     }
 }
 
-/// A vector on the phases of a disabled axis turns its rotor; of an enabled one the servo is stronger.
+/// Applies a vector to the phases: the rotor of a disabled axis turns; on an enabled axis the servo overrides it.
 fn apply(parts: &mut Parts, memory: &GuestMemory, axis: AxisId, v: f32, angle: f64) {
     if memory.axis(axis, Chan::ENABLE) == 0 {
         parts.servo.cache.invalidate(Change::Motion);

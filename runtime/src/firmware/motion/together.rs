@@ -54,7 +54,7 @@ pub(crate) fn move_xyzabc(
             parts.calls.keep(caller, Continuation::Moves(left, pause.then));
             return Outcome::Wait(pause.wake);
         }
-        // Also of an axis that is disabled or beyond a limit.
+        // Even for an axis that is disabled or beyond a limit.
         caller.memory.set_axis(axis, Chan::LAST_MOTION_TYPE, LastMotion::Multi.get());
         left.pop();
         progress = PlanningStage::Called;
@@ -116,7 +116,7 @@ fn notice_letters(parts: &mut Parts, caller: &Caller<'_>, targets: [f64; 6]) {
     }
 }
 
-/// All axes in the slice after that of the call, as firmware 5 does it: it waits even if all are at rest.
+/// Plans all axes in the slice after the call, as firmware 5 does: it waits even if all axes are at rest.
 fn all_at_once(parts: &mut Parts, caller: &mut Caller<'_>, targets: [f64; 6]) -> Outcome<()> {
     let function = Function::MoveXYZABC;
     let moves = moves(caller, targets);

@@ -16,9 +16,9 @@ pub(super) struct Cell {
     pub(super) writer: Option<Writer>,
     /// The number of stores.
     stores: u32,
-    /// Its last change, and how many stores changed it.
+    /// Its last change, and the number of stores that changed it.
     change: Option<CellChange>,
-    /// A load before its first store, which the storing context did not know of.
+    /// A load before its first store, of which the storing context had no knowledge.
     early: Option<EarlyLoad>,
 }
 
@@ -43,10 +43,10 @@ struct EarlyLoad {
 /// The accesses of a context to a cell.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Use {
-    /// Its last load, and the last ones of other instructions.
+    /// Its last load, and the last loads by other instructions.
     pub(super) load: Option<Load>,
     other_loads: Vec<Load>,
-    /// Its last store of what it had loaded from the cell before.
+    /// Its last store of a value that it had loaded from the cell before.
     pub(super) update: Option<AccessMark>,
     /// Its last store after it had found 0 there.
     pub(super) claim: Option<(AccessMark, u64)>,
@@ -58,12 +58,12 @@ pub(super) struct Use {
     /// Its last load of eight bytes.
     pub(super) wide_load: Option<AccessMark>,
     pub(super) stores: u32,
-    /// Stores of anything but 0.
+    /// Stores of values other than 0.
     pub(super) posts: u32,
     pub(super) stored: Option<Cycles>,
     /// True if it has loaded the cell while it had no order to execute.
     pub(super) is_loaded_at_leisure: bool,
-    /// The value that it had loaded before its last store of something else.
+    /// The value that it had loaded before its last store of another value.
     pub(super) replaced: Option<u64>,
 }
 
@@ -72,7 +72,7 @@ pub(super) struct Load {
     pub(super) at: CodeAddr,
     /// The context's knowledge before the load, without the values read from the cell since its last store.
     pub(super) before: VectorClock,
-    /// Its knowledge before it began to load nothing but this cell.
+    /// Its knowledge before it began to load only this cell.
     pub(super) spun: VectorClock,
     pub(super) value: u64,
     pub(super) now: Cycles,
@@ -96,7 +96,7 @@ pub(super) struct Writer {
     pub(super) locks: LockSet,
 }
 
-/// The instructions whose last loads of a cell are remembered, besides the last one.
+/// The number of instructions whose last loads of a cell are remembered, in addition to the last load.
 const MOST_LOADS: usize = 4;
 
 impl Races {
@@ -156,7 +156,7 @@ impl Races {
         }
     }
 
-    /// A context has stored `size` bytes; `made_of` are the loads that the value is made of.
+    /// Notes that a context has stored `size` bytes; `made_of` are the loads on which the value depends.
     pub(super) fn stored(
         &mut self,
         actor: Actor,
@@ -202,7 +202,7 @@ impl Races {
         }
     }
 
-    /// Reports what can go wrong.
+    /// Reports a possible conflict.
     fn report_conflict(&mut self, actor: Actor, (address, size): (u32, u32), found: Conflict, out: &mut Out) {
         let Conflict { at, by, kind } = found;
         if self.reports.suspects(actor.at, at) {
@@ -257,7 +257,8 @@ impl Races {
         self.report(out, storing, actor.at, Message::RaceStore { other, cell, effect });
     }
 
-    /// Reports cells that were loaded once, before their first store, where nothing made the load wait for the store.
+    /// Reports cells that were loaded once, before their first store, without anything that made the load wait for the
+    /// store.
     pub(super) fn read_early(&mut self, now: Cycles, out: &mut Out) {
         let early: Vec<_> =
             self.cells.iter().filter_map(|(address, cell)| Some((address, cell.early?))).collect();
@@ -268,7 +269,8 @@ impl Races {
         }
     }
 
-    /// A context has cleared a cell: if that was its order, what was stored too late for it is reported.
+    /// Notes that a context has cleared a cell; if that cell held the request it was executing, parameters that were
+    /// stored too late are reported.
     fn order_done(&mut self, actor: Actor, address: u32, out: &mut Out) {
         let own = index(actor.thread);
         let Some((_, poster, _)) = self.tracks[own].order.take_if(|(posted, ..)| *posted == address) else {
@@ -315,8 +317,8 @@ impl Cell {
         self.uses[context].update.is_some()
     }
 
-    /// Its last change, if that is another context's, not its first store, and nothing orders it before what `clock`
-    /// knows.
+    /// Its last change, if it was made by another context, was not its first store, and is not ordered before the
+    /// knowledge in `clock`.
     pub(super) fn unordered_writer(
         &self,
         own: usize,
@@ -329,8 +331,8 @@ impl Cell {
         self.change.filter(|_| is_unordered && !shares_lock)
     }
 
-    /// The clock of `writer` when it stored last, if it has stored often and nothing orders that before what `clock`
-    /// knows.
+    /// The clock of `writer` at its last store, if it has stored often and the store is not ordered before the
+    /// knowledge in `clock`.
     pub(super) fn unordered_epoch(&self, writer: usize, clock: &VectorClock, locks: LockSet) -> Option<u32> {
         let last = self.writer.as_ref().filter(|last| last.context == writer && self.stores > 2)?;
         let is_unordered = last.epoch > clock[writer];
@@ -376,7 +378,7 @@ impl Cell {
         self.change = Some(change);
     }
 
-    /// The only load of another context, if the first store, which makes `stored`, does not come after it.
+    /// The only load by another context, if the first store, described by `stored`, is not ordered before it.
     fn early_load(&self, stored: CellChange, clock: &VectorClock) -> Option<EarlyLoad> {
         let others = self.uses.iter().filter(|(other, _)| *other != stored.by && *other != 0);
         let mut loads = others.filter(|(_, used)| used.stores == 0).filter_map(|(other, used)| {
@@ -418,12 +420,12 @@ impl Use {
         }
     }
 
-    /// The last of the loads that a stored value is made of.
+    /// The last one of the loads on which a stored value depends.
     fn source(&self, made_of: &[CodeAddr]) -> Option<Load> {
         self.load.iter().chain(&self.other_loads).find(|load| made_of.contains(&load.at)).copied()
     }
 
-    /// The load after which its next store comes, if it has loaded since its last one.
+    /// The load after which its next store comes, if it has loaded since its last store.
     pub(super) fn replacing(&self) -> Option<&Load> {
         self.load.as_ref().filter(|load| self.stored.is_none_or(|stored| stored < load.now))
     }

@@ -5,7 +5,7 @@ use kmotiondef::{CodeAddr, Cycles};
 use super::cells::{Cell, Load};
 use super::{AccessMark, CLAIM_TIME, VectorClock, conflict, is_of_axis, is_request};
 
-/// A store that is about to be taken up.
+/// A store that is being processed.
 #[derive(Debug)]
 pub(super) struct Store<'a> {
     pub(super) own: usize,
@@ -31,7 +31,7 @@ pub(super) enum ConflictKind {
     Update,
     /// One does, the other stores.
     Store,
-    /// Both take the cell if it is free.
+    /// Both take the cell when it is free.
     Claim,
     /// Both send a request to the PC.
     Request,
@@ -50,7 +50,7 @@ impl Cell {
         })
     }
 
-    /// The store of another context that came between a load and the store of what is made of it, and when.
+    /// The store by another context that came between a load and the store of a value computed from it, and its time.
     pub(super) fn lost(&self, own: usize, source: Option<&Load>) -> Option<(Conflict, Cycles)> {
         let load = source?;
         let writer = self.writer.as_ref().filter(|writer| writer.context != own && writer.now > load.now)?;
@@ -63,7 +63,7 @@ impl Cell {
     /// A store that another context's load and store of the same cell can wipe out, or that can wipe one out.
     pub(super) fn update_conflict(&self, store: &Store<'_>, source: Option<&Load>) -> Option<Conflict> {
         let used = &self.uses[store.own];
-        // What the call-back does, no thread interrupts.
+        // Threads do not interrupt the call-back.
         let counts = |other: &usize| *other != 0 || source.is_some();
         let updates = self.uses.iter().filter(|(other, _)| counts(other));
         let updates = updates.filter_map(|(other, used)| Some((other, used.update?)));
@@ -75,7 +75,7 @@ impl Cell {
         Some(Conflict { at, by, kind })
     }
 
-    /// A store to a cell that was free, which another context takes in the same way.
+    /// A store to a free cell that another context takes in the same way.
     pub(super) fn claim_conflict(&self, store: &Store<'_>, load: &Load) -> Option<Conflict> {
         let own = store.own;
         let claims = self.uses.iter().filter_map(|(other, used)| {
@@ -87,7 +87,7 @@ impl Cell {
         Some(Conflict { at, by, kind: ConflictKind::Claim })
     }
 
-    /// A request to the PC that can overwrite that of another context.
+    /// A request to the PC that can overwrite another context's request.
     pub(super) fn request_conflict(&self, store: &Store<'_>) -> Option<Conflict> {
         if !is_request(store.address) || store.value == 0 {
             return None;

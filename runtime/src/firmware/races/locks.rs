@@ -1,4 +1,4 @@
-//! Locks of programs: who holds them, in which order they are taken.
+//! Locks of programs: their owners, and the order in which they are taken.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ pub(super) struct Lock {
     pub(super) is_mutex: bool,
 }
 
-/// Locks that are held together; all beyond the first 63 count as one.
+/// A set of locks held together; all locks beyond the first 63 count as one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct LockSet(u64);
 
@@ -33,7 +33,7 @@ impl LockSet {
 pub(super) type Orders = BTreeMap<(u32, u32, usize), AccessMark>;
 
 impl Races {
-    /// A context takes a lock by `MutexLock`, or tries to.
+    /// Notes that a context takes a lock by `MutexLock`, or tries to.
     pub(crate) fn locks(&mut self, actor: Actor, lock: GuestAddr, is_taken: bool, out: &mut Out) {
         let (own, lock) = (index(actor.thread), lock.get());
         let mark = self.mark(actor);
@@ -64,7 +64,7 @@ impl Races {
         }
     }
 
-    /// A context has taken a free cell by `TestAndSet`.
+    /// Notes that a context has taken a free cell by `TestAndSet`.
     pub(crate) fn takes(&mut self, actor: Actor, lock: GuestAddr) {
         let (own, lock) = (index(actor.thread), lock.get());
         let clock = self.lock(lock).clock;
@@ -97,7 +97,7 @@ impl Races {
         self.freed(actor, lock.get());
     }
 
-    /// A context has stored 0 where a lock may be.
+    /// Notes that a context has stored 0 in a cell that may be a lock.
     pub(super) fn freed(&mut self, actor: Actor, lock: u32) {
         let own = index(actor.thread);
         let Some(known) = self.locks.get_mut(&lock) else { return };

@@ -1,14 +1,14 @@
 //! Accesses of several threads to the same memory that can go wrong on the board.
 //!
-//! Not every unordered access is an error here: a word with one writer, a request that one thread sets and another
-//! clears, a last value that wins are what programs for this board are made of. So each rule looks for a loss: an
-//! update that another store can wipe out, a free cell that two threads can take, a value of eight bytes that can be
-//! read half old, an order that is posted before its parameter, locks that can stop each other.
+//! Not every unordered access is an error here: programs for this board commonly have words with a single writer,
+//! requests that one thread sets and another clears, and values whose last writer wins. So each rule detects a loss: an
+//! update that another store can overwrite, a free cell that two threads can take, an eight-byte value of which half
+//! can be read before it is updated, a request that is posted before its parameter, locks that can deadlock.
 //!
-//! Two accesses are in order if the first one happened before the second whatever the lengths of slices: by the start
-//! of a thread, by a lock, or because the thread of the second has read what that of the first stored later. What is
-//! read from a cell itself orders no accesses of that cell: two counters meet there all the time. The order is kept in
-//! vector clocks; a thread's own entry grows with each of its stores.
+//! Two accesses are ordered if the first happens before the second regardless of the lengths of slices: by the start of
+//! a thread, by a lock, or because the thread of the second has read a value that the thread of the first stored after
+//! it. Values read from a cell do not order accesses to the same cell, since two counters in it would always seem
+//! ordered. The order is kept in vector clocks; a thread's own entry grows with each of its stores.
 
 mod cells;
 mod conflicts;
@@ -42,7 +42,7 @@ use crate::out::{Message, OtherPlace, Out};
 /// The seven threads, and before them the call-back.
 const CONTEXTS: usize = 1 + ThreadId::MAX as usize;
 
-/// Threads that began as close to each other count as started together: nothing orders what they did before.
+/// Threads that begin within this time of each other count as started together: their earlier actions are not ordered.
 const TOGETHER: Cycles = Cycles::new(10_000_000);
 
 /// The most cycles from the test of a cell to the store that takes it.
@@ -51,7 +51,7 @@ const CLAIM_TIME: Cycles = Cycles::new(18_000);
 /// The latest access of each context that a context has seen.
 type VectorClock = [u32; CONTEXTS];
 
-/// Makes `clock` know what `other` knows.
+/// Adds the knowledge of `other` to `clock`.
 fn join(clock: &mut VectorClock, other: &VectorClock) {
     for (own, other) in clock.iter_mut().zip(other) {
         *own = (*own).max(*other);
@@ -68,7 +68,7 @@ fn context(index: usize) -> Option<ThreadId> {
     ThreadId::new(i32::try_from(index).unwrap_or(0))
 }
 
-/// The clock of a context, and what it holds.
+/// The clock of a context, and its locks.
 #[derive(Clone, Debug, Default)]
 struct Track {
     clock: VectorClock,
@@ -78,14 +78,15 @@ struct Track {
     locks: LockSet,
     /// The knowledge of the context that started it.
     starter: VectorClock,
-    /// The order that it has read and not yet cleared: the cell, who posted it, and that one's clock then.
+    /// The request that it has read and not yet cleared: the cell, the context that posted it, and that context's clock
+    /// at the time.
     order: Option<(u32, usize, u32)>,
     /// Parameters that were stored after such an order.
     suspects: Vec<Suspect>,
     /// The cells that it reads together, and whether another context changes any of them.
     reading: JointReads,
     reads_records: bool,
-    /// The cell that it loaded last, and when; the one that it stored last.
+    /// The cell that it loaded last, with the time; and the cell that it stored last.
     last_load: Option<(u32, Cycles)>,
     last_store: Option<u32>,
     /// The place where it paused itself, and the place where another resumed it, after which cell.
@@ -93,7 +94,7 @@ struct Track {
     resumed: Option<Resumed>,
 }
 
-/// A resource that the board has once; its second user takes it from the first.
+/// A resource that exists once on the board; its second user takes it from the first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum SharedThing {
     /// The part of the board that executes paths.
@@ -104,7 +105,7 @@ pub(crate) enum SharedThing {
     Relays(i32),
 }
 
-/// A parameter that was stored after the order that it belongs to.
+/// A parameter that was stored after the request to which it belongs.
 #[derive(Clone, Debug)]
 struct Suspect {
     cell: u32,
@@ -112,7 +113,7 @@ struct Suspect {
     posted_at: CodeAddr,
 }
 
-/// An access that a later one is compared with.
+/// An access with which later ones are compared.
 #[derive(Clone, Copy, Debug)]
 struct AccessMark {
     at: CodeAddr,
@@ -127,12 +128,12 @@ pub(crate) struct Races {
     cells: Cells,
     locks: BTreeMap<u32, Lock>,
     orders: Orders,
-    /// The last uses of what the board has once.
+    /// The last uses of resources that exist once on the board.
     things: BTreeMap<SharedThing, [Option<AccessMark>; CONTEXTS]>,
     reports: Reports,
     /// The number of stores so far that changed a cell.
     changes: u64,
-    /// True if what orders accesses has changed since the last question for that.
+    /// True if the order of accesses has changed since the last query.
     is_reordered: bool,
     /// The named objects of the programs that are loaded.
     objects: [Arc<[Named]>; ThreadId::MAX as usize],
@@ -141,7 +142,7 @@ pub(crate) struct Races {
 impl Default for Races {
     fn default() -> Self {
         let mut tracks: [Track; CONTEXTS] = Default::default();
-        // The call-back has no beginning of its own.
+        // The call-back has no start event.
         tracks[0].clock[0] = 1;
         Self {
             tracks,
@@ -166,7 +167,8 @@ pub(crate) struct Actor {
 }
 
 impl Races {
-    /// A thread begins: what those did that have ended or began long before comes before it.
+    /// Notes the beginning of a thread: the actions of threads that have ended, or that began long before, are ordered
+    /// before it.
     pub(crate) fn begins(&mut self, thread: ThreadId, threads: &Threads, now: Cycles) {
         let own = index(Some(thread));
         let mut clock = self.tracks[own].clock;
@@ -205,7 +207,7 @@ impl Races {
         self.is_reordered = true;
     }
 
-    /// A program has made an access; rules and names are about addresses of the tables.
+    /// Processes an access by a program; rules and names use addresses of the tables.
     pub(crate) fn accessed(
         &mut self,
         access: &SharedAccess<'_>,
@@ -239,8 +241,8 @@ impl Races {
         if is_block || self.may_tell_more(access, address) { Repeats::Reported } else { Repeats::Redundant }
     }
 
-    /// Returns whether an access can tell more when it is made again in the same slice: values that belong together are
-    /// compared load by load, and the stores of their reader say which of them it has done with.
+    /// Returns whether repeating an access in the same slice can give new information: values that belong together are
+    /// compared load by load, and the stores of their reader show which of them it has finished using.
     fn may_tell_more(&mut self, access: &SharedAccess<'_>, address: u32) -> bool {
         let own = index(access.thread);
         let Some(cell) = self.cells.get(address) else { return false };
@@ -254,12 +256,13 @@ impl Races {
         is_joint
     }
 
-    /// Returns whether a call or an access since the last question has changed what orders accesses.
+    /// Returns whether a call or an access since the last query has changed the order of accesses.
     pub(crate) const fn take_ordering(&mut self) -> bool {
         mem::replace(&mut self.is_reordered, false)
     }
 
-    /// A context has stored a cell: if it sets the call-back, that knows what it knows; if it ends it, the reverse.
+    /// Notes a store by a context: if it sets the call-back, the call-back gets the context's knowledge; if it removes
+    /// the call-back, the context gets the call-back's.
     fn sets_call_back(&mut self, actor: Actor, address: u32, value: u64) {
         if address != USER_CALL_BACK.address().get() {
             return;
@@ -289,7 +292,7 @@ impl Races {
         self.uses(actor, SharedThing::Relays((bit - 144) / 16), out);
     }
 
-    /// A call uses something that the board has once.
+    /// Notes that a call uses a resource that exists once on the board.
     pub(crate) fn uses(&mut self, actor: Actor, thing: SharedThing, out: &mut Out) {
         let own = index(actor.thread);
         let (clock, mark) = (self.tracks[own].clock, self.mark(actor));
@@ -326,7 +329,7 @@ impl Races {
         }
     }
 
-    /// The present access of a context, to compare later ones with.
+    /// A mark of the context's current access, for comparison with later ones.
     fn mark(&self, actor: Actor) -> AccessMark {
         let own = index(actor.thread);
         let track = &self.tracks[own];
@@ -347,7 +350,8 @@ impl Races {
     }
 }
 
-/// The first of the marks of other contexts that is not before what `clock` knows and shares no lock with `locks`.
+/// The first mark of another context that is not ordered before the knowledge in `clock` and shares no lock with
+/// `locks`.
 fn conflict(
     mut marks: impl Iterator<Item = (usize, AccessMark)>,
     own: usize,

@@ -1,9 +1,9 @@
 //! Values that belong together, read while another thread changes them.
 //!
-//! Cells belong together where a program uses their values together: in one expression, in a sum over a list, as a list
-//! and its length. They are read half changed if another context changed the one after it was read and the other before
-//! it was read. A reader that looks at a version number before and after, and reads again if it has changed, has seen
-//! that for itself; so what was found is reported when the reader next stores something, and forgotten when it compares
+//! Cells belong together if a program uses their values together: in one expression, in a sum over a list, as a list
+//! and its length. They are read half changed if another context changes one cell after it was read and the other cell
+//! before it was read. A reader that compares a version number before and after, and reads again if it has changed,
+//! detects this itself; so a finding is reported when the reader next stores something, and dropped when it compares
 //! two loads of the same cell.
 
 use std::collections::BTreeMap;
@@ -21,21 +21,21 @@ const MOST: usize = 64;
 /// The most stores of a writer from one to another of a record that it stores at a time.
 const RECORD_STORES: u32 = 8;
 
-/// The number of times that two cells are stored and read together until they count as parts of a record.
+/// The number of times that two cells must be stored and read together before they count as parts of a record.
 const TIMES: u32 = 2;
 
-/// A load of a cell whose value is used with those of others.
+/// A load of a cell whose value is used together with other cells.
 #[derive(Clone, Copy, Debug)]
 struct Part {
     at: CodeAddr,
     address: u32,
-    /// The number of changes until then.
+    /// The number of changes up to the load.
     changes: u64,
     /// The context that changed the cell first since.
     changed_by: Option<usize>,
     /// The knowledge of the context before it began to read the parts.
     before: VectorClock,
-    /// Its own entry in its clock at the load.
+    /// The context's own entry in its clock at the load.
     epoch: u32,
 }
 
@@ -45,7 +45,7 @@ pub(super) struct JointReads {
     parts: Vec<Part>,
     /// The pairs that it has read half changed, or could have.
     found: Vec<Half>,
-    /// The number of times that it has read pairs of cells which another context changes together.
+    /// The number of times that it has read each pair of cells that another context changes together.
     pairs: BTreeMap<[u32; 2], u32>,
 }
 
@@ -61,7 +61,7 @@ struct Half {
 }
 
 impl Races {
-    /// A context loads a cell whose value it uses together with those of the loads `with`.
+    /// Notes that a context loads a cell whose value it uses together with those of the loads `with`.
     pub(super) fn reads_together(
         &mut self,
         actor: Actor,
@@ -73,10 +73,10 @@ impl Races {
         let Track { reading, clock, .. } = &mut self.tracks[own];
         let belongs = |part: &Part| with.contains(&part.at);
         if reading.parts.iter().any(|part| part.at == actor.at && part.address == address) {
-            // It begins to read all of them again.
+            // It starts over to read all of them.
             reading.parts.retain(|part| part.at != actor.at && !belongs(part));
         } else if reading.parts.iter().any(|part| belongs(part) && part.address == address) {
-            // It compares what it reads now with what it read then.
+            // It compares the new values with those read before.
             reading.found.clear();
         }
         let mut parts = reading.parts.iter().copied().filter(|part| belongs(part) && part.address != address);
@@ -108,8 +108,8 @@ impl Races {
         }
     }
 
-    /// Returns whether two cells are changed by another context at about the same time, each time `own` reads both, and nothing
-    /// orders that before what `clock` knows.
+    /// Returns whether another context changes two cells at about the same time, every time that `own` reads both,
+    /// without anything that orders the changes before the knowledge in `clock`.
     fn is_record(&mut self, own: usize, writer: usize, cells: [u32; 2], clock: &VectorClock) -> bool {
         let locks = self.tracks[own].locks;
         let epoch = |cell| self.cells.get(cell)?.unordered_epoch(writer, clock, locks);
@@ -124,7 +124,7 @@ impl Races {
         *times > TIMES
     }
 
-    /// A context copies `count` words at once, a structure perhaps.
+    /// Notes that a context copies `count` words at once, which may be a structure.
     pub(super) fn copies(&mut self, actor: Actor, (address, count): (u32, u32), out: &mut Out) {
         let own = index(actor.thread);
         let (clock, locks) = (self.tracks[own].clock, self.tracks[own].locks);
@@ -160,8 +160,8 @@ impl Races {
         }
     }
 
-    /// A context has changed a cell: contexts that have read it have an old value now, unless the reader has stored
-    /// something since that let the context change it.
+    /// Notes that a context has changed a cell: contexts that have read it now have an old value, unless a later store
+    /// of the reader allowed the change.
     pub(super) fn note_change(&mut self, own: usize, address: u32) {
         self.changes += 1;
         let known = self.tracks[own].clock;

@@ -1,7 +1,7 @@
-//! Reports: those that were made, and those that may still grow.
+//! Reports: those that were made, and those that may still get more details.
 //!
-//! A pair of places is reported once. That an update can be lost is known long before one is, if ever; so the report
-//! waits a while for the loss, whose time it then says.
+//! A pair of places is reported once. A possible loss of an update is known long before an actual one, if that ever
+//! happens; so the report waits a while for the loss, in order to give its time.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -28,7 +28,7 @@ struct Waiting {
 pub(super) struct Reports {
     made: BTreeSet<PlacePair>,
     waiting: BTreeMap<PlacePair, Waiting>,
-    /// When the first of those that wait is made.
+    /// The time at which the first waiting report is made.
     due: Option<Cycles>,
 }
 
@@ -57,7 +57,7 @@ impl Reports {
         }
     }
 
-    /// Delays a report, so that one with more details may come first.
+    /// Delays a report, so that one with more details can replace it.
     fn wait(&mut self, actor: Actor, other: CodeAddr, message: Message) {
         let places = places(actor.at, other);
         if !self.suspects(actor.at, other) {
@@ -89,7 +89,7 @@ impl Races {
         self.reports.make(actor, other, message, out);
     }
 
-    /// Reports what can happen at two places, unless it does happen soon.
+    /// Reports a possible conflict of two places, unless it soon actually happens.
     pub(super) fn report_later(&mut self, actor: Actor, other: CodeAddr, message: Message) {
         self.reports.wait(actor, other, message);
     }

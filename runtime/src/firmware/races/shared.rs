@@ -1,4 +1,5 @@
-//! Calls of the firmware that threads meet at: locks, words changed at once, starts, outputs that share a word.
+//! Calls of the firmware that concern several threads: locks, words changed atomically, starts, outputs that share a
+//! word.
 
 use kmotiondef::firmware::Function;
 use kmotiondef::{Cycles, GuestAddr, ThreadId};
@@ -17,7 +18,7 @@ pub(crate) enum SharedCall {
     Other,
 }
 
-/// Looks at a call that is about to be made.
+/// Examines a call that is about to be made.
 pub(crate) fn before(parts: &mut Parts, function: Function, caller: &Caller<'_>) -> SharedCall {
     let place = || GuestAddr::new(caller.arguments.get(0));
     let (Parts { races: Some(races), out, .. }, Some(actor)) = (parts, actor(caller)) else {
@@ -62,7 +63,7 @@ pub(crate) fn before(parts: &mut Parts, function: Function, caller: &Caller<'_>)
     }
 }
 
-/// Takes up what a call has come to.
+/// Processes the outcome of a call.
 pub(crate) fn after(parts: &mut Parts, call: SharedCall, outcome: &Outcome<Value>, caller: &mut Caller<'_>) {
     let (Parts { races: Some(races), switches, out, .. }, Some(actor)) = (parts, actor(caller)) else {
         return;
@@ -77,7 +78,7 @@ pub(crate) fn after(parts: &mut Parts, call: SharedCall, outcome: &Outcome<Value
     if let (Some(switches), Some(lock)) = (switches, lock)
         && switches.after_lock(actor, lock, out)
     {
-        // The rest of the slice passes.
+        // The rest of the slice is used up.
         *caller.budget = (*caller.budget).min(Cycles::default());
     }
     match call {

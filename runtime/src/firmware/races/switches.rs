@@ -1,7 +1,7 @@
-//! Switches of threads at accesses to shared memory, as a schedule lists them.
+//! Thread switches at accesses to shared memory, according to a schedule.
 //!
-//! Accesses of threads are counted, apart from those of a loop that loads the same cell again: such a wait has no fixed
-//! length. The count depends on the programs and on earlier switches alone.
+//! Accesses of threads are counted, except for those of a loop that loads the same cell repeatedly, because the length
+//! of such a wait varies. The count depends only on the programs and on earlier switches.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ use vm::firmware::{NextAccess, SwitchPoint};
 use super::Actor;
 use crate::out::{Message, Out, Speaker};
 
-/// The switches of a schedule, and how far it has come.
+/// The switches of a schedule, and the progress in it.
 #[derive(Clone, Debug)]
 pub(crate) struct Switches {
     /// The numbers of the accesses before which a thread is switched, from 1.
@@ -25,7 +25,7 @@ pub(crate) struct Switches {
 /// The accesses of a thread.
 #[derive(Clone, Copy, Debug, Default)]
 struct ThreadAccesses {
-    /// The one that has been counted and not yet made.
+    /// The access that has been counted and not yet made.
     next: Option<(CodeAddr, GuestAddr)>,
     /// The last one.
     last: Option<(CodeAddr, GuestAddr)>,
@@ -37,7 +37,8 @@ impl Switches {
         Self { numbers, count: 0, threads: Default::default() }
     }
 
-    /// The point at which a thread is switched at an access that it is about to make; a store of eight bytes is two.
+    /// The point at which a thread is switched at an access that it is about to make; an eight-byte store has two
+    /// points.
     pub(crate) fn at(&mut self, access: &NextAccess, out: &mut Out) -> Option<SwitchPoint> {
         let NextAccess { thread, at, address, size, is_store, now } = *access;
         let accesses = &mut self.threads[thread.index()];
@@ -72,13 +73,13 @@ impl Switches {
         is_switched
     }
 
-    /// Counts a point; whether a thread is switched there.
+    /// Counts a point; returns whether a thread is switched there.
     fn count(&mut self) -> bool {
         self.count += 1;
         self.numbers.contains(&self.count)
     }
 
-    /// A thread has made an access.
+    /// Notes that a thread has made an access.
     pub(crate) fn made(&mut self, thread: ThreadId, at: CodeAddr, address: GuestAddr) {
         let accesses = &mut self.threads[thread.index()];
         accesses.next = None;

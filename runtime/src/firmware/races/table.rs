@@ -19,7 +19,7 @@ type Page = Box<[u32; PAGE as usize]>;
 /// The cells that were accessed.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cells {
-    /// The pages of the first region, then those of the second; `None` for one that was not needed yet.
+    /// The pages of the first region, then those of the second; `None` for a page that was not needed yet.
     pages: Vec<Option<Page>>,
     /// The cells with their addresses, from number 1.
     cells: Vec<(u32, Cell)>,
@@ -82,11 +82,11 @@ impl Cells {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Uses([Option<Box<Use>>; CONTEXTS]);
 
-/// The accesses of a context that has made none.
+/// The accesses of a context without any.
 static NONE: Use = Use::NONE;
 
 impl Uses {
-    /// Those of contexts that have made some.
+    /// The contexts that have made accesses, with their accesses.
     pub(super) fn iter(&self) -> impl Iterator<Item = (usize, &Use)> {
         self.0.iter().enumerate().filter_map(|(context, used)| Some((context, &**used.as_ref()?)))
     }

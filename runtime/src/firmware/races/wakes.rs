@@ -1,7 +1,7 @@
 //! Threads that pause themselves until another resumes them.
 //!
-//! The thread tests a cell and pauses itself; the other stores the cell and resumes it. If the other comes between test
-//! and pause, its call finds the thread active and does nothing, and the pause lasts forever.
+//! The thread tests a cell and pauses itself; the other thread stores the cell and resumes it. If that happens between
+//! test and pause, the resume finds the thread active and does nothing, and the pause lasts forever.
 
 use kmotiondef::{CodeAddr, ThreadId};
 

@@ -1,9 +1,9 @@
-//! The window on flash memory, for a board that is strict about it.
+//! The window on flash memory, for a board with strict flash.
 //!
-//! The chip has more address lines than the bus: `SetFlashBank` sets its lines 14 to 19, and a read finds the 32 KiB of
-//! that bank wherever it looks. Programs that forget to select a bank read the wrong one; a board that is not strict
-//! shows all of the chip where it is, and hides their mistake. Here guest memory holds what can be seen, and the chip
-//! is kept beside it.
+//! The chip has more address lines than the bus: `SetFlashBank` sets its lines 14 to 19, and every read is from the 32
+//! KiB of that bank, whatever its address. Programs that forget to select a bank read the wrong one; a board that is
+//! not strict shows the whole chip at its addresses, and hides the mistake. Here guest memory holds the visible bytes,
+//! and the chip is kept separately.
 
 use chips::flash::{COMMANDS, USER};
 use kmotiondef::GuestAddr;
@@ -27,21 +27,21 @@ const BANK_BITS: u32 = 0x1F_C000;
 /// Below this offset is the boot sector.
 const BOOT_SECTOR: u32 = 0x1_0000;
 
-/// The bank of an address was not selected, because it belongs to the boot sector; the board prints a message.
+/// The bank of an address was not selected, because it contains the boot sector; the board prints a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub(crate) struct Refused;
 
-/// The selected bank; no chip where all of flash is seen.
+/// The selected bank; without a chip where all of flash is visible.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Banks {
     chip: Option<Chip>,
-    /// The bank that was refused last. The message for it comes again only after another bank was refused.
+    /// The bank that was refused last. The message for it is repeated only after another bank was refused.
     refused: Option<u32>,
 }
 
 impl Banks {
-    /// From now on one bank is seen, the first one to begin with.
+    /// Makes a single bank visible from now on, initially the first.
     pub(crate) fn be_strict(&mut self, memory: &mut GuestMemory) {
         self.chip = Some(Chip { bytes: flash(memory), bank: 0 });
         self.show(memory);
@@ -51,7 +51,7 @@ impl Banks {
     pub(crate) fn select(&mut self, address: GuestAddr, memory: &mut GuestMemory) -> Result<(), Refused> {
         let address = address.get();
         let offset = address % FLASH.size;
-        // A program may select the places of the chip's commands there; instead of others it gets the users' half.
+        // A program may select the addresses of the chip's commands there; for other addresses it gets the user half.
         let is_refused = offset < BOOT_SECTOR && !COMMANDS.contains(&address);
         if let Some(chip) = &mut self.chip {
             chip.bank = (if is_refused { USER } else { offset }) as usize / BANK;
@@ -61,7 +61,7 @@ impl Banks {
         if is_refused && self.refused.replace(bank) != Some(bank) { Err(Refused) } else { Ok(()) }
     }
 
-    /// Does something that needs all of flash where it is.
+    /// Runs an action that needs all of flash at its addresses.
     pub(crate) fn with_chip<R>(
         &mut self,
         memory: &mut GuestMemory,

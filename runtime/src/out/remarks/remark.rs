@@ -9,7 +9,7 @@ use super::Message;
 /// The weight of a remark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// A remark for those who ask for all of them.
+    /// A remark that is only shown when all remarks are requested.
     Detail,
     /// A step that a program may have forgotten; a machine file can switch these off.
     Hint,
@@ -20,7 +20,7 @@ pub enum Severity {
 /// The subject of a remark.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Speaker {
-    /// The board, or what is around it.
+    /// The board, or its surroundings.
     #[default]
     Board,
     /// A call of a thread.
@@ -32,7 +32,7 @@ pub enum Speaker {
 }
 
 impl From<Option<ThreadId>> for Speaker {
-    /// The thread of a call; without one it is the call-back.
+    /// The thread of a call; `None` means the call-back.
     fn from(thread: Option<ThreadId>) -> Self {
         thread.map_or(Self::CallBack, Self::Thread)
     }

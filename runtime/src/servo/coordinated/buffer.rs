@@ -17,10 +17,10 @@ use crate::arithmetic::doubles::log;
 use crate::out::Message;
 use crate::views::Typed;
 
-/// The result of `ExecTime` in place of a time of 0 when nothing is executing.
+/// The result of `ExecTime` instead of a time of 0 when nothing is executing.
 const IDLE: f64 = -0.001;
 
-/// The entry of an index, which may be any number a program has stored.
+/// The entry of an index, which may be any number that a program has stored.
 fn entry(memory: &GuestMemory, index: i32) -> Entry {
     Entry::at(memory.get(PARAMETRIC_COEFFS).offset((index as u32).wrapping_mul(SIZE)))
 }
@@ -63,10 +63,10 @@ pub(crate) fn open(memory: &mut GuestMemory) {
     memory.set(LAST_COORD_SYSTEM0, start);
 }
 
-/// Takes the entry at the index, which has just been filled, into the path.
+/// Adds the entry at the index, which has just been filled, to the path.
 ///
 /// # Errors
-/// The path being executed has been overwritten: the result says so.
+/// The path being executed has been overwritten.
 pub(crate) fn advance(memory: &mut GuestMemory) -> Result<(), Message> {
     let filled = next_written(memory);
     add(memory, CS0_TIME_DOWNLOADED, filled.duration(memory));
@@ -91,7 +91,7 @@ fn add(memory: &mut GuestMemory, time: kmotiondef::Place<f64>, seconds: f64) {
     memory.set(time, memory.get(time) + seconds);
 }
 
-/// Executes what the buffer holds beyond what was executed before; a path being executed begins again.
+/// Executes the segments of the buffer that were not executed before; a path being executed begins again.
 pub(crate) fn execute(memory: &mut GuestMemory) {
     let klp = memory.get(KLP);
     memory.set(TAU_KLP, if klp > 0.0 { divide(-TIMEBASE, log(klp)) as f32 } else { 0.0 });

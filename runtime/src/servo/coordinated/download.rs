@@ -1,4 +1,4 @@
-//! Entries as the PC sends them: lines, arcs and commands, each put where the next entry goes.
+//! Entries sent by the PC: lines, arcs and commands, each stored at the next free entry.
 //!
 //! The board reads all numbers of a download as singles.
 
@@ -63,7 +63,7 @@ pub(crate) enum Plane {
 }
 
 impl Plane {
-    /// The letters of cosine and sine, and the one that is left.
+    /// The letters of cosine and sine, and the remaining one.
     fn letters(self) -> [usize; 3] {
         match self {
             Self::Xy => [0, 1, 2],
@@ -183,8 +183,8 @@ fn set_arc(memory: &mut GuestMemory, entry: Entry, coefficients: Field<TripCircl
     }
 }
 
-/// Fills the slots after the first two. Odd and kept: the slot of the letter that is left of X, Y and Z is filled if Z
-/// has an axis, whichever letter it is; what is not filled keeps what an earlier entry has left there.
+/// Fills the slots after the first two. Board quirk: the slot of the remaining letter of X, Y and Z is filled if Z has
+/// an axis, whichever letter it is; slots that are not filled keep their old contents.
 fn set_lines(memory: &mut GuestMemory, entry: Entry, letters: [usize; LETTERS], begin: &Point, end: &Point) {
     let has_axis = system::letters(memory).map(|axis| axis.is_some());
     let slots = LINEAR.into_iter().zip(letters.into_iter().skip(2)).zip(has_axis.into_iter().skip(2));

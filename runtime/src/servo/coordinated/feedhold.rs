@@ -9,7 +9,7 @@ use vm::memory::GuestMemory;
 use super::{rate, system};
 use crate::views::Typed;
 
-/// Seconds that stopping a path takes at least.
+/// The minimum time for stopping a path, in seconds.
 const LEAST_STOPPING_TIME: f32 = 1e-6;
 
 /// The progress of a feedhold.
@@ -51,14 +51,14 @@ impl HoldState {
     }
 }
 
-/// Notes how long a stop from the present speeds takes.
+/// Notes the duration of a stop from the present speeds.
 ///
-/// The caller has seen that no feedhold is on.
+/// The caller has checked that no feedhold is active.
 pub(crate) fn note_time(memory: &mut GuestMemory) {
     memory.set(CS0_DECEL_TIME, system::stopping_time(memory));
 }
 
-/// Begins to stop a path that is executing, in the time noted. Says whether there was one.
+/// Begins to stop an executing path, in the time that was noted. Returns whether there was one.
 pub(crate) fn stop(memory: &mut GuestMemory) -> bool {
     let executing = !memory.get(COORD_SYSTEM0).is_null();
     if executing {
@@ -80,7 +80,7 @@ pub(crate) fn resume(memory: &mut GuestMemory) -> bool {
     held
 }
 
-/// Ends a feedhold and the path, whether it is held or not; its times and its rate stay as they are.
+/// Ends a feedhold and the path, whether it is held or not; its times and its rate are unchanged.
 pub(crate) fn clear(memory: &mut GuestMemory) {
     memory.set(CS0_STOPPING_STATE, HoldState::Running.number());
     memory.set(COORD_SYSTEM0, GuestAddr::NULL);

@@ -1,9 +1,9 @@
 //! Coordinated motion: several axes on one path, and the clock that runs along it.
 //!
 //! A path is a list of [`segment`]s in guest memory, put there by the PC or by the program itself. Every tick the path
-//! time advances by the time base, whose ratio to a tick's length is the feed override; the segment at that time says
-//! where each axis is. All of this is in guest memory and live: a program may build the list and start it with nothing
-//! but assignments. Only the last segment of a smoothed path is kept here.
+//! time advances by the time base, whose ratio to a tick's length is the feed override; the segment at that time
+//! determines the position of each axis. All of this is live in guest memory: a program may build the list and start it
+//! by assignments alone. Only the last segment of a smoothed path is kept here.
 //!
 //! Source: `coordinated-motion.md`; where it differs from the recorded runs (`coord.jsonl`), the runs win.
 
@@ -22,7 +22,7 @@ pub(crate) mod system;
 use kmotiondef::Bit;
 use vm::memory::GuestMemory;
 
-/// The inputs and outputs that a path drives and waits for.
+/// The inputs and outputs that a path drives or waits for.
 pub(crate) trait Bits {
     /// Returns whether a bit is high.
     fn is_high(&mut self, memory: &GuestMemory, bit: Bit) -> bool;
@@ -31,7 +31,7 @@ pub(crate) trait Bits {
     fn drive(&mut self, memory: &mut GuestMemory, bit: Bit, high: bool);
 }
 
-/// The state of coordinated motion from tick to tick, besides guest memory.
+/// The state of coordinated motion between ticks, in addition to guest memory.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Coordinated {
     /// The last segment of a smoothed path, while it lasts.

@@ -15,7 +15,7 @@ use super::{Bits, Coordinated, buffer, rate};
 use crate::servo::spindle;
 use crate::views::Typed;
 
-/// Seconds before its end where a path is held that must not end yet.
+/// The time before its end at which a path that must not end yet is held, in seconds.
 const HELD_SHORT: f64 = 1e-6;
 
 /// The position on the path after its commands have been executed.
@@ -76,7 +76,7 @@ impl Coordinated {
         }
     }
 
-    /// Ends the path at its end entry, unless it is held open. The axes stay where the last tick has left them.
+    /// Ends the path at its end entry, unless it is held open. The axes stay at their positions of the last tick.
     fn end(&mut self, memory: &mut GuestMemory, entry: Entry) {
         memory.set(COORD_SYSTEM0, entry.address());
         if !is_held_open(memory) {
@@ -85,7 +85,7 @@ impl Coordinated {
         }
     }
 
-    /// One tick of the last segment, if there is one; after it the path is done.
+    /// One tick of the last, smoothed segment, if there is one; after it the path is done.
     fn follow_spline(&mut self, memory: &mut GuestMemory) {
         self.spline.take_if(|spline| !spline.step(memory));
         if self.spline.is_none() {
@@ -106,12 +106,12 @@ fn clock(memory: &GuestMemory) -> (GuestAddr, [f64; 3], i32) {
     (memory.get(COORD_SYSTEM0), times, memory.get(CS0_STOPPING_STATE))
 }
 
-/// Drops the path at once; its times and its axes stay as they are.
+/// Drops the path immediately; its times and its axes are unchanged.
 pub(crate) fn abort(memory: &mut GuestMemory) {
     memory.set(COORD_SYSTEM0, GuestAddr::NULL);
 }
 
-/// Drops the path at once, and what `ExecBuf` would begin: nothing runs until the buffer is opened again.
+/// Drops the path immediately, together with the segments for `ExecBuf`: nothing runs until the buffer is opened again.
 pub(crate) fn drop_all(memory: &mut GuestMemory) {
     abort(memory);
     memory.set(LAST_COORD_SYSTEM0, GuestAddr::NULL);
@@ -129,8 +129,8 @@ fn is_held_open(memory: &GuestMemory) -> bool {
     memory.get(CS0_HOLD_AT_END) != 0
 }
 
-/// Rests at a command or at a held end. Only backwards does the path time continue, into the segment before. A path that
-/// has not moved yet keeps its time base.
+/// Waits at a command or at a held end. Only backwards does the path time continue, into the previous segment. A path
+/// that has not moved yet keeps its time base.
 fn wait(memory: &mut GuestMemory, entry: Entry) {
     memory.set(COORD_SYSTEM0, entry.address());
     let time_base = memory.get(CS0_TIME_BASE);
@@ -144,7 +144,7 @@ fn wait(memory: &mut GuestMemory, entry: Entry) {
     }
 }
 
-/// Carries out the commands from an entry on, up to one that waits.
+/// Executes the commands from an entry on, up to one that waits.
 fn pass_commands(memory: &mut GuestMemory, bits: &mut impl Bits, mut entry: Entry) -> Halt {
     for _ in 0..MAX_SEGMENTS {
         match entry.kind(memory) {
@@ -159,7 +159,7 @@ fn pass_commands(memory: &mut GuestMemory, bits: &mut impl Bits, mut entry: Entr
         }
         entry = buffer::after(memory, entry);
     }
-    // A ring of nothing but commands: the next tick goes on.
+    // A ring that contains only commands: the next tick continues.
     Halt::Wait(entry)
 }
 
@@ -167,7 +167,7 @@ fn pass_commands(memory: &mut GuestMemory, bits: &mut impl Bits, mut entry: Entr
 fn go_on(memory: &mut GuestMemory, bits: &mut impl Bits, mut entry: Entry) -> Halt {
     for _ in 0..MAX_SEGMENTS {
         let (t, duration) = (memory.get(CS0_T), entry.duration(memory));
-        // A duration that is no number never passes.
+        // A NaN duration never passes.
         if t.partial_cmp(&duration).is_none_or(std::cmp::Ordering::is_lt) {
             break;
         }
@@ -188,7 +188,7 @@ fn go_on(memory: &mut GuestMemory, bits: &mut impl Bits, mut entry: Entry) -> Ha
 }
 
 /// Goes back over the segments that the path time has left. The axes stop abruptly at the beginning of the first one,
-/// where the time base stays what it is.
+/// where the time base is unchanged.
 fn go_back(memory: &mut GuestMemory, mut entry: Entry) -> Entry {
     for _ in 0..MAX_SEGMENTS {
         let t = memory.get(CS0_T);

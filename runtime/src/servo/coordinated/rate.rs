@@ -1,4 +1,4 @@
-//! The time base: the rate of path time, and the rate that it ramps to.
+//! The time base: the rate of path time, and the target rate of its ramp.
 //!
 //! An override of 1.0 advances the path by a tick's length every tick. Two overrides are kept, one of them for rapids.
 
@@ -23,25 +23,25 @@ pub(crate) fn current_override(memory: &GuestMemory) -> f32 {
     if memory.get(CS0_DOING_RAPID) != 0 { memory.get(CS0_LAST_RAPID_FRO) } else { memory.get(CS0_LAST_FRO) }
 }
 
-/// Sets the feed override and ramps to the one that applies, with `time` seconds for a change of 1.0.
+/// Sets the feed override and ramps to the override that applies, with `time` seconds for a change of 1.0.
 pub(crate) fn set_feed(memory: &mut GuestMemory, fro: f32, time: f32) {
     memory.set(CS0_LAST_FRO, fro);
     aim_unless_held(memory, time);
 }
 
-/// Sets the override of rapids and ramps to the one that applies, with `time` seconds for a change of 1.0.
+/// Sets the override of rapids and ramps to the override that applies, with `time` seconds for a change of 1.0.
 pub(crate) fn set_rapid(memory: &mut GuestMemory, fro: f32, time: f32) {
     memory.set(CS0_LAST_RAPID_FRO, fro);
     aim_unless_held(memory, time);
 }
 
-/// Ramps to an override even in feedhold; a resume does not come back to it.
+/// Ramps to an override even in feedhold; a resume does not restore the previous one.
 pub(crate) fn aim(memory: &mut GuestMemory, fro: f32, time: f32) {
     memory.set(CS0_TIME_BASE_DESIRED, f64::from(fro) * TIMEBASE);
     memory.set(CS0_TIME_BASE_DELTA, change_per_tick(time));
 }
 
-/// In a feedhold only the rate of the change is taken over.
+/// Ramps to the override that applies; in a feedhold, only the rate of the change is updated.
 fn aim_unless_held(memory: &mut GuestMemory, time: f32) {
     if HoldState::of(memory) == HoldState::Running {
         aim(memory, current_override(memory), time);
@@ -50,8 +50,8 @@ fn aim_unless_held(memory: &mut GuestMemory, time: f32) {
     }
 }
 
-/// The change of the time base in a tick when a change of 1.0 takes `time` seconds. In no time it is not a number, which
-/// limits nothing because no comparison with it holds.
+/// The change of the time base per tick when a change of 1.0 takes `time` seconds. For a time of 0 it is NaN, which
+/// limits nothing because comparisons with it are false.
 fn change_per_tick(time: f32) -> f64 {
     if time > 0.0 { TIMEBASE_SQUARED / f64::from(time) } else { f64::from_bits(u64::MAX >> 1) }
 }
@@ -63,7 +63,7 @@ pub(crate) fn start(memory: &mut GuestMemory, change_time: f32) {
     jump(memory, f64::from(current_override(memory)) * TIMEBASE);
 }
 
-/// Sets a time base at once.
+/// Sets a time base without a ramp.
 fn jump(memory: &mut GuestMemory, time_base: f64) {
     memory.set(CS0_TIME_BASE, time_base);
     memory.set(CS0_TIME_BASE_DESIRED, time_base);
@@ -91,13 +91,13 @@ pub(crate) fn ramp(memory: &mut GuestMemory) {
         aim
     };
     memory.set(CS0_TIME_BASE, next);
-    // Odd and kept: a path that runs backwards stops without a change of the state.
+    // Board quirk: a path that runs backwards stops without a change of the state.
     if HoldState::of(memory) == HoldState::StoppingPath && next == 0.0 && now > 0.0 {
         memory.set(CS0_STOPPING_STATE, HoldState::PathStopped.number());
     }
 }
 
-/// Returns whether a path at the rate `now` has to stop for want of segments: more may come, as `CS0_Flushed` is 0.
+/// Returns whether a path at the rate `now` must stop for lack of segments: more may come, as `CS0_Flushed` is 0.
 pub(crate) fn starves(memory: &GuestMemory, now: f64) -> bool {
     let desired = memory.get(CS0_TIME_BASE_DESIRED);
     let position = memory.get(CS0_TIME_EXECUTED) + memory.get(CS0_T);
@@ -106,7 +106,7 @@ pub(crate) fn starves(memory: &GuestMemory, now: f64) -> bool {
     memory.get(CS0_FLUSHED) == 0 && desired > 0.0 && now >= 0.0 && ahead - RESERVE < stopping
 }
 
-/// Returns the rate that the ramp may aim at: standstill as soon as the rest of the data is needed for stopping.
+/// Returns the target rate of the ramp: 0 as soon as the remaining segments are needed for stopping.
 fn aim_within_data(memory: &GuestMemory, now: f64) -> f64 {
     let desired = memory.get(CS0_TIME_BASE_DESIRED);
     let position = memory.get(CS0_TIME_EXECUTED) + memory.get(CS0_T);

@@ -1,8 +1,8 @@
 //! Replays the recorded coordinated motion of the released firmware.
 //!
-//! A recording is a list of script commands with the ticks at which they were sent, and rows of what guest memory held
-//! after some ticks. The script commands needed for that are interpreted here, by hand; the board after them is
-//! complete. [`IN_SLICE`] lists the two rows that differ; the test fails when one of them no longer does.
+//! A recording is a list of script commands with the ticks at which they were sent, and rows of the contents of guest
+//! memory after some ticks. The script commands are interpreted here, by hand; the rest of the board is complete.
+//! [`IN_SLICE`] lists the two rows that differ; the test fails if one of them no longer differs.
 
 use std::collections::VecDeque;
 
@@ -26,11 +26,11 @@ use crate::text::vectors::rows;
 use crate::views::Typed;
 
 /// Rows that were read in the middle of a slice, by the recording and its ticks: the primary thread had not yet stored
-/// the stop that it was computing. Nothing runs between that and the next tick, so that no program sees such a moment.
+/// the stop that it was computing. No program runs between this point and the next tick, so none can observe it.
 const IN_SLICE: (&str, [u64; 2]) =
     ("limit switch action stop during buffer execution, resume into the limit", [3002, 6004]);
 
-/// A spindle that a recording turned: the axis whose position was written, its position at first and its counts a tick.
+/// A spindle turned by a recording: the axis whose position was written, its initial position and its counts per tick.
 struct Turning {
     name: &'static str,
     axis: i32,
@@ -88,7 +88,7 @@ struct RecordedBoard {
 impl RecordedBoard {
     fn new() -> Self {
         let mut bench = TestBench::new();
-        // Nobody requested the status while the recordings were made.
+        // The status was not requested while the recordings were made.
         bench.kernel.parts.pc.host.connect(false);
         system::assign(&mut bench.memory, &[0, 1, -1, -1]);
         for axis in AxisId::all().take(3) {
@@ -102,7 +102,7 @@ impl RecordedBoard {
         Self { bench, waiting: None, precision: 1e-9, done: VecDeque::new() }
     }
 
-    /// Notes the answer to a thread that asks now.
+    /// Notes the answer that a thread would get now.
     fn ask(&mut self) {
         self.done.push_front(self.bench.call_i32("CheckDoneBuf", &[]));
         self.done.truncate(3);
@@ -267,8 +267,7 @@ impl RecordedBoard {
         Ok(String::new())
     }
 
-    /// Returns whether a value is equal except for the digits that the recording leaves out and what its precision
-    /// allows.
+    /// Returns whether a value is equal within the digits and the precision of the recording.
     fn is_close(&self, column: usize, found: f64, expect: f64, [extent, path_time]: [f64; 2]) -> bool {
         let tolerance = match column {
             1 => self.precision * path_time.abs(),
@@ -307,7 +306,7 @@ impl RecordedBoard {
         if let Some((column, value)) = wrong {
             return Some(format!("column {column}: {value:?} instead of {}", row[*column]));
         }
-        // The recording asked from a thread, up to two ticks before.
+        // The recording queried it from a thread, up to two ticks before.
         let done = &row[11];
         let seen = self.done.iter().any(|&value| done.as_i64() == Some(value.into()));
         (!seen).then(|| format!("CheckDoneBuf: {:?} instead of {done}", self.done))
@@ -353,7 +352,7 @@ fn arc(memory: &mut GuestMemory, plane: Plane, numbers: &[f32]) {
         angle: numbers[4],
         turn: numbers[5],
     };
-    // The letter outside the plane comes first.
+    // The letter outside of the plane comes first.
     let rest = match plane {
         Plane::Xy => 2,
         Plane::Zx => 1,
@@ -373,7 +372,7 @@ fn add(memory: &mut GuestMemory, command: Command) {
     download::command(memory, command).expect("room");
 }
 
-/// The letters from one on; the others are at 0.
+/// The letters from `first` on, set from numbers; the others are 0.
 fn point(first: usize, numbers: &[f32]) -> Point {
     let mut point = Point::default();
     point[first..first + numbers.len()].copy_from_slice(numbers);

@@ -88,7 +88,7 @@ impl Command {
 pub(crate) struct Entry(Place<ParametricCoeff>);
 
 impl Entry {
-    /// The entry at an address, whatever is there.
+    /// The entry at an address, whatever its contents.
     pub(crate) const fn at(address: GuestAddr) -> Self {
         Self(Place::new(address))
     }
@@ -122,7 +122,7 @@ impl Entry {
         memory.set(self.field(ParametricCoeff::TRAJECTORY_MODE), TrajectoryMode::Off.get() as i8);
     }
 
-    /// Seconds of path time it takes; none unless it is a segment.
+    /// Its duration in seconds of path time; 0 unless it is a segment.
     pub(crate) fn duration(self, memory: &GuestMemory) -> f64 {
         match self.kind(memory) {
             Kind::Segment(_) => memory.get(self.field(ParametricCoeff::T)),

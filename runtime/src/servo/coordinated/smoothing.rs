@@ -20,7 +20,7 @@ pub(crate) fn move_to(memory: &mut GuestMemory, axis: AxisId, position: f64) {
     memory.set_axis(axis, Chan::DEST, dest);
 }
 
-/// The way from where the filter has left the axes to the end of the path.
+/// The path from the axes' positions after the filter to the end of the path.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Spline {
     /// The entry that ended the path; a program that starts another path moves away from it.
@@ -69,11 +69,11 @@ struct Cubic {
 }
 
 impl Spline {
-    /// The spline from the axes' destinations and velocities to rest at the end of the path; `None` if the path is
-    /// not smoothed or has not moved. One that is smoothed by a `KLP` without its `TauKLP` divides by a duration of 0: the
-    /// destinations are not numbers then (coordinated-motion.md section 6).
+    /// The spline from the axes' destinations and velocities to rest at the end of the path; `None` if the path is not
+    /// smoothed or has not moved. If it is smoothed by a `KLP` without `TauKLP`, it divides by a duration of 0, and the
+    /// destinations become NaN (coordinated-motion.md section 6).
     ///
-    /// It moves the axes of the last segment, which need not be those of the coordinate system any more.
+    /// It moves the axes of the last segment, which may no longer be those of the coordinate system.
     pub(crate) fn plan(memory: &GuestMemory, end: GuestAddr) -> Option<Self> {
         let last = memory.get(LAST_VALID_TRAJ_SEGMENT);
         if memory.get(KLP) == 0.0 || last.is_null() {
@@ -90,7 +90,7 @@ impl Spline {
         self.end == end
     }
 
-    /// One tick. Says whether another one follows: there is one at least.
+    /// Executes one tick. Returns whether another one follows; there is always at least one.
     pub(crate) fn step(&mut self, memory: &mut GuestMemory) -> bool {
         for cubic in self.cubics.iter().flatten() {
             memory.set_axis(cubic.axis, Chan::DEST, cubic.at(self.t));

@@ -1,4 +1,4 @@
-//! The coordinate system: which axes its eight letters drive, and how fast those can change speed.
+//! The coordinate system: the axes driven by its eight letters, and the time they need to change speed.
 
 use kmotiondef::limits::TIMEBASE;
 use kmotiondef::structs::Chan;
@@ -35,7 +35,7 @@ pub(crate) fn is_member(memory: &GuestMemory, axis: AxisId) -> bool {
     letters(memory).contains(&Some(axis))
 }
 
-/// Assigns axis numbers to the first letters, -1 for none; the other letters keep theirs.
+/// Assigns axis numbers to the first letters, -1 for none; the other letters are unchanged.
 pub(crate) fn assign(memory: &mut GuestMemory, axes: &[i32]) {
     for (letter, &axis) in LETTER_AXES.into_iter().zip(axes) {
         memory.set(letter, axis);
@@ -65,7 +65,7 @@ pub(crate) fn nominal_change_time(memory: &GuestMemory) -> f32 {
 /// Seconds in which every axis of the system can stop from its present speed; 0 at rest.
 pub(crate) fn stopping_time(memory: &GuestMemory) -> f32 {
     let velocity = |axis| {
-        // The board does not use `last_vel` here: it multiplies singles.
+        // The board does not use `last_vel` here; it multiplies singles.
         let way = (memory.axis(axis, Chan::DEST) - memory.axis(axis, Chan::LAST_DEST)) as f32;
         way * TICKS_PER_SECOND
     };
@@ -75,7 +75,8 @@ pub(crate) fn stopping_time(memory: &GuestMemory) -> f32 {
 /// Ticks in a second, as a single.
 const TICKS_PER_SECOND: f32 = (1.0 / TIMEBASE) as f32;
 
-/// Seconds an axis needs between rest and a velocity; the board's formula counts the jerk phases twice.
+/// The time that an axis needs between rest and a velocity, in seconds; the board's formula counts the jerk phases
+/// twice.
 fn change_time(memory: &GuestMemory, axis: AxisId, velocity: f32) -> f32 {
     let velocity = velocity.abs();
     let ramps = root(f64::from(divide_singles(2.0 * velocity, memory.axis(axis, Chan::JERK)))) as f32;

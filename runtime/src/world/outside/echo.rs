@@ -1,4 +1,4 @@
-//! A device on the UART that sends back what it gets.
+//! A device on the UART that echoes the characters it receives.
 
 use kmotiondef::Cycles;
 

@@ -1,8 +1,9 @@
 //! A Modbus slave on the UART: it keeps registers, and answers requests to its address.
 //!
-//! Frames are those of Modbus RTU: address, function, data, a checksum with its low byte first. The slave knows the
-//! functions 3 and 4 (read registers), 6 (write one) and 16 (write several); it answers others, and registers that it
-//! does not have, with an exception. It answers neither a wrong checksum nor a frame for all slaves, address 0.
+//! Frames are those of Modbus RTU: address, function, data, a checksum with its low byte first. The slave supports the
+//! functions 3 and 4 (read registers), 6 (write one) and 16 (write several); it answers other functions, and registers
+//! that it does not have, with an exception. It does not answer frames with a wrong checksum or broadcasts to address
+//! 0.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +15,7 @@ use crate::world::attached::Settings;
 /// Registers that one request may name.
 const MOST: u16 = 125;
 
-/// Time without a character after which the rest of a frame is not waited for: 20 ms.
+/// The pause after which the rest of a frame is no longer expected: 20 ms.
 const GAP: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 50);
 
 /// The reason of a refusal: an exception code of the protocol.
@@ -51,7 +52,7 @@ impl Modbus {
         Ok(Self { address, registers, delay, frame: Vec::new(), last: Cycles::default() })
     }
 
-    /// The answer to a request without its checksum; an exception if it is refused.
+    /// The answer to a request without the checksum; an exception if it is refused.
     fn answer(&mut self, request: &[u8]) -> Vec<u8> {
         let function = request.get(1).copied().unwrap_or_default();
         let head = [self.address, function];
@@ -89,7 +90,7 @@ impl Modbus {
         }
     }
 
-    /// The values of registers that are all there.
+    /// The values of registers, if all of them exist.
     fn present(&self, first: u16, count: u16) -> Result<Vec<u16>, Refusal> {
         if !(1..=MOST).contains(&count) {
             return Err(Refusal::WrongCount);
@@ -130,7 +131,7 @@ fn registers(text: &str) -> Option<BTreeMap<u16, u16>> {
     text.split(',').map(pair).collect()
 }
 
-/// The length of a frame with its checksum, as far as its beginning says it.
+/// The length of a frame with its checksum, as far as its beginning determines it.
 fn length(frame: &[u8]) -> usize {
     match frame.get(1) {
         Some(16 | 15) => 9 + usize::from(frame.get(6).copied().unwrap_or_default()),

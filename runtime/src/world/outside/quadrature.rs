@@ -1,7 +1,7 @@
-//! An encoder whose two phases are outputs of the board: what a program or a step generator shows there turns the load
-//! of an axis, so that the axis' encoder counts it.
+//! An encoder whose two phases are outputs of the board: signals from a program or a step generator there turn the load
+//! of an axis, so that the axis' encoder counts them.
 //!
-//! Each edge is a count, four in a period. Both phases at once are not a count but a mistake, as for the real counter.
+//! Each edge is a count, four in a period. A change of both phases at once is an error, as for the real counter.
 
 use kmotiondef::{Axes, AxisId, Bit};
 

@@ -1,8 +1,8 @@
-//! A resistor and a capacitor at outputs: the voltage is exact between edges, and an analog input sees it.
+//! A resistor and a capacitor at outputs: the voltage is exact between edges, and is read by an analog input.
 //!
-//! `high` alone drives the resistor to the supply and to ground; with `low` beside it each output only drives one way,
+//! `high` alone drives the resistor to the supply and to ground; together with `low`, each output drives only one way,
 //! and the capacitor keeps its voltage while neither does. With `konnect` the two are outputs 0 to 15 of that board. An
-//! output that carries a pulse width signal is followed edge by edge.
+//! output with a pulse-width signal is followed edge by edge.
 
 use kmotiondef::{Bit, Cycles};
 

@@ -1,7 +1,7 @@
-//! A resolver that the program excites: an output drives its coil, two analog inputs see its windings.
+//! A resolver that the program excites: an output drives its coil, two analog inputs read its windings.
 //!
-//! While the current in the coil grows the windings show the sine and cosine of the angle, while it falls their
-//! negatives; a capacitor smooths what they show. The angle is where the load of the axis is. Source: the manual's
+//! While the current in the coil grows, the windings show the sine and cosine of the angle, and while it falls, their
+//! negatives; a capacitor smooths these voltages. The angle is the position of the axis' load. Source: the manual's
 //! resolver example.
 
 use kmotiondef::{Axes, AxisId, Bit, Cycles};
@@ -21,7 +21,7 @@ pub(crate) struct Resolver {
     sine: usize,
     cosine: usize,
     axis: AxisId,
-    /// Units of the load in a turn.
+    /// Units of the load per turn.
     turn: f64,
     /// Counts at the full amplitude.
     amplitude: f64,

@@ -1,8 +1,9 @@
 //! A slave on a synchronous serial bus, most significant bit first.
 //!
-//! While it is selected (low) it shows the next bit of its word on `out` after each falling edge of the clock and takes
-//! `in` at each rising one; the first bit shows when it is selected. That is mode 0, as thermocouple converters,
-//! shift registers and port expanders have it. Each selection sends the next word of the list; the last one stays.
+//! While it is selected (low) it drives the next bit of its word on `out` after each falling edge of the clock and
+//! samples `in` at each rising edge; the first bit appears when it is selected. That is mode 0, which is used by
+//! thermocouple converters, shift registers and port expanders. Each selection sends the next word of the list; the
+//! last one is repeated.
 
 use kmotiondef::Bit;
 
@@ -24,7 +25,7 @@ pub(crate) struct Spi {
     input: Option<Bit>,
     bits: u32,
     words: Vec<u32>,
-    /// Sends what it received the time before, as a shift register does.
+    /// Sends the word received during the previous selection, as a shift register does.
     is_looped: bool,
     /// The number of times it was selected.
     turns: usize,

@@ -14,7 +14,7 @@ use chips::kanalog::Kanalog;
 use chips::pins::Pins;
 use chips::uart::Uart;
 
-/// A device and what it can reach.
+/// A device and its board.
 pub(crate) struct Bench {
     pub(crate) device: Box<dyn Attached>,
     pub(crate) pins: Pins,

@@ -16,7 +16,7 @@ pub(crate) struct Wire {
     to: Bit,
     is_inverted: bool,
     delay: Cycles,
-    /// Levels on their way, if it delays.
+    /// Levels in transit, if the wire delays.
     late: VecDeque<(Cycles, bool)>,
     is_connected: bool,
 }
@@ -61,7 +61,7 @@ impl Attached for Wire {
 
     fn tick(&mut self, now: Cycles, outside: &mut Outside<'_>) {
         if !self.is_connected {
-            // It was not told that its output is high.
+            // It was not notified that its output is high.
             self.is_connected = true;
             outside.pins.drive(self.to, self.is_inverted, now);
         }

@@ -1,7 +1,7 @@
 //! An operator for programs that wait for undriven inputs: `--assist`.
 //!
-//! When the programs have done nothing for two seconds but look at inputs and wait, one of these inputs is toggled
-//! for a tenth of a second; if nothing comes of that, the next one. All in board time. Source: plant.md section 7.
+//! When the programs have only polled inputs and waited for two seconds, one of these inputs is toggled for a tenth of
+//! a second; if that has no effect, the next one. All times are board time. Source: plant.md section 7.
 
 use std::collections::BTreeMap;
 
@@ -33,9 +33,9 @@ pub(crate) enum Step {
 /// The operator.
 #[derive(Clone, Debug)]
 pub(crate) struct Assist {
-    /// Inputs that were read since the programs last did something, and by whom.
+    /// Inputs that were read since the last other action of the programs, and their readers.
     polled: BTreeMap<Bit, Asker>,
-    /// When something is done next.
+    /// The time of the next action.
     next: Cycles,
     pressed: Option<Bit>,
     /// True if the programs have reacted since it was pressed.
@@ -49,7 +49,7 @@ impl Assist {
         Self { polled: BTreeMap::new(), next: now + PATIENCE, pressed: None, has_helped: false, last: None }
     }
 
-    /// A program has called a function, perhaps one of those that programs call while they wait.
+    /// Notes that a program has called a function, which may be one that programs call while they wait.
     pub(crate) fn called(&mut self, waits: bool, now: Cycles) {
         if !waits {
             self.polled.clear();
@@ -72,7 +72,7 @@ impl Assist {
         }
         self.next = now + PRESSED;
         if let Some(bit) = self.pressed.take() {
-            // Whoever answered by doing something is left alone for a while.
+            // A program that has reacted is not disturbed for a while.
             if self.has_helped {
                 self.next = now + PATIENCE;
             }
@@ -84,7 +84,7 @@ impl Assist {
         Some(Step::Press(bit, reader))
     }
 
-    /// Returns how many of the ticks after the one that began at `now` have nothing to do.
+    /// Returns the number of ticks without any action after the one that began at `now`.
     pub(crate) fn quiet_ticks(&self, now: Cycles) -> u64 {
         let rest = (self.next - now).get() / Cycles::PER_TICK.get() - 1;
         u64::try_from(rest).unwrap_or(0)

@@ -1,7 +1,7 @@
 //! Expectations: a value compared with another, a text on the console, the state of an axis or a thread.
 //!
-//! An expectation is met or not at an instant, and says then what was. [`monitor`](super::monitor) watches those that
-//! hold over a time.
+//! An expectation is checked at one instant, and reports the actual value. [`monitor`](super::monitor) watches
+//! expectations that hold over a time.
 
 use std::fmt;
 use std::sync::Arc;
@@ -19,7 +19,7 @@ use super::tokens::Mistake;
 use crate::views::Typed;
 use crate::world::trace::{Formula, Item, View};
 
-/// A statement that something is, or is not, so.
+/// A statement that a condition holds, or does not hold.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expectation {
     /// The fact to examine.
@@ -53,7 +53,7 @@ pub enum Predicate {
         /// The tolerance for equality.
         tolerance: f64,
     },
-    /// A console line so far contains the text.
+    /// The console output so far contains a line with the text.
     Printed(String),
     /// An axis is enabled, or disabled.
     Enabled(AxisId, bool),
@@ -64,7 +64,7 @@ pub enum Predicate {
 /// A value that expectations compare.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Subject {
-    /// An item of the board, and what statements call it.
+    /// An item of the board, and its name in statements.
     Item(Item, Arc<str>),
     /// An element of `persist.UserData`, or two.
     Persist(usize, Stored),
@@ -83,7 +83,7 @@ pub enum Stored {
     Double,
 }
 
-/// An expression, and what computes it once somebody who knows the programs has [resolved](super::Stimulus::resolve) it.
+/// An expression, and its evaluator once code that knows the programs has [resolved](super::Stimulus::resolve) it.
 #[derive(Clone, Debug)]
 pub struct Expression {
     /// The text.
@@ -103,7 +103,7 @@ const OF_AXIS: &[(&str, &str)] =
 
 /// The facts about a board that expectations examine.
 pub trait Facts {
-    /// Returns a value; `None` where it cannot be known.
+    /// Returns a value; `None` if it is unknown.
     fn value(&self, subject: &Subject) -> Option<f64>;
 
     /// Returns whether the text that an expectation waits for was printed.
@@ -161,7 +161,7 @@ impl Expectation {
                     let holds = relation.holds(value, *number, *tolerance);
                     (holds, format!("{subject} is {}", shown(value)))
                 }
-                // It is not met either way.
+                // It is not met in either case.
                 None => (!is_wanted, format!("{subject} has no value here")),
             },
             Predicate::Printed(text) => {
@@ -258,7 +258,7 @@ fn shown(value: f64) -> String {
 }
 
 impl Subject {
-    /// Its value; `None` for an expression that nobody has resolved.
+    /// Its value; `None` for an expression that has not been resolved.
     pub(super) fn value(&self, view: &View<'_>) -> Option<f64> {
         let user_data = PERSIST.field(Persist::USER_DATA);
         let word = |index| view.memory.get(user_data.element(index)).cast_unsigned();
@@ -301,7 +301,7 @@ pub(super) fn never(reader: &mut StatementReader<'_>) -> Result<Expectation, Mis
     Ok(Expectation { predicate: predicate(reader)?, sense: Sense::Never })
 }
 
-/// It is checked now, by who knows what was printed.
+/// Checks a statement in the place that knows the printed text.
 pub(super) fn check(scene: &mut Scene<'_, '_, '_>, _: Expectation) {
     scene.is_checked = true;
 }
@@ -372,7 +372,7 @@ fn axis(reader: &mut StatementReader<'_>) -> Result<Predicate, Mistake> {
     compared(reader, Subject::Item(item, format!("axis {axis} {name}").into()))
 }
 
-/// The form of an element is that of the value it is compared with.
+/// An element is read in the form of the number with which it is compared.
 fn persist(reader: &mut StatementReader<'_>) -> Result<Predicate, Mistake> {
     reader.advance();
     let index = reader.persist()?;
@@ -389,7 +389,7 @@ fn persist(reader: &mut StatementReader<'_>) -> Result<Predicate, Mistake> {
     Ok(Predicate::Value { subject: Subject::Persist(index, stored), relation, number, tolerance })
 }
 
-/// A relation, a number, and perhaps how far an equal value may be from it.
+/// Reads a relation, a number, and possibly a tolerance for an equal value.
 fn compared(reader: &mut StatementReader<'_>, subject: Subject) -> Result<Predicate, Mistake> {
     let relation = reader.relation()?;
     let number = reader.take("a number", |word| number(word).or_else(|| integer(word).map(f64::from)))?;

@@ -1,7 +1,7 @@
-//! Actions that give an input the level that it has already, and so change nothing.
+//! Actions that set an input to the level that it already has, and so change nothing.
 //!
-//! Each is probably the wrong level: of a contact that opens, of a switch that is closed at rest. An action that takes
-//! an input from its switch counts as a change, because the switch does not move the input any more.
+//! The level is probably wrong: that of a contact that opens, or of a switch that is closed at rest. An action that
+//! detaches an input from its switch counts as a change, because the switch no longer moves the input.
 
 use kmotiondef::Bit;
 
@@ -11,7 +11,7 @@ use super::scene::Scene;
 use super::wave::Wave;
 use chips::kanalog::conversion;
 
-/// The input and the level that it has already, if an action changes nothing.
+/// The input and its present level, if an action changes nothing.
 pub(super) fn state(scene: &Scene<'_, '_, '_>, action: &Action) -> Option<String> {
     let mechanics = &scene.access.machine.mechanics;
     match action {

@@ -1,6 +1,6 @@
-//! The stimulus: what the world around the board does, and when, as data.
+//! The stimulus: the actions of the world around the board, and their times, as data.
 //!
-//! One statement a line, in words: a moment, then what happens.
+//! One statement per line, in words: a moment, then an action.
 //!
 //! ```text
 //! # The operator presses start, the machine answers.
@@ -19,7 +19,7 @@
 //! ```
 //!
 //! Everything happens in board time, at the beginning of the first tick that does not begin before the moment, in the
-//! order of the text; so a run stays a function of its inputs. Source: plant.md section 8.
+//! order of the text; so a run remains a function of its inputs. Source: plant.md section 8.
 
 mod action;
 mod acts;
@@ -97,10 +97,10 @@ pub struct Stimulus {
 }
 
 impl Stimulus {
-    /// Reads statements; `source` is what messages call the text.
+    /// Reads statements; `source` is the name of the text in messages.
     ///
     /// # Errors
-    /// The first statement that is wrong, and where.
+    /// The first error, with its location.
     pub fn parse(text: &str, source: &str) -> Result<Self, StimulusError> {
         text::parse(text, source).map(|rules| Self { rules })
     }
@@ -110,7 +110,7 @@ impl Stimulus {
         self.rules.extend(other.rules);
     }
 
-    /// Programs that it loads while it is played, each with its thread.
+    /// The programs that it loads while it is played, each with its thread.
     pub fn programs(&self) -> impl Iterator<Item = (ThreadId, &Arc<str>)> {
         self.rules.iter().filter_map(|rule| match &rule.action {
             Action::Run(thread, name) => Some((*thread, name)),
@@ -118,10 +118,10 @@ impl Stimulus {
         })
     }
 
-    /// Hands the expressions in its expectations to somebody who knows the programs, and keeps what computes them.
+    /// Resolves the expressions in its expectations by code that knows the programs, and keeps their evaluators.
     ///
     /// # Errors
-    /// The first one that is wrong, or a statement about an axis that the board has not, and where.
+    /// The first invalid expression, or a statement about an axis that the board does not have, with its location.
     pub fn resolve(
         &mut self,
         axes: Axes,

@@ -1,7 +1,7 @@
 //! Watches expectations that hold over a time: `within …`, `always …`, `never …`.
 //!
-//! They are looked at in every tick, before the servo acts. Each failure is reported once for each
-//! statement, at the first tick in which it was seen.
+//! They are checked in every tick, before the servo acts. Each failure is reported once per statement, at the first
+//! tick in which it was detected.
 
 use kmotiondef::Cycles;
 use vm::firmware::TickContext;
@@ -18,22 +18,22 @@ use crate::world::trace::View;
 /// The progress of a statement.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Progress {
-    /// When it was due last. Simultaneous repeats count once, so that rules which trigger each other do not
-    /// multiply.
+    /// The time at which it was last due. Simultaneous repeats count once, so that rules which trigger each other do
+    /// not multiply.
     pub(super) last_due: Option<Cycles>,
     /// True if the value that it waits for compared as true in the last tick.
     pub(super) was_so: bool,
-    /// True if the text it expects was printed: since the condition, where there is one.
+    /// True if its expected text was printed, after the condition if there is one.
     pub(super) said: bool,
-    /// Its text as a line had it, where only upper and lower case differ.
+    /// Its text as printed in a line, if only letter case differs.
     pub(super) near: Option<String>,
     /// True if it has acted or checked something.
     pub(super) happened: bool,
-    /// The state that its action has found, where it has changed nothing, and whether it ever has.
+    /// The state found by its action when it changed nothing, and whether it ever changed anything.
     pub(super) idle: Option<String>,
     /// True if its action has changed something.
     pub(super) has_changed: bool,
-    /// True if it acts as soon as it is known: it prepares, or a person has done it.
+    /// True if it acts as soon as it is known: it prepares the machine, or a person has entered it.
     pub(super) is_initial: bool,
     /// The value that an expectation of the whole run has seen, and whether it was ever another one.
     value: Option<f64>,
@@ -41,12 +41,12 @@ pub(super) struct Progress {
     has_varied: bool,
     /// True if a failure was reported.
     told: bool,
-    /// When the condition happened after which something has to come.
+    /// The time of the condition after which an event must follow.
     since: Option<Cycles>,
 }
 
 impl Progress {
-    /// Nothing yet.
+    /// A statement without any progress.
     pub(super) fn new(is_initial: bool) -> Self {
         Self { is_initial, ..Self::default() }
     }
@@ -63,7 +63,7 @@ impl Progress {
 }
 
 impl Player {
-    /// A line has come: which expectations have their text, of the statements that were there.
+    /// Notes a line: marks the statements, among those that existed at the time, whose text it contains.
     pub(super) fn note_text(&mut self, line: &str, at: Cycles, known: usize) {
         for (rule, progress) in self.rules.iter().zip(&mut self.progress).take(known) {
             note_case(rule, progress, line);
@@ -78,7 +78,7 @@ impl Player {
         }
     }
 
-    /// Something has happened: what has to come within a time is waited for from now on.
+    /// Notes that a condition has occurred: the events that must follow within a time are expected from now on.
     pub(super) fn begin_waiting(&mut self, at: Cycles, fits: &impl Fn(&Condition) -> bool) {
         for index in 0..self.rules.len() {
             let Trigger::Within { limit, condition } = &self.rules[index].trigger else { continue };
@@ -92,7 +92,7 @@ impl Player {
         }
     }
 
-    /// Returns whether something is examined in every tick.
+    /// Returns whether a state is checked in every tick.
     pub(crate) fn is_watching(&self) -> bool {
         self.rules.iter().zip(&self.progress).any(|(rule, progress)| match &rule.trigger {
             Trigger::Always { .. } => !progress.told,
@@ -102,7 +102,7 @@ impl Player {
         })
     }
 
-    /// Looks at the values that statements wait for.
+    /// Checks the values for which statements wait.
     pub(super) fn watch_values(&mut self, access: &WorldAccess<'_>, context: &TickContext<'_>) {
         for index in 0..self.rules.len() {
             let Some(Condition::Becomes(expectation)) = self.rules[index].trigger.condition() else {
@@ -117,7 +117,7 @@ impl Player {
         }
     }
 
-    /// Looks at all that is watched.
+    /// Checks all watched expectations.
     pub(super) fn watch(&mut self, access: &mut WorldAccess<'_>, context: &TickContext<'_>) {
         for index in 0..self.rules.len() {
             match &self.rules[index].trigger {
@@ -135,7 +135,7 @@ impl Player {
         }
     }
 
-    /// Notes the value that an expectation of the whole run has now.
+    /// Notes the current value of an expectation of the whole run.
     fn note_value(&mut self, access: &WorldAccess<'_>, context: &TickContext<'_>, index: usize) {
         if let Action::Expect(Expectation { predicate: Predicate::Value { subject, .. }, .. }) =
             &self.rules[index].action
@@ -160,7 +160,7 @@ impl Player {
         }
     }
 
-    /// Examines an expectation of a statement; returns whether it is met, with the actual and the expected value.
+    /// Checks an expectation of a statement; returns whether it is met, with the actual and the expected value.
     pub(super) fn look(
         &self,
         access: &WorldAccess<'_>,
@@ -174,7 +174,7 @@ impl Player {
         (seen.is_met, seen.text)
     }
 
-    /// Tells what is not as expected.
+    /// Reports expectations that are not met.
     pub(super) fn check(&mut self, access: &mut WorldAccess<'_>, context: &TickContext<'_>, index: usize) {
         let rule = &self.rules[index];
         let Action::Expect(expectation) = &rule.action else { return };
@@ -196,7 +196,7 @@ impl Player {
         self.progress[index].happened = true;
     }
 
-    /// The run is over: checks the watched expectations once again, and reports those that were not met.
+    /// Checks the watched expectations a last time at the end of the run, and reports those that were not met.
     pub(super) fn finish_watching(&mut self, access: &mut WorldAccess<'_>, context: &TickContext<'_>) {
         self.watch(access, context);
         for index in 0..self.rules.len() {
@@ -214,7 +214,7 @@ impl Player {
 }
 
 impl Player {
-    /// The run is over: reports actions that have changed nothing, and expectations that could not fail.
+    /// Reports, at the end of the run, actions that have changed nothing and expectations that could not fail.
     pub(super) fn finish_doubts(&self, access: &mut WorldAccess<'_>, context: &TickContext<'_>) {
         for (index, progress) in self.progress.iter().enumerate() {
             let place = self.rules[index].place.to_string();

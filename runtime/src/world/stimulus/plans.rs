@@ -9,7 +9,7 @@ use super::wave::Wave;
 use crate::world::WorldAccess;
 use chips::kanalog::{ADC_CHANNELS, conversion};
 
-/// The most that may be planned at a time.
+/// The limit of planned actions.
 pub const MOST_PLANNED: usize = 100_000;
 
 /// An event that is due at an instant.
@@ -21,7 +21,7 @@ pub(super) enum Due {
     Level(Bit, bool),
     /// A pulse ends on an input that a switch drives.
     Release(Bit),
-    /// The time has passed within which something had to come.
+    /// The deadline of an expected event has passed.
     Check,
 }
 
@@ -34,18 +34,18 @@ pub(crate) enum Moved {
     Load(AxisId),
 }
 
-/// A motion on its way.
+/// A motion in progress.
 #[derive(Clone, Copy, Debug)]
 struct Turning {
     moved: Moved,
     way: f64,
     begun: Cycles,
     over: Cycles,
-    /// The way already done.
+    /// The distance already covered.
     done: f64,
 }
 
-/// All that continues by itself.
+/// All actions that continue by themselves.
 #[derive(Clone, Debug)]
 pub(crate) struct Plans {
     /// The pending events, by time and then in the order of planning.
@@ -53,7 +53,7 @@ pub(crate) struct Plans {
     count: u64,
     waves: [Option<(Wave, Cycles)>; ADC_CHANNELS],
     turning: Vec<Turning>,
-    /// The analog value each input was last given.
+    /// The last analog value given to each input.
     converted: [i32; ADC_CHANNELS],
 }
 
@@ -70,18 +70,18 @@ impl Default for Plans {
 }
 
 impl Plans {
-    /// Something is due at an instant.
+    /// Adds an action that is due at a time.
     pub(super) fn add(&mut self, at: Cycles, due: Due) {
         self.due.insert((at, self.count), due);
         self.count += 1;
     }
 
-    /// A bit goes back to a level.
+    /// Plans the return of a bit to a level.
     pub(crate) fn level(&mut self, at: Cycles, bit: Bit, level: bool) {
         self.add(at, Due::Level(bit, level));
     }
 
-    /// A bit goes back to its switch.
+    /// Plans the return of a bit to its switch.
     pub(crate) fn release(&mut self, at: Cycles, bit: Bit) {
         self.add(at, Due::Release(bit));
     }
@@ -102,7 +102,7 @@ impl Plans {
         self.turning.push(Turning { moved, way, begun: now, over, done: 0.0 });
     }
 
-    /// Leaves out what is farthest in the future if too much is planned; whether it is.
+    /// Drops the latest actions if too many are planned; returns whether it did.
     pub(super) fn limit(&mut self) -> bool {
         let is_too_much = self.due.len() > MOST_PLANNED;
         while self.due.len() > MOST_PLANNED {
@@ -111,12 +111,12 @@ impl Plans {
         is_too_much
     }
 
-    /// All that is due some time.
+    /// All planned actions.
     pub(super) fn all(&self) -> impl Iterator<Item = Due> {
         self.due.values().copied()
     }
 
-    /// Takes all that is due some time.
+    /// Takes all planned actions.
     pub(super) fn take_all(&mut self) -> impl Iterator<Item = Due> + use<> {
         std::mem::take(&mut self.due).into_values()
     }
@@ -132,7 +132,7 @@ impl Plans {
         !self.turning.is_empty()
     }
 
-    /// Returns how many of the ticks after the one that began at `now` have nothing to do.
+    /// Returns the number of ticks without any action after the one that began at `now`.
     pub(super) fn quiet_ticks(&self, now: Cycles) -> u64 {
         let moves = self.waves.iter().flatten().any(|(wave, begun)| !wave.is_over(now - *begun));
         if moves || self.is_turning() {
@@ -144,7 +144,7 @@ impl Plans {
         u64::try_from(first - now.get() / tick - 1).unwrap_or(0)
     }
 
-    /// Encoders turn, and analog inputs take their course.
+    /// Turns encoders and updates analog inputs.
     pub(super) fn run(&mut self, access: &mut WorldAccess<'_>, context: &TickContext<'_>) {
         self.turn_encoders(access, context);
         self.run_waves(access, context);

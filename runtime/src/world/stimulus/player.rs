@@ -21,14 +21,15 @@ use crate::world::WorldAccess;
 use crate::world::trace::{Item, View};
 use chips::changes::BitChange;
 
-/// A stimulus under way.
+/// A stimulus in progress.
 #[derive(Clone, Debug)]
 pub(crate) struct Player {
     pub(super) rules: Vec<Rule>,
     /// The progress of each rule.
     pub(super) progress: Vec<Progress>,
     pub(super) plans: Plans,
-    /// Console lines that no statement has been compared with yet, and how many statements there were when each came.
+    /// Console lines that have not been compared with statements yet, and the number of statements that existed when
+    /// each was printed.
     lines: VecDeque<(Cycles, String, usize)>,
     /// The last characters that the serial port has sent.
     sent: VecDeque<u8>,
@@ -37,12 +38,12 @@ pub(crate) struct Player {
     moved: Vec<Bit>,
     /// The starts of each thread at the end of the last tick.
     starts: [u32; ThreadId::MAX as usize],
-    /// True if the last tick had nothing that a statement could wait for: no thread is active any more.
+    /// True if the last tick had nothing for which a statement could wait: no thread is active any more.
     is_idle: bool,
 }
 
 impl Player {
-    /// Nothing yet.
+    /// A player without statements.
     pub(crate) fn new() -> Self {
         Self {
             rules: Vec::new(),
@@ -64,14 +65,14 @@ impl Player {
         }
     }
 
-    /// Gets ready for more; an option board that something happens to was found at power-up.
+    /// Prepares for more statements; option boards that they use were detected at power-up.
     pub(crate) fn extend(
         &mut self,
         stimulus: Stimulus,
         access: &mut WorldAccess<'_>,
         memory: &mut GuestMemory,
     ) {
-        // What was printed before does not count for the new rules.
+        // Earlier output does not count for the new rules.
         self.hear(access.out);
         for rule in stimulus.rules {
             rule.action.announce(access, memory);
@@ -112,7 +113,7 @@ impl Player {
 
     /// Returns whether a thread is still to be started or a command to be sent, so that the run must continue.
     ///
-    /// Lines that were sent after the last tick have not been compared with anything.
+    /// Lines that were sent after the last tick have not been compared yet.
     pub(crate) fn is_busy(&self, has_shown_lines: bool) -> bool {
         let awaits = self.awaits();
         let is_due = self.plans.all().any(|due| match due {
@@ -126,7 +127,7 @@ impl Player {
         is_due || (awaits && !(self.is_idle && has_shown_lines))
     }
 
-    /// Returns whether a statement still waits for the first occurrence of its condition to begin something.
+    /// Returns whether a statement still waits for the first occurrence of its condition in order to start something.
     fn awaits(&self) -> bool {
         self.rules.iter().zip(&self.progress).any(|(rule, progress)| {
             let is_once = matches!(rule.trigger, Trigger::When { is_once: true, .. });
@@ -134,13 +135,13 @@ impl Player {
         })
     }
 
-    /// Returns how many of the ticks after the one that began at `now` have nothing to do.
+    /// Returns the number of ticks without any action after the one that began at `now`.
     pub(crate) fn quiet_ticks(&self, now: Cycles) -> u64 {
         let is_ending = self.active.is_empty() && !self.is_idle && self.awaits();
         if is_ending || !self.lines.is_empty() { 0 } else { self.plans.quiet_ticks(now) }
     }
 
-    /// Acts at the beginning of a tick; returns whether anything was done.
+    /// Executes the actions due at the beginning of a tick; returns whether there were any.
     pub(crate) fn tick(
         &mut self,
         access: &mut WorldAccess<'_>,
@@ -183,8 +184,8 @@ impl Player {
         acted || turns
     }
 
-    /// Forgets the last statements as far as they were due once and have acted: those that a person executes one after
-    /// another would otherwise cost more with each.
+    /// Drops trailing statements that were due once and have acted: otherwise each statement that a person executes
+    /// would slow down the following ones.
     fn forget_done(&mut self) {
         while let (
             Some(Rule { trigger: Trigger::At(_), .. }),
@@ -204,9 +205,9 @@ impl Player {
         }
     }
 
-    /// Compares what the serial port has sent, after each character.
+    /// Compares the output of the serial port, after each character.
     fn watch_uart(&mut self, sent: &[SentByte]) {
-        /// Characters that a statement can wait for.
+        /// The length of the longest text for which a statement can wait.
         const LONGEST: usize = 256;
         for SentByte { at, byte } in sent {
             self.sent.push_back(*byte);
@@ -306,7 +307,7 @@ impl Player {
         }
     }
 
-    /// The statements that have done nothing.
+    /// The statements that have had no effect.
     fn never_happened(&self, view: &View<'_>, threads: &Threads) -> Vec<String> {
         let idle = self.rules.iter().zip(&self.progress).filter(|(_, progress)| !progress.happened);
         idle.map(|(rule, progress)| {
@@ -319,7 +320,7 @@ impl Player {
         .collect()
     }
 
-    /// The run is over: checks what is expected then, or later than it lasted.
+    /// Checks, at the end of the run, the expectations for the end, and those later than the run lasted.
     pub(crate) fn finish(&mut self, access: &mut WorldAccess<'_>, context: &TickContext<'_>) {
         changes::sweep(&mut access.io.pins.changes, context.memory, access.now);
         self.hear(access.out);
@@ -345,7 +346,7 @@ impl Player {
     }
 }
 
-/// The level of a bit whose edge a statement waits for, where the bit had the level after that edge all the time.
+/// The level of a bit for whose edge a statement waits, if the bit had the level after that edge all the time.
 fn unchanged_level(rule: &Rule, progress: &Progress, view: &View<'_>) -> Option<String> {
     match rule.trigger.condition()? {
         Condition::Bit(bit, edge @ (Edge::Rises | Edge::Falls)) if progress.last_due.is_none() => {
@@ -356,7 +357,7 @@ fn unchanged_level(rule: &Rule, progress: &Progress, view: &View<'_>) -> Option<
     }
 }
 
-/// A thread whose end a statement waits for, and that has not ended.
+/// A thread that has not ended although a statement waits for its end.
 fn still_runs(rule: &Rule, threads: &Threads) -> Option<String> {
     let Condition::Ends(thread) = rule.trigger.condition()? else { return None };
     let effect = match &rule.action {

@@ -1,4 +1,4 @@
-//! Goes through the tokens of a statement, word by word; a mistake names its column and what should be there.
+//! Reads the tokens of a statement, word by word; an error gives its column and the expected token.
 
 use kmotiondef::bits::{BitDirection, range_of};
 use kmotiondef::limits::N_USER_DATA_VARS;
@@ -21,7 +21,7 @@ impl StatementReader<'_> {
         self.tokens.first().map_or(self.behind, |token| token.column)
     }
 
-    /// The mistake that something else should be here.
+    /// The error that another token is expected here.
     pub(crate) fn expected<T>(&self, what: &str) -> Result<T, Mistake> {
         let found = match self.tokens.first().map(|token| &token.kind) {
             None => "the end of the statement".to_owned(),
@@ -41,7 +41,7 @@ impl StatementReader<'_> {
         }
     }
 
-    /// The word this many tokens further on; nothing where the statement has ended.
+    /// The word this many tokens ahead; `None` after the end of the statement.
     pub(crate) fn word(&self, index: usize) -> Option<&str> {
         match self.tokens.get(index).map(|token| &token.kind)? {
             TokenKind::Word(word) => Some(word),
@@ -53,7 +53,7 @@ impl StatementReader<'_> {
         self.tokens = self.tokens.get(1..).unwrap_or_default();
     }
 
-    /// Takes a certain word, if it comes next.
+    /// Takes this word, if it comes next.
     pub(crate) fn accept(&mut self, word: &str) -> bool {
         let is_next = self.peek() == Some(word);
         if is_next {
@@ -70,7 +70,7 @@ impl StatementReader<'_> {
         if self.accept_sign("=") { Ok(()) } else { self.expected("`=`") }
     }
 
-    /// Takes a certain sign, if it comes next.
+    /// Takes this sign, if it comes next.
     pub(crate) fn accept_sign(&mut self, sign: &str) -> bool {
         let is_next =
             matches!(self.tokens.first(), Some(Token { kind: TokenKind::Sign(next), .. }) if *next == sign);
@@ -96,7 +96,7 @@ impl StatementReader<'_> {
         }
     }
 
-    /// The distance after `±`, which may be left out.
+    /// The distance after `±`, which is optional.
     pub(crate) fn tolerance(&mut self) -> Result<f64, Mistake> {
         if !self.accept_sign("±") {
             return Ok(0.0);
@@ -148,7 +148,7 @@ impl StatementReader<'_> {
         })
     }
 
-    /// A number that must name something.
+    /// A number that must refer to something that exists.
     pub(crate) fn index<T>(&mut self, what: &str, find: impl Fn(i32) -> Option<T>) -> Result<T, Mistake> {
         self.take(what, |word| find(word.parse().ok()?))
     }
@@ -166,7 +166,7 @@ impl StatementReader<'_> {
         })
     }
 
-    /// An axis of any board: that of the run is known when the stimulus is resolved.
+    /// An axis of any board: the board of the run is known when the stimulus is resolved.
     pub(crate) fn axis(&mut self) -> Result<AxisId, Mistake> {
         let axis = self.index("the number of an axis", |number| Axes::new(Axes::MAX).get(number))?;
         self.highest_axis = self.highest_axis.max(Some(axis));
@@ -241,7 +241,7 @@ pub(super) fn integer(word: &str) -> Option<i32> {
     }
 }
 
-/// The units of times, in seconds; a longer one comes before what it ends with.
+/// The units of times, in seconds; a longer unit comes before its suffixes.
 pub(super) const TIME_UNITS: [(&str, f64); 4] = [("us", 1e-6), ("µs", 1e-6), ("ms", 1e-3), ("s", 1.0)];
 
 /// A time; a bare number is seconds.

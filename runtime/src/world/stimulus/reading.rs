@@ -8,11 +8,11 @@ use kmotiondef::limits::N_USER_DATA_VARS;
 use super::expectation::{Expectation, Predicate, Sense, Stored, Subject};
 use super::relation::Relation;
 
-/// Every form, with what its numbers begin with in a statement and what it is called.
+/// Every form, with the prefix of its numbers in a statement and its name.
 const FORMS: [(Stored, &str, &str); 3] =
     [(Stored::Whole, "", "integer"), (Stored::Single, "f:", "float"), (Stored::Double, "d:", "double")];
 
-/// The words that follow the message of an expectation that is met in another form of its element.
+/// The hint after the message of an expectation that would be met in another form of its element.
 pub(super) fn hint(expectation: &Expectation, value: impl Fn(&Subject) -> Option<f64>) -> Option<String> {
     let Predicate::Value { subject, relation, number, tolerance } = &expectation.predicate else {
         return None;

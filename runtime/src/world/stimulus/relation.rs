@@ -5,7 +5,7 @@
 pub enum Relation {
     /// Equal, or within the tolerance.
     Equal,
-    /// Not so.
+    /// Not equal.
     Different,
     /// Below it.
     Less,

@@ -6,7 +6,7 @@ use vm::firmware::TickContext;
 use super::plans::Plans;
 use crate::world::WorldAccess;
 
-/// The board, what is planned, and the statement that acts.
+/// The board, the planned actions, and the statement that acts.
 #[derive(Debug)]
 pub(crate) struct Scene<'a, 'b, 'c> {
     pub(crate) plans: &'a mut Plans,

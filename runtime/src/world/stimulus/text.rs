@@ -79,7 +79,7 @@ impl StatementReader<'_> {
     fn moment_and_action(&mut self) -> Result<(Trigger, Action), Mistake> {
         let trigger = self.trigger()?;
         let action = action::read(self)?;
-        // Without a moment it holds from the beginning; what is expected then is expected at the end.
+        // Without a moment it applies from the beginning, but an expectation at the end.
         let trigger = trigger.unwrap_or(match action {
             Action::Expect(_) => Trigger::End,
             _ => Trigger::At(Cycles::default()),
@@ -117,7 +117,7 @@ impl StatementReader<'_> {
         }
     }
 
-    /// No moment, unless the statement begins with a time as in a log: nothing else begins so.
+    /// Returns no trigger, unless the statement begins with a time as in a log: no statement begins in this way.
     fn without_moment(&self, word: &str) -> Result<Option<Trigger>, Mistake> {
         let moment = word.trim_end_matches([':', ',']);
         match reader::time(moment) {

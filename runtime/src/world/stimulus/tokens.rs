@@ -104,7 +104,7 @@ const SIGNS: &[(&str, &str)] = &[
     ("±", "±"),
 ];
 
-/// The sign that begins here.
+/// The sign at this position.
 fn sign(characters: &[char], at: &mut usize) -> Option<&'static str> {
     let rest = characters.get(*at..).unwrap_or_default();
     let begins = |written: &str| written.chars().eq(rest.iter().copied().take(written.chars().count()));
@@ -113,7 +113,7 @@ fn sign(characters: &[char], at: &mut usize) -> Option<&'static str> {
     Some(sign)
 }
 
-/// A word goes on to a space or a sign; `->` is a part of it.
+/// Reads a word up to a space or a sign; `->` is a part of a word.
 fn word(characters: &[char], at: &mut usize) -> String {
     let start = *at;
     while let Some(&character) = characters.get(*at) {
@@ -127,7 +127,7 @@ fn word(characters: &[char], at: &mut usize) -> String {
     characters.get(start..*at).unwrap_or_default().iter().collect()
 }
 
-/// The bytes of a text; `at` goes past it.
+/// Reads the bytes of a text and moves `at` past it.
 fn text(characters: &[char], at: &mut usize) -> Result<Vec<u8>, Mistake> {
     let start = *at + 1;
     let mut bytes = Vec::new();

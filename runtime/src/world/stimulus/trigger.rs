@@ -42,7 +42,7 @@ pub enum Condition {
     Starts(ThreadId),
     /// A thread is no longer active.
     Ends(ThreadId),
-    /// A value of an axis or of `persist.UserData` becomes as it is compared.
+    /// A value of an axis or of `persist.UserData` begins to satisfy a comparison.
     Becomes(Expectation),
 }
 
@@ -51,18 +51,18 @@ pub enum Condition {
 pub enum Trigger {
     /// At an instant.
     At(Cycles),
-    /// Again and again.
+    /// Repeatedly.
     Every {
         /// Time from one to the next.
         period: Cycles,
         /// The first.
         from: Cycles,
-        /// The last, if there is one.
+        /// The last time, if there is one.
         until: Option<Cycles>,
-        /// Only while this is so, if anything.
+        /// Only while this condition is met, if there is one.
         while_met: Option<Expectation>,
     },
-    /// Some time after something happens, each time or only the first time.
+    /// Some time after an event, each time or only the first time.
     When {
         /// The condition.
         condition: Condition,
@@ -73,14 +73,14 @@ pub enum Trigger {
     },
     /// When the run is over.
     End,
-    /// Checked all the time from a condition on, until it is met: at most for this long.
+    /// Checked in every tick from a condition on until it is met, at most for this long.
     Within {
         /// The time limit.
         limit: Cycles,
-        /// From what on, each time.
+        /// The condition that starts it, each time.
         condition: Condition,
     },
-    /// Checked in every tick, or in those in which something else is so.
+    /// Checked in every tick, or in ticks in which another expectation is met.
     Always {
         /// The expectation that must also be met, if there is one.
         while_met: Option<Expectation>,
@@ -118,7 +118,7 @@ impl fmt::Display for Trigger {
 }
 
 impl Trigger {
-    /// Returns the condition that it waits for, if it has one.
+    /// Returns the condition for which it waits, if it has one.
     pub(super) const fn condition(&self) -> Option<&Condition> {
         match self {
             Self::When { condition, .. } | Self::Within { condition, .. } => Some(condition),

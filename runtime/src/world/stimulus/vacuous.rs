@@ -1,8 +1,8 @@
-//! Expectations of the whole run that cannot fail, because they are about something that nothing moves.
+//! Expectations of the whole run that cannot fail, because their subject never moves.
 //!
-//! A number of an axis or an input is easily written wrong, and such an expectation is then always met. That an axis
-//! or an output rests is also what a test may want to know: only a limit away from rest is doubted, and that of a
-//! machine that has the axis only if no other statement limits one that moves.
+//! The number of an axis or an input is easily mistyped, and such an expectation is then always met. A test may also
+//! intend to check that an axis or an output rests: so there is only a remark for a limit away from rest and, if the
+//! machine has the axis, only if no other statement limits an axis that moves.
 
 use kmotiondef::bits::BitDirection;
 use kmotiondef::structs::Chan;
@@ -102,7 +102,7 @@ fn is_used(axis: AxisId, view: &View<'_>) -> bool {
         || memory.axis(axis, Chan::POSITION) != 0.0
 }
 
-/// Returns whether the machine file names outputs of a kind, but not this one.
+/// Returns whether the machine file names other outputs of the same kind, but not this one.
 fn is_only_other(view: &View<'_>, is_other: impl Fn(Channel) -> bool, this: Channel) -> bool {
     let named = view.machine.outputs();
     named.iter().any(|channel| is_other(*channel)) && !named.contains(&this)

@@ -46,7 +46,7 @@ pub enum Wave {
 }
 
 impl Wave {
-    /// The value at a time after its beginning; `load` tells where an axis is.
+    /// The value at a time after its beginning; `load` yields the position of an axis.
     pub(crate) fn value(&self, elapsed: Cycles, load: impl Fn(AxisId) -> f64) -> f64 {
         let seconds = elapsed.get() as f64 / Cycles::PER_SECOND.get() as f64;
         match *self {

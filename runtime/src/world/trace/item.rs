@@ -14,23 +14,23 @@ use crate::io::kanalog::conversion;
 use crate::io::konnect::{KonnectBoard, Port};
 use crate::views::{self, Typed};
 
-/// A kind of value: a row of the table of kinds, which says everything about it.
+/// A kind of value: a row of the table of kinds, which defines all of its properties.
 struct ItemKind {
     name: &'static str,
     /// The number of items, which are numbered from 0.
     count: usize,
-    /// True if there is one of each axis of the board, whatever the count says.
+    /// True if there is one for each axis of the board, whatever the count.
     is_by_axis: bool,
     /// The unit; empty for mere numbers.
     unit: &'static str,
     /// True if `axisN` includes it.
     is_of_axes: bool,
     read: fn(&View<'_>, usize) -> f64,
-    /// The variable of the board that it is; `None` of what is only in registers, or of the model.
+    /// The variable of the board that holds it; `None` if it is only in registers, or in the model.
     cell: Option<fn(usize) -> RecordedCell>,
 }
 
-/// A kind of eight items that is not a part of what `axisN` names.
+/// A kind of eight items that `axisN` does not include.
 const OTHER: ItemKind = ItemKind {
     name: "",
     count: 8,
@@ -62,7 +62,7 @@ const KINDS: &[ItemKind] = &[
         cell: Some(|index| RecordedCell::new(chan(index).field(Chan::DEST).address(), GatherType::Double)),
         ..BY_AXIS
     },
-    // Where it is.
+    // The position.
     ItemKind {
         name: "pos",
         unit: "units",
@@ -73,7 +73,7 @@ const KINDS: &[ItemKind] = &[
         }),
         ..BY_AXIS
     },
-    // What drives it.
+    // The drive.
     ItemKind {
         name: "out",
         is_of_axes: true,
@@ -81,7 +81,7 @@ const KINDS: &[ItemKind] = &[
         cell: Some(|index| RecordedCell::new(chan(index).field(Chan::OUTPUT).address(), GatherType::Float)),
         ..BY_AXIS
     },
-    // How fast it is sent there.
+    // The commanded velocity.
     ItemKind {
         name: "vel",
         unit: "units/s",
@@ -125,7 +125,7 @@ const KINDS: &[ItemKind] = &[
         read: |view, index| view.io.fpga.pwm(index as u32).unwrap_or_default().1,
         ..OTHER
     },
-    // Steps that a generator has made.
+    // Steps made by a generator.
     ItemKind { name: "step", unit: "steps", read: |view, index| view.io.stepgens.position(index), ..OTHER },
     // The outputs of a Konnect board: 0 to 7 on JP6, 8 to 15 on JP4.
     ItemKind { name: "konnect", count: 16, read: konnect, ..OTHER },
@@ -212,7 +212,7 @@ impl Item {
         let name = &name.replacen("persist.", "persist", 1);
         let letters = name.trim_end_matches(|character: char| character.is_ascii_digit());
         let kind = KINDS.iter().position(|kind| kind.name == letters);
-        // What there is only one of has no number.
+        // A kind with a single item has no number.
         let is_single = kind.is_some_and(|kind| KINDS[kind].count == 1) && letters.len() == name.len();
         let index = if is_single { Some(0) } else { name[letters.len()..].parse().ok() };
         if let (Some(kind), Some(index)) = (kind, index)
@@ -284,13 +284,13 @@ impl Item {
         KINDS[self.kind].unit
     }
 
-    /// The axis it belongs to, if it is one of [`of_axes`](Self::of_axes).
+    /// The axis to which it belongs, if it is one of [`of_axes`](Self::of_axes).
     #[must_use]
     pub fn axis(self) -> Option<usize> {
         KINDS[self.kind].is_of_axes.then_some(self.index)
     }
 
-    /// The bit it is, if it is one.
+    /// The bit, if it is a bit.
     #[must_use]
     pub fn bit(self) -> Option<Bit> {
         Bit::new(i32::try_from(self.index).ok()?).filter(|_| self.kind() == "bit")

@@ -1,8 +1,8 @@
 //! The recordings of a run: levels, slices, values over time.
 //!
-//! Records travel as events, so they are in order with the console. Nothing is recorded unless somebody asks, and what
-//! is recorded does not depend on shortcuts: values are sampled when they change, at ticks that are multiples of the
-//! interval, the skipped ones among them.
+//! Records travel as events, so they are in order with the console. Nothing is recorded unless it is requested, and
+//! recordings do not depend on shortcuts: values are sampled when they change, at ticks that are multiples of the
+//! interval, including skipped ticks.
 
 mod item;
 mod quantity;
@@ -25,7 +25,7 @@ pub struct TraceRequest {
     pub every: u64,
     /// True if levels and slices are recorded as well.
     pub changes: bool,
-    /// Whose packets of real code are recorded as well.
+    /// The contexts whose packets of real code are recorded as well.
     pub packets: Option<Packets>,
 }
 

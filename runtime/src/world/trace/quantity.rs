@@ -16,7 +16,7 @@ use crate::machine::Machine;
 pub enum Quantity {
     /// An item of the board.
     Item(Item),
-    /// A value that somebody computes, and what it is called.
+    /// A value computed by a formula, and its name.
     Formula(String, Arc<dyn Formula>),
 }
 
@@ -25,10 +25,10 @@ pub trait Formula: fmt::Debug + Send + Sync {
     /// The value now.
     fn value(&self, view: &View<'_>) -> f64;
 
-    /// The items that it is computed from.
+    /// The items from which it is computed.
     fn items(&self) -> &[Item];
 
-    /// The variable that it is, for a recorder on the board; `None` if it is computed.
+    /// The variable that holds it, for a recorder on the board; `None` if it is computed.
     fn cell(&self) -> Option<RecordedCell> {
         None
     }
@@ -46,14 +46,14 @@ pub struct RecordedCell {
 }
 
 impl RecordedCell {
-    /// A variable whose value is the one that was recorded.
+    /// A variable whose recorded value is its own value.
     #[must_use]
     pub const fn new(address: GuestAddr, kind: GatherType) -> Self {
         Self { address, kind, offset: 0.0 }
     }
 }
 
-/// The board as somebody sees it who only looks.
+/// The board for read-only access.
 #[derive(Debug)]
 pub struct View<'a> {
     pub(in crate::world) machine: &'a Machine,
@@ -88,7 +88,7 @@ impl<'a> View<'a> {
 }
 
 impl Quantity {
-    /// The item, if it is one.
+    /// The item, if the quantity is an item.
     #[must_use]
     pub const fn item(&self) -> Option<Item> {
         match self {
@@ -97,7 +97,7 @@ impl Quantity {
         }
     }
 
-    /// The items that it is, or is computed from.
+    /// The items that it is, or from which it is computed.
     #[must_use]
     pub fn items(&self) -> &[Item] {
         match self {
@@ -106,7 +106,7 @@ impl Quantity {
         }
     }
 
-    /// The variable that it is, for a recorder on the board; `None` if it is computed.
+    /// The variable that holds it, for a recorder on the board; `None` if it is computed.
     #[must_use]
     pub fn cell(&self) -> Option<RecordedCell> {
         match self {

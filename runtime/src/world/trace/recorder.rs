@@ -6,11 +6,11 @@ use kmotiondef::{ThreadId, Ticks};
 use super::{Packets, Quantity, Record, TraceRequest, View};
 use crate::views::Typed;
 
-/// A recording under way.
+/// A recording in progress.
 #[derive(Clone, Debug)]
 pub(crate) struct Recorder {
     request: TraceRequest,
-    /// The values as bits, so that what is not a number is equal to itself, and the enabled axes.
+    /// The values as bits, so that a NaN equals itself, and the enabled axes.
     last: Option<(Vec<u64>, u16)>,
 }
 
@@ -24,7 +24,7 @@ impl Recorder {
         self.request.changes
     }
 
-    /// Returns whether the packets of a thread are recorded, or those of the call-back for `None`.
+    /// Returns whether the packets of a thread, or of the call-back for `None`, are recorded.
     pub(crate) fn records_packets(&self, thread: Option<ThreadId>) -> bool {
         self.request.packets.is_some_and(|packets| match packets {
             Packets::All => true,
@@ -37,7 +37,7 @@ impl Recorder {
         self.request.quantities.iter().filter_map(Quantity::item).any(|item| item.kind() == name)
     }
 
-    /// The last tick of `count` up to and with `tick` that is sampled, if there is one.
+    /// The last sampled tick of the `count` ticks up to and including `tick`, if there is one.
     pub(crate) fn sampled_tick(&self, tick: Ticks, count: u64) -> Option<Ticks> {
         let sampled = tick.get() - tick.get() % self.request.every;
         (sampled + count > tick.get()).then_some(Ticks::new(sampled))

@@ -68,7 +68,7 @@ pub(crate) fn read_command(reader: &mut StatementReader<'_>) -> Result<(String,)
     Ok((reader.string()?,))
 }
 
-/// No echo is wanted.
+/// Sends a command line, without an echo.
 pub(crate) fn command(scene: &mut Scene<'_, '_, '_>, line: String) {
     scene.access.pc.usb.receive(format!("\u{1b}.{line}\r").as_bytes());
 }

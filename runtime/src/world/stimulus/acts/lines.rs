@@ -28,7 +28,7 @@ pub(crate) fn read_bit(reader: &mut StatementReader<'_>) -> Result<(Bit, bool), 
     Ok((bit, reader.level()?))
 }
 
-/// `set bit 5`; people write `set bit 5 = 1` and `set bit 5 1` too.
+/// `set bit 5`; `set bit 5 = 1` and `set bit 5 1` are accepted, too.
 pub(crate) fn read_set(reader: &mut StatementReader<'_>) -> Result<(Bit, bool), Mistake> {
     let bit = reader.input()?;
     let is_alone = !reader.accept_sign("=") && reader.tokens.is_empty();
@@ -68,7 +68,7 @@ pub(crate) fn pulse(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) {
     end(scene, bit, duration, level, gives_back);
 }
 
-/// Takes an input from its switch for a time, unless an earlier action has taken it; whether it has.
+/// Detaches an input from its switch for a time, unless an earlier action has done so; returns whether it has.
 fn takes(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) -> bool {
     let is_switch = scene.access.machine.mechanics.contact(bit).is_some();
     let is_taken = is_switch && !scene.access.machine.mechanics.is_held(bit);
@@ -79,7 +79,7 @@ fn takes(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) -> bool {
     is_taken
 }
 
-/// An action of some duration ends: the input goes back to its switch, or to a level.
+/// Ends an action with a duration: the input returns to its switch, or to a level.
 fn end(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles, level: bool, gives_back: bool) {
     let end = scene.context.now + duration;
     if gives_back {
@@ -101,7 +101,7 @@ pub(crate) fn release(scene: &mut Scene<'_, '_, '_>, bit: Bit) {
     }
 }
 
-/// Gives an input back to its switch; whether it has one.
+/// Reattaches an input to its switch; returns whether it has one.
 pub(crate) fn let_go(access: &mut WorldAccess<'_>, bit: Bit) -> bool {
     access.machine.mechanics.let_go(bit);
     access.machine.mechanics.contact(bit).is_some()
@@ -124,7 +124,7 @@ pub(crate) fn bounce(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) 
     }
 }
 
-/// Declares a bit as driven, so that no remark calls its use an accident; a Kanalog whose inputs are driven is present.
+/// Declares a bit as driven, so that no remark calls its use accidental; a Kanalog whose inputs are driven is present.
 pub(crate) fn announce(bit: &Bit, access: &mut WorldAccess<'_>, memory: &mut GuestMemory) {
     access.io.pins.declare(*bit);
     if KANALOG_INPUTS.contains(&bit.get()) {
@@ -233,7 +233,7 @@ pub(crate) fn drive(access: &mut WorldAccess<'_>, context: &mut TickContext<'_>,
     }
 }
 
-/// An action overrides a switch on the same input, for a time or until it is released.
+/// Overrides a switch on the same input, for a time or until it is released.
 fn hold(access: &mut WorldAccess<'_>, bit: Bit, span: &str) {
     if let Some((axis, ..)) = access.machine.mechanics.contact(bit)
         && access.machine.mechanics.hold(bit)

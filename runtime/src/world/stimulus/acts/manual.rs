@@ -8,7 +8,7 @@ use crate::world::stimulus::reader::StatementReader;
 use crate::world::stimulus::scene::Scene;
 use crate::world::stimulus::tokens::Mistake;
 
-/// An action of a person: the model does it, on a connected controller the person is asked to do it.
+/// An action of a person: the model executes it; with a connected controller the user is told to do it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ManualStep {
     /// The request to the person, such as "press START".

@@ -1,4 +1,4 @@
-//! Loads that are pushed and encoders that are turned, or fail.
+//! Actions that push loads, and that turn encoders or make them fail.
 
 use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, Cycles};
@@ -19,7 +19,7 @@ pub(crate) fn read_push(reader: &mut StatementReader<'_>) -> Result<(AxisId, f64
     Ok((axis, reader.number("a distance")?))
 }
 
-/// Moves a load at once, or as fast as an encoder can be read.
+/// Moves a load in one step, or as fast as its encoder can be read.
 pub(crate) fn push(scene: &mut Scene<'_, '_, '_>, axis: AxisId, units: f64) {
     let gain = f64::from(scene.context.memory.axis(axis, Chan::INPUT_GAIN0));
     let unit = scene.access.machine.loads[axis].unit(gain).unwrap_or(gain);
@@ -38,7 +38,7 @@ pub(crate) fn read_pull(reader: &mut StatementReader<'_>) -> Result<(AxisId, f64
     Ok((axis, reader.number("a speed in units per second")?))
 }
 
-/// Changes what a constant load adds to the speed of a motor.
+/// Changes the constant load on a motor, which affects its speed.
 pub(crate) fn pull(scene: &mut Scene<'_, '_, '_>, axis: AxisId, speed: f64) {
     scene.access.machine.loads.pull(axis, speed);
 }
@@ -56,7 +56,7 @@ pub(crate) fn read_load_spindle(reader: &mut StatementReader<'_>) -> Result<(Axi
     }
 }
 
-/// Changes the load of a spindle, which its droop makes slower.
+/// Changes the load of a spindle, whose droop reduces its speed.
 pub(crate) fn load_spindle(scene: &mut Scene<'_, '_, '_>, axis: AxisId, load: f64) {
     scene.access.machine.mechanics.load_spindle(axis, load);
 }
@@ -76,7 +76,7 @@ pub(crate) fn turn(scene: &mut Scene<'_, '_, '_>, input: usize, counts: f64, ove
     scene.plans.begin_turn(Moved::Encoder(input), counts, over, scene.context.now);
 }
 
-/// The encoder is there from the beginning.
+/// Declares the encoder as present from the beginning.
 pub(crate) fn announce_turn(input: &usize, access: &mut WorldAccess<'_>, _: &mut GuestMemory) {
     access.machine.wiring.turn_by_hand(*input);
 }

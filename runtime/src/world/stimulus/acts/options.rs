@@ -39,7 +39,8 @@ pub(crate) fn attach(scene: &mut Scene<'_, '_, '_>, device: DeviceSpec) {
     }
 }
 
-/// The inputs that a device will drive are not left open until then; one on an analog input is on a Kanalog.
+/// Declares the inputs that a device will drive, so that they do not count as open until then; if one is an analog
+/// input, a Kanalog is present.
 pub(crate) fn announce_device(device: &DeviceSpec, access: &mut WorldAccess<'_>, memory: &mut GuestMemory) {
     if let Some(bit) = device.build().ok().and_then(|device| device.drives()) {
         access.io.pins.declare(bit);
@@ -95,7 +96,7 @@ pub(crate) fn snapamp(
     scene.access.io.snapamps.set(board, side, quantity, value, scene.context.now);
 }
 
-/// A SnapAmp that something happens to was found at power-up.
+/// Declares a SnapAmp that an action uses as detected at power-up.
 pub(crate) fn announce_snapamp(board: &usize, access: &mut WorldAccess<'_>, memory: &mut GuestMemory) {
     connect_snapamp(&mut access.io.snapamps, &mut access.io.pins, *board);
     memory.set(SNAP_AMP_PRESENT, 1);
