@@ -1,7 +1,7 @@
-//! The syntax tree: what the parser found, in the words of the C grammar.
+//! The syntax tree: the result of parsing, in the terms of the C grammar.
 //!
-//! Nothing is resolved here: an identifier is a name, a type is the list of words and
-//! declarators that was written. Implicit `int` appears as an empty specifier list.
+//! Nothing is resolved here: an identifier is a name, a type is the list of specifiers and declarators as written.
+//! Implicit `int` appears as an empty specifier list.
 
 use crate::names::Name;
 use crate::operators::BinaryOperator;
@@ -23,7 +23,7 @@ pub struct TranslationUnit {
 pub enum Item {
     /// `int f(void) { … }`
     Function(FunctionDefinition),
-    /// `int a, *b;`, also a type alone
+    /// `int a, *b;`; also a type without declarators
     Declaration(Declaration),
     /// `_Static_assert(…)`
     StaticAssert(StaticAssert),
@@ -49,7 +49,7 @@ pub struct FunctionDefinition {
 pub struct Declaration {
     /// The words before the declarators.
     pub specifiers: Specifiers,
-    /// The declared names; empty for a type alone.
+    /// The declared names; empty for a type without declarators.
     pub declarators: Vec<InitDeclarator>,
     /// The whole declaration.
     pub span: Span,
@@ -105,7 +105,7 @@ pub struct Specifiers {
     pub span: Span,
 }
 
-/// An alignment that an object, member or record has at least.
+/// A minimum alignment of an object, member or record.
 #[derive(Debug)]
 pub enum Alignment {
     /// `_Alignas(16)`, `__attribute__((aligned(16)))`
@@ -230,13 +230,13 @@ pub struct EnumSpecifier {
 pub struct Enumerator {
     /// Its name.
     pub name: Name,
-    /// Its place.
+    /// Its position in the source.
     pub span: Span,
     /// The value after `=`.
     pub value: Option<Expression>,
 }
 
-/// A declarator: the name and what is derived around it.
+/// A declarator: the name and the type derived around it.
 #[derive(Debug)]
 pub struct Declarator {
     /// The name; `None` in an abstract declarator.
@@ -369,9 +369,9 @@ pub enum StatementKind {
     If {
         /// The condition.
         condition: Expression,
-        /// Taken when it is not zero.
+        /// Executed when it is not zero.
         then: Box<Statement>,
-        /// Taken otherwise.
+        /// Executed otherwise.
         otherwise: Option<Box<Statement>>,
     },
     /// `while`
@@ -421,7 +421,7 @@ pub enum StatementKind {
     Label {
         /// The label.
         name: Name,
-        /// Its place.
+        /// The position of the name.
         name_span: Span,
         /// The labelled statement.
         body: Box<Statement>,
@@ -479,13 +479,13 @@ pub enum ExpressionKind {
     },
     /// A prefix operator.
     Unary(UnaryOperator, Box<Expression>),
-    /// `++`, `--`, before or after.
+    /// `++` or `--`, prefix or postfix.
     Increment {
         /// The operand.
         operand: Box<Expression>,
-        /// `++`, else `--`.
+        /// True for `++`, false for `--`.
         is_increment: bool,
-        /// The operator comes before the operand.
+        /// True if the operator comes before the operand.
         is_prefix: bool,
     },
     /// `(type) a`
@@ -500,7 +500,7 @@ pub enum ExpressionKind {
     AlignofType(Box<TypeName>),
     /// `__alignof__ a`
     AlignofExpression(Box<Expression>),
-    /// `a + b` and the other operators without side effects of their own, `&&` and `||` included.
+    /// `a + b` and the other operators without side effects of their own, including `&&` and `||`.
     Binary(BinaryOperator, Box<Expression>, Box<Expression>),
     /// `a = b`
     Assign(Box<Expression>, Box<Expression>),
@@ -510,7 +510,7 @@ pub enum ExpressionKind {
     Conditional {
         /// The condition.
         condition: Box<Expression>,
-        /// The value when it is not zero.
+        /// The value if the condition is not zero.
         then: Option<Box<Expression>>,
         /// The value otherwise.
         otherwise: Box<Expression>,
@@ -529,7 +529,7 @@ pub enum ExpressionKind {
     Offsetof(Box<TypeName>, Vec<Designator>),
     /// `_Generic(value, type: a, default: b)`
     Generic {
-        /// The value whose type chooses.
+        /// The value whose type selects an association.
         value: Box<Expression>,
         /// The choices; `None` is `default`.
         choices: Vec<(Option<TypeName>, Expression)>,
@@ -538,7 +538,7 @@ pub enum ExpressionKind {
     StatementExpression(Vec<Statement>),
     /// `&&label`
     LabelAddress(Name, Span),
-    /// An expression that was diagnosed and skipped; it has no further diagnostics.
+    /// An expression that was diagnosed and skipped; it causes no further diagnostics.
     Error,
 }
 
@@ -576,7 +576,7 @@ pub struct StringLiteral {
 /// The prefix of a string or character constant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Encoding {
-    /// None: bytes as they are in the source.
+    /// No prefix: bytes as in the source.
     #[default]
     Plain,
     /// `u8`: the same.
@@ -590,7 +590,7 @@ pub enum Encoding {
 }
 
 impl Encoding {
-    /// The prefix as it is written.
+    /// The prefix as written in the source.
     #[must_use]
     pub const fn prefix(self) -> &'static str {
         match self {

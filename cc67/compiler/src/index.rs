@@ -1,6 +1,6 @@
 //! Typed indexes into arenas.
 
-/// Numbers of a kind of their own, each printed with a prefix: `v3`, `block0`.
+/// Number types for indexes, each printed with a prefix: `v3`, `block0`.
 macro_rules! index {
     ($($(#[$doc:meta])* $name:ident, $prefix:literal;)*) => {$(
         $(#[$doc])*

@@ -1,8 +1,8 @@
 //! Identifiers as small numbers.
 //!
-//! Keywords and the other words that the compiler tests by name have numbers that are known beforehand ([`word`]), so
-//! that a `match` on a [`Name`] needs no strings. The table is an open-addressed hash table of its own: it is used once
-//! for every identifier token.
+//! Keywords and other words that the compiler tests by name have predefined numbers ([`word`]), so that a `match` on a
+//! [`Name`] needs no strings. The table is a specialised open-addressed hash table, because it is used once for every
+//! identifier token.
 
 use std::collections::BTreeSet;
 
@@ -18,7 +18,7 @@ macro_rules! words {
         #[expect(non_camel_case_types, clippy::upper_case_acronyms, reason = "only numbers the words")]
         enum Number { $($id),* }
 
-        /// The words whose numbers are known beforehand.
+        /// The words with predefined numbers.
         pub mod word {
             use super::{Name, Number};
 
@@ -56,7 +56,7 @@ words! {
     // Names with a meaning that a program may take away by declaring them.
     OFFSETOF = "offsetof", VA_START = "va_start", VA_ARG = "va_arg", VA_END = "va_end", VA_COPY = "va_copy",
     VA_LIST = "va_list", STATIC_ASSERT_MACRO = "static_assert",
-    // Attributes with a meaning here.
+    // Attributes with an effect here.
     ALIGNED = "aligned", ALIGNED__ = "__aligned__",
     // Directives and names of the preprocessor.
     DEFINE = "define", UNDEF = "undef", INCLUDE = "include", IFDEF = "ifdef", IFNDEF = "ifndef",
@@ -97,7 +97,7 @@ impl Default for Names {
 }
 
 impl Names {
-    /// Makes a table that holds only the words known beforehand.
+    /// Makes a table that contains only the predefined words.
     #[must_use]
     pub fn new() -> Self {
         let mut names = Self {
@@ -118,7 +118,7 @@ impl Names {
         self.name_in(slot).unwrap_or_else(|| self.add(spelling, slot))
     }
 
-    /// The number of a spelling whose hash was made while it was read; none if it is not UTF-8.
+    /// The number of a spelling whose hash was computed while it was read; `None` if it is not UTF-8.
     pub fn intern_hashed(&mut self, spelling: &[u8], hash: SpellingHash) -> Option<Name> {
         let slot = self.slot_of(spelling, hash);
         match self.name_in(slot) {
@@ -142,7 +142,7 @@ impl Names {
         &self.text[start..self.ends[index]]
     }
 
-    /// Remembers that a macro with parameters has this name: it is expanded before `(` only.
+    /// Notes that a macro with parameters has this name, so that it is only expanded before `(`.
     pub fn mark_function_macro(&mut self, name: Name) {
         self.function_macros.insert(name);
     }
@@ -153,24 +153,24 @@ impl Names {
         self.function_macros.contains(&name)
     }
 
-    /// Number of names; their indexes are those below.
+    /// Number of names; their indexes are lower.
     #[must_use]
     pub fn len(&self) -> usize {
         self.ends.len()
     }
 
-    /// Never: the words known beforehand are always there.
+    /// Always false: the predefined words are always present.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()
     }
 
-    /// The name in a slot; none if it is empty.
+    /// The name in a slot; `None` if it is empty.
     fn name_in(&self, slot: usize) -> Option<Name> {
         self.slots[slot].checked_sub(1).map(Name)
     }
 
-    /// The slot that holds `spelling`, or the empty one where it belongs.
+    /// The slot that holds `spelling`, or the empty slot where it belongs.
     fn slot_of(&self, spelling: &[u8], hash: SpellingHash) -> usize {
         let mask = self.slots.len() - 1;
         let mut slot = hash.finish() as usize & mask;
@@ -221,7 +221,7 @@ pub const fn is_name_byte(byte: u8) -> bool {
     NAME_BYTES[byte as usize]
 }
 
-/// FNV-1a of a spelling, so that the lexer can make it with the same look at a byte that finds the end.
+/// The FNV-1a hash of a spelling, which the lexer computes while it searches for the end of the spelling.
 #[derive(Clone, Copy, Debug)]
 pub struct SpellingHash(u64);
 

@@ -1,15 +1,15 @@
 //! The binary operators of C, and their meanings.
 //!
-//! An operator is a row of `for_each_binary_operator!`: how it is written and how tight it binds. What it computes is a
-//! row of `for_each_binary_op!`. Preprocessor, parser, analysis and lowering expand both, so that an operator is known
-//! to all of them, or to none.
+//! An operator is a row of `for_each_binary_operator!`: its spelling and its precedence. Its computation is a row of
+//! `for_each_binary_op!`. Preprocessor, parser, analysis and lowering expand both, so that an operator is known to all
+//! of them, or to none.
 
 use std::cmp::Ordering;
 
 use vm::arith;
 
-/// Hands every binary operator of C to the macro `$m`: its text and token, how tight it binds (larger is tighter), the token of its
-/// assignment if it has one, and what it means.
+/// Passes every binary operator of C to the macro `$m`: its text and token, its precedence (larger binds tighter), the
+/// token of its assignment if it has one, and its meaning.
 macro_rules! for_each_binary_operator {
     ($m:ident) => {
         $m! {
@@ -50,7 +50,7 @@ macro_rules! define_binary_operators {
         }
 
         impl BinaryOperator {
-            /// The operator as it is written.
+            /// The operator as written in the source.
             #[must_use]
             pub const fn spelling(self) -> &'static str {
                 match self {
@@ -86,19 +86,19 @@ pub(crate) enum OperatorMeaning {
     Arithmetic(BinaryOp),
     /// Integers only.
     Bitwise(BinaryOp),
-    /// Integers, each promoted by itself.
+    /// Integers only, each promoted separately.
     Shift(BinaryOp),
     /// A comparison.
     Compare(CompareOp),
-    /// `&&` or `||`: the value of the left side that decides alone.
+    /// `&&` or `||`, with the value of the left side that decides the result.
     Logical(bool),
 }
 
 /// A computation of two integers.
 pub(crate) type Integers = fn(i64, i64) -> Option<i64>;
 
-/// Hands every operation to the macro `$m`: how it is printed, the machine's operator and what `#if` computes, for unsigned
-/// operands as well where that differs, and what checks of indexes compute, which know no width.
+/// Passes every operation to the macro `$m`: its printed form, the machine's operator, and the computations in `#if`,
+/// also for unsigned operands if they differ, and in index checks, which have no width.
 macro_rules! for_each_binary_op {
     ($m:ident) => {
         $m! {
@@ -164,8 +164,8 @@ macro_rules! define_binary_ops {
                 }
             }
 
-            /// Computes the operator on integers without overflow; `None` for operators that index checks do not
-            /// support, and beyond 64 bits.
+            /// Computes the operator on integers without overflow; `None` for operators not supported by index checks,
+            /// and for results beyond 64 bits.
             #[must_use]
             pub(crate) fn exactly(self, a: i64, b: i64) -> Option<i64> {
                 let exact: Option<Integers> = match self {

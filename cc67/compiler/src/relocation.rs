@@ -1,4 +1,4 @@
-//! Words of code that the linker completes, whichever back end has written them.
+//! Words of code that the linker completes, for both back ends.
 
 use crate::ir::inst::SignatureId;
 use crate::typed::SymbolId;
@@ -10,7 +10,7 @@ pub struct Relocation {
     pub word: u32,
     /// The kind of relocation.
     pub kind: RelocationKind,
-    /// The symbol whose address is put there.
+    /// The symbol whose address is inserted.
     pub symbol: SymbolId,
 }
 
@@ -30,7 +30,7 @@ pub enum RelocationKind {
 pub enum FixupKind {
     /// The low half of an address, plus an offset, as the constant of the instruction.
     Low(i32),
-    /// The high half, as that of another instruction.
+    /// The high half, for another instruction.
     High(i32),
     /// The displacement of a branch.
     Near,

@@ -1,9 +1,8 @@
-//! Source files, positions and the macro expansions that tokens came through.
+//! Source files, positions, and the macro expansions that tokens come from.
 //!
-//! Every byte of every file that a compilation reads has a number of its own: files lie one
-//! after another in a single position space. A [`Span`] is a range in it, together with
-//! the macro expansion that put the text in its place, if one did. Spans are small and
-//! `Copy`; the [`SourceMap`] turns them back into file, line and column.
+//! Every byte of every file in a compilation has a unique number: files are consecutive in a single position space. A
+//! [`Span`] is a range in it, together with the macro expansion that inserted the text, if there is one. Spans are
+//! small and `Copy`; the [`SourceMap`] turns them back into file, line and column.
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -22,51 +21,51 @@ pub struct ExpansionId(u32);
 entity_impl!(ExpansionId, "expansion");
 
 impl ExpansionId {
-    /// Text that is in a file as it is.
+    /// Text that is directly in a file.
     pub const NONE: Self = Self(u32::MAX);
 }
 
-/// A range of source text and how it got there.
+/// A range of source text and its origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Span {
     /// Position of the first byte.
     pub lo: u32,
     /// Position after the last byte.
     pub hi: u32,
-    /// The innermost macro expansion the text came through; its call site is the place to look at.
+    /// The innermost macro expansion of the text; its call site is the position to show.
     pub expansion: ExpansionId,
 }
 
 impl Span {
-    /// A span of text that is in a file as it is.
+    /// A span of text that is directly in a file.
     #[must_use]
     pub const fn new(lo: u32, hi: u32) -> Self {
         Self { lo, hi, expansion: ExpansionId::NONE }
     }
 
-    /// The span from the start of `self` to the end of `end`, if one expansion holds both; else `self`.
+    /// The span from the start of `self` to the end of `end`, if both are in the same expansion; otherwise `self`.
     #[must_use]
     pub fn to(self, end: Self) -> Self {
         if self.expansion == end.expansion && end.hi >= self.lo { Self { hi: end.hi, ..self } } else { self }
     }
 }
 
-/// A file's text and where it lies in the position space.
+/// A file's text and its place in the position space.
 #[derive(Debug)]
 pub struct SourceFile {
-    /// Name as the user wrote it or as the include search found it.
+    /// The name given by the user or found by the include search.
     pub name: String,
-    /// The path that it was read from; `None` for the embedded headers and command-line text.
+    /// The path from which it was read; `None` for embedded headers and command-line text.
     pub path: Option<PathBuf>,
     /// The bytes; not necessarily UTF-8. Shared with other inclusions of the same file.
     pub text: Arc<Vec<u8>>,
     /// Position of the first byte.
     pub start: u32,
-    /// The `#include` that brought it in; `None` for the main file.
+    /// The `#include` that included it; `None` for the main file.
     pub included_at: Option<Span>,
-    /// It holds text made by the preprocessor.
+    /// True if it holds text made by the preprocessor.
     is_scratch: bool,
-    /// Offsets of the line starts, found when first requested.
+    /// Offsets of the line starts, computed when first requested.
     lines: OnceLock<Vec<u32>>,
 }
 
@@ -89,7 +88,7 @@ impl SourceFile {
 /// A macro expansion.
 #[derive(Clone, Copy, Debug)]
 pub struct Expansion {
-    /// The macro's name where it is defined; its text is the name.
+    /// The macro's name at its definition; the text of the span is the name.
     pub definition: Span,
     /// The position of the macro call.
     pub call: Span,
@@ -122,7 +121,7 @@ impl SourceMap {
         Self::default()
     }
 
-    /// Adds a file after those already there.
+    /// Adds a file after the existing ones.
     pub fn add_file(
         &mut self,
         name: impl Into<String>,
@@ -158,7 +157,7 @@ impl SourceMap {
         Span::new(lo, file.end())
     }
 
-    /// Reports whether a span lies in text made by the preprocessor.
+    /// Reports whether a span is in text made by the preprocessor.
     #[must_use]
     pub fn is_scratch(&self, span: Span) -> bool {
         self.file_at(span.lo).is_some_and(|file| self.files[file].is_scratch)
@@ -207,10 +206,10 @@ impl SourceMap {
         span
     }
 
-    /// The position at which a reader of the main file meets `span`, then the span's own.
+    /// The position at which a reader of the main file reaches `span`, then the position of the span itself.
     ///
-    /// Text of an included file is met at its `#include`, so diagnostics in this order are in the
-    /// order of the program.
+    /// Text of an included file is reached at its `#include`, so diagnostics in this order are in the order of the
+    /// program.
     #[must_use]
     pub fn reading_order(&self, span: Span) -> (u32, u32) {
         let own = self.call_site(span).lo;
@@ -240,7 +239,7 @@ impl SourceMap {
         Some(Place { file, line: line as u32, column: offset - line_start + 1 })
     }
 
-    /// The line number of a span and the blanks before it; `None` if anything else is before it in its line.
+    /// The line number of a span and the blanks before it; `None` if the line contains anything else before it.
     #[must_use]
     pub fn indentation(&self, span: Span) -> Option<(u32, &[u8])> {
         let place = self.place(span)?;

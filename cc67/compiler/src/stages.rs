@@ -14,7 +14,7 @@ use crate::ir::text::{self, SymbolNames};
 use crate::ir::{parse, verify};
 use crate::{lower, passes, pp};
 
-/// C to IR, as it is before any pass; `path` is where includes are looked for.
+/// Compiles C to IR, before any pass; the folder of `path` is searched for includes.
 ///
 /// # Errors
 /// The first error of the program.
@@ -41,16 +41,16 @@ pub fn lower(path: &Path, source: Vec<u8>, files: &(dyn pp::Files + Sync)) -> Re
 /// Reads IR and prints it again.
 ///
 /// # Errors
-/// What is wrong with the text.
+/// The error in the text.
 pub fn reprint(ir: &str) -> Result<String, String> {
     let unit = read(ir)?;
     print(&unit.functions, &unit.signatures, &unit.symbols)
 }
 
-/// Runs the pass of a name, one of [`passes::ALL`], over IR.
+/// Runs the pass with this name, one of [`passes::ALL`], over IR.
 ///
 /// # Errors
-/// If the name is not that of a pass, or the text or the result is not valid IR.
+/// There is no pass with this name, or the text or the result is not valid IR.
 pub fn pass(name: &str, ir: &str) -> Result<String, String> {
     let (_, pass) = passes::ALL
         .iter()
@@ -61,20 +61,20 @@ pub fn pass(name: &str, ir: &str) -> Result<String, String> {
     print(&unit.functions, &unit.signatures, &unit.symbols)
 }
 
-/// IR to IR of which the bytecode has every instruction.
+/// Converts IR to IR that contains only instructions of the bytecode.
 ///
 /// # Errors
-/// What is wrong with the text.
+/// The error in the text.
 pub fn legalize(ir: &str) -> Result<String, String> {
     let unit = read(ir)?;
     let shown = |function| show::legalized(function, &unit.signatures, &unit.symbols);
     Ok(unit.functions.into_iter().map(shown).collect::<Vec<_>>().join("\n"))
 }
 
-/// IR to bytecode; signatures and pooled constants that it names come first.
+/// Compiles IR to bytecode; its signatures and pooled constants come first.
 ///
 /// # Errors
-/// What is wrong with the text, or that a function is too large.
+/// The error in the text, or a function is too large.
 pub fn bytecode(ir: &str) -> Result<String, String> {
     let unit = read(ir)?;
     let mut generator = Generator::default();

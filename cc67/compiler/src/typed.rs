@@ -1,8 +1,8 @@
-//! The typed tree: every expression has a type, every conversion is written.
+//! The typed tree: every expression has a type, every conversion is explicit.
 //!
-//! What C leaves implicit is explicit here: arrays have become pointers, operands have their
-//! common type, compound assignments name the type they compute in, pointer steps are in
-//! bytes, initialisers are bytes or stores. Lowering needs no knowledge of C's rules.
+//! Implicit rules of C are explicit here: arrays have become pointers, operands have their common type, compound
+//! assignments name the type of the computation, pointer steps are in bytes, initialisers are bytes or stores. Lowering
+//! needs no knowledge of C's rules.
 //!
 //! Values and places are different things: an expression computes a value, a [`Place`] names
 //! storage. A value of structure type exists only as the source of a copy, see
@@ -54,7 +54,7 @@ pub struct Divisions {
 }
 
 impl Unit {
-    /// Divides floating numbers by the firmware's functions from now on.
+    /// Makes floating-point divisions use the firmware's functions from now on.
     pub fn divide_by_firmware(&mut self) {
         let Some(span) = self.functions.first().map(|function| function.span) else { return };
         let single = self.division(FirmwareCall::_divf, Types::FLOAT, span);
@@ -104,7 +104,7 @@ pub struct Symbol {
     pub align: u32,
     /// Its definition.
     pub definition: Definition,
-    /// The defining declaration, else the first one.
+    /// The defining declaration, otherwise the first one.
     pub span: Span,
     /// The first use that needs the address, for link errors.
     pub used_at: Option<Span>,
@@ -130,7 +130,7 @@ pub enum Linkage {
 /// The definition of a symbol in this unit.
 #[derive(Debug)]
 pub enum Definition {
-    /// Declared only: another unit, the firmware or the library defines it.
+    /// Declared only: it is defined by another unit, the firmware or the library.
     None,
     /// A function of this unit; its body is in [`Unit::functions`].
     Function,
@@ -174,11 +174,11 @@ pub struct Hidden {
 pub struct Function {
     /// Its symbol.
     pub symbol: SymbolId,
-    /// Its type. A function of `void` type that returns a value somewhere has result `int` here.
+    /// Its type. A function of type `void` that returns a value somewhere has the result `int` here.
     pub ty: FunctionType,
     /// Parameters in order. A structure parameter's local holds the caller's copy; see [`Local::by_pointer`].
     pub parameters: Vec<LocalId>,
-    /// The parameters that are passed besides the declared ones.
+    /// The parameters that are passed in addition to the declared ones.
     pub hidden: Hidden,
     /// Parameters, variables and temporaries.
     pub locals: PrimaryMap<LocalId, Local>,
@@ -199,7 +199,7 @@ pub struct Function {
 }
 
 impl Function {
-    /// Every call, those in operands that are not evaluated included.
+    /// All calls, including those in operands that are not evaluated.
     pub fn calls(&self) -> impl Iterator<Item = (&Expr, &Call)> {
         self.exprs.values().filter_map(|expr| match &expr.kind {
             ExprKind::Call(call) => Some((expr, call)),
@@ -207,7 +207,7 @@ impl Function {
         })
     }
 
-    /// Hands over every statement of the body, outer ones first; those in statement expressions are left out.
+    /// Visits every statement of the body, outer ones first, except those in statement expressions.
     pub fn each_stmt<'f>(&'f self, visit: &mut dyn FnMut(&'f Stmt)) {
         fn each<'f>(stmts: &'f [Stmt], visit: &mut dyn FnMut(&'f Stmt)) {
             for stmt in stmts {
@@ -239,7 +239,7 @@ pub struct Local {
     pub align: u32,
     /// True if it needs memory: its address is taken, it is an array or a structure, or it is volatile.
     pub in_memory: bool,
-    /// A structure parameter: the register that comes in holds the address of the caller's copy.
+    /// True for a structure parameter: the incoming register holds the address of the caller's copy.
     pub by_pointer: bool,
     /// The range of its declaration.
     pub span: Span,
@@ -252,7 +252,7 @@ pub struct Label {
     pub name: String,
     /// Its range in the source.
     pub span: Span,
-    /// The number that `&&label` gives and [`StmtKind::GotoAddress`] finds it by; counted from 1.
+    /// The number that is the value of `&&label` and by which [`StmtKind::GotoAddress`] finds it, counted from 1.
     pub address: Option<u32>,
 }
 
@@ -272,13 +272,13 @@ pub enum StmtKind {
     Expr(ExprId),
     /// Statements one after another.
     Block(Vec<Stmt>),
-    /// Branches on a value that is zero or not; integers, pointers and floats alike.
+    /// Branches on a zero or nonzero value of integer, pointer or floating type.
     If {
         /// The condition.
         condition: ExprId,
-        /// Taken when it is not zero.
+        /// Executed when it is not zero.
         then: Vec<Stmt>,
-        /// Taken otherwise.
+        /// Executed otherwise.
         otherwise: Vec<Stmt>,
     },
     /// Any loop: `while (condition) { body; step; }`, the first test left out for `do`.
@@ -311,8 +311,8 @@ pub enum StmtKind {
     Break,
     /// Jumps to the end of the innermost loop's body.
     Continue,
-    /// Returns. The value has the type of the function's result; a structure has been copied to the
-    /// result pointer by a statement before.
+    /// Returns. The value has the type of the function's result; a structure has been copied to the result pointer by
+    /// an earlier statement.
     Return(Option<ExprId>),
     /// The place of a label.
     Label(LabelId),
@@ -341,7 +341,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// The first and the last value as numbers, in a switch whose type is unsigned or not.
+    /// The first and the last value as numbers, in a switch of unsigned or signed type.
     #[must_use]
     pub fn values(self, is_unsigned: bool) -> (i128, i128) {
         let number = |value: i64| match is_unsigned {
@@ -374,7 +374,7 @@ pub enum ExprKind {
     Load(PlaceId),
     /// The address of a place.
     Address(PlaceId),
-    /// Stores a value of the place's type; the value is that of the place after the store.
+    /// Stores a value of the place's type; its own value is that of the place after the store.
     Assign(PlaceId, ExprId),
     /// `place = place op operand`, the place evaluated once, before the operand.
     Update(Update),
@@ -395,11 +395,11 @@ pub enum ExprKind {
     Compare(CompareOp, ExprId, ExprId),
     /// `a && b` of values that are zero or not; `int` 0 or 1.
     And(ExprId, ExprId),
-    /// `a || b` likewise.
+    /// `a || b`, in the same way.
     Or(ExprId, ExprId),
     /// `condition ? a : b`, both of the result's type or both `void`.
     Conditional(ExprId, ExprId, ExprId),
-    /// Evaluates the first, then the second, whose value it has.
+    /// Evaluates the first, then the second, and has the value of the second.
     Comma(ExprId, ExprId),
     /// Converts to the expression's type; to `void` drops the value.
     Convert(ExprId),
@@ -407,11 +407,11 @@ pub enum ExprKind {
     /// address of a temporary copy. For a structure result, argument 0 is the address of the temporary that
     /// receives it, and the call is of type `void`.
     Call(Call),
-    /// `va_arg`: loads a value from the place that the `char *` in the list place points to, aligned to its
-    /// size (4 or 8), and steps over it.
+    /// `va_arg`: loads a value from the address in the `char *` of the list place, aligned to its size (4 or 8), and
+    /// advances the `char *`.
     VaArg(PlaceId),
-    /// The value of a local initialised by the statements: a GNU statement expression. The value, if
-    /// any, is that of the last expression.
+    /// The value of a local initialised by the statements: a GNU statement expression. The value, if any, is that of
+    /// the last expression.
     Statements(Vec<Stmt>, Option<ExprId>),
 }
 
@@ -424,7 +424,7 @@ pub struct Update {
     pub op: BinaryOp,
     /// The other operand, of type `computed` (`int` for a shift). For pointers a byte count, as `int`.
     pub operand: ExprId,
-    /// The type that is computed in; the place's own for pointers.
+    /// The type of the computation; for pointers, the place's own type.
     pub computed: TypeId,
     /// The value of the expression.
     pub result: UpdateResult,
@@ -444,9 +444,9 @@ pub enum UpdateResult {
 pub struct Call {
     /// The function.
     pub callee: Callee,
-    /// The type that the arguments were converted to; never `Unspecified` parameters.
+    /// The type to which the arguments were converted; its parameters are never `Unspecified`.
     pub ty: FunctionType,
-    /// All arguments that go into registers, hidden ones included; variable ones excluded.
+    /// All arguments passed in registers, including hidden ones but not variable ones.
     pub arguments: Vec<ExprId>,
     /// The variable part, promoted. Lowering stores it in the frame and passes its address last.
     pub variable: Option<Vec<ExprId>>,
@@ -468,7 +468,7 @@ pub enum UnaryOp {
     Negate,
     /// `~a`
     Complement,
-    /// `a == 0`, of type `int` whatever the operand's type
+    /// `a == 0`, of type `int` for any operand type
     Not,
 }
 

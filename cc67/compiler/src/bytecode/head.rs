@@ -1,6 +1,6 @@
-//! The words in front of a text's functions: the version, the constants, the signatures.
+//! The words before a text's functions: the version, the constants, the signatures.
 //!
-//! Linked programs and objects begin alike.
+//! Linked programs and objects have the same head.
 
 use vm::op::{Op, VERSION, WORD};
 use vm::operand::{self, Classes, Count, Count32};

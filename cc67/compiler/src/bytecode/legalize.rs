@@ -2,10 +2,10 @@
 //!
 //! Afterwards every operand is a value, except constants that fit the immediate field of an instruction and sources of
 //! copies; every address is absolute, a symbol, or a value with a displacement of 16 bits. Objects of the frame have
-//! their offsets; loads and stores reach them through one value, computed at the function's entry.
+//! offsets; loads and stores access them through one value, computed at the function's entry.
 //!
 //! A constant that no field can hold is loaded where it is first needed, and reused as long as the code cannot be
-//! entered in between; one that a loop needs is loaded before the first block.
+//! entered in between; a constant needed by a loop is loaded before the first block.
 
 use cranelift_entity::{PrimaryMap, SecondaryMap};
 
@@ -19,11 +19,11 @@ use crate::ir::operators::{BinaryOp, UnaryOp};
 /// The frame in guest memory.
 #[derive(Clone, Debug)]
 pub(super) struct FrameLayout {
-    /// Bytes, a multiple of 8; `None` if the objects do not fit an address space.
+    /// The size in bytes, a multiple of 8; `None` if the objects do not fit an address space.
     pub(super) size: Option<u32>,
     /// The offset of each object in the frame.
     pub(super) offsets: SecondaryMap<SlotId, u32>,
-    /// The instructions that are executed once, before the first block.
+    /// Instructions that are executed once, before the first block.
     pub(super) prologue: Vec<Inst>,
 }
 
@@ -81,7 +81,7 @@ pub(super) fn legalize(function: &mut Function) -> FrameLayout {
     function.arguments = legalizer.arguments;
     let mut prologue = legalizer.prologue;
     if let (true, Some(slot)) = (legalizer.uses_base, function.slots.keys().next()) {
-        // The base is the address of the frame's beginning, whatever object stands there.
+        // The base is the address of the frame's beginning, whichever object is there.
         let offset = legalizer.offsets[slot].cast_signed().wrapping_neg();
         let kind = InstKind::FrameAddress { dst: base, slot, offset };
         prologue.push(Inst { kind, origin: CodeOrigin::of(function.span) });
@@ -89,13 +89,13 @@ pub(super) fn legalize(function: &mut Function) -> FrameLayout {
     FrameLayout { size, offsets: legalizer.offsets, prologue }
 }
 
-/// True for each block, by its position in the layout, that lies between a backward jump and its target.
+/// True for each block, by its position in the layout, that is between a backward jump and its target.
 fn blocks_in_loops(function: &Function) -> Vec<bool> {
     let mut places: SecondaryMap<BlockId, u32> = table(function.blocks.len());
     for (index, id) in function.layout.iter().enumerate() {
         places[*id] = index as u32;
     }
-    // How many loops begin at a block less those that end in front of it.
+    // The number of loops that begin at a block, minus those that end before it.
     let mut changes = vec![0_i32; function.layout.len() + 1];
     for (index, id) in function.layout.iter().enumerate() {
         for target in function.blocks[*id].terminator.targets().map(|to| places[to] as usize) {
@@ -167,9 +167,9 @@ struct Legalizer {
     uses_base: bool,
     values: PrimaryMap<ValueId, Class>,
     arguments: Vec<Operand>,
-    /// Constants that are in values here.
+    /// Constants that are available in values.
     loaded: Vec<(Constant, ValueId)>,
-    /// The index of the one that is replaced next.
+    /// The index of the entry that is replaced next.
     oldest: usize,
     /// True if the current block may be executed many times.
     is_in_loop: bool,
@@ -181,7 +181,7 @@ struct Legalizer {
 }
 
 impl Legalizer {
-    /// Begins a block that may be reached from where the constants have not been loaded.
+    /// Drops the constants at the beginning of a block that may be reached from code without them.
     fn forget(&mut self) {
         self.loaded.clear();
         self.oldest = 0;
@@ -223,7 +223,7 @@ impl Legalizer {
         self.push(legal);
     }
 
-    /// The machine negates floats only; integers are subtracted from 0, or combined with all ones.
+    /// The machine negates only floats; integers are subtracted from 0, or combined with all ones.
     fn unary(&mut self, op: UnaryOp, dst: ValueId, src: Operand) -> InstKind {
         let class = self.values[dst];
         let src = Operand::from(self.value(src));
@@ -317,8 +317,8 @@ impl Legalizer {
         Address::new(Base::Value(value))
     }
 
-    /// The operand in a value. A constant is loaded, in a loop once for the function, elsewhere once as long as it is
-    /// remembered.
+    /// A value that holds the operand. In a loop, a constant is loaded once for the function; elsewhere, it is loaded
+    /// again when it is no longer available.
     fn value(&mut self, operand: Operand) -> ValueId {
         let constant = match operand {
             Operand::Value(value) => return value,

@@ -1,6 +1,6 @@
-//! Inserts the charges, last of all: nothing behind this stage adds, moves or removes a word.
+//! Inserts the charges in the last stage: nothing after it adds, moves or removes a word.
 //!
-//! Where a charge belongs and what it covers is the machine's rule, [`vm::meter`].
+//! The position and the amount of each charge follow the machine's rule, [`vm::meter`].
 
 use vm::meter;
 use vm::op::Op;
@@ -11,7 +11,7 @@ use super::select::Code;
 
 /// Puts a `charge` at the head of every segment and corrects labels, relocations and lines.
 ///
-/// Charges that the source has stated give way to their sum at the head.
+/// Charges that come from the source are replaced by their sum at the head.
 pub(super) fn insert_charges(code: &mut Code) {
     let all = 0..code.ops.len();
     let points = if code.is_priced {
@@ -21,7 +21,7 @@ pub(super) fn insert_charges(code: &mut Code) {
     };
     let ops = std::mem::take(&mut code.ops);
     code.ops.reserve_exact(ops.len() + points.len());
-    // Where each word goes, and where what is written for it begins: at the charge in front of it.
+    // The new position of each word, and the beginning of the words written for it, which is the charge before it.
     let (mut words, mut heads) = (Vec::with_capacity(ops.len()), Vec::with_capacity(ops.len() + 1));
     let mut points = points.into_iter().peekable();
     for (index, op) in ops.into_iter().enumerate() {

@@ -1,9 +1,9 @@
-//! IR to bytecode: the one folder that knows the machine's instructions.
+//! IR to bytecode: the only folder that depends on the machine's instructions.
 //!
-//! A function passes four stages: [`legalize`] leaves only instructions that the machine has,
-//! [`registers`] gives every value a register, [`select`] writes the words, [`meter`] inserts
-//! the charges. [`Generator`] does so for all functions of a unit. What comes in is IR, what goes out is [`Text`],
-//! [relocations](crate::relocation) and constants; [`references`] says what a program's instructions refer to.
+//! A function passes four stages: [`legalize`] leaves only instructions that the machine has, [`registers`] gives every
+//! value a register, [`select`] writes the words, [`meter`] inserts the charges. [`Generator`] does so for all
+//! functions of a unit. The input is IR; the output is [`Text`], [relocations](crate::relocation) and constants;
+//! [`references`] lists the symbols that a program's instructions refer to.
 
 #![deny(clippy::wildcard_enum_match_arm, reason = "a new instruction, operator or mode must be decided")]
 

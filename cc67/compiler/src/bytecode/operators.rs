@@ -38,7 +38,7 @@ macro_rules! immediate {
 /// Expands the table of binary operators into a function for each column.
 macro_rules! binary_operators {
     ($($op:ident: $i32:tt $immediate:tt $i64:tt $shift:tt $f32:tt $f64:tt;)*) => {
-        /// The immediate form of an operator on 32 bits, if there is one; of `x - c` that is `x + -c`.
+        /// The immediate form of an operator on 32 bits, if there is one; for `x - c` it is `x + -c`.
         pub(super) fn immediate(op: BinaryOp) -> Option<Immediate> {
             match op { $(BinaryOp::$op => immediate!($immediate),)* }
         }

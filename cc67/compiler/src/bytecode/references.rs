@@ -19,7 +19,7 @@ pub(crate) enum Reference {
     Float(f64),
     /// A number in single precision.
     Single(f32),
-    /// Anything else.
+    /// Any other instruction.
     Nothing,
 }
 

@@ -1,13 +1,12 @@
 //! Gives every value a register: a slot of the function's frame in the machine.
 //!
-//! Linear scan over intervals of instruction positions. An interval reaches from the first to
-//! the last mention of a value. A value that is mentioned in one block only, written first,
-//! needs no more; any other may be carried round a loop, so that its interval is stretched
-//! over each loop that it touches. Every jump backwards counts as a loop, overlapping ones as
-//! one, which is right for any shape of code and needs no data flow.
+//! Linear scan over intervals of instruction positions. An interval reaches from the first to the last mention of a
+//! value. This is enough for a value that is mentioned in a single block, and written first. Any other value may be
+//! carried around a loop, so its interval is extended over each loop that it overlaps. Every backward jump counts as a
+//! loop, and overlapping loops as one, which is correct for any shape of code and needs no data flow.
 //!
-//! A register has one class for the whole function, as the machine demands, so each class has
-//! its own supply. The parameters are the first registers.
+//! A register has one class for the whole function, as the machine requires, so each class has its own supply. The
+//! parameters are the first registers.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -36,8 +35,8 @@ impl Registers {
         self.numbers[value]
     }
 
-    /// The positions of instructions from and to which a value has its register to itself; an instruction has an even
-    /// one, counted from 2 by twos, and what it writes the odd one after.
+    /// The positions of the first and last instruction between which a value has its register to itself. An instruction
+    /// has an even position, counted from 2 in steps of 2, and its result the odd position after it.
     pub(super) fn span(&self, value: ValueId) -> Option<(u32, u32)> {
         Some(self.spans[value]).filter(|(_, end)| *end != 0)
     }
@@ -61,14 +60,14 @@ struct Interval {
     end: u32,
     /// The block of the first mention.
     block: PackedOption<BlockId>,
-    /// Mentioned in several blocks, or read before it is written.
+    /// True if it is mentioned in several blocks, or read before it is written.
     is_global: bool,
 }
 
-/// Gives every value of a legal function a register; those of `prologue` are written in front of the first block.
-/// `None` if there are more than the machine can number.
+/// Gives every value of a legal function a register; values of `prologue` are written before the first block. `None` if
+/// there are more than the machine can number.
 ///
-/// Where variables are kept, those of the source have their registers in all of the function.
+/// If variables are kept, variables of the source have their registers in the whole function.
 pub(super) fn assign(function: &Function, prologue: &[Inst], keeps_variables: bool) -> Option<Registers> {
     let mut scan = Scan {
         intervals: table(function.values.len()),
@@ -119,7 +118,7 @@ impl Scan {
     fn mention(&mut self, value: ValueId, position: u32, block: PackedOption<BlockId>, how: Mention) {
         let interval = &mut self.intervals[value];
         if interval.block.is_none() {
-            // What is read first keeps the 0 that the machine puts into fresh registers.
+            // A value that is read first keeps the 0 that the machine puts into fresh registers.
             let (start, is_global) = if how == Mention::Read { (0, true) } else { (position, false) };
             *interval = Interval { start, end: position, block, is_global };
             self.order.push(value);
@@ -139,7 +138,7 @@ impl Scan {
     fn function(&mut self, function: &Function) -> Vec<(u32, u32)> {
         let mut starts: SecondaryMap<BlockId, u32> = table(function.blocks.len());
         let mut loops = Vec::new();
-        // Position 0 belongs to the parameters, and no block starts at 0: so 0 means not yet passed.
+        // Position 0 belongs to the parameters, and no block starts at 0: so 0 means that it was not reached yet.
         self.position = 2;
         for &id in &function.layout {
             let block = &function.blocks[id];

@@ -1,8 +1,8 @@
 //! Writes the words of a function.
 //!
-//! The function is legal: one instruction becomes one word, apart from calls and table jumps. Blocks are written in the order of the layout; a jump to the next block is
-//! left out. Labels are numbers of words in the function until [`super::text`] takes the
-//! function in.
+//! The function is legal: one instruction becomes one word, apart from calls and table jumps. Blocks are written in the
+//! order of the layout; a jump to the next block is left out. Labels are numbers of words in the function until
+//! [`super::text`] adds the function to the unit.
 
 use cranelift_entity::SecondaryMap;
 use cranelift_entity::packed_option::PackedOption;
@@ -41,7 +41,7 @@ pub(super) struct Code {
     pub(super) insts: Vec<u32>,
     /// A table or count is larger than an instruction can hold.
     pub(super) is_too_large: bool,
-    /// The source states what the function costs: its charges are where they were put, and no others.
+    /// True if the source gives the costs of the function: its charges are the given ones, and no others.
     pub(super) is_priced: bool,
 }
 
@@ -73,7 +73,7 @@ struct Selector<'a> {
     pool: &'a mut ConstantPool,
     code: Code,
     starts: SecondaryMap<BlockId, u32>,
-    /// Words whose label is the number of a block as yet.
+    /// Words with a label that is still the number of a block.
     branches: Vec<u32>,
 }
 
@@ -130,7 +130,7 @@ impl Selector<'_> {
         RegF64(self.registers.of(value))
     }
 
-    /// The value that a legal operand is; immediates are taken out before.
+    /// The value of a legal operand that is not an immediate.
     fn value(&self, operand: Operand) -> ValueId {
         debug_assert!(operand.as_value().is_some(), "constants are in values");
         operand.as_value().unwrap_or(ValueId::from_u32(0))
@@ -449,7 +449,7 @@ impl Selector<'_> {
     }
 }
 
-/// Begins a run of words of `what`, if those before are of another value.
+/// Begins a run of words with the attribute `what`, unless the current run has the same.
 fn begin<T: PartialEq>(runs: &mut Vec<(u32, T)>, word: u32, what: T) {
     match runs.last_mut() {
         Some((_, last)) if *last == what => {}

@@ -9,8 +9,8 @@ use crate::ir::inst::{CodeOrigin, Terminator};
 use crate::ir::text::{self, SymbolNames};
 use crate::relocation::{Relocation, RelocationKind};
 
-/// A function whose instructions the machine has: its frame as a comment, what is computed once as a block of its own
-/// in front of the first.
+/// A function in the instructions of the machine: its frame as a comment, and the instructions that are executed once
+/// as a separate block before the first.
 pub(crate) fn legalized(mut function: Function, signatures: &Signatures, names: &dyn SymbolNames) -> String {
     let frame = legalize::legalize(&mut function);
     if let (false, Some(&entry)) = (frame.prologue.is_empty(), function.layout.first()) {
@@ -34,7 +34,7 @@ pub(crate) fn legalized(mut function: Function, signatures: &Signatures, names: 
     shown + &text::print(&function, signatures, names)
 }
 
-/// The words of a function; what the linker completes is named after them.
+/// The words of a function; words that the linker completes show the names of their symbols.
 pub(crate) fn words(text: &Text, generated: &Generated, names: &dyn SymbolNames) -> String {
     let mut shown = String::new();
     for (number, op) in text.numbered(&generated.added.words) {

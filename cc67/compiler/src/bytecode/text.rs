@@ -1,8 +1,8 @@
-//! The words of a unit: how they are kept, moved and completed.
+//! The words of a unit, and the operations that move and complete them.
 //!
 //! In a unit a label counts from the unit's first word, and constants and signatures have the unit's own numbers. A
-//! program shares both among its units ([`Numbers`]), and its words move. Who links or writes objects sees ranges of
-//! words and bytes, not instructions.
+//! program shares both among its units ([`Numbers`]), and its words move. Code that links or writes objects handles
+//! ranges of words and bytes, not instructions.
 
 use std::ops::Range;
 
@@ -25,7 +25,7 @@ pub struct Text(Vec<Op>);
 /// A function as it was added to a text.
 #[derive(Debug)]
 pub(crate) struct Added {
-    /// Its words, the `func` word first.
+    /// Its words, beginning with the `func` word.
     pub(crate) words: Range<u32>,
     /// Words that hold addresses, ascending.
     pub(crate) relocations: Vec<Relocation>,
@@ -152,7 +152,7 @@ impl Patch for InProgram<'_> {
     }
 }
 
-/// Takes words out of an object file, whose first words are not the unit's, and looks up what they name.
+/// Converts words of an object file, whose first words are not the unit's, and resolves the names in them.
 struct FromFile<'a> {
     head: u32,
     pool: &'a [u64],
@@ -194,10 +194,10 @@ fn moved(mut op: Op, by: u32) -> Op {
     op
 }
 
-/// A word of a function; `None` if it refers to what the unit does not have.
+/// Decodes a word of a function; `None` if it refers to something that the unit does not have.
 fn decode(word: [u8; WORD], head: u32, pool: &[u64], signatures: &[Signature]) -> Option<Op> {
     let mut op = Op::decode(word)?;
-    // These belong to the head of a file, and to programs that are linked.
+    // These only occur in the head of a file, and in linked programs.
     if matches!(op, Op::Program { .. } | Op::Sig { .. } | Op::Call { .. }) {
         return None;
     }

@@ -19,7 +19,7 @@ use crate::typed::{LocalId, SymbolId};
 pub struct VariablePlaces {
     /// The local.
     pub local: LocalId,
-    /// Words of the unit before which it is where; before others it is optimised out.
+    /// Words of the unit before which it has each location; before other words it is optimised out.
     pub places: Vec<(Range<u32>, Location)>,
 }
 
@@ -30,9 +30,9 @@ pub struct InlinedPlaces {
     pub callee: SymbolId,
     /// The statement that called it.
     pub call: Span,
-    /// The inlined call that this statement is of, by its index.
+    /// The index of the inlined call that contains the statement.
     pub inside: Option<u32>,
-    /// Its words of the unit, without those of calls in it.
+    /// Its words in the unit, without those of calls in it.
     pub words: Vec<Range<u32>>,
     /// The locations of its locals.
     pub variables: Vec<VariablePlaces>,
@@ -47,7 +47,7 @@ pub enum Location {
     Frame(u32),
     /// In memory, at the address in a register.
     Pointer(u16),
-    /// Nowhere: it is always this, the bits of a register.
+    /// It has no location, but always this value, given as the bits of a register.
     Constant(u64),
 }
 
@@ -62,7 +62,7 @@ impl fmt::Display for Location {
     }
 }
 
-/// The words of instructions and inlined calls within a function that is generated, numbered as there.
+/// The words of instructions and inlined calls in the function being generated, numbered within the function.
 #[derive(Debug)]
 pub(super) struct PlacedWords {
     /// The first word of each instruction, and of the end of each block.
@@ -77,9 +77,7 @@ impl PlacedWords {
         Self { insts: std::mem::take(&mut code.insts), calls: std::mem::take(&mut code.calls) }
     }
 
-    /// Returns the locations of the locals of a function, and those of its inlined calls; `words` are its words in the
-    /// unit.
-    /// of the unit.
+    /// Returns the locations of the locals of a function and of its inlined calls; `words` are its words in the unit.
     pub(super) fn collect(
         &self,
         function: &Function,
@@ -115,7 +113,7 @@ struct Finder<'a> {
 }
 
 impl Finder<'_> {
-    /// The places of each local; one that may be in several has them in the order in which to look.
+    /// The locations of each local; a local with several possible locations lists them in the order of preference.
     fn variables(&self, variables: &[SourceVariable]) -> Vec<VariablePlaces> {
         let mut found: Vec<VariablePlaces> = Vec::with_capacity(variables.len());
         for variable in variables {
@@ -138,7 +136,7 @@ impl Finder<'_> {
             VariableHome::Pointer(value) => {
                 Some((self.range(value)?, Location::Pointer(self.registers.of(value))))
             }
-            // Where a write is gone, the register may hold an older value.
+            // If a write was removed, the register may hold an older value.
             VariableHome::Value(value, writes) if self.writes[value] == writes => {
                 Some((self.range(value)?, Location::Register(self.registers.of(value))))
             }
@@ -151,12 +149,12 @@ impl Finder<'_> {
     fn range(&self, value: ValueId) -> Option<Range<u32>> {
         let (from, to) = self.registers.span(value)?;
         let begin = if from == 0 { self.start } else { self.word_at(from) };
-        // The last one that mentions it is still to be executed.
+        // The last instruction that mentions it is yet to be executed.
         Some(begin..(self.word_at(to) + 1).min(self.words.end))
     }
 
     fn word_at(&self, position: u32) -> u32 {
-        // Position 2 is that of the first instruction; what an instruction writes is there from the next one on.
+        // The first instruction has position 2; the result of an instruction is available from the next one on.
         let index = (position.div_ceil(2) as usize).saturating_sub(1);
         self.placed.insts.get(index).map_or(self.words.end, |word| self.start + word)
     }

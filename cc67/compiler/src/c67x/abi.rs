@@ -6,10 +6,10 @@ use c67x::{Reg, Side};
 /// The register for the address of an indirect call: no argument is passed in it.
 pub(super) const TARGET: Reg = Reg::b(0);
 
-/// The register that a thread begins with its number in, and that `ThreadDone` takes it from.
+/// The register that contains a thread's number at its start, and from which `ThreadDone` takes it.
 pub(super) const THREAD: Reg = Reg::a(14);
 
-/// The register for the address of further arguments when there are more than registers; a convention of ours.
+/// The register for the address of further arguments if there are more arguments than registers; our own convention.
 pub(super) const REST: Reg = Reg::a(3);
 
 /// The register that `sin` and `cos` of the firmware may still write in the cycle after their return.
@@ -23,11 +23,11 @@ pub(super) const fn bit(reg: Reg) -> u64 {
 /// The registers that a call of any function may change: A0 to A9, B0 to B9.
 pub(super) const CHANGED: u64 = 0x3FF | 0x3FF << 32;
 
-/// The registers that a function keeps: A10 to A15, B10 to B14.
+/// The callee-saved registers: A10 to A15, B10 to B14.
 pub(super) const KEPT: u64 = 0xFC00 | 0x7C00 << 32;
 
-/// The registers that values can be in. Registers 16 to 31 do not survive a thread switch (`c67x.md` 6.2); B3
-/// and B15 have their own use.
+/// The registers available for values. Registers 16 to 31 do not survive a thread switch (`c67x.md` 6.2); B3 and B15
+/// have special uses.
 pub(super) const USABLE: u64 = (CHANGED | KEPT) & !bit(LINK);
 
 /// The registers that can be a condition.

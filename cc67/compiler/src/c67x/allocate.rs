@@ -1,9 +1,9 @@
 //! Gives every virtual register one of the processor's, by linear scan.
 //!
-//! Intervals are served in the order of their beginnings. A register that is needed across a call must be one that
-//! calls keep. Where none is free, the interval that is mentioned least for its length moves to memory, and all
-//! begins again. Of the free registers the one that has been free longest is taken, so that the scheduler finds few
-//! instructions that wait for a register alone.
+//! Intervals are allocated in the order of their beginnings. A register that is live across a call must be
+//! callee-saved. If none is free, the interval with the fewest uses for its length is spilled, and allocation starts
+//! over. Of the free registers, the one that has been free longest is taken, so that few instructions have to wait only
+//! because of a register.
 
 use c67x::Reg;
 use cranelift_entity::SecondaryMap;
@@ -18,7 +18,7 @@ use crate::passes::Level;
 #[derive(Clone, Debug)]
 pub(super) struct Assignment {
     regs: SecondaryMap<VReg, u8>,
-    /// The kept registers that the function uses.
+    /// The callee-saved registers that the function uses.
     pub(super) kept: u64,
     is_used: SecondaryMap<VReg, bool>,
 }
@@ -35,7 +35,7 @@ impl Assignment {
     }
 }
 
-/// The most rounds of spilling and allocating again.
+/// The limit of rounds of spilling and allocating again.
 const ROUNDS: usize = 24;
 
 /// Allocates; `None` if the function does not fit the processor.
@@ -46,7 +46,7 @@ pub(super) fn allocate(code: &mut Code, level: Level) -> Option<Assignment> {
         scan.is_wide = level == Level::Fast;
         scan.run(&live::in_order(code, &liveness))?;
         if scan.moved.is_empty() {
-            // Arguments from the seventh on are in registers that the function itself must keep.
+            // Arguments from the seventh on are in callee-saved registers.
             let kept = code.calls.iter().fold(scan.used, |set, call| set | call.changes) & abi::KEPT;
             let mut is_used = SecondaryMap::with_capacity(code.regs.len());
             for reg in code.regs.keys() {
@@ -72,7 +72,7 @@ struct Scan<'a> {
     is_moved: SecondaryMap<VReg, bool>,
     /// The registers that some call changes.
     changed_anywhere: u64,
-    /// True if loops use as many registers as there are, so that their iterations overlap.
+    /// True if loops use as many registers as there are, so that their iterations can overlap.
     is_wide: bool,
 }
 
@@ -113,7 +113,7 @@ impl<'a> Scan<'a> {
         let mut changed = 0;
         for (_, number) in calls[first..].iter().take_while(|(at, _)| *at < interval.end) {
             changed |= self.code.calls[*number as usize].changes;
-            // Most calls change the same registers: after the first, the others add nothing.
+            // Most calls change the same registers, so calls after the first add nothing.
             if changed == self.changed_anywhere {
                 break;
             }
@@ -121,7 +121,7 @@ impl<'a> Scan<'a> {
         changed
     }
 
-    /// The registers that a virtual one takes if it is at `reg`.
+    /// The physical registers occupied by a virtual register that is assigned to `reg`.
     fn whole(&self, reg: VReg, at: Reg) -> u64 {
         if self.code.regs[reg].is_pair { abi::bit(at) | abi::bit(at.pair().high()) } else { abi::bit(at) }
     }
@@ -152,8 +152,8 @@ impl<'a> Scan<'a> {
     }
 
     /// Reports whether a pair in a loop that begins at `first` would share its registers with another value of an
-    /// iteration, or leave none of its side for conditions: iterations overlap no closer than two results of one
-    /// register.
+    /// iteration, or leave no register of its side for conditions: results of the same register limit the overlap of
+    /// iterations.
     fn joins(&self, whole: u64, first: u32) -> bool {
         let is_taken = |one: Reg| self.taken[one.index()] >= first;
         let side = abi::registers(whole).next().map_or(0, |one| abi::file(one.side()));

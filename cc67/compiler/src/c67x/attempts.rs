@@ -1,7 +1,7 @@
-//! Attempts at a function: the later stages in several ways, of which the best stays.
+//! Attempts at a function: the later stages in several variants, of which the best is kept.
 //!
 //! All attempts share one budget of work. It grows with the size of the function, so that the time for a program is
-//! proportional to its length; what an attempt finds beyond it is not looked for.
+//! proportional to its length; beyond it, attempts search no further.
 
 use super::allocate::{self, Assignment};
 use super::code::Code;
@@ -37,7 +37,7 @@ impl Attempt {
         self.regions.iter().fold(0, |at, region| refine::end(region, at))
     }
 
-    /// Its cycles, as far as one can guess how often each region happens.
+    /// Its cycles, with an estimate of the frequency of each region.
     fn cost(&self) -> f32 {
         self.regions.iter().map(|region| region.weight * region.cycles as f32).sum()
     }
@@ -49,11 +49,11 @@ impl Attempt {
     }
 }
 
-/// The packets of a function. At the level that makes code larger, short loops are tried unrolled and not, and all
-/// loops with other sides for their registers; the better ones stay.
+/// The packets of a function. At the level that makes code larger, short loops are tried with and without unrolling,
+/// and all loops with other sides for their registers; the best variants are kept.
 ///
 /// # Errors
-/// That the function is too large for the processor.
+/// The function is too large for the processor.
 pub(super) fn best(ir: &Function, code: Code, level: Level) -> Result<Attempt, TooLarge> {
     let insts = code.blocks.iter().map(|block| block.insts.len()).sum::<usize>();
     let insts = u32::try_from(insts).unwrap_or(u32::MAX);
@@ -73,7 +73,7 @@ struct Attempts<'a> {
     insts: u32,
 }
 
-/// A function whose virtual registers have their places.
+/// A function with physical registers for its virtual registers.
 #[derive(Clone)]
 struct Assigned {
     code: Code,
@@ -141,7 +141,7 @@ impl Attempts<'_> {
         (attempt, count)
     }
 
-    /// Gives instructions over virtual registers those of the processor.
+    /// Replaces virtual registers by those of the processor.
     fn assign(&self, mut code: Code, policy: Policy) -> Result<Assigned, TooLarge> {
         if self.level != Level::None {
             counters::run(&mut code);

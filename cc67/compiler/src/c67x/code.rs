@@ -22,19 +22,19 @@ entity_impl!(VReg, "r");
 pub(super) struct Info {
     /// A pair of registers.
     pub(super) is_pair: bool,
-    /// Its file, once that is decided.
+    /// Its register file, once that is decided.
     pub(super) side: Option<Side>,
-    /// True if it is tested as a condition, which six registers can be.
+    /// True if it is tested as a condition, which only six registers can be.
     pub(super) is_condition: bool,
     /// The register it would best be.
     pub(super) hint: Option<Reg>,
     /// True if the allocator made it for one instruction: it is never spilled.
     pub(super) is_short: bool,
-    /// Its only value, a constant that is made again rather than kept in memory.
+    /// Its only value, a constant that is rematerialised rather than spilled.
     pub(super) constant: Option<Value>,
 }
 
-/// A number that is known at the latest when the program is linked.
+/// A number that is known when the program is linked, or earlier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Value {
     /// A number.
@@ -100,7 +100,7 @@ pub(super) enum Base {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct MemoryPlace {
     pub(super) base: Base,
-    /// Bytes, if there is no index.
+    /// The offset in bytes, if there is no index.
     pub(super) offset: i32,
     /// A register that counts elements.
     pub(super) index: Option<VReg>,
@@ -126,7 +126,7 @@ pub(super) struct Inst {
     pub(super) src2: Arg,
     /// The constants of a bit field.
     pub(super) field: (u8, u8),
-    /// The address of a load or store, or of which an address is made.
+    /// The address of a load or store, or the place whose address is computed.
     pub(super) place: Option<MemoryPlace>,
     pub(super) condition: Condition,
     /// A number of a call or table.
@@ -146,7 +146,7 @@ impl Inst {
         self.condition.is_some() || matches!(self.kind, Kind::Mvkh)
     }
 
-    /// Hands every virtual register that is read to `visit`, those of a call excepted.
+    /// Passes every virtual register that is read to `visit`, except those of a call.
     pub(super) fn visit_reads(&self, mut visit: impl FnMut(VReg)) {
         for arg in [self.src1, self.src2] {
             if let Some(reg) = arg.reg() {
@@ -171,7 +171,7 @@ impl Inst {
         }
     }
 
-    /// The register that is written; and whether nothing of its old content remains.
+    /// The register that is written, and whether its old contents are replaced completely.
     pub(super) fn written(&self) -> Option<(VReg, bool)> {
         match self.dst {
             Arg::Reg(reg) => Some((reg, !self.keeps_destination())),
@@ -180,7 +180,7 @@ impl Inst {
         }
     }
 
-    /// The register that a load or store steps on.
+    /// The base register that a load or store increments.
     pub(super) fn stepped(&self) -> Option<VReg> {
         match self.place {
             Some(MemoryPlace { base: Base::Reg(reg), step, .. }) if step != 0 => Some(reg),
@@ -235,7 +235,7 @@ pub(super) struct Call {
 pub(super) enum End {
     /// Continues at a block.
     Jump(u32),
-    /// Continues at `then` if the register is not 0 (`negated`: if it is 0), else to `otherwise`.
+    /// Continues at `then` if the register is not 0 (`negated`: if it is 0), otherwise at `otherwise`.
     Branch { condition: VReg, negated: bool, then: u32, otherwise: u32 },
     /// Continues at the address in a register, one of `targets`.
     Table { address: VReg, targets: Vec<u32> },
@@ -246,7 +246,7 @@ pub(super) enum End {
 }
 
 impl End {
-    /// The blocks it may go to.
+    /// The blocks at which it may continue.
     pub(super) fn targets(&self) -> impl Iterator<Item = u32> + '_ {
         let (two, many): ([Option<u32>; 2], &[u32]) = match self {
             Self::Jump(to) => ([Some(*to), None], &[]),
@@ -302,7 +302,7 @@ pub(super) struct Code {
     pub(super) blocks: Vec<Block>,
     pub(super) regs: PrimaryMap<VReg, Info>,
     pub(super) calls: Vec<Call>,
-    /// The parameters and the registers they come in (of a pair the even one).
+    /// The parameters and their registers at entry (for a pair, the even register).
     pub(super) params: Vec<(VReg, Reg)>,
     /// Tables of block addresses after the code.
     pub(super) tables: Vec<Vec<u32>>,

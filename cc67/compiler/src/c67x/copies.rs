@@ -1,8 +1,9 @@
 //! Copy propagation, and removal of unused results.
 //!
-//! Selection joins the halves of pairs and takes them apart again, shifts by whole words, and combines with words that
-//! are 0. Block by block, a source that is a copy is replaced by the original, as long as neither changes; an
-//! instruction that becomes a copy by that counts as one. Unused results are removed, except loads.
+//! Instruction selection joins the halves of pairs and splits them again, shifts by whole words, and combines values
+//! with words that are 0. Block by block, a source that is a copy is replaced by the original, as long as neither
+//! changes; an instruction that becomes a copy in this way is treated as one, too. Unused results are removed, except
+//! loads.
 
 use cranelift_entity::SecondaryMap;
 
@@ -25,13 +26,13 @@ pub(super) fn run(code: &mut Code) {
     remove_unread(code);
 }
 
-/// The most copies that are known at a time.
+/// The limit of copies known at the same time.
 const MOST: usize = 256;
 
 /// The copies that hold at a position in a block.
 struct Copies {
     pairs: SecondaryMap<VReg, bool>,
-    /// A word, and the word or the number 0 that it is.
+    /// A word, and the word or the number 0 of which it is a copy.
     list: Vec<(Arg, Arg)>,
 }
 
@@ -76,7 +77,7 @@ impl Copies {
         }
     }
 
-    /// The word that a word is a copy of.
+    /// The word of which a word is a copy.
     fn of(&self, arg: Arg) -> Option<Arg> {
         self.list.iter().find(|(copy, _)| *copy == arg).map(|(_, from)| *from)
     }
@@ -94,7 +95,7 @@ impl Copies {
         self.of(arg).filter(|from| from.reg().is_some()).unwrap_or(arg)
     }
 
-    /// Makes copies of what shifts by nothing or combines with 0.
+    /// Turns shifts by 0 and combinations with 0 into copies.
     fn simplify(&self, inst: &mut Inst) {
         let is_zero = |arg: Arg| arg == ZERO || self.of(arg) == Some(ZERO);
         let is_shift = matches!(inst.kind, Kind::Shl | Kind::Shr | Kind::Shru);
@@ -161,7 +162,7 @@ fn remove_unread(code: &mut Code) {
     }
 }
 
-/// The registers that an instruction reads, one that it alone changes excepted.
+/// The registers read by an instruction, except a register that it merely updates.
 fn visit_sources(inst: &Inst, mut visit: impl FnMut(VReg)) {
     let own = inst.dst.reg().filter(|_| inst.kind.bytes().is_none());
     inst.visit_reads(|reg| {

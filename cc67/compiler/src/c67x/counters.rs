@@ -1,8 +1,8 @@
-//! Loop counters: a count that is tested needs no second register.
+//! Loop counters: a counter that is tested needs no second register.
 //!
-//! Selection copies a value with other readers to a register that can be tested, of which there are six. At the end of
-//! a loop of one block that copy costs a step of every iteration, between the count and the branch. If nothing after
-//! the loop reads the count, the count itself is tested.
+//! Instruction selection copies a value with other readers to one of the six registers that can be tested. At the end
+//! of a single-block loop, that copy costs a step in every iteration, between the counter and the branch. If the
+//! counter is not read after the loop, the counter itself is tested.
 
 use cranelift_entity::SecondaryMap;
 
@@ -15,7 +15,7 @@ const TESTED: usize = 2;
 
 /// Rewrites the loops of one block.
 pub(super) fn run(code: &mut Code) {
-    // A copy that goes leaves its block a reader of the count.
+    // Even after a copy is removed, its block reads the counter.
     let readers = Readers::new(code);
     for number in 0..code.blocks.len() {
         let Some((at, count)) = copied(code, &readers, number) else { continue };
@@ -28,7 +28,7 @@ pub(super) fn run(code: &mut Code) {
     }
 }
 
-/// The copy that the branch back to a block tests, and what it copies, if that can be tested instead.
+/// The copy that is tested by the branch back to a block, and its source, if the source can be tested instead.
 fn copied(code: &Code, readers: &Readers, number: usize) -> Option<(usize, VReg)> {
     let block = &code.blocks[number];
     let End::Branch { condition, then, otherwise, .. } = block.end else { return None };

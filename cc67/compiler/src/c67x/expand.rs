@@ -20,7 +20,7 @@ use crate::source::Span;
 /// A region: the unit of scheduling.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Region {
-    /// Its label: a block's number, or one after them for where a call returns to.
+    /// Its label: the number of a block, or a later number for a return point of a call.
     pub(super) label: u32,
     pub(super) steps: Vec<Step>,
     /// The branches at its end, none if execution continues in the next region.
@@ -48,13 +48,13 @@ pub(super) struct Beyond {
     pub(super) changes: u64,
 }
 
-/// A function whose registers are those of the processor.
+/// A function with the registers of the processor.
 #[derive(Debug)]
 pub(super) struct Expanded {
     pub(super) regions: Vec<Region>,
-    /// The first label that nothing has.
+    /// The first unused label.
     pub(super) labels: u32,
-    /// The regions after calls whose last result may land in their first cycle.
+    /// The regions after calls, in whose first cycle the call's last result may still land.
     pub(super) late: Vec<u32>,
     /// Bytes of its frame.
     pub(super) frame: u32,
@@ -63,7 +63,7 @@ pub(super) struct Expanded {
 /// The location of the return address while calls change its register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Back {
-    /// In a register that calls keep, if there is one.
+    /// In a callee-saved register, if one is free.
     Register,
     /// In the frame: an instruction less, and five cycles more.
     Frame,
@@ -90,7 +90,7 @@ pub(super) fn expand(
     let home = back;
     let mut back = abi::LINK;
     if calls {
-        // A register that calls keep has the return address at once when the function ends.
+        // From a callee-saved register, the return address is available at once when the function ends.
         let free = abi::registers(abi::KEPT & !assignment.kept).last().filter(|_| home == Back::Register);
         back = free.unwrap_or(abi::LINK);
         saved.push(back);
@@ -117,7 +117,7 @@ pub(super) fn expand(
     Ok(Expanded { regions, labels, late, frame: frame.size })
 }
 
-/// The objects of the frame whose address is taken.
+/// The objects of the frame whose addresses are taken.
 fn escaping(function: &Function, code: &Code) -> SecondaryMap<SlotId, bool> {
     let mut escaping = table(function.slots.len());
     if let Some(outgoing) = function.outgoing {
@@ -143,9 +143,9 @@ struct Expander<'a> {
     regions: Vec<Region>,
     /// The one that grows.
     region: Region,
-    /// The label of the next place that a call returns to.
+    /// The label of the next return point of a call.
     returns: u32,
-    /// The labels of calls whose last result lands late.
+    /// The labels of the return points of calls whose last result lands late.
     late: Vec<u32>,
     is_wrong: bool,
 }
@@ -226,7 +226,7 @@ impl Expander<'_> {
         }
         let mut list = Vec::new();
         for (reg, at) in &self.code.params {
-            // What is never read has no register of its own.
+            // A value that is never read has no register.
             if self.finalizer.assignment.is_used(*reg) {
                 self.words(self.finalizer.assignment.of(*reg), *at, self.code.regs[*reg].is_pair, &mut list);
             }
@@ -269,7 +269,7 @@ impl Expander<'_> {
         }
     }
 
-    /// Reports whether a load of a pair can have this address: those of the frame reach 31 pairs.
+    /// Reports whether a load of a pair can use this address: an offset in the frame can be at most 31 pairs.
     fn reaches_pair(&self, place: MemoryPlace) -> bool {
         if matches!(place.base, Base::Reg(_)) {
             return true;
@@ -396,7 +396,7 @@ impl Expander<'_> {
                 self.branch(Final::Reg(at), Pred::Always).into_iter().collect()
             }
             End::Return(value) => self.leave(value),
-            // Execution that comes here by mistake leaves the function.
+            // Execution that gets here by mistake leaves the function.
             End::Unreachable => self.leave(None),
         };
         self.close(branches);

@@ -26,7 +26,7 @@ fn in_firmware(name: &str) -> Option<&'static FirmwareFunction> {
 pub(crate) struct Externs {
     aligns: PrimaryMap<SymbolId, u32>,
     variadic: SecondaryMap<SymbolId, bool>,
-    /// Functions of the firmware with variable arguments, which take them from the stack alone.
+    /// Variadic functions of the firmware that take their variable arguments only from the stack.
     stack_alone: SecondaryMap<SymbolId, bool>,
     /// Functions of the firmware whose last result lands in the cycle after their return.
     late: SecondaryMap<SymbolId, bool>,

@@ -1,7 +1,7 @@
-//! The forms of the processor's table that can express each kind of instruction.
+//! The forms in the processor's table for each kind of instruction.
 //!
-//! One row a kind: the forms, with operands by field; `swapped` exchanges the two sources. All forms of a row
-//! compute the same and take the same time, so the scheduler may take any that fits the registers.
+//! One row per kind: the forms, with operands by field; `swapped` exchanges the two sources. All forms of a row compute
+//! the same result in the same time, so the scheduler may choose any that fits the registers.
 
 use c67x::Op;
 
@@ -159,7 +159,7 @@ impl Kind {
         matches!(self, Self::StoreByte | Self::StoreHalf | Self::StoreWord)
     }
 
-    /// The sources that may come from the other file.
+    /// The sources that may come from the other register file.
     pub(super) const fn crossing(self) -> Crossing {
         match self {
             Self::Shl | Self::Shr | Self::Shru => Crossing::Second,
@@ -169,7 +169,7 @@ impl Kind {
     }
 }
 
-/// The sources of an instruction that may come from the other file.
+/// The sources of an instruction that may come from the other register file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Crossing {
     /// Either of the two, but not both.

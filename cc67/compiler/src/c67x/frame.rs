@@ -1,8 +1,8 @@
 //! The frame on the stack.
 //!
-//! B15 points below what the function owns: the word at B15 may be overwritten by an interrupt at any time, that at
-//! B15 + 4 and all above are safe (`c67x.md` 6.1). From there on stand the last named argument of calls with variable
-//! ones, those arguments, the objects, and the words that the allocator took.
+//! B15 points below the function's frame: the word at B15 may be overwritten by an interrupt at any time, the words
+//! from B15 + 4 on are safe (`c67x.md` 6.1). These are the last named argument of variadic calls, the variable
+//! arguments, the objects, and the words used by the allocator.
 
 use cranelift_entity::SecondaryMap;
 
@@ -24,7 +24,7 @@ pub(super) struct Frame {
     pub(super) size: u32,
 }
 
-/// Lays the frame out; `None` if it is larger than an offset reaches.
+/// Lays out the frame; `None` if it exceeds the range of an offset.
 pub(super) fn lay_out(function: &Function, code: &Code, saved: u32) -> Option<Frame> {
     let mut slots = table(function.slots.len());
     let mut end = if code.has_variable_calls { 8_u32 } else { 4 };
@@ -42,7 +42,7 @@ pub(super) fn lay_out(function: &Function, code: &Code, saved: u32) -> Option<Fr
     let end = spills.checked_add(code.spills.checked_mul(4)?)?;
     let saved_at = end.checked_next_multiple_of(4)?;
     let end = saved_at.checked_add(4 * saved)?;
-    // The word at the old B15 is the function's too.
+    // The word at the old B15 also belongs to the function.
     let size = if end <= 4 { 0 } else { (end - 4).checked_next_multiple_of(8)? };
     (size <= MAX_FRAME).then_some(Frame { slots, spills, saved: saved_at, size })
 }

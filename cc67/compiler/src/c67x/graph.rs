@@ -1,9 +1,9 @@
 //! The dependence graph of a region.
 //!
-//! An edge states after how many cycles from one step another may issue at the earliest. Registers: a result is read
-//! when it has landed, never while it is in flight, because an interrupt would make it land early (`c67x.md` 2.5);
-//! results of one register land in order. Memory: accesses that others may see keep their order; loads may share a
-//! cycle.
+//! An edge gives the minimum number of cycles from the issue of one step to that of another. Registers: a result is
+//! read after it has landed, never while it is in flight, because an interrupt would make it land early (`c67x.md`
+//! 2.5); results of one register land in order. Memory: accesses that can be observed elsewhere keep their order; loads
+//! may share a cycle.
 
 use std::collections::BTreeMap;
 
@@ -17,8 +17,8 @@ use super::step::{Access, Step};
 pub(super) struct Edge {
     pub(super) to: u32,
     pub(super) cycles: u8,
-    /// The cycles where no interrupt comes between the two: fewer, if the result of `to` may be in flight when the
-    /// step before reads its register.
+    /// The number of cycles if no interrupt can come between the two: lower if the result of `to` may be in flight when
+    /// `from` reads its register.
     pub(super) sheltered: i8,
 }
 
@@ -28,7 +28,7 @@ pub(super) struct Graph {
     pub(super) after: Vec<Vec<Edge>>,
     /// Number of edges that lead to each step.
     pub(super) before: Vec<u32>,
-    /// Cycles from the issue of each step to the end of the region, at least.
+    /// The minimum number of cycles from the issue of each step to the end of the region.
     pub(super) height: Vec<u32>,
 }
 
@@ -93,11 +93,11 @@ struct RegisterReader {
 struct RegisterWriter {
     step: u32,
     stage: u8,
-    /// Its condition, and how often the register of that was written before.
+    /// Its condition, and the number of writes of the condition register before it.
     pred: (Pred, u32),
 }
 
-/// Reports whether at most one of two steps is executed: their conditions are opposite, and of the same value.
+/// Reports whether at most one of two steps is executed: they have opposite conditions on the same value.
 fn excludes((one, version): (Pred, u32), (other, own): (Pred, u32)) -> bool {
     version == own && one.excludes(other)
 }
@@ -108,14 +108,14 @@ struct Builder {
     writers: Vec<Vec<RegisterWriter>>,
     readers: Vec<Vec<RegisterReader>>,
     shared_store: Option<u32>,
-    /// True if the last such store may share the cycle of the one before.
+    /// True if the last such store may issue in the same cycle as the previous one.
     is_joined: bool,
     shared_loads: Vec<u32>,
     /// The accesses of each word of the frame since the last store of it.
     own: BTreeMap<i32, Vec<(u32, Access)>>,
     /// Number of writes of each register so far.
     versions: [u32; Reg::COUNT],
-    /// The accesses so far: step, what it does, the version of its base.
+    /// The accesses so far: the step, the kind of access, and the version of its base.
     accesses: Vec<(u32, Access, u32)>,
 }
 
@@ -124,14 +124,14 @@ impl Builder {
         self.edge_sheltered(from, to, cycles.cast_signed());
     }
 
-    /// An edge whose cycles are at least 0 only where an interrupt may come.
+    /// Adds an edge; the number of cycles must be at least 0 only where an interrupt is possible.
     fn edge_sheltered(&mut self, from: u32, to: u32, sheltered: i8) {
         if from == to {
             return;
         }
         let cycles = sheltered.max(0).cast_unsigned();
         let edges = &mut self.graph.after[from as usize];
-        // Steps come in their order: an edge to this one is the last that was added.
+        // Steps are added in order, so an edge to this step was added last.
         if let Some(known) = edges.last_mut().filter(|edge| edge.to == to) {
             known.cycles = known.cycles.max(cycles);
             known.sheltered = known.sheltered.max(sheltered);
@@ -195,7 +195,7 @@ impl Builder {
         self.accesses.push((step, what.access, version));
     }
 
-    /// Adds edges from the accesses of a word of the frame, and enters this one.
+    /// Adds edges from the earlier accesses to a word of the frame, and records this one.
     fn own_word(&mut self, step: u32, access: Access, word: i32, is_store: bool) {
         let mut before = self.own.remove(&word).unwrap_or_default();
         for (from, other) in &before {
@@ -204,7 +204,7 @@ impl Builder {
                 self.edge(*from, step, 1);
             }
         }
-        // What comes after a store of the whole word comes after all before it.
+        // Accesses after a store of the whole word are ordered after all accesses before it.
         let is_whole = matches!(access, Access::Own { at, size, .. }
             if at <= WORD * word && at + size.cast_signed() >= WORD * (word + 1));
         if is_store && is_whole {

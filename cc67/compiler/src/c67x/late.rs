@@ -1,13 +1,13 @@
-//! The cycle after a call in which the function may still write.
+//! The cycle after a call in which a result of the callee may still land.
 //!
-//! `sin` and `cos` of the firmware multiply before they know that their angle is so near 0 that it is the result, and
-//! return a cycle before that product lands in A7. A packet that wrote A7 in this cycle would do it together with the
-//! product, and the processor leaves the value of the register undefined: such a packet is delayed by a cycle.
+//! `sin` and `cos` of the firmware start a multiplication before they detect that the angle is close enough to 0 to be
+//! the result itself, and return a cycle before the product lands in A7. If a packet wrote A7 in this cycle, too, the
+//! value of the register would be undefined: such a packet is delayed by a cycle.
 
 use super::abi;
 use super::packets::Scheduled;
 
-/// Delays the regions after such calls, whose labels are given, where they begin with a result in the register.
+/// Delays the regions with the given labels, after such calls, if they begin with a result in the register.
 pub(super) fn run(regions: &mut [Scheduled], late: &[u32]) {
     for index in 0..regions.len() {
         if late.contains(&regions[index].label) && meets(&regions[index..]) {
@@ -18,7 +18,7 @@ pub(super) fn run(regions: &mut [Scheduled], late: &[u32]) {
     }
 }
 
-/// Reports whether the first cycle writes A7: in the first region, or in those after it that it falls into.
+/// Reports whether the first cycle writes A7: in the first region, or in the following ones if it falls through.
 fn meets(regions: &[Scheduled]) -> bool {
     let Some(first) = regions.iter().find(|region| region.cycles > 0) else { return false };
     let issued = first.insts.iter().take_while(|issued| issued.cycle == 0);

@@ -24,7 +24,7 @@ pub(super) struct Laid {
     pub(super) entries: Vec<u32>,
 }
 
-/// Lays out the regions in the order of the code; labels from `blocks` on are those of returns.
+/// Lays out the regions in the order of the code; labels from `blocks` on belong to return points.
 pub(super) fn lay_out(regions: &[Scheduled], tables: &[Vec<u32>], blocks: u32, span: Span) -> Laid {
     let labels = regions.iter().map(|region| region.label).max().unwrap_or(0) + 1;
     let mut targets = tables.concat();
@@ -38,7 +38,7 @@ pub(super) fn lay_out(regions: &[Scheduled], tables: &[Vec<u32>], blocks: u32, s
         tables: Vec::new(),
     };
     for region in regions {
-        // The packet before may yet get NOPs when this one begins, so the label waits for the first packet.
+        // The previous packet may still get NOPs when this region begins, so the label waits for the first packet.
         layout.region(region, blocks);
     }
     layout.tables(tables);
@@ -81,7 +81,7 @@ impl Layout {
                 cycle += gap;
                 continue;
             }
-            // A call belongs to its own line, whatever shares its packet: it comes first there.
+            // A call is attributed to its own line, whatever else is in its packet: so it comes first.
             let mut packet: Vec<&Issued> = packet.iter().collect();
             packet.sort_by_key(|issued| issued.inst.branch().is_none());
             let first = packet.first().map_or(region.span, |issued| issued.span);
@@ -90,13 +90,13 @@ impl Layout {
             cycle += 1;
         }
         if let Some(label) = label {
-            // An empty region: its label is that of the next.
+            // An empty region: its label refers to the next one.
             self.labels[label as usize] = self.at();
             self.pending.push(label);
         }
     }
 
-    /// Makes room for a packet and gives it what labels wait.
+    /// Makes room for a packet and gives it the waiting labels.
     fn begin(&mut self, words: u32, label: &mut Option<u32>, blocks: u32, span: Span) {
         let used = self.at() % FETCH;
         if used + words > FETCH {
@@ -141,7 +141,7 @@ impl Layout {
             if let Some(value) = issued.value.filter(|value| !matches!(value, Value::Number(_))) {
                 self.open.push((self.at(), value));
             }
-            // An access that fails is named by its own line.
+            // An access that traps is reported with its own line.
             if index > 0 && issued.inst.mem().is_some() {
                 self.mark(self.at(), issued.span);
             }
@@ -167,7 +167,7 @@ impl Layout {
         }
     }
 
-    /// Completes what depends on labels; the rest is left to the linker.
+    /// Completes the words that depend on labels; the rest is left to the linker.
     fn complete(&mut self) {
         for (word, value) in std::mem::take(&mut self.open) {
             let Ok(inst) = Inst::decode(self.laid.words[word as usize]) else { continue };

@@ -1,8 +1,8 @@
 //! The live intervals of virtual registers.
 //!
 //! Positions count instructions in the order of the code: instruction i reads at 2i and writes at 2i + 1; the
-//! parameters are written at 1. An interval reaches from the first write to the last read, and over every block that
-//! the register lives through. Only registers that several blocks use take part in the data flow.
+//! parameters are written at 1. An interval reaches from the first write to the last read, and over every block in
+//! which the register is live throughout. Only registers that are used by several blocks take part in the data flow.
 
 use cranelift_entity::{EntityRef, SecondaryMap};
 
@@ -14,7 +14,7 @@ use super::forms::Kind;
 pub(super) struct Interval {
     pub(super) start: u32,
     pub(super) end: u32,
-    /// Its uses, weighted by the loops around them.
+    /// Its number of uses, weighted by loop depth.
     pub(super) weight: f32,
     pub(super) is_used: bool,
 }
@@ -55,13 +55,13 @@ struct Scan {
     intervals: SecondaryMap<VReg, Interval>,
     /// One more than the block that mentions a register.
     block: SecondaryMap<VReg, u32>,
-    /// The registers that several blocks mention, or that are read before they are written.
+    /// The registers that are used in several blocks, or read before they are written.
     globals: Vec<VReg>,
     /// One more than the place of a register in `globals`.
     number: SecondaryMap<VReg, u32>,
 }
 
-/// The registers that a block reads first, and those that it writes first.
+/// The registers that a block reads before it writes them, and those that it writes first.
 struct Sets {
     read: Vec<u64>,
     written: Vec<u64>,
@@ -121,7 +121,7 @@ impl Scan {
         (bounds, calls)
     }
 
-    /// Spreads intervals over the blocks that their registers live through.
+    /// Extends intervals over the blocks in which their registers are live throughout.
     fn flow(&mut self, code: &Code, bounds: &[(u32, u32)]) {
         if self.globals.is_empty() || code.blocks.len() < 2 && !loops_to_itself(code) {
             return;

@@ -1,7 +1,7 @@
-//! Schedules that earlier attempts at the same function found.
+//! Schedules found by earlier attempts at the same function.
 //!
-//! Attempts differ in one loop or in the sides of some registers; most regions come out of the stages before as they
-//! did in the last attempt. A region that is equal to an earlier one gets the same packets without the work.
+//! Attempts differ in one loop or in the sides of some registers; the earlier stages yield most regions unchanged. A
+//! region that equals an earlier one gets the same packets without a new search.
 
 use super::expand::Region;
 use super::modulo::{Exceeded, Overlap};
@@ -15,11 +15,11 @@ pub(super) struct Memo {
     labels: Vec<Vec<KnownRegion>>,
 }
 
-/// A region, and what was found for it.
+/// A region and its schedules.
 #[derive(Debug)]
 pub(super) struct KnownRegion {
     pub(super) region: Region,
-    /// Its packets, by the word of a fetch packet at which it begins.
+    /// Its packets, by its starting word within a fetch packet.
     plain: Vec<(u32, Scheduled)>,
     /// The overlap of its iterations, if it is a loop.
     plans: Vec<(Question, SearchedOverlap)>,
@@ -28,7 +28,7 @@ pub(super) struct KnownRegion {
 /// The result of a search for an overlap.
 pub(super) type SearchedOverlap = Result<Option<Overlap>, Exceeded>;
 
-/// The facts that decide about an overlap besides the region.
+/// The facts, besides the region, on which the overlap depends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Question {
     /// The registers that are read after the loop, a bit each.
@@ -38,7 +38,7 @@ pub(super) struct Question {
 }
 
 impl Memo {
-    /// Returns a region that is equal to this one.
+    /// Returns the entry of a region that equals this one.
     pub(super) fn of(&mut self, region: Region) -> &mut KnownRegion {
         let label = region.label as usize;
         if self.labels.len() <= label {
@@ -65,7 +65,7 @@ impl KnownRegion {
         plain
     }
 
-    /// The overlap that an earlier attempt found.
+    /// The overlap found by an earlier attempt.
     pub(super) fn plan(&self, question: Question) -> Option<&SearchedOverlap> {
         self.plans.iter().find(|(own, _)| *own == question).map(|(_, plan)| plan)
     }

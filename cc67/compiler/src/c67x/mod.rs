@@ -1,25 +1,26 @@
-//! Code generation for the real processor: the folder that knows execute packets.
+//! Code generation for the real processor: the only folder that depends on execute packets.
 //!
-//! A function passes these stages, a file each:
+//! A function passes through these stages, one file each:
 //!
 //! 1. [`select`]: IR to instructions over virtual registers ([`code`]); [`forms`] has the forms of the table that can
 //!    express an instruction.
 //! 2. [`predicate`]: short branches become conditions. [`copies`]: copies of selection are replaced by their sources.
-//!    [`unroll`]: short loops are unrolled. [`counters`]: the counters of loops are tested directly. [`sides`]: every
-//!    register gets one of the two files; copies where an instruction reaches only one.
-//! 3. [`live`], [`allocate`], [`spill`]: registers of the processor, those that survive a thread switch.
+//!   [`unroll`]: short loops are unrolled. [`counters`]: the counters of loops are tested directly. [`sides`]: every
+//!   register gets one of the two files; copies are inserted where an instruction can only use one of them.
+//! 3. [`live`], [`allocate`], [`spill`]: registers of the processor, but only those that survive a thread switch.
 //! 4. [`frame`], [`moves`], [`expand`]: calls, the stack, the beginning and the ends; regions of [`step`]s.
 //! 5. [`graph`], [`resources`], [`schedule`]: packets, [`refine`] makes them smaller; [`pipeline`], [`modulo`]: those of
 //!    loops whose iterations overlap; [`memo`]: what an earlier attempt at the function found.
-//! 6. [`attempts`]: stages 2 to 5 in several ways, of which the best stays.
-//! 7. [`layout`]: words, on fetch packets, with what the linker completes ([`text`]).
+//! 6. [`attempts`]: stages 2 to 5 in several variants, of which the best is kept.
+//! 7. [`layout`]: words in fetch packets, with relocations for the linker ([`text`]).
 //!
-//! Rules that all stages keep (`c67x.md`):
+//! Rules that all stages follow (`c67x.md`):
 //! - no register is read while a result for it is in flight, for an interrupt would make it land early; except between
-//!   packets of a loop where none is taken, in the delay slots of its branch ([`modulo`]);
-//! - accesses to memory that others can see keep their order;
-//! - at the end of a region nothing is in flight, so calls, returns and jumps are safe whatever follows;
-//! - nothing that the program needs is at B15 or below, and B15 is a multiple of 8.
+//!   packets of a loop where interrupts are off, in the delay slots of its branch ([`modulo`]);
+//! - observable accesses to memory keep their order;
+//! - at the end of a region nothing is in flight, so calls, returns and jumps are safe regardless of the code that
+//!   follows;
+//! - no data of the program is at B15 or below, and B15 is a multiple of 8.
 
 mod abi;
 mod allocate;
@@ -115,13 +116,13 @@ impl Generator {
         Ok(Words { words: start..end, fixups: laid.fixups, spans, frame, exceeded })
     }
 
-    /// The words of all functions, and the names that they need besides those of the unit.
+    /// The words of all functions, and the names that they need in addition to those of the unit.
     pub(crate) fn finish(self) -> (Vec<u32>, Vec<&'static str>) {
         (self.words, self.externs.into_added())
     }
 }
 
-/// Checks the schedule against the rules of the processor's own crate, which is independent of this one.
+/// Checks the schedule against the rules of the `c67x` crate, which is independent of this one.
 #[cfg(debug_assertions)]
 fn verify(laid: &layout::Laid, name: &str) {
     let code = &laid.words[..laid.code as usize];

@@ -1,10 +1,10 @@
-//! Modulo scheduling: the cycles of a loop's steps if its iterations begin at a fixed distance and overlap.
+//! Modulo scheduling: assigns cycles to the steps of a loop whose iterations begin at a fixed distance and overlap.
 //!
-//! The search is iterative: steps take their cycles one by one, first those that most depends on; one that finds no
-//! room takes that of others, which are placed again. The dependences are those of [`graph`] on two iterations one
-//! after another. A register is read while a result for it is in flight only where the result's step and the reading
-//! one are in the delay slots of one branch, where no interrupt is taken (`c67x.md` 2.5); so an interrupt changes
-//! nothing. The branch has a fixed position: six cycles before the next iteration begins.
+//! The search is iterative: steps are placed one by one in the order of priority; a step that finds no room evicts
+//! others, which are placed again. The dependences are those of [`graph`] on two consecutive iterations. A register may
+//! be read while a result for it is in flight only if both steps are in the delay slots of the same branch, where no
+//! interrupt is taken (`c67x.md` 2.5); so an interrupt changes nothing. The branch has a fixed position: six cycles
+//! before the next iteration begins.
 
 use std::ops::Range;
 
@@ -54,15 +54,16 @@ struct Wait {
     to: usize,
     cycles: i64,
     distance: i64,
-    /// The cycles where no interrupt comes between the two; below `cycles` if `to` may come before `from`.
+    /// The number of cycles if no interrupt can come between the two; less than `cycles` if `to` may come before
+    /// `from`.
     sheltered: i64,
 }
 
-/// Finds the shortest period below `limit`. The last of the steps is the branch; `is_certain` marks the steps that must
-/// wait until it is known that the iteration takes place.
+/// Finds the shortest period below `limit`. The last step is the branch; `is_certain` marks the steps that must wait
+/// until it is certain that the iteration is executed.
 ///
 /// # Errors
-/// [`Exceeded`] if that takes more than [`WORK`], or than what is left of the function's work.
+/// [`Exceeded`] if the search takes more than [`WORK`], or more than the rest of the function's budget.
 pub(super) fn search(
     steps: &[Step],
     is_certain: impl Fn(usize) -> bool,
@@ -94,7 +95,7 @@ fn shortest(
     for period in periods {
         for ((waits, is_sheltered), first) in kinds.into_iter().zip(feasible) {
             if period < first {
-                // The budget counts what a loop demands, not how fast that is found out.
+                // The budget counts the size of the problem, not the time of this implementation.
                 work.spend((steps.len() + 1) * waits.all.len())?;
                 continue;
             }
@@ -111,7 +112,7 @@ fn shortest(
     Ok(None)
 }
 
-/// A search that took more work than a loop is worth.
+/// A search that exceeded its budget.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Exceeded;
 
@@ -133,9 +134,9 @@ impl Work {
 
 /// The dependences within an iteration and from one to the next.
 struct Waits {
-    /// In the order of the steps that are waited for.
+    /// In the order of the steps that must come first.
     all: Vec<Wait>,
-    /// The index in `all` at which those of each step begin.
+    /// For each step, the index of its first wait in `all`.
     starts: Vec<usize>,
     /// The waits of each step for others.
     before: Vec<Vec<Wait>>,
@@ -167,7 +168,7 @@ impl Waits {
         Self { all, starts, before }
     }
 
-    /// Returns the dependences for a loop in which an interrupt may come everywhere.
+    /// Returns the dependences for a loop in which interrupts are possible everywhere.
     fn exposed(&self) -> Self {
         let all = self.all.iter().map(|wait| Wait { sheltered: wait.cycles, ..*wait }).collect();
         Self::sorted(all, self.before.len())
@@ -178,11 +179,11 @@ impl Waits {
         &self.all[self.starts[step]..self.starts[step + 1]]
     }
 
-    /// Returns the first of some periods in which no iteration waits too long for the one before; their end if there is
-    /// none. What a period allows, a longer one allows as well.
+    /// Returns the first feasible period of a range, one in which no iteration waits too long for the previous one; the
+    /// end of the range if there is none. If a period is feasible, so are all longer ones.
     fn first_feasible(&self, steps: &[Step], periods: Range<u32>) -> u32 {
         let Range { start: mut low, end: mut high } = periods;
-        // Most loops wait for nothing of the iteration before.
+        // Most loops do not depend on the previous iteration.
         let mut middle = low;
         while low < high {
             match self.heights(steps, middle) {
@@ -194,14 +195,14 @@ impl Waits {
         low
     }
 
-    /// Cycles from each step to the end of its iteration, and the rounds over all waits that they took; `None` if an
-    /// iteration waits too long for the one before.
+    /// The cycles from each step to the end of its iteration, and the rounds over all waits that were needed; `None` if
+    /// an iteration waits too long for the previous one.
     fn heights(&self, steps: &[Step], period: u32) -> Option<(Vec<i64>, usize)> {
         let landing = |step: &Step| step.forms.first().map_or(1, graph::landing);
         let mut heights: Vec<i64> = steps.iter().map(|step| landing(step).into()).collect();
         for round in 0..=steps.len() {
             let mut is_changed = false;
-            // Most waits lead forward, so one way back settles most heights.
+            // Most waits lead forward, so one backward pass computes most heights.
             for wait in self.all.iter().rev() {
                 let height = heights[wait.to] + wait.sheltered - wait.distance * i64::from(period);
                 if height > heights[wait.from] {
@@ -246,7 +247,7 @@ impl Slots {
 }
 
 impl Finder<'_> {
-    /// Returns a cycle for every step, or `None` if none is found within the search budget.
+    /// Returns a cycle for every step, or `None` if no solution is found within the search budget.
     fn run(&self, work: &mut Work) -> Result<Option<Vec<(u32, Inst)>>, Exceeded> {
         let branch = self.steps.len() - 1;
         let is_before = self.before_branch();
@@ -270,7 +271,7 @@ impl Finder<'_> {
         Ok(placed.places.into_iter().collect())
     }
 
-    /// True for each step that the branch of an iteration depends on.
+    /// True for each step on which the branch of an iteration depends.
     fn before_branch(&self) -> Vec<bool> {
         let mut is_before = vec![false; self.steps.len()];
         if let Some(last) = is_before.last_mut() {
@@ -293,7 +294,7 @@ impl Finder<'_> {
         after.fold(first, |first, cycle| first.max(u32::try_from(cycle).unwrap_or(0)))
     }
 
-    /// Reports whether a dependence is met.
+    /// Reports whether a dependence is satisfied.
     fn is_met(&self, wait: &Wait, from: u32, to: u32) -> bool {
         let to = i64::from(to) + wait.distance * i64::from(self.period);
         let apart = to - i64::from(from);
@@ -308,7 +309,7 @@ impl Finder<'_> {
         own >= period - i64::from(BRANCH) && own + cycles < period
     }
 
-    /// Reports whether all dependences of a step are met in this cycle.
+    /// Reports whether all dependences of a step are satisfied in this cycle.
     fn is_after(&self, step: usize, cycle: u32, placed: &Slots) -> bool {
         let mut waits = self.waits.before[step].iter();
         waits.all(|wait| placed.places[wait.from].is_none_or(|(from, _)| self.is_met(wait, from, cycle)))
@@ -346,7 +347,7 @@ impl Finder<'_> {
         Ok(self.remove_broken(step, cycle, placed))
     }
 
-    /// The first of some cycles in which a step can issue beside those that have their places.
+    /// The first of some cycles in which a step can issue alongside the steps that are already placed.
     fn free(
         &self,
         step: usize,
@@ -366,7 +367,7 @@ impl Finder<'_> {
         Ok(None)
     }
 
-    /// Removes what an instruction meets in its cycle; the branch stays.
+    /// Evicts the steps that conflict with an instruction in its cycle; the branch stays.
     fn make_room(&self, inst: &Inst, cycle: u32, placed: &mut Slots) -> Option<()> {
         let branch = self.steps.len() - 1;
         let mut alone = Resources::periodic(self.period);
@@ -378,7 +379,7 @@ impl Finder<'_> {
             }
             alone.release(&own, at);
         }
-        // What several together took is still missing: the last ones in the same cycle go.
+        // A resource is still taken by several steps together: evict the last ones in the same cycle.
         for step in (0..branch).rev() {
             if placed.resources.fits(inst, cycle) {
                 return Some(());
@@ -390,7 +391,7 @@ impl Finder<'_> {
         placed.resources.fits(inst, cycle).then_some(())
     }
 
-    /// Removes what a new place comes too late for.
+    /// Evicts the steps whose dependences a new position violates.
     fn remove_broken(&self, step: usize, cycle: u32, placed: &mut Slots) -> Option<()> {
         for wait in self.waits.after(step) {
             let Some((at, _)) = placed.places[wait.to] else { continue };

@@ -16,7 +16,7 @@ pub(super) fn in_order(moves: &[(Reg, Reg)], free: u64) -> Vec<(Reg, Reg)> {
             out.push(open.remove(index));
             continue;
         }
-        // Every destination is a source yet: a cycle. What the first one holds is put aside.
+        // Every destination is still a source, so this is a cycle: the value of the first one is saved.
         let (to, _) = open[0];
         let used = out.iter().fold(mentioned, |set, (to, _)| set | abi::bit(*to));
         let Some(aside) = abi::registers(free & !used).next() else { break };

@@ -20,7 +20,7 @@ pub(super) struct Issued {
     pub(super) span: Span,
 }
 
-/// A region whose instructions have their cycles.
+/// A region whose instructions have been scheduled.
 #[derive(Clone, Debug)]
 pub(super) struct Scheduled {
     pub(super) label: u32,
@@ -31,6 +31,6 @@ pub(super) struct Scheduled {
     /// The estimated frequency of its execution.
     pub(super) weight: f32,
     pub(super) span: Span,
-    /// A loop for whose overlap the search exceeded its work.
+    /// True for a loop whose search for an overlap exceeded its budget.
     pub(super) is_exceeded: bool,
 }

@@ -1,14 +1,14 @@
-//! Software pipelining of inner loops: the loop's packets, and those before and after them.
+//! Software pipelining of inner loops: the packets of the loop, its prologue and its epilogue.
 //!
-//! A loop of one region without calls becomes: prologue regions that start the first iterations, the packets that
-//! [`modulo`] found, in which every iteration is at another stage, and an epilogue region that completes the last
-//! iterations. Every prologue region ends with the branch of its iteration, which leads to an epilogue of its own if
-//! there is no further one. So the number of iterations need not be known, and no load or store is executed that the
-//! source does not ask for. Only steps without effect whose results are not read after the loop are executed for an
-//! iteration that does not take place.
+//! A loop of a single region without calls becomes: prologue regions that start the first iterations, the packets found
+//! by [`modulo`], in which every iteration is at another stage, and an epilogue region that completes the last
+//! iterations. Every prologue region ends with the branch of its iteration, which leads to a separate epilogue if there
+//! is no further iteration. So the number of iterations need not be known, and no load or store is executed that the
+//! source does not contain. Only steps without effect whose results are not read after the loop are executed
+//! speculatively for an iteration that does not take place.
 //!
-//! No result is in flight where an interrupt may come and an earlier one of its register is still needed; the first
-//! packet is such a point, so the packets of the loop can be entered with nothing in flight.
+//! Where an interrupt is possible, no result is in flight to a register whose earlier value is still needed; this
+//! includes the first packet, so the loop can be entered with nothing in flight.
 
 use c67x::{Inst, Pred};
 
@@ -179,7 +179,7 @@ impl<'a> Loop<'a> {
         Ok(Some(Self { region: &known.region, steps, plan, outside, label: 0 }))
     }
 
-    /// The regions that replace the loop, and those that go to the end of the function.
+    /// The regions that replace the loop, and those that are moved to the end of the function.
     fn parts(&mut self) -> Option<(Vec<Scheduled>, Vec<Scheduled>)> {
         let (mut parts, mut ends) = (Vec::new(), Vec::new());
         let (commit, stages) = (i64::from(self.plan.commit), i64::from(self.plan.stages()));
@@ -193,7 +193,7 @@ impl<'a> Loop<'a> {
             let branch = depth > 1;
             let mut now = std::mem::take(&mut rest);
             if branch {
-                // Steps of the next iteration that come after the branch may change what it tests.
+                // Steps of the next iteration after the branch may change the register that it tests.
                 let at = self.branch_cycle() + (first_unknown - 1) * self.period();
                 rest = own.extract_if(.., |one| one.iteration >= first_unknown && one.cycle >= at).collect();
             }
@@ -243,8 +243,8 @@ impl<'a> Loop<'a> {
         Instance { cycle: i64::from(self.plan.places[step].0) + iteration * self.period(), iteration, step }
     }
 
-    /// Puts steps in an order in which they could happen one by one: that of their cycles, or, where one may issue before
-    /// another that reads what its register had until then, that of the source.
+    /// Sorts steps into an order in which they could be executed one by one: by their cycles, but in source order where
+    /// one may issue before another that reads the old value of its register.
     fn sort(&self, list: &mut [Instance]) {
         if self.plan.is_sheltered {
             list.sort_unstable_by_key(|one| (one.iteration, one.step));
@@ -253,7 +253,7 @@ impl<'a> Loop<'a> {
         }
     }
 
-    /// The instances of the prologue's passes, in which not every stage is active, without the branches.
+    /// The step instances of the prologue passes, in which not every stage is active, without the branches.
     fn beginnings(&self, passes: std::ops::Range<i64>) -> Vec<Instance> {
         let mut found = Vec::new();
         for step in 0..self.branch() {

@@ -1,8 +1,9 @@
 //! Conditional execution in place of short branches, and merging of consecutive blocks.
 //!
 //! A branch costs six cycles and ends a region; an instruction whose condition is false has no effect. If a short block
-//! only continues where its branch would have gone, its instructions move before the branch, under its condition.
-//! Instructions without effect whose result is not used outside become unconditional; loads and stores never do.
+//! only continues at the target of the branch around it, its instructions are moved before the branch, under its
+//! condition. Instructions without effect whose results are not used elsewhere become unconditional; loads and stores
+//! never do.
 
 use cranelift_entity::SecondaryMap;
 
@@ -56,7 +57,7 @@ pub(super) enum Mentioned {
 }
 
 impl Mentioned {
-    /// Reports whether another block than this one uses it.
+    /// Reports whether it is used by a block other than this one.
     pub(super) fn is_outside(self, block: u32) -> bool {
         match self {
             Self::Nowhere => false,
@@ -111,7 +112,7 @@ impl Worker<'_> {
         &self.code.blocks[number as usize]
     }
 
-    /// Takes in the block that follows, if no other path leads there.
+    /// Appends the block that follows, if no other path leads to it.
     fn join(&mut self, number: usize) -> bool {
         if self.before[number] == 0 {
             return false;
@@ -229,11 +230,11 @@ impl Worker<'_> {
             return;
         }
         if inst.kind == Kind::Begin {
-            // The halves that follow leave the old ones in place where the condition fails.
+            // If the condition fails, the halves that follow leave the old ones unchanged.
             return;
         }
         if let Some(reg) = reg.filter(|_| is_own && matches!(inst.dst, super::code::Arg::Reg(_))) {
-            // Nobody reads the result where the condition fails: it need not be kept from before.
+            // If the condition fails, the result is not read, so the old value need not be kept.
             out.push(Inst::new(
                 Kind::Begin,
                 reg.into(),
@@ -247,7 +248,7 @@ impl Worker<'_> {
     }
 }
 
-/// Drops the blocks that nothing leads to, and renumbers the others.
+/// Drops unreachable blocks, and renumbers the others.
 fn compact(code: &mut Code) {
     let mut reached = vec![false; code.blocks.len()];
     let mut open = vec![0_u32];

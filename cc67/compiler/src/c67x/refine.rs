@@ -1,8 +1,8 @@
-//! Steps that can wait move where they take no room: out of packets that would cross a fetch packet, into cycles
-//! where nothing else happens.
+//! Moves steps that can wait to where they take no room: out of packets that would cross a fetch packet boundary, into
+//! otherwise empty cycles.
 //!
-//! No packet crosses a boundary of 32 bytes; what is left before it would be parallel `NOP`s. And a cycle in which
-//! nothing issues takes a `NOP`. No step moves beyond what waits for it, so the region keeps its length.
+//! No packet crosses a 32-byte boundary; the rest before the boundary is filled with parallel `NOP`s. A cycle in which
+//! nothing issues also takes a `NOP`. No step moves beyond the steps that wait for it, so the region keeps its length.
 
 use c67x::Inst;
 
@@ -23,7 +23,7 @@ const REACH: u32 = 1024;
 pub(super) struct Item<'a> {
     pub(super) step: &'a Step,
     pub(super) issued: Issued,
-    /// Its node in the graph; none if it stays where it is.
+    /// Its node in the graph; `None` if it is not moved.
     pub(super) node: Option<usize>,
 }
 
@@ -54,7 +54,7 @@ const fn after(at: u32, count: u32) -> u32 {
     at + count
 }
 
-/// Moves what can wait. The region has `cycles` cycles and begins at the word `at`.
+/// Moves steps that can wait. The region has `cycles` cycles and begins at the word `at`.
 pub(super) fn run(items: &mut [Item<'_>], graph: &Graph, cycles: u32, at: u32) {
     let mut nodes = vec![usize::MAX; graph.after.len()];
     for (index, item) in items.iter().enumerate() {
@@ -71,7 +71,7 @@ pub(super) fn run(items: &mut [Item<'_>], graph: &Graph, cycles: u32, at: u32) {
         resources.take(&item.issued.inst, item.issued.cycle);
         cells[item.issued.cycle as usize].push(index);
     }
-    // Where two branches do not share a cycle, what the first one leaves behind is not executed.
+    // If two branches do not share a cycle, steps after the first one may not be executed.
     let leaves = items.iter().filter(|item| item.issued.inst.branch().is_some());
     let landed = leaves.map(|item| item.issued.cycle + BRANCH).min().unwrap_or(cycles);
     let mut refiner =
@@ -86,7 +86,7 @@ struct Refiner<'a, 'b> {
     /// The item of each node.
     nodes: Vec<usize>,
     cycles: u32,
-    /// The cycle by which all results have landed: the first branch leaves then.
+    /// The cycle by which all results have landed: the first branch takes effect then.
     landed: u32,
     /// The last cycle for loads and stores, if the stack pointer moves after it.
     last_access: Option<u32>,
@@ -141,7 +141,7 @@ impl Refiner<'_, '_> {
         self.before.push((index, from, old));
     }
 
-    /// Puts what moved since the last attempt began back, last ones first.
+    /// Undoes the moves since the last attempt began, in reverse order.
     fn undo(&mut self) {
         while let Some((index, cycle, inst)) = self.before.pop() {
             self.set(index, cycle, inst);
@@ -149,7 +149,7 @@ impl Refiner<'_, '_> {
         }
     }
 
-    /// Fills short runs of empty cycles with what shares a packet before them, or leaves them as they are.
+    /// Fills short runs of empty cycles with steps from packets before them, or leaves them unchanged.
     fn fill(&mut self) {
         let mut cycle = 0;
         while cycle < self.cycles {
@@ -181,7 +181,7 @@ impl Refiner<'_, '_> {
         false
     }
 
-    /// Takes steps out of packets that do not fit what is left of their fetch packet.
+    /// Moves steps out of packets that do not fit the rest of their fetch packet.
     fn shorten(&mut self, mut at: u32) {
         let mut empty = 0;
         for cycle in 0..self.cycles {
@@ -202,7 +202,7 @@ impl Refiner<'_, '_> {
         }
     }
 
-    /// Moves some steps of a packet to later ones, or none.
+    /// Moves some steps of a packet to later packets, or none.
     fn move_out(&mut self, cycle: u32, excess: u32) {
         self.before.clear();
         for _ in 0..excess {

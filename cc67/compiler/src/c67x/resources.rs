@@ -7,7 +7,7 @@ use c67x::{Inst, Mnemonic, Reg, Side, UnitKind};
 /// One cycle.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cycle {
-    /// Units that are taken, a bit each.
+    /// Units in use, one bit each.
     units: u8,
     /// Cross paths, a bit a side.
     crosses: u8,
@@ -19,9 +19,9 @@ struct Cycle {
     count: u8,
 }
 
-/// The cycles of a region, or of one iteration of a loop, whose cycles repeat.
+/// The resources of each cycle of a region, or of one iteration of a loop, whose cycles repeat.
 ///
-/// Resources are exclusive: each is taken only where it is free, so it can be released alone.
+/// Resources are exclusive: each is taken only if it is free, so it can be released individually.
 #[derive(Debug, Default)]
 pub(super) struct Resources {
     cycles: Vec<Cycle>,
@@ -33,7 +33,7 @@ pub(super) struct Resources {
     period: u32,
 }
 
-/// Cycles that must lie between different long products of one unit.
+/// Cycles that must lie between long products of different kinds on one unit.
 const PRODUCTS: u32 = 8;
 
 /// The most operands that may read one register in one cycle.
@@ -45,7 +45,7 @@ impl Resources {
         Self { period, ..Self::default() }
     }
 
-    /// The cycle as it is counted.
+    /// The cycle modulo the period.
     const fn counted(&self, cycle: u32) -> u32 {
         if self.period == 0 { cycle } else { cycle % self.period }
     }
@@ -89,7 +89,8 @@ impl Resources {
             return true;
         }
         let Some(unit) = inst.unit() else { return true };
-        // The firmware has a single product seven cycles after one of doubles, and the other way after one.
+        // In the firmware, a single-precision product comes seven cycles after one of doubles, and the reverse order
+        // one cycle apart.
         let near = |at: &u32, (on, other): &(u8, Mnemonic)| {
             if self.period > 0 {
                 let after = (cycle + self.period - at % self.period) % self.period;
@@ -101,7 +102,7 @@ impl Resources {
             let (first, apart) = if *at <= cycle { (*other, cycle - at) } else { (name, at - cycle) };
             *on == unit.index() as u8 && *other != name && first != Mnemonic::Mpysp && apart < PRODUCTS
         };
-        // Where nothing repeats, only what is near can be too near.
+        // Without repetition, only nearby cycles can conflict.
         let around =
             if self.period > 0 { 0..=u32::MAX } else { cycle.saturating_sub(PRODUCTS)..=cycle + PRODUCTS };
         !self.products.range(around).any(|(at, all)| all.iter().any(|product| near(at, product)))
@@ -118,7 +119,7 @@ impl Resources {
         })
     }
 
-    /// Takes what an instruction needs.
+    /// Takes the resources of an instruction.
     pub(super) fn take(&mut self, inst: &Inst, cycle: u32) {
         let Some(unit) = inst.unit() else { return };
         let bit = 1 << unit.index();
@@ -145,7 +146,7 @@ impl Resources {
         self.reads[index].extend(inst.reads().map(|read| read.reg));
     }
 
-    /// Gives back what an instruction took in a cycle.
+    /// Releases the resources that an instruction took in a cycle.
     pub(super) fn release(&mut self, inst: &Inst, cycle: u32) {
         let Some(unit) = inst.unit() else { return };
         let bit = 1 << unit.index();

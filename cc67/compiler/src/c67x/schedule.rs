@@ -1,8 +1,8 @@
-//! Steps into packets: what can happen at the same time, does.
+//! Schedules steps into packets: steps that can issue in the same cycle do.
 //!
-//! Cycle by cycle the steps whose operands have landed are issued, those first that most depends on. The branch issues
-//! so that its five slots end where the last result lands; what is left of them is `NOP`. At the end of a region
-//! nothing is in flight.
+//! Cycle by cycle, the steps whose operands have landed are issued in the order of priority. The branch issues such
+//! that its five delay slots end when the last result lands; unused slots are `NOP`s. At the end of a region nothing is
+//! in flight.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -16,9 +16,9 @@ use super::refine::{self, Item};
 use super::resources::Resources;
 use super::step::{Access, Step};
 
-/// The most steps that are looked at in a cycle: more are ready only in very long blocks.
+/// The limit of steps considered in a cycle: more are ready only in very long blocks.
 const MOST_READY: usize = 64;
-/// Those of them that are kept for the next cycle before the best of the others join them.
+/// The number of them that are kept for the next cycle, before the best of the others join them.
 const KEPT_READY: usize = 48;
 
 /// The order in which a region is scheduled.
@@ -57,7 +57,7 @@ pub(super) struct Tail {
     pub(super) cycles: u32,
 }
 
-/// Schedules a region after packets that are what they are.
+/// Schedules a region after packets that are fixed.
 pub(super) fn schedule_after(tail: &Tail, region: Region) -> Scheduled {
     let Region { label, steps: own, branches, span, weight, .. } = region;
     let steps: Vec<Step> = tail.issued.iter().map(|(step, ..)| step.clone()).chain(own).collect();
@@ -87,7 +87,7 @@ struct List<'a> {
     order: Order,
     /// The last cycle with a load or store.
     last_access: u32,
-    /// The first step that is not placed yet, and the first cycle.
+    /// The first step that is not placed yet, and its first possible cycle.
     first: (u32, u32),
 }
 
@@ -145,7 +145,7 @@ impl<'a> List<'a> {
         end
     }
 
-    /// Keeps the number of steps that are looked at in a cycle within limits: the others wait in the crowd.
+    /// Limits the number of steps considered in a cycle: the others wait in the crowd.
     fn limit(&self, ready: &mut Vec<u32>, crowd: &mut BinaryHeap<(u32, Reverse<u32>)>) {
         let priority = |step: u32| match self.order {
             Order::Source => (0, Reverse(step)),
@@ -165,7 +165,8 @@ impl<'a> List<'a> {
         step.forms.iter().copied().find(|inst| self.resources.fits(inst, cycle))
     }
 
-    /// The form that can issue in a cycle, if there is a choice not on a unit that alone can execute one of `others`.
+    /// The form that can issue in a cycle; if there is a choice, not on a unit that is the only one for a step in
+    /// `others`.
     fn considerate(&mut self, step: &Step, others: &[u32], steps: &[Step], cycle: u32) -> Option<Inst> {
         let first = self.form(step, cycle)?;
         if step.forms.len() == 1 || self.order == Order::Source {
@@ -201,7 +202,7 @@ impl<'a> List<'a> {
             self.earliest[to] = self.earliest[to].max(cycle + u32::from(edge.cycles));
             self.waiting[to] -= 1;
             if self.waiting[to] == 0 && to < steps {
-                // Steps that may share the cycle are looked at later in it.
+                // Steps that may share the cycle are considered later in it.
                 ready.push(edge.to);
             }
         }
@@ -229,8 +230,9 @@ impl<'a> List<'a> {
         cycles
     }
 
-    /// Places the branch that leaves the function, and in its slots the load of the register that it reads and the
-    /// step of the stack pointer after that: no interrupt comes between them. The length of the region.
+    /// Places the branch that leaves the function. Its delay slots contain the load of the register that it reads and
+    /// then the increment of the stack pointer, because no interrupt comes between them. Returns the length of the
+    /// region.
     fn leave(&mut self, branch_index: usize, branch: &'a Step, late: &'a [Step], end: u32) -> u32 {
         let mut cycle = self.earliest[branch_index].max(end.saturating_sub(BRANCH));
         let last_access = self.last_access;

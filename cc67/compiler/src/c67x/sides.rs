@@ -1,8 +1,9 @@
-//! Gives every virtual register one of the two files, and copies what an instruction cannot reach.
+//! Assigns every virtual register to one of the two register files, and copies operands that an instruction cannot
+//! access.
 //!
-//! An instruction executes on the side of its result, a load or store on that of its base. One source may come from
-//! the other side over the cross path, where its form has one. Registers are placed in the order of the code, where
-//! few operands cross and both sides have as much to do.
+//! An instruction executes on the side of its result, a load or store on the side of its base. One source may come from
+//! the other side over the cross path, if the form has one. Registers are assigned in the order of the code, such that
+//! few operands cross and both sides have about the same load.
 
 use c67x::Side;
 use cranelift_entity::SecondaryMap;
@@ -25,7 +26,7 @@ const READER: i32 = 2;
 /// The most that imbalance counts where a register is loaded.
 const LOADS: i32 = 4;
 
-/// The costs that count in loops of one block besides the number of instructions.
+/// The costs in single-block loops other than the number of instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Policy {
     /// For how many cycles an instruction has its unit for itself.
@@ -39,7 +40,7 @@ pub(super) struct Policy {
 impl Policy {
     /// The policy that is best most often.
     pub(super) const USUAL: Self = Self { weighs_units: true, follows_readers: true, counts_loads: false };
-    /// The policies that may be better.
+    /// Alternative policies that may be better.
     pub(super) const OTHERS: [Self; 3] = [
         Self { counts_loads: true, ..Self::USUAL },
         Self { weighs_units: false, ..Self::USUAL },
@@ -75,7 +76,7 @@ pub(super) fn assign(code: &mut Code, policy: Policy) {
     }
 }
 
-/// Gives both sides their part of the accesses of a short loop: the unit that makes one is that of its base.
+/// Distributes the accesses of a short loop over both sides: an access uses a unit on the side of its base.
 fn spread_bases(code: &mut Code) {
     for (number, block) in (0..).zip(&code.blocks) {
         if !block.end.targets().any(|to| to == number) {
@@ -151,14 +152,14 @@ fn place(regs: &mut Regs, inst: &Inst, load: &mut Load<'_>) {
 /// The load of each side in a block so far.
 #[derive(Debug)]
 struct Load<'a> {
-    /// The index that each constant base of an access is used with.
+    /// The index used with each constant base of an access.
     indexes: &'a SecondaryMap<VReg, PackedOption<VReg>>,
     /// The result of an instruction that reads each register.
     readers: &'a SecondaryMap<VReg, PackedOption<VReg>>,
     /// The policy, if the block jumps to itself.
     policy: Option<Policy>,
     insts: [i32; 2],
-    /// Results that are pairs, of which there are few registers.
+    /// Results that are pairs, for which there are few registers.
     pairs: [i32; 2],
     /// Registers that were loaded.
     loads: [i32; 2],
@@ -213,7 +214,7 @@ fn lighter(load: &[i32; 2]) -> Side {
     if load[1] < load[0] { Side::B } else { Side::A }
 }
 
-/// The index that each constant base of an access is used with: both have to be on one side.
+/// The index used with each constant base of an access: both must be on the same side.
 fn indexes(code: &Code) -> SecondaryMap<VReg, PackedOption<VReg>> {
     let mut indexes = SecondaryMap::new();
     for place in code.blocks.iter().flat_map(|block| &block.insts).filter_map(|inst| inst.place) {
@@ -252,7 +253,7 @@ fn best(regs: &Regs, inst: &Inst, dst: VReg, load: &Load<'_>) -> Side {
 /// Inserts copies.
 struct Copier<'a> {
     regs: &'a mut Regs,
-    /// Copies that hold in this block: of what, the copy.
+    /// Copies that are valid in this block: original and copy.
     copies: Vec<(Arg, VReg)>,
     out: Vec<Inst>,
 }
@@ -316,7 +317,7 @@ impl Copier<'_> {
     }
 }
 
-/// Returns the set of registers that a value may be in.
+/// Returns the set of registers available for a value.
 pub(super) fn allowed_registers(info: &Info) -> u64 {
     let side = info.side.unwrap_or(Side::A);
     let file = abi::file(side) & abi::USABLE;

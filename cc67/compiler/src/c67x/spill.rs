@@ -1,6 +1,6 @@
 //! Moves virtual registers to memory: a load before every read, a store after every write.
 //!
-//! A register whose only value is a constant is made again before every read instead.
+//! A register whose only value is a constant is rematerialised before every read instead.
 
 use cranelift_entity::SecondaryMap;
 
@@ -29,7 +29,7 @@ pub(super) fn to_memory(code: &mut Code, moved: &[VReg]) {
     mentions.write(code);
 }
 
-/// The instructions that use registers that move, taken out of the code; so each register looks only at its own.
+/// The instructions that use spilled registers, taken out of the code, so that each register only visits its own.
 struct Mentions {
     /// Instructions for the beginning of the function.
     first: Vec<Inst>,
@@ -39,10 +39,10 @@ struct Mentions {
     of: Vec<Vec<u32>>,
 }
 
-/// An instruction with what it needs before and after it, or the end of a block.
+/// An instruction with the code it needs before and after it, or the end of a block.
 struct Mention {
     block: usize,
-    /// The position in the block; none for its end.
+    /// The position in the block; `None` for its end.
     at: Option<usize>,
     insts: Vec<Inst>,
 }
@@ -114,7 +114,7 @@ impl Mentions {
     }
 }
 
-/// The most arguments that find room on any side: all are needed at once, and a side has eight pairs.
+/// The limit of arguments that fit on either side: all are needed at once, and a side has eight pairs.
 const CROWDED: usize = 6;
 
 /// The source of a spilled register's value.
@@ -131,7 +131,7 @@ struct Mover<'a> {
 }
 
 impl Mover<'_> {
-    /// A register for one instruction in place of the one that moved.
+    /// A register for one instruction that replaces the spilled one.
     fn short(&mut self, is_pair: bool) -> VReg {
         let old = self.code.regs[self.reg];
         let is_condition = old.is_condition && !is_pair;
@@ -190,7 +190,7 @@ impl Mover<'_> {
         let mut is_read = false;
         inst.visit_reads(|read| is_read |= read == reg);
         self.call(&inst, out);
-        // A half that is read comes as a word of its own.
+        // A half that is read is reloaded as a separate word.
         for arg in [&mut inst.src1, &mut inst.src2] {
             let half = match *arg {
                 Arg::Low(source) if source == reg => 0,

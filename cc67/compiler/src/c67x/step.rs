@@ -1,6 +1,6 @@
 //! Instructions of the processor, ready to be scheduled.
 //!
-//! A step has every form that its registers allow; they differ in their unit alone.
+//! A step has every form that its registers allow; the forms differ only in their units.
 
 use c67x::{Inst, Mem, Offset, Operand, Pair, Pred, PredReg, Reg, Side, Update};
 
@@ -28,7 +28,7 @@ pub(super) enum Access {
     },
 }
 
-/// The target of a branch until it is known.
+/// The placeholder for the target of a branch until it is known.
 const UNKNOWN: i32 = 0x3F_FFE0;
 
 /// An instruction with its registers assigned.
@@ -62,7 +62,7 @@ pub(super) struct Operands {
     pub(super) pred: Pred,
 }
 
-/// The step of an instruction; `None` if no form takes its operands, which is a mistake of the stages before.
+/// The step of an instruction; `None` if no form takes its operands, which is a bug of earlier stages.
 pub(super) fn step(kind: Kind, operands: &Operands, access: Access, span: Span) -> Option<Step> {
     let side = unit_side(operands);
     let forms: Vec<Inst> = kind.forms().iter().filter_map(|form| build(*form, side, operands)).collect();
@@ -86,7 +86,7 @@ fn unit_side(operands: &Operands) -> Option<Side> {
 }
 
 fn build(form: Form, side: Option<Side>, operands: &Operands) -> Option<Inst> {
-    // It has no source: what it adds to is its destination.
+    // It has no source: it adds to its destination.
     if form.op == c67x::Op::Addk && !matches!(operands.src2, Final::None) && operands.src2 != operands.dst {
         return None;
     }
@@ -107,7 +107,7 @@ fn build(form: Form, side: Option<Side>, operands: &Operands) -> Option<Inst> {
         };
     }
     let list = &list[..row.operands.len()];
-    // Branches have no result: those with a displacement take either side, the others side B.
+    // Branches have no result: branches with a displacement can execute on either side, others on side B.
     let side = side.unwrap_or(Side::B);
     Inst::new(form.op, side, operands.pred, list).ok()
 }
@@ -125,7 +125,7 @@ fn operand(operand: Final, form: Form) -> Option<Operand> {
             match form.op {
                 c67x::Op::Mvk => Operand::Const(i32::from(number as i16)),
                 c67x::Op::Mvkh => Operand::Const((number.cast_unsigned() >> 16).cast_signed()),
-                // Until it is known: out of the code, so that checks see an end there.
+                // Until it is known: outside of the code, so that checks treat it as an exit.
                 c67x::Op::BDisp => Operand::Target(UNKNOWN),
                 _ => Operand::Const(number),
             }
@@ -139,7 +139,7 @@ pub(super) fn pred(reg: Reg, is_negated: bool) -> Option<Pred> {
     Some(if is_negated { Pred::Unless(reg) } else { Pred::If(reg) })
 }
 
-/// Turns registers of one numbering into those of the processor.
+/// Converts registers of one numbering to those of the processor.
 pub(super) struct Finalizer<'a> {
     pub(super) code: &'a code::Code,
     pub(super) assignment: &'a super::allocate::Assignment,
@@ -162,7 +162,7 @@ impl Finalizer<'_> {
         }
     }
 
-    /// Bytes above B15 of what an address counts from.
+    /// The offset above B15, in bytes, to which an address is relative.
     pub(super) fn offset(&self, place: MemoryPlace) -> i32 {
         let base = match place.base {
             Base::Slot(slot) => self.frame.slots[slot],

@@ -23,14 +23,14 @@ pub(crate) struct Fixup {
 /// A function in words.
 #[derive(Debug)]
 pub(crate) struct Words {
-    /// Its position in the unit's text.
+    /// Its words in the unit's text.
     pub(crate) words: Range<u32>,
     pub(crate) fixups: Vec<Fixup>,
     /// The first word, in the unit, of each run of words that belong to one statement.
     pub(crate) spans: Vec<(u32, Span)>,
     /// Bytes of its frame.
     pub(crate) frame: u32,
-    /// Its loops that are scheduled without overlap because the search exceeded its work.
+    /// Its loops that are scheduled without overlap because the search exceeded its budget.
     pub(crate) exceeded: Vec<Span>,
 }
 

@@ -1,10 +1,9 @@
 //! Unrolling of short loops with an unknown number of iterations.
 //!
 //! A jump back costs six cycles. So the second iteration follows the first under the first's condition, the third under
-//! that of both, and only the last one jumps. Instructions that cannot be observed outside are unconditional, in
-//! registers of their own, so that they need not wait for the condition; loads, stores and results that the next
-//! iteration or the code after the loop reads are conditional. So every access to memory is made exactly when, and as
-//! often as, the source asks for it.
+//! the conditions of both, and only the last one jumps. Instructions without observable effects are unconditional, in
+//! separate registers, so that they need not wait for the condition; loads, stores and results that are read by the
+//! next iteration or after the loop are conditional. So every access to memory is made exactly as in the source.
 
 use cranelift_entity::SecondaryMap;
 
@@ -14,17 +13,17 @@ use super::predicate::{self, Mentioned};
 
 /// The largest iteration that is unrolled, in instructions.
 const LARGEST: usize = 20;
-/// The most instructions of all iterations together.
+/// The limit of instructions in all iterations together.
 const ALL: usize = 44;
 /// The most iterations: each needs a register that is tested.
 const MOST: usize = 4;
 /// The most registers that are tested inside an iteration, for a loop to be unrolled.
 const TESTED: usize = 2;
 
-/// Rewrites the short loops of one block, except those with a bit in `skipped`; how many there are.
+/// Rewrites the short single-block loops, except those with a bit in `skipped`; returns their number.
 pub(super) fn run(code: &mut Code, skipped: u32) -> u32 {
     let mut count = 0;
-    // What is unrolled uses no other registers than before, but for new ones of its own.
+    // Unrolled code uses the same registers as before, and new ones of its own.
     let homes = predicate::homes(code);
     for number in 0..code.blocks.len() {
         let Some(back) = back(&code.blocks[number], number as u32) else { continue };
@@ -113,7 +112,7 @@ fn facts(
             tested.push(reg);
         }
         if let Some((reg, is_whole)) = inst.written() {
-            // Half of a pair of which nothing is known yet is carried.
+            // Half of a pair of which nothing is known yet counts as carried.
             if !is_whole && !written.contains(&reg) && !carried.contains(&reg) {
                 carried.push(reg);
             }
@@ -126,7 +125,7 @@ fn facts(
         }
     }
     let (last, is_whole) = last?;
-    // The condition is nobody else's.
+    // The condition must not be used elsewhere.
     if !is_whole || is_outside(back.0) || carried.contains(&back.0) || tested.contains(&back.0) {
         return None;
     }
@@ -153,11 +152,11 @@ struct Unroller<'a> {
 }
 
 impl Unroller<'_> {
-    /// Adds an iteration under a condition; returns that of the next one.
+    /// Adds an iteration under a condition; returns the condition of the next one.
     fn iteration(&mut self, body: &[Inst], condition: (VReg, bool)) -> (VReg, bool) {
         self.fresh.clear();
         let next = self.reg_like(self.facts.condition);
-        // If the iteration does not take place, there is no next one.
+        // If the iteration is not executed, neither is the next one.
         let never = i32::from(condition.1);
         let span = body.first().map_or(self.code.blocks[0].span, |inst| inst.span);
         self.out.push(Inst::new(Kind::Mvk, next.into(), Arg::number(never), Arg::None, span));

@@ -1,9 +1,9 @@
-//! Debug information: where everything that a source names is while its program runs, and of which type.
+//! Debug information: the location and type of everything that a source names while its program runs.
 //!
-//! A compilation is a function of its source and options, so what is known about a program beyond its image is found by
-//! compiling the source again: types, scopes, and for every local in which register or where in the frame it is at each
-//! instruction. [`Model::of`] compares the image that comes out with the one that is there, byte for byte; where they
-//! differ the information would be of another program, and there is none.
+//! A compilation is a function of its source and options, so information that is not in the image is obtained by
+//! compiling the source again: types, scopes, and for every local its register or frame offset at each instruction.
+//! [`Model::of`] compares the resulting image with the given one, byte for byte; if they differ, the information would
+//! belong to another program, and there is none.
 
 mod eval;
 mod scope;
@@ -60,9 +60,10 @@ pub struct FunctionModel {
     pub addresses: Range<u32>,
     /// The file of its definition.
     pub file: String,
-    /// The line of its name, and that of its closing brace.
+    /// The line of its name, and the line of its closing brace.
     pub lines: Range<u32>,
-    /// The addresses at which a line begins, ascending, each with the line; the first is after what enters the function.
+    /// The addresses at which lines begin, ascending, each with the line; the first is after the code that enters the
+    /// function.
     pub statements: Vec<(u32, u32)>,
     /// Parameters and variables in the order of their declarations.
     pub locals: Vec<LocalModel>,
@@ -77,9 +78,9 @@ pub struct InlinedModel {
     pub function: String,
     /// The line of the call.
     pub line: u32,
-    /// The inlined call that this line is of, by its index.
+    /// The index of the inlined call that contains this line.
     pub inside: Option<usize>,
-    /// Its code, without that of calls in it.
+    /// Its code, without the code of calls in it.
     pub ranges: Vec<Range<u32>>,
     /// Parameters and variables of the called function.
     pub locals: Vec<LocalModel>,
@@ -92,7 +93,7 @@ impl FunctionModel {
         std::iter::successors(innermost, |call| self.inlined.get(call.inside?))
     }
 
-    /// The innermost inlined call that an instruction is of, by its index.
+    /// The index of the innermost inlined call that contains an instruction.
     #[must_use]
     pub fn call_at(&self, address: u32) -> Option<usize> {
         self.inlined.iter().position(|call| call.ranges.iter().any(|range| range.contains(&address)))
@@ -152,7 +153,7 @@ impl Model {
     /// Collects the information about a program from its source `text`, and its image for `thread`.
     ///
     /// # Errors
-    /// If the source does not compile, or makes another image.
+    /// The source does not compile, or results in another image.
     pub fn of(
         path: &Path,
         text: Vec<u8>,
@@ -172,8 +173,8 @@ impl Model {
         .map_err(|error| error.message)?
     }
 
-    /// Collects the information about code for the controller's processor: functions and their lines as the image has
-    /// them, types, and variables outside functions. The locations of locals are not known.
+    /// Collects the information about code for the controller's processor: functions and their lines from the image,
+    /// types, and global variables. The locations of locals are not known.
     ///
     /// # Errors
     /// As [`of`](Self::of).
@@ -303,7 +304,7 @@ impl Model {
         functions
     }
 
-    /// A function that has no code of its own: all its calls have become parts of their callers, where its lines are.
+    /// A function without code of its own: all its calls were inlined into their callers, which contain its lines.
     fn without_code(&self, name: String, lines: Range<u32>) -> FunctionModel {
         let file = self.path.to_string_lossy().into_owned();
         FunctionModel {
@@ -329,7 +330,7 @@ impl Model {
             .filter(|line| addresses.contains(&line.address))
             .map(|line| (line.address.max(body.unwrap_or(line.address)), line.line))
             .collect();
-        // What enters the function is on the line of its name.
+        // The code that enters the function is on the line of its name.
         if let [(_, first), (_, second), ..] = statements.as_slice()
             && *first == lines.start
             && second != first
@@ -369,7 +370,7 @@ impl Model {
         })
     }
 
-    /// The function that an address lies in.
+    /// The function that contains an address.
     #[must_use]
     pub fn function_at(&self, address: u32) -> Option<&FunctionModel> {
         self.functions.iter().find(|function| function.addresses.contains(&address))
@@ -408,7 +409,7 @@ impl Model {
         self.functions.iter().find(|function| function.name == name)
     }
 
-    /// The line that the instruction at an address belongs to.
+    /// The line of the instruction at an address.
     #[must_use]
     pub fn line_at(&self, address: u32) -> Option<u32> {
         self.image.line_at(address).map(|line| line.line)
@@ -484,18 +485,18 @@ fn table_of(locals: &[LocalModel], indent: &str, out: &mut String) {
     }
 }
 
-/// The line of a function's name, and that of its closing brace.
+/// The line of a function's name, and the line of its closing brace.
 fn lines_of(object: &Object, function: &ObjectFunction) -> Range<u32> {
     let first = object.symbols[function.symbol].place.line;
     first..function.end.line.max(first)
 }
 
-/// Finds the debug information of an image file, from the source in its folder.
+/// Finds the debug information of an image file from the source in its folder.
 ///
-/// The image must result from the given options, at their level or another one.
+/// The image must result from the given options, at their optimisation level or another one.
 ///
 /// # Errors
-/// The reason why there is none.
+/// The reason why there is no information.
 pub fn of_image(path: &Path, program: &[u8], options: &Options) -> Result<Model, String> {
     let source = source_of(path, program)?;
     let text =
@@ -505,7 +506,7 @@ pub fn of_image(path: &Path, program: &[u8], options: &Options) -> Result<Model,
     let others = levels.map(|(level, gc_sections)| Options { level, gc_sections, ..options.clone() });
     let mut first = None;
     for options in std::iter::once(options.clone()).chain(others) {
-        // The name of the file is part of the image: as it was written, or as it is found.
+        // The name of the file is part of the image: as it was given, or as it is found.
         for name in [PathBuf::from(source.file_name().unwrap_or_default()), source.clone()] {
             match Model::of(&name, text.clone(), &options, &crate::pp::Disk, thread, program) {
                 Ok(model) => return Ok(Model { path: source, ..model }),
@@ -516,10 +517,10 @@ pub fn of_image(path: &Path, program: &[u8], options: &Options) -> Result<Model,
     Err(first.unwrap_or_default())
 }
 
-/// Finds the source of an image: at the path that it states, or in the image's folder.
+/// Finds the source of an image: at the path stated in it, or in the image's folder.
 ///
 /// # Errors
-/// If the source is not there.
+/// The source does not exist.
 pub fn source_of(path: &Path, program: &[u8]) -> Result<PathBuf, String> {
     let image = Inspection::read(program).map_err(|error| error.to_string())?;
     let main = image.symbols.iter().find(|entry| entry.kind == EntryKind::Function && entry.name == "main");

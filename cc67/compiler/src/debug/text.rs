@@ -17,7 +17,7 @@ const REPEATS: usize = 10;
 /// The depth to which structures are shown.
 const DEPTH: u32 = 20;
 
-/// Digits of a `double` and of a `float` that tell it from every other.
+/// The number of digits of a `double` and of a `float` that distinguish it from every other.
 const DOUBLE_DIGITS: usize = 17;
 const FLOAT_DIGITS: usize = 9;
 
@@ -65,7 +65,7 @@ impl NumberFormat {
         })
     }
 
-    /// The text of an integer of a size in bytes; `symbol` names what is at an address.
+    /// The text of an integer with a size in bytes; `symbol` names the object at an address.
     #[must_use]
     pub fn text(self, bits: u64, size: u32, symbol: &dyn Fn(GuestAddr) -> Option<String>) -> String {
         let width = size.clamp(1, 8) * 8;
@@ -104,7 +104,7 @@ impl Displayed<'_> {
         self.text_at(value, format.filter(|format| *format != NumberFormat::Plain), 0)
     }
 
-    /// The words before a pointer that is shown by itself: its type.
+    /// The type shown before a top-level pointer.
     #[must_use]
     pub fn cast(&self, value: &DebugValue) -> String {
         match self.types.get(value.ty) {
@@ -113,13 +113,13 @@ impl Displayed<'_> {
         }
     }
 
-    /// The declaration of something with the type of a value, as C spells it without a name around `inner`.
+    /// The declaration of an object with the type of a value, in C syntax, without spaces around `inner`.
     #[must_use]
     pub fn declared(&self, value: &DebugValue, inner: &str) -> String {
         self.types.spell_declaration(self.names, value.ty, inner)
     }
 
-    /// The C expression of the value as it is now; `None` for what C cannot write.
+    /// The C expression for the present value; `None` for a value that C cannot express.
     #[must_use]
     pub fn literal(&self, value: &DebugValue) -> Option<String> {
         let ty = self.type_of(value);
@@ -267,7 +267,7 @@ impl Displayed<'_> {
         format!("{text} {}{}", string(&bytes), if length == ELEMENTS { "..." } else { "" })
     }
 
-    /// An array of characters; its last one is not shown if it is the 0 of a string.
+    /// An array of characters; a terminating 0 at its end is not shown.
     fn characters(&self, address: GuestAddr, length: u32) -> String {
         let byte = |offset: u32| self.reader.bytes(address.offset(offset))[0];
         let mut bytes: Vec<u8> = (0..length.min(ELEMENTS)).map(byte).collect();

@@ -40,7 +40,7 @@ impl DebugValue {
         Self { ty, data }
     }
 
-    /// Its address in memory, if it has one.
+    /// Its address, if it is in memory.
     #[must_use]
     pub const fn address(&self) -> Option<GuestAddr> {
         match self.data {
@@ -50,7 +50,7 @@ impl DebugValue {
     }
 }
 
-/// A part of a value: a member, an element, what a pointer points at.
+/// A part of a value: a member, an element, the target of a pointer.
 #[derive(Clone, Debug)]
 pub struct Child {
     /// Its name within the whole: `x`, `[3]`, `*p`.
@@ -61,12 +61,12 @@ pub struct Child {
     pub value: DebugValue,
 }
 
-/// The text for what cannot be read.
+/// The text for a value that cannot be read.
 pub(super) fn unreadable(address: GuestAddr) -> String {
     format!("<error: Cannot access memory at address {:#x}>", address.get())
 }
 
-/// Types, their names, and the memory that values are read from.
+/// Types, their names, and the memory from which values are read.
 #[derive(Clone, Copy)]
 pub struct Displayed<'a> {
     pub(super) types: &'a Types,
@@ -93,7 +93,7 @@ impl Displayed<'_> {
         self.types.size_of(value.ty).unwrap_or(4)
     }
 
-    /// The number, for what is one.
+    /// The number, for a numeric value.
     #[must_use]
     pub fn number(&self, value: &DebugValue) -> Option<f64> {
         match self.constant(value)? {
@@ -115,7 +115,7 @@ impl Displayed<'_> {
         }
     }
 
-    /// The parts of the value from number `first` on; `expression` is how C names the whole.
+    /// The parts of the value from number `first` on; `expression` is the C expression for the whole.
     #[must_use]
     pub fn children(&self, value: &DebugValue, expression: &str, first: u32, count: u32) -> Vec<Child> {
         let total = self.count(value);

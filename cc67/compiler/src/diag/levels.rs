@@ -1,7 +1,7 @@
 //! The levels of warnings: the `-W` switches.
 //!
-//! A switch that names a lint wins over one that names a group, wherever it is; among
-//! switches of one kind the last wins. `-w` silences everything.
+//! A switch for a lint takes precedence over a switch for a group, in any order; of switches of the same kind, the last
+//! one applies. `-w` silences everything.
 
 use crate::diag::{Diagnostic, Lint, Preset, Severity};
 
@@ -37,10 +37,10 @@ pub struct UnknownLint {
 }
 
 impl Lint {
-    /// The lint of this name, in any letter case; the switch around it may be there.
+    /// The lint of this name, in any letter case, with or without the rest of the switch.
     ///
     /// # Errors
-    /// If no lint has that name.
+    /// No lint has that name.
     pub fn named(text: &str) -> Result<Self, UnknownLint> {
         let name = text.to_ascii_lowercase();
         let plain = name.strip_prefix("-w").unwrap_or(&name);

@@ -1,4 +1,4 @@
-//! Diagnostics: what is wrong with the source, where, and what to do about it.
+//! Diagnostics: errors in the source, their locations, and their remedies.
 //!
 //! Analysis continues after a diagnostic; the sink collects them. The caller renders them (`render` for people).
 
@@ -15,13 +15,13 @@ use crate::source::Span;
 pub enum Severity {
     /// The program cannot be compiled.
     Error,
-    /// The program is compiled; this looks wrong.
+    /// The program is compiled, but this is probably a mistake.
     Warning,
-    /// Something worth knowing.
+    /// Information for the user.
     Note,
 }
 
-/// A further place that explains the diagnostic.
+/// A further location that explains the diagnostic.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Label {
     /// The range in the source.
@@ -36,13 +36,13 @@ pub struct Label {
 pub struct Diagnostic {
     /// Its severity.
     pub severity: Severity,
-    /// The lint that found it; `None` for errors that no switch controls.
+    /// The lint that found it; `None` for errors without a switch.
     pub lint: Option<Lint>,
     /// The finding in one lower-case line without a full stop.
     pub message: String,
     /// Its range in the source; `None` for findings about the whole program.
     pub span: Option<Span>,
-    /// Text at the primary range: what was found or expected there.
+    /// The text at the primary range, about its contents or the expected ones.
     pub at: String,
     /// Further places.
     pub labels: Vec<Label>,
@@ -50,7 +50,7 @@ pub struct Diagnostic {
     pub notes: Vec<String>,
     /// A suggestion for the user.
     pub help: Option<String>,
-    /// The words of the vendor's linker for the finding, if it is one of a linker; other programs search for them.
+    /// The message of the vendor's linker for this error, if it is a linker error; other programs search for it.
     pub linker_words: Option<String>,
 }
 
@@ -75,12 +75,12 @@ impl Diagnostic {
         Self::new(Severity::Warning, Some(lint), Some(span), message)
     }
 
-    /// A warning that the program itself asks for; no switch controls it.
+    /// A warning that the program itself requests; it has no switch.
     pub fn requested_warning(span: Span, message: impl Into<String>) -> Self {
         Self::new(Severity::Warning, None, Some(span), message)
     }
 
-    /// Something worth knowing at `span`.
+    /// A note at `span`.
     pub fn remark(span: Span, message: impl Into<String>) -> Self {
         Self::new(Severity::Note, None, Some(span), message)
     }
@@ -105,7 +105,7 @@ impl Diagnostic {
         self
     }
 
-    /// Adds a further place.
+    /// Adds a further location.
     pub fn label(mut self, span: Span, message: impl Into<String>) -> Self {
         self.labels.push(Label { span, message: message.into() });
         self
@@ -117,7 +117,7 @@ impl Diagnostic {
         self
     }
 
-    /// Says what the user should do.
+    /// Adds advice for the user.
     pub fn help(mut self, text: impl Into<String>) -> Self {
         self.help = Some(text.into());
         self
@@ -128,7 +128,7 @@ impl Diagnostic {
         self.linker_words(format!("undefined symbol '{symbol}'"))
     }
 
-    /// Says what the vendor's linker would.
+    /// Adds the message of the vendor's linker.
     pub fn linker_words(mut self, words: impl Into<String>) -> Self {
         self.linker_words = Some(words.into());
         self
@@ -139,7 +139,7 @@ impl Diagnostic {
 const LONGEST_TEXT: usize = 500;
 
 impl Diagnostic {
-    /// Cuts off what is too long to read.
+    /// Truncates text that is too long to read.
     fn shorten(&mut self) {
         let labels = self.labels.iter_mut().map(|label| &mut label.message);
         let texts =
@@ -152,13 +152,14 @@ impl Diagnostic {
     }
 }
 
-/// Errors after which a stage of the compiler gives up: what follows is seldom worth reading.
+/// The number of errors after which a stage of the compiler stops: later errors are seldom worth reading.
 pub const MAX_ERRORS: usize = 20;
 
 /// The message of a stage that gives up.
 pub const TOO_MANY_ERRORS: &str = "more than 20 errors; the rest of the program was not checked";
 
-/// Warnings and notes that are kept; the rest is only counted, so that hostile text cannot fill the memory.
+/// The limit of warnings and notes that are kept; further ones are only counted, so that hostile text cannot exhaust
+/// memory.
 const MAX_REMARKS: usize = 2000;
 
 /// Collects diagnostics in the order of discovery.
@@ -178,7 +179,7 @@ impl Sink {
         Self::default()
     }
 
-    /// Takes a diagnostic. Errors in places beyond [`MAX_ERRORS`] are only counted.
+    /// Takes a diagnostic. Errors at further locations after [`MAX_ERRORS`] are only counted.
     pub fn report(&mut self, mut diagnostic: Diagnostic) {
         let is_kept = match diagnostic.severity {
             Severity::Error => {
@@ -198,15 +199,15 @@ impl Sink {
         diagnostic.into_iter().for_each(|diagnostic| self.report(diagnostic));
     }
 
-    /// Takes an error after which names of the program are unknown: a file was not included. That
-    /// they are is then not worth an error of its own.
+    /// Takes an error after which names of the program are unknown, because a file was not included. Unknown names are
+    /// then not reported as errors.
     pub fn report_lost_names(&mut self, error: Diagnostic) {
         self.lacks_names |= error.severity == Severity::Error;
         self.report(error);
     }
 
-    /// Takes an error that hides the rest of a file: a comment without an end. What is then missing, names among
-    /// it, is not worth an error of its own.
+    /// Takes an error that hides the rest of a file: a comment without an end. Anything missing after it, such as
+    /// names, is then not reported as an error.
     pub fn report_lost_text(&mut self, error: Diagnostic) {
         self.lacks_text = true;
         self.report_lost_names(error);

@@ -1,7 +1,7 @@
 //! Finds the programs in the same folder that include a file.
 //!
-//! Many files of this field are not programs but parts of some: functions for homing or for the spindle that programs
-//! include as `.c` files. The message for such a file lists the programs that it belongs to.
+//! Many KFLOP source files are not programs but parts of programs: functions for homing or for the spindle that
+//! programs include as `.c` files. The message for such a file lists the programs that include it.
 
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! `setjmp` and `longjmp` for the controller's processor, which cannot be written in C.
 //!
-//! A `jmp_buf` holds what a function keeps for its caller (`c67x.md` section 6.1): A10 to A15, B10 to B14, the stack
-//! pointer, the return address. Bytecode has no such code: its engine does what the two say.
+//! A `jmp_buf` holds the callee-saved state (`c67x.md` section 6.1): A10 to A15, B10 to B14, the stack pointer, the
+//! return address. Bytecode has no such code: its engine implements both functions.
 
 use kmotiondef::jumps::JumpFunction;
 
@@ -11,7 +11,7 @@ use crate::ir::inst::Class;
 use crate::object::{Definition, Line, Object, ObjectFunction, SourceLine, Symbol, SymbolKind};
 use crate::typed::Linkage;
 
-/// The file that their lines are of.
+/// The file to which their lines belong.
 const FILE: &str = "setjmp.s";
 
 /// The code that saves the registers. The last stores are in the delay slots of the branch.

@@ -3,8 +3,8 @@
 //! A function that the firmware lacks becomes a part of the program: the linker adds the members that define names used
 //! and not defined. They are compiled like any other source, cost their instructions and can be preempted.
 //!
-//! A file of the library is made of members, each a text of its own that begins after a line `//@ name …`: the names
-//! that request it, and after a `+` others that it defines.
+//! A file of the library consists of members. Each is a separate text that begins after a line `//@ name …`: the names
+//! that request it, and after a `+` further names that it defines.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -34,7 +34,7 @@ const FILES: &[(&str, &str)] = &[
     ("shift64.c", include_str!("library/shift64.c")),
 ];
 
-/// A part of the library that is taken or left as a whole.
+/// A part of the library that is included as a whole or not at all.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Member<'t> {
     /// The file it is in.
@@ -51,7 +51,7 @@ impl<'t> Member<'t> {
         self.names.split_whitespace().filter(|name| *name != "+")
     }
 
-    /// The names that ask for it.
+    /// The names that request it.
     fn asked(&self) -> impl Iterator<Item = &'t str> + use<'t> {
         self.names.split_whitespace().take_while(|name| *name != "+")
     }
@@ -63,7 +63,7 @@ const MARK: &str = "//@ ";
 /// Every member.
 pub(super) fn members() -> impl Iterator<Item = Member<'static>> {
     FILES.iter().flat_map(|&(file, text)| {
-        // Nearly all of the text is of no interest, so that this is a search with many bytes at a time.
+        // Almost none of the text matches, so this search skips many bytes at a time.
         let starts = memmem::find_iter(text.as_bytes(), MARK).map(|at| at + MARK.len());
         let ends = memmem::find_iter(text.as_bytes(), MARK).skip(1).chain([text.len()]);
         let parts = starts.zip(ends).filter_map(|(start, end)| text.get(start..end));
@@ -88,7 +88,8 @@ impl Files for NoFiles {
     }
 }
 
-/// Adds the members that `objects` use and neither they nor the firmware define, and those that these use.
+/// Adds the members whose names are used by `objects` and defined neither by them nor by the firmware, and the members
+/// that these use in turn.
 pub(super) fn add_needed(
     objects: &mut Vec<Object>,
     is_in_firmware: impl Fn(&str) -> bool,
@@ -102,7 +103,7 @@ pub(super) fn add_needed(
     }
 }
 
-/// The members that some of the objects use and none of all defines.
+/// The members used by some of the objects and defined by none.
 fn needed_by(
     users: &[Object],
     all: &[Object],

@@ -1,4 +1,4 @@
-//! From source texts to a linked program: the stages in their order.
+//! Compiles source texts to a linked program: the stages in order.
 //!
 //! [`CompileRequest::front`] makes the typed tree of a text, [`generate`] an object of the tree; commands call [`compile`]
 //! and [`link_units`]. Watched expressions take the same [`CompileRequest::front`].
@@ -51,7 +51,7 @@ pub struct Options {
     pub timing: Timing,
     /// The target of the code.
     pub target: Target,
-    /// The firmware that programs are for.
+    /// The firmware for which programs are compiled.
     pub firmware: Firmware,
     /// The quotients of floating numbers.
     pub division: Division,
@@ -66,16 +66,16 @@ pub struct Options {
 /// The quotients of floating numbers that are computed while a program runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Division {
-    /// Rounded to nearest, infinite or not a number where the divisor is 0, as IEEE 754 says.
+    /// Rounded to nearest, infinite or NaN for a divisor of 0, as in IEEE 754.
     #[default]
     Nearest,
-    /// Those of the firmware's functions, which the vendor's code calls: the last bits may differ, and what is divided by 0
-    /// is not a number.
+    /// As by the firmware's functions, which the vendor's code calls: the last bits may differ, and a division by 0
+    /// yields NaN.
     Firmware,
 }
 
 impl Default for Options {
-    /// The headers of the board, nothing defined, the standard optimisations.
+    /// The headers of the board, no definitions, the standard optimisations.
     fn default() -> Self {
         let embedded = kmotiondef::headers::EMBEDDED;
         Self {
@@ -119,12 +119,12 @@ pub struct Compilation {
     pub sink: Sink,
     /// The object, if there were no errors.
     pub object: Option<Object>,
-    /// For a file without `main`: the programs beside it that include it.
+    /// For a file without `main`, the programs in its folder that include it.
     included_by: Vec<String>,
 }
 
 impl Compilation {
-    /// Returns the names of the programs beside a source without `main` that include it.
+    /// Returns the names of the programs in the folder that include a source without `main`.
     #[must_use]
     pub fn included_by(&self) -> &[String] {
         &self.included_by
@@ -142,7 +142,7 @@ impl Compilation {
 /// Stack of the thread that compiles: a sum of 30,000 terms is a tree of that depth.
 const STACK: usize = 512 << 20;
 
-/// Compiles one source file; `path` names it in messages and is where its includes are looked for.
+/// Compiles one source file; `path` is its name in messages, and its folder is searched for includes.
 #[must_use]
 pub fn compile(path: &Path, text: Vec<u8>, options: &Options, files: &(dyn pp::Files + Sync)) -> Compilation {
     on_large_stack(|| compile_here(path, text, options, files))
@@ -172,21 +172,20 @@ pub(crate) fn on_large_stack<T: Send>(work: impl FnOnce() -> T + Send) -> Result
 /// Memory that a usual compilation takes.
 const USUAL_MEMORY: usize = 4 << 20;
 
-/// Takes memory once and gives it back, so that the allocator keeps it for what comes.
+/// Allocates memory once and frees it, so that the allocator keeps it for later use.
 ///
-/// A thread's heap in the C library of Linux begins with nothing and grows page by page, each time with a call
-/// of the system, together a tenth of the time of a small compilation. The first block is so large that it is
-/// memory of its own; giving it back teaches the allocator that blocks of this size come and go, so that the
-/// second grows the heap and stays in it. Nothing is touched, so that it costs no memory; other allocators
-/// lose two calls.
+/// On Linux, a thread's heap in the C library starts empty and grows page by page, each time with a system call, which
+/// takes a tenth of the time of a small compilation. The first block is so large that it is mapped separately; freeing
+/// it raises the allocator's threshold, so that the second block grows the heap and stays in it. The memory is not
+/// touched, so it is not actually used; with other allocators this costs two calls.
 fn keep_memory_ready() {
     for _ in 0..2 {
-        // An allocation that nobody looks at would be optimised away.
+        // An unused allocation would be optimised away.
         drop(black_box(Vec::<u8>::with_capacity(USUAL_MEMORY)));
     }
 }
 
-/// The typed tree and the names of a text, and what it compiles to.
+/// The typed tree and the names of a text, and the object compiled from it.
 pub(crate) fn front_and_object(
     path: &Path,
     text: Vec<u8>,
@@ -234,14 +233,14 @@ pub(crate) fn compile_here(
     if is_final { compilation } else { compile_text(request, &text, Headers::Whole).0 }
 }
 
-/// Compiles a text; the second result is whether the first would be the same if it had read all of the headers.
+/// Compiles a text; the second result tells if the first would be the same had all of the headers been read.
 fn compile_text(request: CompileRequest<'_>, text: &Arc<Vec<u8>>, headers: Headers) -> (Compilation, bool) {
     let CompileRequest { path, options, files } = request;
     let mut context = CompileContext::default();
     let (Front { unit, .. }, read) = request.front_with(headers, Arc::clone(text), &mut context);
     let CompileContext { sources, names, mut sink } = context;
     let name = path.to_string_lossy().into_owned();
-    // What was said so far may name any declaration; what comes now names those that the program does.
+    // Earlier messages may name any declaration; later ones only name declarations that the program uses.
     let is_final = match read {
         HeadersRead::Whole => true,
         HeadersRead::Partly => sink.diagnostics().is_empty(),
@@ -265,20 +264,20 @@ fn compile_text(request: CompileRequest<'_>, text: &Arc<Vec<u8>>, headers: Heade
 /// The firmware's pointer to the function that the servo interrupt calls.
 const USER_CALL_BACK: &str = "UserCallBack";
 
-/// Adds advice about what a program shares with its call-back, if it has one.
+/// Adds advice about data that a program shares with its call-back, if it has one.
 fn report_call_back_sharing(unit: &Unit, sources: &SourceMap, sink: &mut Sink) {
     // The header of the board declares it, too.
     let names_it =
         |text: &[u8]| text.windows(USER_CALL_BACK.len()).any(|word| word == USER_CALL_BACK.as_bytes());
     let has_call_back = sources.files().any(|(_, file)| file.path.is_some() && names_it(&file.text));
-    // The thread makes no difference to what the program shares with its call-back.
+    // The data that a program shares with its call-back do not depend on the thread.
     let thread = ThreadId::all().next().filter(|_| has_call_back);
     let program = thread.map(|thread| sharing::ThreadProgram::new(thread, unit, sources));
     let advice = program.iter().flat_map(sharing::report_call_back_sharing).collect::<Vec<_>>();
     advice.into_iter().for_each(|advice| sink.report(advice));
 }
 
-/// A program to be compared with those of other threads.
+/// A program that is compared with the programs of other threads.
 #[derive(Debug)]
 pub struct SharingProgram {
     /// The thread.
@@ -289,8 +288,8 @@ pub struct SharingProgram {
     pub text: Vec<u8>,
 }
 
-/// Compares programs of several threads, without those that have errors; returns for each one the advice about the memory that it
-/// shares with the others.
+/// Compares programs of several threads, except those with errors; returns for each program the advice about the memory
+/// that it shares with the others.
 #[must_use]
 pub fn advise(
     programs: Vec<SharingProgram>,
@@ -374,7 +373,7 @@ impl CompileRequest<'_> {
         self.front_with(Headers::Whole, Arc::new(text), context).0
     }
 
-    /// Preprocesses, parses and checks, with the declarations of the headers that are needed, or all of them.
+    /// Preprocesses, parses and checks a text, with only the needed declarations of the headers or with all of them.
     fn front_with(
         self,
         headers: Headers,
@@ -458,7 +457,7 @@ pub fn generate_code(unit: &Unit, sources: &SourceMap, level: Level, sink: &mut 
     builder.finish_code(code, added)
 }
 
-/// Runs the passes over a function; small functions before it may become a part of it.
+/// Runs the passes over a function; small functions before it may be inlined into it.
 fn optimize(ir: &mut Function, level: Level, candidates: &mut Candidates, sources: &SourceMap) {
     passes::run(ir, level);
     if level == Level::None {
@@ -472,7 +471,7 @@ fn optimize(ir: &mut Function, level: Level, candidates: &mut Candidates, source
 }
 
 impl Compilation {
-    /// Everything that was found, in the order of the program; what has no place comes last.
+    /// All diagnostics, in the order of the program; those without a location come last.
     #[must_use]
     pub fn diagnostics(&self) -> Vec<&Diagnostic> {
         let mut diagnostics: Vec<_> = self.sink.diagnostics().iter().collect();
@@ -493,13 +492,14 @@ impl Compilation {
         Ok(Self { name, sources: SourceMap::new(), sink: Sink::new(), object, included_by: Vec::new() })
     }
 
-    /// Links the object, with what it needs of the C library, for `thread`; what is missing joins the other diagnostics.
+    /// Links the object, with the parts of the C library that it needs, for `thread`; linker errors are added to the
+    /// diagnostics.
     pub fn link(&mut self, thread: ThreadId, options: &Options) -> Option<Linked> {
         link_units(std::slice::from_mut(self), thread, options)
     }
 }
 
-/// A warning about a firmware file of a version that is not known.
+/// A warning about a firmware file of an unknown version.
 fn unknown_version(firmware: &Firmware) -> Option<Diagnostic> {
     let Firmware::File(file) = firmware else { return None };
     let version = file.version().filter(|_| file.board().is_none())?;
@@ -511,11 +511,11 @@ fn unknown_version(firmware: &Firmware) -> Option<Diagnostic> {
     ))
 }
 
-/// Links units, with what they need of the C library, to one program for `thread`; `None` if one of
-/// them has errors.
+/// Links units, with the parts of the C library that they need, to one program for `thread`; `None` if one of them has
+/// errors.
 ///
-/// What is missing joins the diagnostics of the unit that needs it, what concerns the whole
-/// program those of the first. The units' objects are used up.
+/// Missing symbols are added to the diagnostics of the unit that needs them, errors about the whole program to those of
+/// the first unit. The units' objects are consumed.
 pub fn link_units(units: &mut [Compilation], thread: ThreadId, options: &Options) -> Option<Linked> {
     if units.iter().any(|unit| unit.object.is_none()) {
         return None;

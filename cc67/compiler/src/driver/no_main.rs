@@ -14,13 +14,13 @@ const NAMED: usize = 4;
 /// The advice for a file that `includers` include.
 const COMPILE_THAT: &str = "compile that program instead";
 
-/// Says of a file with errors that it is not a program: they may come from that.
+/// A remark on a file with errors that it is not a program, which may be their cause.
 pub(crate) fn remark(includers: &[String]) -> Diagnostic {
     let message = format!("this file has no `main`; it is included by {}", list(includers));
     Diagnostic::remark(Span::new(0, 0), message).help(COMPILE_THAT)
 }
 
-/// Completes the error that there is no `main`.
+/// Adds advice to the error that there is no `main`.
 pub(crate) fn advise(error: Diagnostic, object: &Object, includers: &[String]) -> Diagnostic {
     if !includers.is_empty() {
         return error.note(format!("this file is included by {}", list(includers))).help(COMPILE_THAT);

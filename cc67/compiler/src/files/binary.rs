@@ -5,7 +5,7 @@ use std::path::Path;
 /// Bytes of a file that are examined.
 const SAMPLE: usize = 4096;
 
-/// Formats by the bytes they begin with.
+/// Formats by their first bytes.
 const FORMATS: &[(&[u8], &str)] = &[
     (b"\x7fELF", "an ELF executable"),
     (b"MZ", "a Windows executable"),
@@ -28,9 +28,9 @@ const SUFFIXES: &[(&str, &str)] = &[
     ),
 ];
 
-/// Describes a file that cannot be C source text; `None` if it may be.
+/// Describes a file that cannot be C source text; `None` if it can be.
 ///
-/// A single stray byte is left to the preprocessor, which shows where it is.
+/// A single stray byte is left to the preprocessor, which shows its position.
 #[must_use]
 pub(crate) fn not_source(path: &Path, text: &[u8]) -> Option<&'static str> {
     let suffix = path.extension().and_then(|suffix| suffix.to_str()).unwrap_or_default();

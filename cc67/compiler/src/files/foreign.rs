@@ -6,7 +6,7 @@ use goblin::elf::header::{ET_DYN, ET_EXEC, ET_REL, et_to_str, machine_to_str};
 use goblin::mach::{Mach, constants::cputype::get_arch_name_from_types};
 use goblin::{Hint, Object};
 
-/// Describes a file that is not a TI COFF, with its article; `None` if it is not known.
+/// Describes a file that is not a TI COFF, with its article; `None` if the format is unknown.
 #[must_use]
 pub fn describe(bytes: &[u8]) -> Option<String> {
     if bytes.is_empty() {
@@ -34,7 +34,7 @@ pub fn describe(bytes: &[u8]) -> Option<String> {
         Ok(Object::Archive(_)) => return Some("a library of object files".to_owned()),
         _ => {}
     }
-    // A file that is cut short or damaged still begins with what it is.
+    // A truncated or damaged file still begins with the signature of its format.
     let hint = bytes.first_chunk().and_then(|start| goblin::peek_bytes(start).ok());
     match hint {
         Some(Hint::Elf(_)) => Some("a damaged ELF file".to_owned()),

@@ -1,4 +1,4 @@
-//! Files that are read whole: up to a size that no program, image or description comes near.
+//! Reads whole files, up to a size far beyond that of any program, image or description.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
@@ -13,18 +13,18 @@ pub const SOURCE_BYTES: u32 = 32 << 20;
 /// Bytes of saved data that are drawn.
 pub const DATA_BYTES: u64 = 512 << 20;
 
-/// The bytes of a file, [`FILE_BYTES`] at most.
+/// The bytes of a file of at most [`FILE_BYTES`].
 ///
 /// # Errors
-/// What the system says, or that the file is too large.
+/// The error of the system, or the file is too large.
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     read_up_to(path, FILE_BYTES)
 }
 
-/// The bytes of a file, this many at most.
+/// The bytes of a file of at most this size.
 ///
 /// # Errors
-/// What the system says, or that the file is too large.
+/// The error of the system, or the file is too large.
 pub fn read_up_to(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     // One byte more than allowed shows that the file is too large without reading all of it.

@@ -2,7 +2,7 @@
 
 use std::io;
 
-/// The reason alone: the number that the library adds means nothing to the user.
+/// The text of the error without the number added by the library, which means nothing to the user.
 pub fn reason(error: &io::Error) -> String {
     let text = error.to_string();
     text.split(" (os error").next().unwrap_or_default().to_owned()

@@ -39,7 +39,7 @@ impl FirmwareNames for &'static TargetBoard {
         let board: &'static TargetBoard = self;
         match board.is_default() {
             true => FirmwareNames::names(&BuiltIn),
-            // The names live for ever, those of other firmwares do not.
+            // These names are static, those of other firmwares are not.
             false => Box::new(board.names().map(|name| -> &str { name })),
         }
     }

@@ -1,8 +1,8 @@
 //! The simulated board's firmware as a file that programs can be linked against.
 //!
-//! It has what linkers and the version check of the vendor's library look at: every name that
-//! programs can use, in a COFF2 file with the underscore that TI's compiler puts before it, and
-//! the version text in `.const`. There is no code in it.
+//! It contains the data used by linkers and by the version check of the vendor's library: every name that programs can
+//! use, with the underscore that TI's compiler puts before it, and the version text in `.const`, in a COFF2 file
+//! without code.
 
 use coff::{
     BaseType, Container, Contents, Derivation, Error, FileFlags, Image, Name, Program, Section, SectionFlags,
@@ -17,7 +17,7 @@ const VERSION_NAME: &str = "VersionAndBuildTime";
 /// Writes the file of a board's firmware.
 ///
 /// # Errors
-/// If it exceeds what the format can count.
+/// It exceeds the limits of the format.
 pub fn export(board: &TargetBoard) -> Result<Vec<u8>, Error> {
     let address = board.variable(VERSION_NAME).map_or(0, GuestAddr::get);
     let text = format!("{}\n\0", board.version).into_bytes();

@@ -1,7 +1,7 @@
-//! A firmware file: what programs are linked against with `--firmware`.
+//! A firmware file, against which programs are linked with `--firmware`.
 //!
-//! The file is an image of the whole firmware. The linker needs its external symbols, the version
-//! check the text that the firmware answers to `Version` (`coff.md` sections 8 and 9.3).
+//! The file is an image of the whole firmware. The linker needs its external symbols, the version check the firmware's
+//! answer to `Version` (`coff.md` sections 8 and 9.3).
 
 use std::collections::BTreeMap;
 
@@ -38,7 +38,7 @@ impl FirmwareFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// If it is no image or exports no symbols.
+    /// It is not an image, or exports no symbols.
     pub fn read(bytes: &[u8]) -> Result<Self, FirmwareError> {
         if let Ok(image @ Image { container: Container::Elf, .. }) = Image::read(bytes) {
             return Self::of_elf(&image);
@@ -69,7 +69,7 @@ impl FirmwareFile {
         Ok(Self { symbols, version, time_stamp })
     }
 
-    /// Takes the symbols and the version of an ELF file, whose names are as programs spell them.
+    /// Takes the symbols and the version of an ELF file, whose names are spelled as in programs.
     fn of_elf(image: &Image) -> Result<Self, FirmwareError> {
         let is_exported =
             |class, section| class == StorageClass::EXTERNAL && section != SectionNumber::UNDEFINED;
@@ -93,7 +93,7 @@ impl FirmwareFile {
         self.version.as_deref()
     }
 
-    /// The board with this version of the firmware; `None` for a version that is not known.
+    /// The board with this version of the firmware; `None` for an unknown version.
     #[must_use]
     pub fn board(&self) -> Option<&'static TargetBoard> {
         TargetBoard::of_version(self.version()?)
@@ -129,8 +129,8 @@ impl FirmwareFile {
 
     /// The symbol of this name.
     ///
-    /// The vendor's file says `int` of everything, functions included, so that what the tables know
-    /// comes first. What neither knows may be called as the program declares it.
+    /// The vendor's file declares everything as `int`, including functions, so the tables take precedence. A symbol
+    /// with an unknown type may be called as the program declares it.
     pub(super) fn find(&self, name: &str, board: &'static TargetBoard) -> Option<FirmwareSymbol> {
         let (address, ty) = *self.symbols.get(name)?;
         let kind = match board.find(name) {
@@ -154,8 +154,8 @@ fn is_exported(ty: SymbolType) -> bool {
     }
 }
 
-/// The firmware's tools put an underscore before each name. Its own `main` keeps it, so that
-/// it is not taken for the program's.
+/// The name in programs. The firmware's tools put an underscore before each name. Its own `main` keeps it, so that it
+/// is not taken for the program's.
 fn program_name(name: &[u8]) -> &[u8] {
     match name {
         b"_main" => name,
@@ -164,7 +164,7 @@ fn program_name(name: &[u8]) -> &[u8] {
     }
 }
 
-/// The text at `address` in the section `.const` with these bytes from `start` on, without the newline at its end.
+/// The text at `address`, without its newline; `section` contains the bytes of `.const`, which begins at `start`.
 fn version_text(section: &[u8], start: u32, address: u32) -> Option<String> {
     let offset = address.checked_sub(start)?;
     let bytes = section.get(offset as usize..)?;

@@ -1,9 +1,9 @@
 //! The firmware that programs are compiled for and linked against.
 //!
 //! By default that is the simulated board's own, from the tables of `kmotiondef` ([`BuiltIn`]); `--board` names another
-//! board. `--firmware` names a file instead, the vendor's or one that `cc67 firmware export` wrote: its symbols say which
-//! names there are and where, and the tables of the board with the version of the file say what their types are,
-//! because the file does not.
+//! board. `--firmware` names a file instead, the vendor's or one written by `cc67 firmware export`: its symbols give
+//! the names and their addresses; the types, which the file does not contain, come from the tables of the board with
+//! the same version.
 
 mod board;
 mod built_in;
@@ -39,7 +39,7 @@ impl Default for Firmware {
 }
 
 impl Firmware {
-    /// The board that it belongs to; of a version that is not known, the one whose tables serve for it.
+    /// The board of the firmware; for an unknown version, the board whose tables are used instead.
     #[must_use]
     pub fn board(&self) -> &'static TargetBoard {
         match self {
@@ -57,7 +57,7 @@ impl Firmware {
     }
 }
 
-/// The firmware of a file is none that is known.
+/// The firmware in a file has an unknown version.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`--firmware`: the firmware file is of `{file}`, the simulated board runs `{board}`")]
 pub struct VersionMismatch {
@@ -79,7 +79,7 @@ impl Firmware {
     /// library does: a program that is linked for another firmware calls wrong addresses.
     ///
     /// # Errors
-    /// If they differ, or the file does not state its version.
+    /// They differ, or the file does not state its version.
     pub fn check_version(&self) -> Result<(), VersionMismatch> {
         let board = self.board().version;
         let version = match self {

@@ -39,7 +39,7 @@ pub trait FirmwareNames {
     /// Reports whether the vendor's header defines a type of this name.
     fn is_type(&self, name: &str) -> bool;
 
-    /// The board that programs are compiled for; of a firmware that is not known, the one whose tables serve for it.
+    /// The board for which programs are compiled; for an unknown firmware, the board whose tables are used instead.
     fn board(&self) -> &'static TargetBoard {
         TargetBoard::default_board()
     }

@@ -35,7 +35,7 @@ pub trait FirmwareSymbols {
     /// Every name, for suggestions.
     fn symbol_names(&self) -> Box<dyn Iterator<Item = &str> + '_>;
 
-    /// The board that programs are linked for; of a firmware that is not known, the one whose tables serve for it.
+    /// The board for which programs are linked; for an unknown firmware, the board whose tables are used instead.
     fn board(&self) -> &'static TargetBoard {
         TargetBoard::default_board()
     }
@@ -45,7 +45,7 @@ pub trait FirmwareSymbols {
         self.board().version_stamp()
     }
 
-    /// The time stamp of the firmware file, as images state it; 0 if it is not known.
+    /// The time stamp of the firmware file, as recorded in images; 0 if unknown.
     fn time_stamp(&self) -> u32 {
         0
     }

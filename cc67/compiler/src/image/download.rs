@@ -1,4 +1,4 @@
-//! Images as the commands that bring them into a controller's thread, and back.
+//! Conversion between images and the commands that download them into a controller's thread.
 //!
 //! The vendor's host library sends these lines for a load (`coff.md` section 9 of the
 //! specification): the thread is killed, the bytes of each section follow in lines of 64, the
@@ -14,10 +14,10 @@ use kmotiondef::{GuestAddr, ThreadId};
 /// Bytes of one `LOADDATA`.
 const PIECE: usize = 0x4000;
 
-/// A program as it is sent.
+/// A program in the form in which it is sent.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Download {
-    /// The thread that it is loaded into.
+    /// The thread into which it is loaded.
     pub thread: ThreadId,
     /// The address at which a thread begins to execute it.
     pub entry: GuestAddr,
@@ -38,7 +38,7 @@ pub struct DownloadError {
 /// A kind of error in a line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DownloadErrorKind {
-    /// It is none of the three commands, or incomplete.
+    /// It is not one of the three commands, or incomplete.
     #[error("not `Kill`, `LOADDATA` or `EntryPoint` with its numbers")]
     Command,
     /// Bytes are missing, too many or no numbers.
@@ -154,7 +154,7 @@ impl Download {
         }
     }
 
-    /// An image with what is stored; names and lines are lost on the way.
+    /// An image with the stored bytes; names and lines are not part of a download.
     #[must_use]
     pub fn to_image(&self, version_stamp: i16) -> Image {
         let mut sections: Vec<Section> = Vec::new();
@@ -282,7 +282,7 @@ mod tests {
         for word in [0_u32, 3, 0x1000, 0x00ab_cdef, 0, 100] {
             bytes.extend_from_slice(&word.to_le_bytes());
         }
-        // The byte behind the three is padding of the record before the next length.
+        // The byte after the three is padding of the record before the next length.
         bytes.remove(15);
         assert_eq!(initial_values(&bytes), [(GuestAddr::new(0x1000), vec![0xef, 0xcd, 0xab])]);
     }

@@ -1,19 +1,18 @@
 //! Writing the image of a linked program: TI COFF2 as in `coff.md` of the specification.
 //!
-//! Departures from what the vendor's compiler writes, each for a reason:
+//! Deliberate differences from the vendor's compiler:
 //! - the target id of bytecode is our own, and its text begins with words that let a processor return at once, so that
-//!   no board executes it whatever loads it (design.md D4);
+//!   no board executes it, whichever loader is used (design.md D4);
 //! - `.bss` has a section header, so that a load clears it;
 //! - line entries are plain pairs of address and line (`coff.md` section 5);
-//! - the auxiliary entry of an object holds its size where that of a function has it, so that a
-//!   trap can say "4 bytes past the end of `table`";
-//! - static functions are symbols like others, and of the firmware's symbols only those that the
-//!   program refers to are listed.
+//! - the auxiliary entry of an object holds its size in the same field as for a function, so that a trap can report "4
+//!   bytes past the end of `table`";
+//! - static functions are symbols like others, and only the firmware symbols that the program refers to are listed.
 
 pub mod download;
 pub mod map;
 
-/// The error for a program that exceeds what the format can count.
+/// The error for a program that exceeds the limits of the format.
 pub use coff::Error as WriteError;
 use coff::raw::{BoundaryAux, FunctionAux};
 use coff::{
@@ -28,15 +27,15 @@ use crate::object::{base_type, class, function_type, statement, to_u16, whole_li
 /// Writes the image of a program.
 ///
 /// # Errors
-/// If the program exceeds what the format can count.
+/// The program exceeds the limits of the format.
 pub fn write(linked: &Linked) -> Result<Vec<u8>, Error> {
     write_as(Container::Coff, linked)
 }
 
-/// Writes the program as a kind of file; ELF files have no line numbers.
+/// Writes the program in the given file format; ELF files have no line numbers.
 ///
 /// # Errors
-/// If the program exceeds what the format can count.
+/// The program exceeds the limits of the format.
 pub fn write_as(container: Container, linked: &Linked) -> Result<Vec<u8>, Error> {
     let mut image = Image { container, ..bare(linked) };
     let mut table = SymbolTable::default();
@@ -50,7 +49,7 @@ pub fn write_as(container: Container, linked: &Linked) -> Result<Vec<u8>, Error>
     if let Some(text) = image.sections.first_mut() {
         text.lines = table.lines;
     }
-    // Only now is it known where in the file each function's lines will be.
+    // The file offsets of each function's lines are only known now.
     let layout = Layout::of(&image)?;
     for (symbol, first_line) in table.first_lines {
         let at = layout.line_offset(0, first_line).unwrap_or(0);
@@ -65,7 +64,7 @@ pub fn write_as(container: Container, linked: &Linked) -> Result<Vec<u8>, Error>
 /// unless they are requested.
 ///
 /// # Errors
-/// If the program exceeds what the format can count.
+/// The program exceeds the limits of the format.
 pub fn write_stripped(linked: &Linked) -> Result<Vec<u8>, Error> {
     bare(linked).write()
 }
@@ -122,7 +121,7 @@ fn sections(linked: &Linked) -> Vec<coff::Section> {
 struct SymbolTable {
     symbols: Vec<Symbol>,
     lines: Vec<Line>,
-    /// Entries so far, auxiliary ones included: the index of the next symbol as the format counts.
+    /// The number of entries so far, including auxiliary ones: the index of the next symbol in the format.
     entries: u32,
     /// Position in `symbols` of each function, and its first entry in `lines`.
     first_lines: Vec<(usize, u32)>,
@@ -142,7 +141,7 @@ impl SymbolTable {
         self.symbols.push(Symbol { name: Name::from(name), value, section, ty, class, aux: aux.to_vec() });
     }
 
-    /// A file symbol for each source file, after it the functions that are defined there.
+    /// A file symbol for each source file, followed by the functions defined in it.
     fn functions(&mut self, linked: &Linked) {
         for (file, path) in (0..).zip(&linked.files) {
             let name = path.rsplit(['/', '\\']).next().unwrap_or(path);

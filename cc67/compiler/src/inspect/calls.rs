@@ -10,7 +10,7 @@ use vm::program::Program;
 use super::Inspection;
 use crate::bytecode::references::{Reference, reference};
 
-/// A function and what it calls.
+/// A function and its callees.
 #[derive(Debug)]
 pub(super) struct Node {
     /// Its name.
@@ -23,7 +23,7 @@ pub(super) struct Node {
     pub(super) calls: BTreeSet<usize>,
     /// The functions that its calls through pointers may reach.
     pub(super) through_pointers: BTreeSet<usize>,
-    /// True if there are such calls.
+    /// True if it makes calls through pointers.
     pub(super) calls_pointers: bool,
     /// The firmware's functions that it calls.
     pub(super) firmware: BTreeSet<String>,

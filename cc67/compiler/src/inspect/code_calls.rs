@@ -13,7 +13,7 @@ impl Calls {
     /// The functions of an image for the processor.
     ///
     /// # Errors
-    /// Why its code is not known.
+    /// The reason why its code is unknown.
     pub(super) fn of_code(inspection: &Inspection) -> Result<Self, String> {
         let routines = machine::functions(inspection)?;
         let taken = addresses_taken(inspection, &routines);
@@ -54,7 +54,7 @@ fn numbered(routines: &[Routine], address: u32) -> Option<usize> {
     routines.iter().position(|code| code.address == address)
 }
 
-/// The functions whose addresses are values: in data, or in code that does not call them there.
+/// The functions whose addresses are used as values: in data, or in code other than calls.
 fn addresses_taken(inspection: &Inspection, routines: &[Routine]) -> BTreeSet<usize> {
     let data = inspection.image.sections.iter().filter(|section| section.name != *".text");
     let words =
@@ -72,7 +72,7 @@ fn addresses_taken(inspection: &Inspection, routines: &[Routine]) -> BTreeSet<us
     taken
 }
 
-/// The numbers that `MVK` and `MVKH` put together, in the order of the code.
+/// The numbers built by `MVK` and `MVKH`, in the order of the code.
 fn constants(code: &Routine) -> Vec<u32> {
     let mut low = [None; 64];
     let mut found = Vec::new();

@@ -10,7 +10,7 @@ use super::{Entry, Inspection};
 /// Most differing symbols that are listed.
 const LISTED: usize = 40;
 
-/// The differences, a line each; none for images that load the same and name the same.
+/// The differences, one per line; none for images with the same memory contents and the same names.
 #[must_use]
 pub fn compare(a: &Inspection, b: &Inspection) -> Vec<String> {
     let mut lines = headers(&a.image, &b.image);

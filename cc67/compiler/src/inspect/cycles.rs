@@ -1,7 +1,7 @@
 //! The cost of the processor's code: cycles of functions and of loop iterations, and the listing that explains them.
 //!
 //! The cycles are those of the packets (`c67x.md` section 5), without waits for memory. If the code can take several
-//! paths, the shortest and the longest are given; an inner loop counts as one iteration, a call as its branch alone.
+//! paths, the shortest and the longest are given; an inner loop counts as one iteration, a call only as its branch.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -73,7 +73,7 @@ impl Inspection {
         }
     }
 
-    /// The names of what blocks call.
+    /// The names of the functions called by blocks.
     fn called(&self, blocks: &[Block]) -> String {
         let mut names: Vec<String> =
             blocks.iter().filter_map(|block| Some(self.callee(block.call?))).collect();
@@ -104,7 +104,8 @@ fn span((least, most): (u32, u32), slice: u32) -> String {
 }
 
 impl Routine {
-    /// The shortest and the longest way forward from a block to the end of the function, or to the jump back to it.
+    /// The shortest and the longest forward path from a block to the end of the function, or to the backward jump to
+    /// it.
     fn path(&self, from: usize, within: Option<usize>) -> Option<(u32, u32)> {
         let last = within.unwrap_or(self.blocks.len() - 1);
         let mut paths: Vec<Option<(u32, u32)>> = vec![None; self.blocks.len()];
@@ -185,7 +186,7 @@ impl Routine {
 struct Listing<'a> {
     inspection: &'a Inspection,
     sources: &'a dyn Sources,
-    /// The lines of each file met so far; none if the file is not found.
+    /// The lines of each file used so far; `None` if the file is not found.
     files: BTreeMap<String, Vec<String>>,
     out: String,
 }
@@ -235,7 +236,7 @@ impl Listing<'_> {
         }
     }
 
-    /// A line of the source, or its place where the file is not found.
+    /// A line of the source, or only its position if the file is not found.
     fn source(&mut self, line: Option<&(Option<String>, u32)>) {
         let Some((file, line)) = line else { return };
         let file = file.as_deref().unwrap_or("?");

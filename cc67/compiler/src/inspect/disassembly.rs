@@ -1,4 +1,4 @@
-//! The code with the source lines that it was made of.
+//! The code with the source lines from which it was compiled.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -10,7 +10,7 @@ use super::Inspection;
 use super::calls::firmware_name;
 use crate::bytecode::references::{Reference, reference};
 
-/// The source of the text of source files; images know their names without folders.
+/// The provider of the text of source files; images contain their names without folders.
 pub trait Sources {
     /// The text of the file with this name, if it is found.
     fn text(&self, name: &str) -> Option<String>;
@@ -44,7 +44,7 @@ struct CodePrinter<'a> {
     inspection: &'a Inspection,
     program: &'a Program,
     sources: &'a dyn Sources,
-    /// The lines of each file met so far; none if the file is not found.
+    /// The lines of each file used so far; `None` if the file is not found.
     files: BTreeMap<String, Vec<String>>,
     out: String,
 }
@@ -69,7 +69,7 @@ impl CodePrinter<'_> {
         self.out.push('\n');
     }
 
-    /// A line of the source, or its place where the file is not found.
+    /// A line of the source, or only its position if the file is not found.
     fn source(&mut self, line: Option<&(Option<String>, u32)>) {
         let Some((file, line)) = line else { return };
         let file = file.as_deref().unwrap_or("?");

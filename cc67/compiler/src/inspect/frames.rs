@@ -13,7 +13,7 @@ pub(super) fn deepest(code: &Routine) -> Option<u32> {
     let mut open = vec![(0, 0)];
     let (mut deepest, mut steps) = (0, 0);
     while let Some((index, depth)) = open.pop() {
-        // A loop that goes deeper in every iteration has no bound.
+        // A loop that uses more stack in every iteration has no bound.
         steps += 1;
         if steps > 16 * code.blocks.len() {
             return None;
@@ -35,7 +35,7 @@ fn through(code: &Routine, block: &Block, start: i64) -> Option<(i64, i64)> {
     let (mut deepest, mut depth) = (start, start);
     for inst in code.packets[block.packets.clone()].iter().flat_map(|packet| &packet.insts) {
         let taken = taken(inst)?;
-        // What a condition may release is taken as kept.
+        // A conditional release is assumed not to happen.
         if inst.pred() == Pred::Always || taken > 0 {
             depth += taken;
         }

@@ -1,4 +1,4 @@
-//! An inspection for tools: everything the listings show, as JSON.
+//! The contents of all listings as JSON, for tools.
 
 use coff::Contents;
 use serde_json::{Value, json};
@@ -74,7 +74,7 @@ impl Inspection {
         self.lines.iter().map(line).collect()
     }
 
-    /// Functions with their calls; none for code that nothing here can run.
+    /// Functions with their calls; empty for code that cannot be run here.
     fn functions_json(&self) -> Vec<Value> {
         let Ok(calls) = self.call_graph() else { return Vec::new() };
         let names = |numbers: &std::collections::BTreeSet<usize>| -> Vec<&str> {

@@ -61,7 +61,7 @@ const fn statement_line(is_vendors: bool, position: usize, line: u32) -> u32 {
 }
 
 impl Inspection {
-    /// The line that the code at `address` belongs to.
+    /// The line of the code at `address`.
     #[must_use]
     pub fn line_at(&self, address: u32) -> Option<&SourceLine> {
         let after = self.lines.partition_point(|line| line.address <= address);
@@ -90,7 +90,7 @@ impl Inspection {
 }
 
 /// Reports whether no instruction executes in parallel with another, as in all code of the vendor's compiler; ours pads
-/// packets with parallel instructions even where nothing is optimised.
+/// packets with parallel instructions even without optimisation.
 fn has_no_parallel(image: &Image) -> bool {
     let words = image.section(".text").map(|text| text.data().as_chunks::<4>().0).unwrap_or_default();
     words.iter().all(|word| u32::from_le_bytes(*word) & c67x::PARALLEL == 0)

@@ -1,8 +1,8 @@
 //! The processor's code of a function as packets and blocks.
 //!
-//! A block begins where a jump leads, where a call returns and where the shadow of a branch ends. Which blocks follow
-//! it, and after how many cycles, is known from the branches alone; a jump through a table leads to the addresses that
-//! follow the code.
+//! A block begins at the target of a jump, at the return point of a call, and at the end of a branch's delay slots. Its
+//! successors, and the cycles until each, are determined by the branches alone; a jump through a table leads to the
+//! addresses that follow the code.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -12,13 +12,13 @@ use c67x::{Branch, Inst, PARALLEL, Pred, Reg};
 use super::{Inspection, symbols::EntryKind};
 use crate::c67x::text::constant;
 
-/// Cycles from the issue of a branch to that of its target.
+/// Cycles from the issue of a branch to the issue of its target.
 const BRANCH: u32 = 6;
 
 /// The register of the return address.
 const LINK: Reg = c67x::convention::LINK;
 
-/// Instructions that issue together.
+/// Instructions that issue in the same cycle.
 #[derive(Clone, Debug)]
 pub(super) struct Packet {
     /// The address of the first.
@@ -29,12 +29,12 @@ pub(super) struct Packet {
     pub(super) cycles: u32,
 }
 
-/// A way from a block to another.
+/// An edge from one block to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Edge {
     /// The block's number.
     pub(super) to: usize,
-    /// Cycles from the beginning of the one to that of the other.
+    /// Cycles from the beginning of one block to the beginning of the other.
     pub(super) cycles: u32,
 }
 
@@ -54,7 +54,7 @@ pub(super) struct Block {
 pub(super) enum Called {
     /// The function at an address.
     At(u32),
-    /// Whatever a register points to.
+    /// The address in a register.
     Pointer,
 }
 
@@ -69,7 +69,7 @@ pub(super) struct Routine {
     pub(super) blocks: Vec<Block>,
 }
 
-/// The functions of an image for the processor, or why they are not known.
+/// The functions of an image for the processor, or the reason why they are unknown.
 pub(super) fn functions(inspection: &Inspection) -> Result<Vec<Routine>, String> {
     let image = &inspection.image;
     if image.target != coff::Target::C6000 {
@@ -213,15 +213,15 @@ impl Routine {
         let time = self.packets[packet].time;
         let (from, to) = (self.at_time(time.saturating_sub(40)), self.at_time(time + BRANCH));
         let before = &self.packets[from..packet];
-        // An earlier call's return address is not this one's.
+        // The return address of an earlier call does not count.
         let is_branch = |packet: &Packet| packet.insts.iter().any(|inst| inst.branch().is_some());
         let from = before.iter().rposition(is_branch).map_or(from, |at| from + at + 1);
         let sets = |inst: &Inst| inst.mem().is_none() && inst.writes().any(|write| write.reg == LINK);
         self.packets[from..to].iter().flat_map(|packet| &packet.insts).any(sets)
     }
 
-    /// Reports whether a register keeps the return address before a packet: it gets copies of the link register, and at
-    /// the ends of the function its previous value.
+    /// Reports whether a register holds the return address before a packet: it is copied from the link register, and
+    /// restored at the ends of the function.
     fn keeps_link(&self, packet: usize, reg: Reg) -> bool {
         let before = self.packets[..packet].iter().flat_map(|packet| &packet.insts);
         let mut copies = 0;
@@ -256,7 +256,7 @@ impl Routine {
     }
 }
 
-/// The packets of words at an address; where one is not an instruction, its address.
+/// The packets of words at an address; the address of a word that is not an instruction, if there is one.
 fn packets(address: u32, words: &[u32]) -> Result<Vec<Packet>, u32> {
     let mut all: Vec<Packet> = Vec::new();
     let (mut time, mut joins) = (0, false);

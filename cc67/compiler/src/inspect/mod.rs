@@ -1,8 +1,8 @@
 //! The contents of an image, for people and tools.
 //!
-//! [`Inspection`] takes an image apart once: functions, objects, lines, and for images of our own the verified program,
-//! from which disassembly, calls and stack depth follow. Code for the controller's processor has packets instead, which
-//! give the listing and the cycles. The submodules format parts of it as text.
+//! [`Inspection`] analyses an image once: functions, objects, lines, and for our own images the verified program, from
+//! which disassembly, calls and stack depth are derived. For the controller's processor, listing and cycles are derived
+//! from packets instead. The submodules format parts of it as text.
 
 mod calls;
 mod code_calls;
@@ -31,7 +31,7 @@ use vm::verify::verify_image;
 
 use self::calls::Calls;
 
-/// An image, taken apart.
+/// An analysed image.
 #[derive(Debug)]
 pub struct Inspection {
     /// The image.
@@ -40,12 +40,12 @@ pub struct Inspection {
     pub symbols: Vec<Entry>,
     /// The source line of each address where one begins, ascending.
     pub lines: Vec<SourceLine>,
-    /// The code, if the machine can run it; else why not.
+    /// The code, if the machine can run it; otherwise the reason why not.
     pub program: Result<Program, String>,
 }
 
 impl Inspection {
-    /// Takes an image apart.
+    /// Analyses an image.
     #[must_use]
     pub fn new(image: Image) -> Self {
         let symbols = symbols::collect(&image);
@@ -54,10 +54,10 @@ impl Inspection {
         Self { image, symbols, lines, program }
     }
 
-    /// Reads an image and takes it apart.
+    /// Reads and analyses an image.
     ///
     /// # Errors
-    /// If the bytes are not an image.
+    /// The bytes are not an image.
     pub fn read(bytes: &[u8]) -> Result<Self, coff::Error> {
         Image::read(bytes).map(Self::new)
     }
@@ -75,7 +75,7 @@ impl Inspection {
         text + &dump::relocations(&self.image)
     }
 
-    /// The board that the image is linked for; the default board where it does not say.
+    /// The board for which the image is linked; the default board if it does not name one.
     fn board(&self) -> &'static TargetBoard {
         let program = self.image.program.as_ref();
         let known = program.and_then(|it| TargetBoard::of_image(it.version_stamp, it.text_start));
@@ -88,7 +88,7 @@ impl Inspection {
         program.map(GuestAddr::get).or_else(|| self.image.program.as_ref().map(|program| program.entry))
     }
 
-    /// The function or object that `address` lies in.
+    /// The function or object that contains `address`.
     #[must_use]
     pub fn at(&self, address: u32) -> Option<&Entry> {
         let after = self.symbols.partition_point(|entry| entry.address <= address);

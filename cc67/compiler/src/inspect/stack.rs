@@ -1,8 +1,8 @@
 //! The depth of the stack: frames along chains of calls.
 //!
-//! In bytecode a frame holds what has an address: arrays, structures, locals with `&`. Everything else lives in
-//! registers of the machine and costs no stack. In code for the controller's processor a frame is what the code takes
-//! from the stack pointer; the interrupts of the servo use the same stack, and so do the firmware's functions.
+//! In bytecode a frame holds the objects that have an address: arrays, structures, locals with `&`. Everything else is
+//! in registers of the machine and needs no stack. In code for the controller's processor, the frame size is the amount
+//! subtracted from the stack pointer; servo interrupts and firmware functions use the same stack.
 
 use std::fmt::Write as _;
 
@@ -12,12 +12,12 @@ use kmotiondef::map::{INTERRUPT_STACK, STACK_SIZE, THREAD_STACK};
 use super::Inspection;
 use super::calls::{Calls, Node};
 
-/// The most stack that a function and what it calls can need.
+/// The maximum stack that a function needs, including its callees.
 #[derive(Clone, Debug)]
 enum Depth {
-    /// This many bytes, and what is called on the way there.
+    /// This many bytes, and the next function on the deepest path.
     Bytes(u32, Next),
-    /// A call leads back to a function that is still at work, or to one of which nothing is known.
+    /// A call leads to a function that is still being analysed, or whose depth is unknown.
     Unknown,
 }
 
@@ -72,8 +72,8 @@ struct Depths<'a> {
 }
 
 impl Depths<'_> {
-    /// The depth of every function. Callees are done before their callers; the graph of calls is walked with a stack of
-    /// its own, because programs may nest deeper than our own stack.
+    /// The depth of every function. Callees are analysed before their callers; the call graph is walked with an
+    /// explicit stack, because programs may nest deeper than our own stack.
     fn all(&self) -> Vec<Depth> {
         let calls = self.calls;
         let mut depths: Vec<Option<Depth>> = vec![None; calls.nodes.len()];
@@ -99,7 +99,7 @@ impl Depths<'_> {
         depths.into_iter().map(|depth| depth.unwrap_or(Depth::Unknown)).collect()
     }
 
-    /// The depth of one function from those of its callees; one without depth is still at work.
+    /// The depth of one function from the depths of its callees; a callee without a depth is still being analysed.
     fn of(&self, node: &Node, depths: &[Option<Depth>]) -> Depth {
         let Some(frame) = node.frame else { return Depth::Unknown };
         let mut deepest = (0, Next::Nothing);
@@ -124,7 +124,7 @@ fn callees(node: &Node) -> impl Iterator<Item = usize> {
     node.calls.union(&node.through_pointers).copied()
 }
 
-/// The names along the deepest way, `main (16) → read (120)`.
+/// The names along the deepest path, `main (16) → read (120)`.
 fn chain(calls: &Calls, depths: &[Depth], start: usize) -> String {
     let mut names = Vec::new();
     let mut next = Next::Function(start);
@@ -148,8 +148,7 @@ fn chain(calls: &Calls, depths: &[Depth], start: usize) -> String {
     names.join(" → ")
 }
 
-/// The reason why the depth of a function is not known: the first cycle of calls that it reaches, or a frame without a
-/// size.
+/// The reason why the depth of a function is unknown: the first call cycle that it reaches, or a frame of unknown size.
 fn reason(calls: &Calls, start: usize) -> String {
     let mut path =
         vec![(start, calls.nodes.get(start).map(|node| callees(node).collect()).unwrap_or_default())];

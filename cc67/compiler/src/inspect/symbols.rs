@@ -14,7 +14,7 @@ pub enum EntryKind {
     Function,
     /// An object.
     Object,
-    /// A jump target or a constant without a name of its own.
+    /// A jump target or a constant without a name.
     Label,
     /// A function or variable of the firmware, or a limit of a section.
     Absolute,
@@ -45,7 +45,7 @@ pub struct Entry {
     pub address: u32,
     /// Its size in bytes, if the image has it.
     pub size: Option<u32>,
-    /// Its section, or where else it is.
+    /// Its section, or its other location.
     pub section: String,
     /// Its kind.
     pub kind: EntryKind,
@@ -74,7 +74,8 @@ pub(super) fn collect(image: &Image) -> Vec<Entry> {
         if symbol.class == StorageClass::FILE {
             files.push(symbol.name.to_string());
         }
-        // In an image a function is after its file; an object lists all files first, and a function says which is its.
+        // In an image, a function follows its file; an object lists all files first, and each function refers to its
+        // file.
         if image.program.is_none()
             && symbol.class == StorageClass::FUNCTION
             && symbol.name.as_bytes() == b".bf"
@@ -97,11 +98,11 @@ pub(super) fn collect(image: &Image) -> Vec<Entry> {
             section: section(image, symbol),
             kind,
             is_external: symbol.class == StorageClass::EXTERNAL,
-            // The external functions of an ELF file are after those of all files.
+            // In an ELF file, external functions follow the functions of all files.
             file: files.last().filter(|_| kind == EntryKind::Function && !is_elf(image)).cloned(),
         });
     }
-    // Of several names for one address the one that says most comes last, where it is found.
+    // Of several names for one address, the most useful comes last, where it is found.
     entries.sort_by_key(|entry| (entry.address, entry.kind != EntryKind::Absolute, entry.size));
     entries
 }
@@ -120,18 +121,18 @@ fn kind(image: &Image, symbol: &Symbol) -> EntryKind {
         },
         SectionNumber(1) => EntryKind::Function,
         _ if image.target == Target::CC67 => EntryKind::Object,
-        // The vendor's compiler writes section 2 for everything; the address tells.
+        // The vendor's compiler writes section 2 for everything, so the address decides.
         _ if inside(image, symbol.value) => EntryKind::Object,
         _ => EntryKind::Absolute,
     }
 }
 
-/// Reports whether the types and sections of symbols are those that the file states.
+/// Reports whether the file states the types and sections of its symbols.
 fn is_elf(image: &Image) -> bool {
     image.container == Container::Elf
 }
 
-/// Reports whether an address lies between the first and the last byte of the program.
+/// Reports whether an address is between the first and the last byte of the program.
 fn inside(image: &Image, address: u32) -> bool {
     let sections = image.sections.iter().filter(|section| section.size() > 0);
     let start = sections.clone().map(|section| section.address).min().unwrap_or(0);
@@ -140,7 +141,8 @@ fn inside(image: &Image, address: u32) -> bool {
     (u64::from(start)..end + bss).contains(&u64::from(address))
 }
 
-/// The vendor's compiler writes an entry without a size after everything but functions.
+/// Returns the size of a symbol, if it has one. The vendor's compiler writes an entry without a size after everything
+/// except functions.
 fn size(image: &Image, symbol: &Symbol, kind: EntryKind) -> Option<u32> {
     let has_size = image.target == Target::CC67 || is_elf(image) || kind == EntryKind::Function;
     symbol.size().filter(|_| has_size)

@@ -1,7 +1,7 @@
 //! Arithmetic on constants, with the results of the machine.
 //!
-//! `None` is the result of an operation that would trap, and of an operator that does not exist on such values.
-//! Analysis folds the source's constants with it, and passes those that they find.
+//! `None` is the result of an operation that would trap, or of an operator that is not defined for such values.
+//! Semantic analysis uses it to fold the constants of the source, and passes to fold those that they discover.
 
 use std::ops::{Add, Div, Mul, Sub};
 

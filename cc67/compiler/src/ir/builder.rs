@@ -1,8 +1,7 @@
-//! Appends instructions to the block that is open.
+//! Appends instructions to the open block.
 //!
-//! No block is open after a terminator: what is appended there cannot be reached and is
-//! dropped, until the next block is opened. A block enters the layout when it is opened, so
-//! the code is in the order in which it was built.
+//! No block is open after a terminator: instructions appended there are unreachable and dropped, until the next block
+//! is opened. A block enters the layout when it is opened, so the code is in the order in which it was built.
 
 use cranelift_entity::packed_option::PackedOption;
 
@@ -14,7 +13,7 @@ use super::inst::{
 use super::operators::{BinaryOp, CompareOp, ConvertOp, UnaryOp, Width};
 use crate::source::Span;
 
-/// A place between two instructions, where one may be put in later.
+/// A position between two instructions, where another can be inserted later.
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
     block: PackedOption<BlockId>,
@@ -29,7 +28,7 @@ pub struct Builder {
     open: Option<BlockId>,
     /// Index of the cost instruction of the open block, which grows as instructions follow.
     cost: Option<usize>,
-    /// Blocks that are placed before others, with those.
+    /// Blocks that are placed before other blocks, each with that block.
     ways: Vec<(BlockId, BlockId)>,
     origin: CodeOrigin,
 }
@@ -45,12 +44,12 @@ impl Builder {
         builder
     }
 
-    /// The statement that what follows belongs to.
+    /// Sets the statement of the following instructions.
     pub fn set_span(&mut self, span: Span) {
         self.origin = CodeOrigin::of(span);
     }
 
-    /// The statement that instructions belong to at present.
+    /// The statement of the current instructions.
     #[must_use]
     pub const fn span(&self) -> Span {
         self.origin.span
@@ -78,7 +77,7 @@ impl Builder {
         self.function.blocks.push(Block { insts: Vec::new(), terminator: Terminator::Unreachable, origin })
     }
 
-    /// Opens a block; the one before, if still open, jumps to it.
+    /// Opens a block; the previous one, if still open, jumps to it.
     pub fn open(&mut self, block: BlockId) {
         self.terminate(Terminator::Jump(block));
         self.place_ways(block);
@@ -87,7 +86,8 @@ impl Builder {
         self.cost = None;
     }
 
-    /// Places the blocks that only cost before the block that they lead to; there may be such blocks before those.
+    /// Places the blocks that only charge a cost before the block at which they continue; such blocks may have further
+    /// ones before them.
     fn place_ways(&mut self, to: BlockId) {
         let ways: Vec<_> = self.ways.extract_if(.., |(leads_to, _)| *leads_to == to).collect();
         for (_, way) in ways {
@@ -96,7 +96,7 @@ impl Builder {
         }
     }
 
-    /// A block that only costs and continues at `to`; it is before it, if that is still to be opened.
+    /// A block that only charges a cost and continues at `to`; it is placed before `to`, if that is yet to be opened.
     pub fn way(&mut self, to: BlockId, cycles: u32) -> BlockId {
         let origin = self.origin;
         let insts = vec![Inst { kind: InstKind::Cost { cycles }, origin }];
@@ -129,14 +129,14 @@ impl Builder {
         self.terminate(Terminator::Branch { condition, then, otherwise });
     }
 
-    /// The place after what was appended last.
+    /// The position after the last appended instruction.
     #[must_use]
     pub fn point(&self) -> Point {
         let index = self.open.map_or(0, |block| self.function.blocks[block].insts.len() as u32);
         Point { block: self.open.into(), index }
     }
 
-    /// Puts `dst = src` in at a place that was passed before.
+    /// Inserts `dst = src` at an earlier position.
     pub fn insert_copy(&mut self, point: Point, dst: ValueId, src: Operand) {
         if let Some(block) = point.block.expand() {
             let inst = Inst { kind: InstKind::Copy { dst, src }, origin: self.origin };
@@ -149,7 +149,7 @@ impl Builder {
         }
     }
 
-    /// Adds to what the open block costs, from the last call in it on; fewer than 0 cycles take back what was added.
+    /// Adds to the cost of the open block after its last call; a negative number takes back cost.
     pub fn cost(&mut self, cycles: i32) {
         let Some(block) = self.open.filter(|_| cycles != 0) else { return };
         let insts = &mut self.function.blocks[block].insts;

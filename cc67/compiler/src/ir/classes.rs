@@ -11,7 +11,7 @@ use cranelift_entity::SecondaryMap;
 #[derive(Debug, Default)]
 pub(super) struct Classes {
     known: SecondaryMap<ValueId, Option<Class>>,
-    /// Values and what they are copies of.
+    /// Values and their originals.
     copies: Vec<(ValueId, ValueId)>,
 }
 

@@ -10,7 +10,7 @@ use super::inst::{
 use crate::source::Span;
 use crate::typed::{LocalId, SymbolId};
 
-/// A map with room for the keys below `len`; one that grows key by key takes longer than most passes.
+/// A map with room for the keys below `len`; growing it key by key takes longer than most passes.
 #[must_use]
 pub fn table<K: EntityRef, V: Clone + Default>(len: usize) -> SecondaryMap<K, V> {
     let mut table = SecondaryMap::new();
@@ -21,7 +21,7 @@ pub fn table<K: EntityRef, V: Clone + Default>(len: usize) -> SecondaryMap<K, V>
 /// The signature of a function, as classes.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Signature {
-    /// Parameters, hidden ones included.
+    /// The parameters, including hidden ones.
     pub params: Vec<Class>,
     /// Result; `None` for `void`.
     pub result: Option<Class>,
@@ -80,11 +80,11 @@ pub struct Block {
     pub insts: Vec<Inst>,
     /// Its terminator.
     pub terminator: Terminator,
-    /// The statement that the end belongs to.
+    /// The statement of its end.
     pub origin: CodeOrigin,
 }
 
-/// A local of the source, and where it is.
+/// A local of the source, and its home.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SourceVariable {
     /// The local.
@@ -102,7 +102,7 @@ pub enum VariableHome {
     Slot(SlotId),
     /// In memory, at the address in a value.
     Pointer(ValueId),
-    /// Nowhere: it is always this, the bits of a register.
+    /// It has no location, but always this value, given as the bits of a register.
     Constant(u64),
 }
 
@@ -133,7 +133,7 @@ pub struct Function {
     pub symbol: SymbolId,
     /// Its signature.
     pub signature: SignatureId,
-    /// The values that the arguments come in.
+    /// The values that receive the arguments.
     pub params: Vec<ValueId>,
     /// The class of every value.
     pub values: PrimaryMap<ValueId, Class>,
@@ -141,7 +141,7 @@ pub struct Function {
     pub slots: PrimaryMap<SlotId, FrameSlot>,
     /// The object that holds the variable arguments of calls.
     pub outgoing: Option<SlotId>,
-    /// Every block, also those that `layout` has dropped.
+    /// All blocks, including those dropped from `layout`.
     pub blocks: PrimaryMap<BlockId, Block>,
     /// The blocks that exist, in the order of the code; the first is the entry.
     pub layout: Vec<BlockId>,

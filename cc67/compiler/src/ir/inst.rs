@@ -58,8 +58,8 @@ impl Class {
     }
 }
 
-/// A constant; floating ones as bit patterns, so that equality is identity. The address of a symbol is one too,
-/// known when the program is linked.
+/// A constant; floating-point constants are bit patterns, so that equality is identity. The address of a symbol is also
+/// a constant, known when the program is linked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Constant {
     /// A 32-bit integer.
@@ -75,7 +75,7 @@ pub enum Constant {
 }
 
 impl Constant {
-    /// The bits of a register that holds it; `None` for an address, which the linker knows.
+    /// The bits of a register that holds it; `None` for an address, which only the linker knows.
     #[must_use]
     pub const fn bits(self) -> Option<u64> {
         match self {
@@ -126,7 +126,7 @@ impl Operand {
         Self::Constant(Constant::I32(value))
     }
 
-    /// The value, if it is one.
+    /// The value, if it is a value.
     #[must_use]
     pub const fn as_value(self) -> Option<ValueId> {
         match self {
@@ -166,7 +166,7 @@ pub enum Base {
     Value(ValueId),
     /// An object in the frame.
     Slot(SlotId),
-    /// A symbol, known at link time.
+    /// The address of a symbol, known at link time.
     Symbol(SymbolId),
 }
 
@@ -199,7 +199,7 @@ impl Address {
         }
     }
 
-    /// The address `bytes` further on.
+    /// The address plus `bytes`.
     #[must_use]
     pub const fn plus(self, bytes: i32) -> Self {
         Self { offset: self.offset.wrapping_add(bytes), ..self }
@@ -232,7 +232,7 @@ impl ArgumentRange {
     }
 }
 
-/// An instruction and the statement it belongs to.
+/// An instruction and its statement.
 #[derive(Clone, Copy, Debug)]
 pub struct Inst {
     /// The kind of instruction.
@@ -246,7 +246,7 @@ pub struct Inst {
 pub struct CodeOrigin {
     /// The statement.
     pub span: Span,
-    /// The inlined call that it is of; none for code of the function itself.
+    /// The inlined call that it comes from; `None` for code of the function itself.
     pub call: PackedOption<InlineId>,
 }
 
@@ -335,7 +335,7 @@ pub enum InstKind {
         /// Bytes from its beginning.
         offset: i32,
     },
-    /// Copies `len` bytes; the ranges may be the same but do not overlap otherwise.
+    /// Copies `len` bytes; the ranges are either the same or do not overlap.
     CopyMemory {
         /// The destination.
         to: Address,
@@ -359,12 +359,12 @@ pub enum InstKind {
         arguments: ArgumentRange,
         /// The signature.
         signature: SignatureId,
-        /// Written, if the result is wanted.
+        /// The result, if it is needed.
         dst: PackedOption<ValueId>,
     },
-    /// Spends board time and does nothing else: what the vendor's code for the source takes.
+    /// Only spends board time: the time that the vendor's code takes for the source.
     ///
-    /// A function with one of these is charged for these alone, whatever its other instructions cost.
+    /// A function with such instructions is charged only for these, whatever its other instructions cost.
     Cost {
         /// Cycles of 5 ns.
         cycles: u32,
@@ -390,8 +390,8 @@ impl InstKind {
         }
     }
 
-    /// Hands every operand that is read to `visit`, call arguments excepted; an address base that becomes a
-    /// constant turns into an absolute address.
+    /// Passes every operand that is read to `visit`, except call arguments; an address base that becomes a constant
+    /// turns into an absolute address.
     pub fn visit_operands(&mut self, mut visit: impl FnMut(&mut Operand)) {
         match self {
             Self::Copy { src, .. } | Self::Unary { src, .. } | Self::Convert { src, .. } => visit(src),
@@ -426,8 +426,8 @@ impl InstKind {
         if let Self::Call { signature, .. } = *self { Some(signature) } else { None }
     }
 
-    /// Reports whether the instruction has an effect besides its value, so that it must stay even if the value is not
-    /// read.
+    /// Reports whether the instruction has an effect other than its value, so that it must be kept even if the value is
+    /// not read.
     #[must_use]
     pub fn has_effect(&self, class: Class) -> bool {
         match self {
@@ -471,12 +471,12 @@ pub enum Terminator {
     Branch {
         /// The tested value.
         condition: Operand,
-        /// Taken for anything but 0.
+        /// Taken for any value except 0.
         then: BlockId,
         /// Taken for 0.
         otherwise: BlockId,
     },
-    /// Continues at `targets[index]`, or to `default` if there are fewer; `index` counts as unsigned.
+    /// Continues at `targets[index]`, or at `default` if there are fewer; `index` is unsigned.
     Table {
         /// The index, `I32`.
         index: Operand,
@@ -508,7 +508,7 @@ impl Terminator {
         }
     }
 
-    /// The blocks it may go to.
+    /// The blocks at which it may continue.
     pub fn targets(&self) -> impl Iterator<Item = BlockId> + '_ {
         let (first, second, table): (_, _, &[BlockId]) = match self {
             Self::Jump(to) => (Some(*to), None, &[]),

@@ -6,8 +6,8 @@
 //! so there is little for global optimisation to win; block-local passes need no phi and run
 //! in linear time, and a C local is simply one value.
 //!
-//! Constants are operands, not instructions. Memory is reached only by `load`, `store`,
-//! `copy_memory`, `clear_memory` and calls; no pass may drop, merge or move one of these.
+//! Constants are operands, not instructions. Memory is only accessed by `load`, `store`, `copy_memory`, `clear_memory`
+//! and calls; no pass may drop, merge or move one of these.
 
 #![deny(clippy::wildcard_enum_match_arm, reason = "a new instruction, operator or mode must be decided")]
 

@@ -1,8 +1,8 @@
 //! Operators, comparisons, conversions and widths of memory accesses.
 //!
-//! Operators name signedness where it matters, as the machine's instructions do. `>` and `>=` do not exist: a
-//! comparison is built with its operands swapped. The properties that passes and back ends need of an operator are in
-//! its row.
+//! Operators include signedness where it matters, as the machine's instructions do. `>` and `>=` do not exist: their
+//! operands are swapped when the comparison is built. The properties of an operator that passes and back ends need are
+//! in its row.
 
 use super::inst::Class;
 use crate::operators::{self, for_each_binary_op};
@@ -341,7 +341,7 @@ impl Width {
         }
     }
 
-    /// The conversion that makes an `I32` value what a load of this width would give; `None` for full widths.
+    /// The conversion from an `I32` value to the result of a load of this width; `None` for full widths.
     #[must_use]
     pub const fn normalize(self) -> Option<ConvertOp> {
         match self {

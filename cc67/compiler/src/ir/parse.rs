@@ -1,7 +1,7 @@
 //! Reads the text form of functions, see [`super::text`].
 //!
-//! What is printed is read back to functions that print the same. A text is checked as a whole: every value has one
-//! class, every block ends, every target exists, and [`verify`](super::verify) has the last word.
+//! Printed functions can be read back and print the same. A text is checked as a whole: every value has one class,
+//! every block ends, every target exists, and finally [`verify`](super::verify) checks the result.
 
 mod body;
 mod cursor;
@@ -22,7 +22,7 @@ use cursor::Cursor;
 pub struct Functions {
     /// The functions, in the order of the text.
     pub functions: Vec<Function>,
-    /// Their signatures, and those of what they call.
+    /// The signatures of the functions and of their callees.
     pub signatures: Signatures,
     /// The names that they mention.
     pub symbols: Symbols,

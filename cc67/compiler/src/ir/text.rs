@@ -12,12 +12,13 @@
 //!   branch v1, block1, block2
 //! ```
 //!
-//! An operator is followed by the class of its operands, a load or store by the width of what it moves, a call by the
+//! An operator is followed by the class of its operands, a load or store by the width of the access, a call by the
 //! class of its result, needed or not. Constants are `1` (`i32`), `1L` (`i64`), `1.0f` (`f32`), `1.0` (`f64`) and
 //! `&symbol + 4`; infinities and NaNs are their bits, `f64(0x7ff0000000000000)`. A symbol with the name of a value or
-//! slot has an `@` in front. A value whose class no instruction names ([`super::classes`]) is declared after the slots.
+//! slot has an `@` before it. A value whose class does not follow from an instruction ([`super::classes`]) is declared
+//! after the slots.
 //!
-//! Places in the source, and values and blocks that nothing mentions, are not part of the text.
+//! Source positions, and values and blocks that are not used, are not part of the text.
 
 use std::fmt::{self, Write};
 
@@ -34,7 +35,7 @@ pub trait SymbolNames {
     fn symbol_name(&self, symbol: SymbolId) -> &str;
 }
 
-/// Reports whether a name is that of a value or slot, so that a symbol of this name is marked in the text.
+/// Reports whether a name looks like a value or slot, so that a symbol with this name must be marked in the text.
 pub(super) fn is_taken(name: &str) -> bool {
     ["v", "slot"].iter().any(|prefix| {
         let number = name.strip_prefix(prefix);
@@ -257,7 +258,7 @@ impl FunctionPrinter<'_> {
     }
 }
 
-/// The values that are read and whose class no instruction states, in the order of their numbers.
+/// The values that are read and whose class does not follow from an instruction, in ascending order.
 fn undeclared(function: &Function) -> Vec<ValueId> {
     let mut classes = Classes::default();
     let mut read = Vec::new();

@@ -10,13 +10,13 @@ use crate::words::foreign;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{kind}")]
 pub struct LinkError {
-    /// Index of the object that it concerns, if it is one.
+    /// The index of the object that it concerns, if any.
     pub object: Option<usize>,
     /// The range in that object's source.
     pub span: Option<Span>,
     /// The kind of error.
     pub kind: LinkErrorKind,
-    /// The users of the symbol that it is about: "`main` (a.c:5)".
+    /// The users of the symbol: "`main` (a.c:5)".
     pub users: Vec<String>,
 }
 
@@ -26,14 +26,14 @@ pub enum LinkErrorKind {
     /// There is no entry point.
     #[error("no `main`")]
     NoMain,
-    /// A name that nothing defines.
+    /// An undefined name.
     #[error("undefined symbol `{name}`")]
     Undefined {
         /// The name.
         name: String,
-        /// A name that may be meant.
+        /// A similar name that may be meant.
         suggestion: Option<String>,
-        /// Another board whose firmware has the name.
+        /// Another board whose firmware has the symbol.
         other: Option<&'static TargetBoard>,
     },
     /// Two units define one name.
@@ -52,7 +52,7 @@ pub enum LinkErrorKind {
         /// The name.
         name: String,
     },
-    /// The arguments or the result of a call are not those of the function.
+    /// The arguments or the result of a call do not match the function.
     #[error("`{name}` is called as `{called}`, but is `{defined}`")]
     CallMismatch {
         /// The name.
@@ -93,7 +93,7 @@ impl LinkError {
             Some(span) => Diagnostic::error(span, message),
             None => Diagnostic::global_error(message),
         };
-        // What the diagnostic shows as source text needs no words.
+        // A use that is shown as source text is not listed.
         let shown = usize::from(self.span.is_some());
         let diagnostic = match self.users.get(shown..) {
             None | Some([]) => diagnostic,
@@ -151,9 +151,9 @@ pub enum LinkWarning {
         list(entered)
     )]
     EntersOtherThreads {
-        /// Bytes beyond the thread's own space.
+        /// Bytes after the end of the thread's own space.
         excess: u32,
-        /// The threads whose space is entered.
+        /// The threads whose spaces are overlapped.
         entered: Vec<u8>,
         /// The largest symbols, `name (bytes)`.
         largest: Vec<String>,
@@ -161,7 +161,7 @@ pub enum LinkWarning {
 }
 
 impl LinkWarning {
-    /// The warning as it is shown.
+    /// The warning as a diagnostic.
     pub(crate) fn to_diagnostic(&self) -> Diagnostic {
         let Self::EntersOtherThreads { largest, .. } = self;
         Diagnostic::global_warning(self.to_string())

@@ -1,4 +1,4 @@
-//! Objects to a program at a thread's address.
+//! Links objects to a program at a thread's address.
 //!
 //! The program's own definitions take precedence over those of the firmware. All missing symbols are reported together.
 //!
@@ -26,7 +26,7 @@ use crate::typed::Linkage;
 /// The options of a link.
 #[derive(Clone, Copy)]
 pub struct Options<'a> {
-    /// The thread that the program is for.
+    /// The thread for which the program is linked.
     pub thread: ThreadId,
     /// The symbols of the firmware.
     pub firmware: &'a dyn FirmwareSymbols,
@@ -36,7 +36,7 @@ pub struct Options<'a> {
     pub addresses: SectionAddresses,
 }
 
-/// Addresses of sections; those that are not given follow from the thread and the sections before.
+/// Addresses of sections; addresses that are not given follow from the thread and the previous sections.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SectionAddresses {
     /// The address of the text.
@@ -50,7 +50,7 @@ pub struct SectionAddresses {
 /// A program with final addresses.
 #[derive(Clone, Debug)]
 pub struct Linked {
-    /// The thread it is for.
+    /// The thread for which it is linked.
     pub thread: ThreadId,
     /// The target of its code.
     pub target: crate::target::Target,
@@ -61,7 +61,7 @@ pub struct Linked {
     /// The uninitialised data.
     pub bss: Uninitialized,
     /// The address at which a thread begins to execute it: `main`, or the words before bytecode, which lead the
-    /// simulated board there and let a processor return.
+    /// simulated board to `main` and make a real processor return.
     pub entry: GuestAddr,
     /// The firmware that it needs.
     pub firmware: LinkedFirmware,
@@ -77,12 +77,12 @@ pub struct Linked {
     pub warnings: Vec<LinkWarning>,
 }
 
-/// The firmware that a program is linked against.
+/// The firmware against which a program is linked.
 #[derive(Clone, Debug)]
 pub struct LinkedFirmware {
     /// Its version.
     pub version_stamp: i16,
-    /// The time stamp of its file; 0 if it is not known.
+    /// The time stamp of its file; 0 if unknown.
     pub time_stamp: u32,
     /// Its symbols that the program refers to.
     pub imports: Vec<Import>,
@@ -158,7 +158,7 @@ pub struct LinkedLine {
     pub place: SourceLine,
     /// The column, counted from 1; 0 if the object does not have it.
     pub column: u32,
-    /// The function whose source this is, if another function contains it in place of a call.
+    /// The function that the source belongs to, if it was inlined into another function.
     pub inlined: Option<Arc<str>>,
 }
 
@@ -176,7 +176,7 @@ pub struct Import {
 /// Links objects to a program.
 ///
 /// # Errors
-/// Everything that keeps the program from being linked.
+/// All errors that prevent linking.
 pub fn link(objects: &[Object], options: &Options<'_>) -> Result<Linked, Vec<LinkError>> {
     processor::check_targets(objects)?;
     let names = names::Names::collect(objects)?;

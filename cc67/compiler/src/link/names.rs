@@ -24,9 +24,9 @@ pub(super) struct Uninitialized {
     pub(super) object: usize,
     /// The symbol there.
     pub(super) symbol: SymbolId,
-    /// Its size in bytes: the largest of all definitions.
+    /// Its size in bytes: the largest size of all definitions.
     pub(super) size: u32,
-    /// Its alignment: the largest of all definitions.
+    /// Its alignment: the largest alignment of all definitions.
     pub(super) align: u32,
 }
 
@@ -63,7 +63,7 @@ impl<'a> Names<'a> {
         if errors.is_empty() { Ok(names) } else { Err(errors) }
     }
 
-    /// Enters an external definition; an error if there is another that is not tentative.
+    /// Records an external definition; an error if there is another one that is not tentative.
     fn define(
         &mut self,
         objects: &[Object],

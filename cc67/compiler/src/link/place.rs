@@ -22,11 +22,11 @@ pub(super) struct Placed {
     pub(super) data_size: u32,
     pub(super) bss_address: GuestAddr,
     pub(super) bss_size: u32,
-    /// Addresses of the functions of each object; null for those left out.
+    /// Addresses of the functions of each object; null for functions that are left out.
     functions: Vec<Vec<GuestAddr>>,
-    /// Addresses of the initialised objects of each object; null for those left out.
+    /// Addresses of the initialised objects of each object; null for objects that are left out.
     pub(super) data: Vec<Vec<GuestAddr>>,
-    /// Addresses of the uninitialised objects; null for those left out.
+    /// Addresses of the uninitialised objects; null for objects that are left out.
     pub(super) bss: Vec<GuestAddr>,
     pub(super) symbols: Vec<LinkedSymbol>,
 }
@@ -138,8 +138,8 @@ fn linked(
     }
 }
 
-/// Compares the program's end with the space there is (specification, `dialect.md` section 7). A program
-/// whose text is not in the space of the board's user programs is for another board.
+/// Compares the program's end with the available space (specification, `dialect.md` section 7). A program whose text is
+/// not in the space of the board's user programs is for another board.
 pub(super) fn check_size(
     placed: &Placed,
     text: GuestAddr,
@@ -161,7 +161,7 @@ pub(super) fn check_size(
     if end <= own_end {
         return Ok(Vec::new());
     }
-    // What comes after the space of the last thread is nobody else's.
+    // The memory after the space of the last thread belongs to no other thread.
     let last = ((end - 1 - base) / size + 1).min(u32::from(ThreadId::MAX));
     let entered: Vec<u8> = (own as u8 + 1..=last as u8).collect();
     if entered.is_empty() {

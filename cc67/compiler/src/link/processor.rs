@@ -1,7 +1,7 @@
 //! The text of a program for the controller's processor.
 //!
-//! Functions begin at fetch packets, the first at the start of the text. A branch with a displacement reaches 4 MiB: the
-//! whole of the program and the firmware's functions in SDRAM. For functions in the on-chip memory a jump comes after
+//! Functions begin at fetch packets, the first at the start of the text. A branch with a displacement has a range of 4
+//! MiB: the whole program and the firmware's functions in SDRAM. Functions in on-chip memory are reached by jumps after
 //! the program's functions.
 
 use kmotiondef::GuestAddr;

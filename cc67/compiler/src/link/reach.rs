@@ -1,7 +1,7 @@
-//! Finds the functions and objects of the program, and the firmware symbols that it needs.
+//! Finds the functions and objects that belong to the program, and the firmware symbols that it needs.
 //!
-//! A walk over the relocations from `main`, or from every definition if nothing should be left
-//! out. What a relocation refers to is worked out here, once for each symbol of an object.
+//! It follows the relocations from `main`, or from every definition if nothing should be left out. The target of a
+//! relocation is resolved here, once for each symbol of an object.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -23,7 +23,7 @@ use crate::words::suggest;
 /// The target of an object's symbol.
 #[derive(Clone, Debug, Default)]
 pub(super) enum Target {
-    /// Nothing refers to it, or nothing defines it.
+    /// It is not referred to, or not defined.
     #[default]
     Unknown,
     /// A definition of the program.
@@ -147,7 +147,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Works out what a symbol means, and needs it.
+    /// Resolves a symbol, and marks its definition as needed.
     fn refer(&mut self, object: usize, id: SymbolId, user: User) {
         if !matches!(self.reached.targets[object][id], Target::Unknown) {
             return;
@@ -187,7 +187,7 @@ impl Walk<'_> {
             .filter(|_| self.objects.iter().all(|object| object.target() == target::Target::Sim))
     }
 
-    /// Records an undefined symbol, once for each name, with everyone who needs it.
+    /// Records an undefined symbol, once for each name, with all of its users.
     fn miss(&mut self, object: usize, id: SymbolId, user: User) {
         let unit = &self.objects[object];
         let symbol = &unit.symbols[id];

@@ -130,7 +130,7 @@ impl TextLayout {
     }
 }
 
-/// Everything that knows an address.
+/// The sources of all addresses.
 pub(super) struct Addresses<'a> {
     /// The address of the first word.
     pub(super) base: GuestAddr,
@@ -199,7 +199,7 @@ impl Writer<'_> {
                         let target = &self.addresses.reached.targets[object][relocation.symbol];
                         add_address(&mut bytes[4..], self.addresses.of(target));
                     }
-                    // Units for different targets are not linked together.
+                    // Units for different targets cannot be linked together.
                     RelocationKind::Processor(_) => {}
                     RelocationKind::Call(signature) => match self.call(object, relocation, signature) {
                         Ok(word) => bytes = word,
@@ -305,7 +305,7 @@ pub(super) fn data(objects: &[Object], addresses: &Addresses<'_>) -> Vec<u8> {
     data
 }
 
-/// The descriptions of the functions, besides their symbols.
+/// The further data of the functions, in addition to their symbols.
 pub(super) fn functions(objects: &[Object], layout: &TextLayout) -> Vec<LinkedFunction> {
     let mut first_line = 0;
     let describe = |(object, index, _): &(usize, u32, u32)| {
@@ -337,7 +337,7 @@ pub(super) fn lines(objects: &[Object], layout: &TextLayout, base: GuestAddr) ->
     lines
 }
 
-/// The function whose source a line is, if that is another one than it is compiled into.
+/// The function to which a source line belongs, if it is not the function it is compiled into.
 fn inlined(unit: &Object, around: &ObjectFunction, place: SourceLine) -> Option<Arc<str>> {
     let contains = |function: &&ObjectFunction| {
         let begin = unit.symbols[function.symbol].place;

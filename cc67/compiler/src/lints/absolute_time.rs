@@ -13,7 +13,7 @@ const TIME: &str = Function::Time_sec.name();
 const DELAY: &str = Function::Delay_sec.name();
 const WAIT_UNTIL: &str = Function::WaitUntil.name();
 
-/// Reports loops until a time that has passed already when they begin, and `WaitUntil` as a delay.
+/// Reports loops until a time that has already passed when they begin, and `WaitUntil` used as a delay.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         delays(program, function, sink);
@@ -24,7 +24,8 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// Reports calls of `WaitUntil` with a constant, unless the program begins with one, to let the machine power up.
+/// Reports calls of `WaitUntil` with a constant, unless the program begins with the call in order to let the machine
+/// power up.
 fn delays(program: &AnalysedProgram<'_>, function: &TypedFunction, sink: &mut Sink) {
     let is_main = program.name(function.symbol) == MAIN;
     for (at, (expr, call)) in function.calls().enumerate() {
@@ -46,7 +47,7 @@ fn delays(program: &AnalysedProgram<'_>, function: &TypedFunction, sink: &mut Si
 /// The function in which a program begins.
 const MAIN: &str = "main";
 
-/// Adds what a statement waits at least; reports it if it is such a loop.
+/// Adds the minimum wait of a statement; reports it if it is such a loop.
 fn search(
     program: &AnalysedProgram<'_>,
     function: &TypedFunction,

@@ -11,11 +11,11 @@ use crate::typed::{Expr, ExprId, ExprKind, Function as TypedFunction, PlaceId, P
 /// The function that reads an analog input, in counts from -2048 to 2047.
 const READ: &str = Function::ReadADC.name();
 
-/// The words that the macro `ADC` reads, in the same counts, and what it subtracts.
+/// The words that the macro `ADC` reads, in the same counts, and the offset that it subtracts.
 const WORDS: &str = "ADC_BufferIn";
 const ZERO: i64 = 2048;
 
-/// The range of analog inputs and outputs in volts: constants beyond it are counts.
+/// The range of analog inputs and outputs in volts: constants outside of it are counts.
 pub(super) const VOLTS: f64 = 10.0;
 pub(super) const COUNTS_PER_VOLT: f64 = 204.8;
 
@@ -67,7 +67,7 @@ fn compared(
     Some((name, other))
 }
 
-/// The array that a place is an element of.
+/// The array to whose elements a place belongs.
 fn symbol<'p>(program: &AnalysedProgram<'p>, function: &TypedFunction, place: PlaceId) -> Option<&'p str> {
     match function.places[place].kind {
         PlaceKind::Symbol(symbol, _) => Some(program.name(symbol)),

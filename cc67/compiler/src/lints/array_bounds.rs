@@ -1,7 +1,7 @@
 //! Accesses beyond the end of an array.
 //!
-//! Only whole objects count: after a member array comes the next member, which programs reach on purpose. A variable
-//! index is followed through the simplest loops, where every iteration is known, and into the parameters of functions.
+//! Only whole objects count: programs access the next member after a member array on purpose. A variable index is
+//! followed through the simplest loops, where every iteration is known, and into the parameters of functions.
 
 use std::collections::BTreeMap;
 
@@ -55,7 +55,7 @@ fn accesses(function: &Function, kind: &ExprKind) -> impl Iterator<Item = PlaceI
     })
 }
 
-/// An object with an address of its own.
+/// An object with its own address.
 #[derive(Clone, Copy)]
 enum Object {
     Local(LocalId),
@@ -116,7 +116,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Reports accesses in the loops of `stmts` that every iteration makes.
+    /// Reports accesses in the loops of `stmts` that are made in every iteration.
     fn loops(&self, stmts: &[Stmt], sink: &mut Sink) {
         for [before, stmt] in stmts.array_windows() {
             let StmtKind::Loop { condition: Some(condition), test: LoopTest::Before, body, step: Some(step) } =
@@ -220,7 +220,7 @@ impl Search<'_> {
         }
     }
 
-    /// The local of a place that is all of one which only this function can change.
+    /// The local that a place consists of, if only this function can change it.
     fn register(&self, place: PlaceId) -> Option<LocalId> {
         match self.function.places[place].kind {
             PlaceKind::Local(local, 0) if !self.function.locals[local].in_memory => Some(local),
@@ -228,7 +228,7 @@ impl Search<'_> {
         }
     }
 
-    /// The local whose value an expression is.
+    /// The local whose value an expression loads.
     fn loaded(&self, expr: ExprId) -> Option<LocalId> {
         match self.function.exprs[expr].kind {
             ExprKind::Load(place) => self.register(place),
@@ -311,7 +311,7 @@ impl Search<'_> {
         })
     }
 
-    /// The message for an access at one of two bytes of an object, if it is outside of it, and that byte.
+    /// The message for an access at one of two offsets of an object if it is outside of the object, and that offset.
     fn outside(&self, place: PlaceId, object: Object, at: [i64; 2]) -> Option<(Diagnostic, i64)> {
         let (name, ty) = self.named(object)?;
         let types = &self.program.unit.types;
@@ -320,7 +320,7 @@ impl Search<'_> {
         let size = i64::from(types.size_of(self.function.places[place].ty)?.max(1));
         let end = element * i64::from(length?);
         let wrong = at.into_iter().find(|at| *at < 0 || at + size > end)?;
-        // Where an access begins inside, what it lacks is behind the end.
+        // If an access begins inside, the rest is after the end.
         let index = if wrong < 0 { wrong } else { wrong.max(end) }.div_euclid(element);
         let message = format!("`{name}` has no element {index}");
         let has =
@@ -329,7 +329,7 @@ impl Search<'_> {
         Some((Diagnostic::warning(Lint::ArrayBounds, span, message).at(has), wrong))
     }
 
-    /// The message for a loop that goes from an element of `persist.UserData` to one that it does not have.
+    /// The message for a loop from an element of `persist.UserData` to one that does not exist.
     fn user_data(&self, object: Object, place: PlaceId, from: i64, to: i64) -> Option<Diagnostic> {
         let Object::Symbol(symbol) = object else { return None };
         let (from, to) = (i32::try_from(from).ok()?, i32::try_from(to).ok()?);

@@ -1,4 +1,4 @@
-//! `if (a = b)`, where `if ((a = b))` shows that it is intended.
+//! `if (a = b)`; the form `if ((a = b))` shows that it is intended.
 
 use crate::ast::{Expression, ExpressionKind, UnaryOperator};
 use crate::diag::{Diagnostic, Lint};

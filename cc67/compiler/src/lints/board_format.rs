@@ -24,13 +24,13 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
 /// A conversion that the board treats differently.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Finding {
-    /// The conversion as it is written.
+    /// The conversion as written.
     spelled: String,
     /// The board's behaviour, to follow "the board".
     message: &'static str,
     /// The replacement.
     help: &'static str,
-    /// The warning that it belongs to.
+    /// The warning to which it belongs.
     lint: Lint,
 }
 
@@ -80,7 +80,7 @@ struct Conversion<'f> {
 }
 
 impl<'f> Conversion<'f> {
-    /// Reads what follows a `%`; also what is left of the format.
+    /// Reads a conversion after `%`; returns it with the rest of the format.
     fn parse(text: &'f [u8], is_scan: bool) -> (Self, &'f [u8]) {
         let mut conversion = Self::default();
         let mut rest = text;
@@ -112,7 +112,7 @@ impl<'f> Conversion<'f> {
         if letter != b'[' || !is_scan {
             return (conversion, behind);
         }
-        // A `]` directly behind `[` or `[^` belongs to the set.
+        // A `]` directly after `[` or `[^` belongs to the set.
         let first = 1 + usize::from(behind.first() == Some(&b'^'));
         let end =
             behind.iter().skip(first).position(|byte| *byte == b']').map_or(behind.len(), |end| end + first);
@@ -120,7 +120,7 @@ impl<'f> Conversion<'f> {
         (conversion, behind.get(end + 1..).unwrap_or_default())
     }
 
-    /// The warning for what the board does with it: `%ld` takes two words, so that everything after it is wrong.
+    /// The warning for the board's behaviour: `%ld` takes two words, so that everything after it is wrong.
     fn lint(self) -> Lint {
         if self.length == b"l" && self.is_integer() { Lint::Format } else { Lint::BoardFormat }
     }
@@ -189,7 +189,7 @@ impl<'f> Conversion<'f> {
     }
 }
 
-/// A width or precision: `*` or digits; also what follows.
+/// Reads a width or precision, `*` or digits; returns it with the rest of the text.
 fn field(text: &[u8]) -> (&[u8], &[u8]) {
     let count = if text.first() == Some(&b'*') {
         1 + text.iter().skip(1).take_while(|byte| byte.is_ascii_digit()).count()

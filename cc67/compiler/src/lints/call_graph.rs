@@ -33,7 +33,7 @@ impl<'a> CallGraph<'a> {
         self.calls.get(&symbol).map_or(&[], Vec::as_slice)
     }
 
-    /// Every function that `root` reaches, each with the one that calls it first; `root` has none.
+    /// Every function reachable from `root`, each with its first caller; `root` has none.
     pub(super) fn reached_from(&self, root: SymbolId) -> BTreeMap<SymbolId, Option<SymbolId>> {
         let mut reached = BTreeMap::from([(root, None)]);
         let mut open = vec![root];

@@ -1,5 +1,5 @@
-//! Comparisons whose result the types decide, `unsigned >= 0`, `char == 200`, or the function, `ReadBit(3) == 5`; pairs
-//! of which one is always true, `x != 1 || x != 2`, or false, `x < 1 && x > 2`.
+//! Comparisons whose result is determined by types, `unsigned >= 0`, `char == 200`, or by the function, `ReadBit(3) ==
+//! 5`; pairs that are always true, `x != 1 || x != 2`, or always false, `x < 1 && x > 2`.
 
 use std::collections::BTreeMap;
 
@@ -88,7 +88,7 @@ fn compared(program: &AnalysedProgram<'_>, function: &Function, expr: ExprId) ->
     while let ExprKind::Convert(inner) = function.exprs[load].kind {
         load = inner;
     }
-    // What a program waits for may change in between.
+    // A state for which a program waits may change in between.
     let ExprKind::Load(place) = function.exprs[load].kind else { return None };
     let is_plain = !matches!(function.places[place].kind, PlaceKind::Bits(..));
     let span = function.exprs[load].span;
@@ -108,7 +108,7 @@ const fn negated(op: CompareOp) -> CompareOp {
     }
 }
 
-/// Returns whether no number passes both comparisons.
+/// Returns whether no number satisfies both comparisons.
 fn excludes((op, number): (CompareOp, f64), (other, limit): (CompareOp, f64)) -> bool {
     use CompareOp::{Equal, Greater, GreaterEqual, Less, LessEqual, NotEqual};
     match (op, other) {
@@ -142,7 +142,7 @@ const fn mirrored(op: CompareOp) -> CompareOp {
     }
 }
 
-/// The values that something can have.
+/// The values that an expression can have.
 struct Range {
     /// A type or a function.
     of: String,
@@ -197,7 +197,7 @@ fn unwidened(function: &Function, mut value: ExprId) -> ExprId {
     value
 }
 
-/// The variable that a value is read from, if only this function can change it.
+/// The variable from which a value is read, if only this function can change it.
 fn register(function: &Function, value: ExprId) -> Option<LocalId> {
     let ExprKind::Load(place) = function.exprs[value].kind else { return None };
     match function.places[place].kind {

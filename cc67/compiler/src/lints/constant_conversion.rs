@@ -3,8 +3,8 @@
 use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;
 
-/// The message for a number that is stored in `bytes` bytes of a type of this name. Negative numbers in unsigned types
-/// and bit patterns in signed ones are written on purpose.
+/// The message for a number stored in `bytes` bytes of a type with this name. Negative numbers in unsigned types and
+/// bit patterns in signed types are intentional.
 pub(crate) fn finding(
     number: i64,
     to: &str,

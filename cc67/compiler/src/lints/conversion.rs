@@ -31,7 +31,7 @@ pub(crate) fn lost_fraction(number: f64, to: &str, span: Span) -> Diagnostic {
         .help("store it in a `double` or a `float`; an element of `persist.UserData` holds one as `*(float *)&persist.UserData[…]`")
 }
 
-/// The message for a quotient of integers that was cut off before it is used as a floating-point number.
+/// The message for an integer quotient that was truncated before its use as a floating-point number.
 pub(crate) fn division(dividend: i64, divisor: i64, span: Span) -> Diagnostic {
     let whole = dividend / divisor;
     Diagnostic::warning(

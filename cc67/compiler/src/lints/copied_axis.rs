@@ -1,6 +1,6 @@
-//! `ch1->Vel = …; ch0->Accel = …; ch1->Jerk = …;`: one line of a copied block still names the axis that it was copied from.
+//! `ch1->Vel = …; ch0->Accel = …; ch1->Jerk = …;`: one line of a copied block still names the original axis.
 //!
-//! The block never sets that field of its own axis, so the line is not one of two that belong together.
+//! The block never sets that field of its own axis, so the line is not one of an intentional pair.
 
 use super::program::{AnalysedProgram, AxisField};
 use crate::diag::{Diagnostic, Lint, Sink};
@@ -12,12 +12,12 @@ use crate::typed::{ExprKind, Function, Stmt, StmtKind};
 struct Setting {
     axis: u32,
     field: u32,
-    /// The range of the assignment, and of what it assigns to.
+    /// The range of the assignment, and of its target.
     span: Span,
     place: Span,
 }
 
-/// Assignments to one axis that make a block of it.
+/// The number of assignments to one axis that form a block.
 const BLOCK: usize = 3;
 
 /// Reports single assignments to another axis in blocks that set up one.
@@ -59,7 +59,7 @@ fn block(
             if others + 1 >= BLOCK {
                 continue;
             }
-            // At the end of a block the field is set a second time, or it is a block of its own that begins.
+            // At the end of a block, the field is set a second time, or another block begins.
             let is_inside = next.is_some_and(|next| next.axis == axis);
             let is_repeated = || {
                 next.is_none()
@@ -91,7 +91,7 @@ fn finding(odd: Setting, axis: u32, previous: Span, written: &str) -> Option<Dia
     )
 }
 
-/// The field of an axis that a statement assigns to.
+/// The field of an axis that is assigned by a statement.
 fn setting(program: &AnalysedProgram<'_>, function: &Function, stmt: &Stmt) -> Option<Setting> {
     let StmtKind::Expr(expr) = stmt.kind else { return None };
     let ExprKind::Assign(place, _) = function.exprs[expr].kind else { return None };

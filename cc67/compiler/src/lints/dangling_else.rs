@@ -7,8 +7,8 @@ use crate::source::{ExpansionId, SourceMap, Span};
 /// The word.
 const ELSE: &[u8] = b"else";
 
-/// The message for an `if` statement without `else`, whose body is an `if` with one. An `else` that is indented like
-/// the inner `if`, below the outer one, is where it belongs.
+/// The message for an `if` statement without `else` whose body is an `if` with an `else`. An `else` indented like the
+/// inner `if`, further right than the outer one, is correct.
 pub(crate) fn finding(sources: &SourceMap, outer: Span, then: &Statement) -> Option<Diagnostic> {
     let StatementKind::If { then: body, otherwise: Some(otherwise), .. } = &then.kind else { return None };
     let spans = [outer, then.span, body.span, otherwise.span];

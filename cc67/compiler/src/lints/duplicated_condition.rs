@@ -6,7 +6,7 @@ use crate::diag::{Diagnostic, Lint};
 /// Levels of an expression that are compared.
 const DEEPEST: u32 = 20;
 
-/// The message for a later condition of an `else if` chain that is the same as the first one.
+/// The message for a later condition of an `else if` chain that equals the first one.
 pub(crate) fn finding(first: &Expression, mut otherwise: Option<&Statement>) -> Option<Diagnostic> {
     while let Some(StatementKind::If { condition, otherwise: next, .. }) =
         otherwise.map(|statement| &statement.kind)
@@ -27,7 +27,7 @@ pub(crate) fn finding(first: &Expression, mut otherwise: Option<&Statement>) -> 
     None
 }
 
-/// Reports whether two expressions are the same, of the kinds that conditions are usually made of.
+/// Reports whether two expressions are the same; it knows the kinds that usually occur in conditions.
 fn is_same(a: &Expression, b: &Expression, depth: u32) -> bool {
     let Some(depth) = depth.checked_sub(1) else { return false };
     let is_pair =

@@ -2,7 +2,7 @@
 //! `StartThread(2); x = persist.UserData[10];`: the other thread has not run yet. A parameter that is stored after its
 //! request, and a request that replaces another one, are related mistakes.
 //!
-//! Only what follows in a straight line is looked at; a loop, or a call that may wait, ends it.
+//! Only straight-line code is checked, up to a loop or a call that may wait.
 
 use std::collections::BTreeMap;
 
@@ -16,13 +16,13 @@ use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::Span;
 use crate::typed::{Call, Callee, ExprId, ExprKind, Function, Stmt, StmtKind, SymbolId};
 
-/// The element with the code of a request, and those of its parameters and answers.
+/// The element with the code of a request, and the elements of its parameters and answers.
 const CODE: i32 = 100;
 const MAILBOX: std::ops::RangeInclusive<i32> = 100..=107;
 /// The parameters that can name other elements.
 const NAMES: std::ops::RangeInclusive<i32> = 101..=104;
 
-/// Functions of the board that let no time pass.
+/// Functions of the board during which no time passes.
 const INSTANT: [&str; 4] = [
     FirmwareFunction::printf.name(),
     FirmwareFunction::sprintf.name(),
@@ -71,7 +71,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// A function of the program that lets no time pass.
+/// A function of the program during which no time passes.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     /// It only computes, stores or prints.
@@ -120,7 +120,7 @@ fn all_stores(program: &AnalysedProgram<'_>, function: &Function, stores: &mut S
     });
 }
 
-/// Something whose answer takes time.
+/// A request or start whose answer takes time.
 #[derive(Clone, Copy)]
 enum Since {
     /// A request to the PC.
@@ -139,10 +139,10 @@ struct Scan<'a> {
     own: Stores,
     /// The number of loads of each element in the program.
     loads: &'a BTreeMap<i32, u32>,
-    /// The functions of the program that let no time pass.
+    /// The functions of the program during which no time passes.
     kinds: &'a BTreeMap<SymbolId, Kind>,
     since: Option<Since>,
-    /// Reported unless another request comes next.
+    /// A finding that is reported unless another request follows.
     late: Option<Diagnostic>,
     /// True in an expression that prints.
     prints: bool,
@@ -165,7 +165,7 @@ impl Scan<'_> {
                     self.since = self.since.and(after);
                 }
                 StmtKind::Loop { condition, body, .. } => {
-                    // That the loop waits for the request decides what came before.
+                    // The loop waits for the request, which settles the earlier findings.
                     if let Some(condition) = condition.filter(|_| self.late.is_some()) {
                         self.expr(condition);
                     }
@@ -194,7 +194,7 @@ impl Scan<'_> {
             }
             _ => false,
         });
-        // A request is posted once its value is known.
+        // A request is posted after its value has been computed.
         parts.sort_by_key(|part| matches!(function.exprs[*part].kind, ExprKind::Assign(..)));
         for part in parts {
             self.part(part);
@@ -264,8 +264,8 @@ impl Scan<'_> {
         }
     }
 
-    /// Time passes, in which the PC may have read a request: what is stored then are parameters of the next one, or too
-    /// late.
+    /// Notes that time passes, in which the PC may have read a request: later stores are parameters of the next
+    /// request, or too late.
     fn delay(&mut self) {
         self.since = match self.since {
             Some(Since::Posted(request) | Since::Delayed(request)) => Some(Since::Delayed(request)),
@@ -281,7 +281,7 @@ impl Scan<'_> {
         self.since = Some(Since::Posted(span));
     }
 
-    /// Returns whether the PC stores its answer in an element, which the function itself at most sets to 0.
+    /// Returns whether the PC stores its answer in an element that the function itself at most sets to 0.
     fn is_answer(&self, element: i32) -> bool {
         let only_clears = |stores: &Vec<Option<i64>>| stores.iter().all(|value| *value == Some(0));
         let is_named = || {
@@ -292,8 +292,8 @@ impl Scan<'_> {
         self.own.get(&element).is_none_or(only_clears) && (MAILBOX.contains(&element) || is_named())
     }
 
-    /// Returns whether another program must have stored an element: this one only clears it, or only prints it. Anything
-    /// else may be a parameter from the PC.
+    /// Returns whether an element must be stored by another program: this one only clears or only prints it. Any other
+    /// element may be a parameter from the PC.
     fn is_result(&self, element: i32) -> bool {
         let clears = |stores: &Vec<Option<i64>>| stores.iter().all(|value| matches!(value, Some(0 | -1)));
         let is_printed = || self.prints && self.loads.get(&element) == Some(&1);

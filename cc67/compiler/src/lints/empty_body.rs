@@ -1,6 +1,6 @@
-//! `if (x) ;` on one line: the `;` ends the `if`. So it does a loop, if what follows looks like its body.
+//! `if (x) ;` on one line: the `;` ends the `if`. The same for a loop, if the following statement looks like its body.
 //!
-//! `while (x) ;` by itself is how programs for this board wait, and is never reported.
+//! A plain `while (x) ;` is the usual way to wait in programs for this board, and is never reported.
 
 use crate::ast::{Expression, ExpressionKind, Statement, StatementKind};
 use crate::diag::{Diagnostic, Lint};
@@ -44,7 +44,7 @@ pub(crate) fn loop_finding(
     if is_for_next(sources, statement, next) {
         return Some(loop_warning(keyword, body, next));
     }
-    // A `;` on a line of its own is meant.
+    // A `;` on its own line is intended.
     let [Some((_, outer)), None, Some((next_line, inner))] = spans.map(|span| sources.indentation(span))
     else {
         return None;

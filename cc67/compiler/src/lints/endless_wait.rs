@@ -6,9 +6,9 @@ use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::{Definition, ExprId, ExprKind, Function, PlaceKind, Stmt, StmtKind, SymbolId};
 
-/// Reports loops whose condition reads one variable of the program that is never changed, and nothing else.
+/// Reports loops whose condition reads only one variable of the program, which is never changed.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
-    // A part that was not understood may change anything.
+    // Code with errors may change anything.
     if program.functions().any(|function| function.has_errors) {
         return;
     }
@@ -30,7 +30,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// The variable that a loop waits for, and the condition.
+/// The variable for which a loop waits, and the condition.
 fn waited(program: &AnalysedProgram<'_>, function: &Function, stmt: &Stmt) -> Option<(SymbolId, ExprId)> {
     let StmtKind::Loop { condition: Some(condition), body, step: None, .. } = &stmt.kind else { return None };
     if leaves(body) {
@@ -73,7 +73,7 @@ fn only_variable(function: &Function, condition: ExprId) -> Option<SymbolId> {
     }
 }
 
-/// The variables that a statement changes, or whose address it passes on.
+/// The variables that a statement changes, or whose addresses it passes on.
 fn changed(program: &AnalysedProgram<'_>) -> BTreeSet<SymbolId> {
     let mut changed = BTreeSet::new();
     for symbol in program.unit.symbols.values() {

@@ -1,4 +1,4 @@
-//! Backslashes in the name of a file that are written once: `fopen("c:\temp\new.txt", "w")`.
+//! Single backslashes in the name of a file: `fopen("c:\temp\new.txt", "w")`.
 
 use kmotiondef::ctype::Role;
 use kmotiondef::firmware::row_named;

@@ -6,7 +6,7 @@ use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::{Definition, Linkage, Symbol};
 
-/// Reports every definition that other units see and the firmware has as well.
+/// Reports every definition that is visible to other units and also exists in the firmware.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for symbol in program.unit.symbols.values() {
         if let Some(lint) = lint_for(program, symbol) {
@@ -21,8 +21,8 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// Names that the header declares or that the firmware keeps for itself the vendor's linker refuses; functions of the C
-/// library that a program brings along are a matter of portability.
+/// The lint for a name. The vendor's linker refuses names that the header declares or that are reserved for the
+/// firmware; functions of the C library in a program are only a matter of portability.
 fn lint_for(program: &AnalysedProgram<'_>, symbol: &Symbol) -> Option<Lint> {
     if matches!(symbol.definition, Definition::None) || symbol.linkage == Linkage::Internal {
         return None;

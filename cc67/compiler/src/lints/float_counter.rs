@@ -97,7 +97,7 @@ fn variable(function: &Function, place: PlaceId) -> Option<PlaceKind> {
         .filter(|kind| matches!(kind, PlaceKind::Local(_, 0) | PlaceKind::Symbol(_, 0)))
 }
 
-/// Returns whether the program only counts a variable: it is stored nowhere in the loop, and compared nowhere.
+/// Returns whether the program only counts a variable: in the loop, it is neither stored elsewhere nor compared.
 fn is_free(program: &AnalysedProgram<'_>, function: &Function, body: &[Stmt], place: PlaceId) -> bool {
     let wanted = variable(function, place);
     let is_it = |place: PlaceId| variable(function, place) == wanted;
@@ -110,7 +110,7 @@ fn is_free(program: &AnalysedProgram<'_>, function: &Function, body: &[Stmt], pl
             _ => false,
         };
     });
-    // Another function can begin again.
+    // Another function can restart the counter.
     let functions = program.functions().filter(|other| is_global && other.symbol != function.symbol);
     let mut others = functions.flat_map(|other| other.places.values());
     !is_used && !others.any(|place| Some(place.kind) == wanted)

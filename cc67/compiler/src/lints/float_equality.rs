@@ -1,4 +1,4 @@
-//! `x += 0.1; … if (x == 1.0)`, and `float f = 0.1; if (f == 0.1)`: rounded numbers that are hardly ever equal.
+//! `x += 0.1; … if (x == 1.0)`, and `float f = 0.1; if (f == 0.1)`: rounded numbers are hardly ever equal.
 
 use std::collections::BTreeMap;
 
@@ -31,7 +31,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// The conditions of loops that another warning is about.
+/// The conditions of loops that are reported by another warning.
 fn loops_that_step_over(function: &Function) -> Vec<ExprId> {
     let mut found = Vec::new();
     function.each_stmt(&mut |stmt| {

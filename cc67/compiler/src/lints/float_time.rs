@@ -12,7 +12,7 @@ use crate::typed::{ExprId, ExprKind, Function as TypedFunction, LocalId, PlaceKi
 /// The function that returns the time since power-up.
 const TIME: &str = Function::Time_sec.name();
 
-/// Reports times that become a `float`, and those that lose their fraction before something is computed with them.
+/// Reports times that become a `float`, and times that lose their fraction before a computation.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         whole_seconds(program, function, sink);

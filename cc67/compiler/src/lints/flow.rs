@@ -1,4 +1,4 @@
-//! The locals that every path to a position in a function has stored in, or has read before.
+//! The locals in which every path to a position of a function has stored, or which it has read before a store.
 
 use cranelift_entity::EntityRef;
 
@@ -87,7 +87,7 @@ impl LocalSet {
     }
 }
 
-/// The word of a local and its bit there.
+/// The index of a local's word, and its bit in the word.
 fn position(local: LocalId) -> (usize, u64) {
     (local.index() / 64, 1 << (local.index() % 64))
 }

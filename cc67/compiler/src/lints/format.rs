@@ -27,7 +27,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// An argument as the program has it: a `float` is passed as a `double`, but the message speaks of the `float`.
+/// An argument as written in the program: a `float` is passed as a `double`, but the message should say `float`.
 fn written(function: &typed::Function, value: ExprId) -> PassedArgument {
     let expr = &function.exprs[value];
     match expr.kind {
@@ -97,11 +97,11 @@ type PassedArgument = (TypeId, Span);
 /// A mismatch.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Finding {
-    /// The argument that does not fit; `None` if the format itself is wrong.
+    /// The argument that does not match; `None` if the format itself is wrong.
     argument: Option<PassedArgument>,
     /// The message.
     message: String,
-    /// A conversion that fits.
+    /// A conversion that would match.
     help: Option<String>,
     /// True if the mistake is a missing `&`.
     lacks_address: bool,
@@ -201,11 +201,11 @@ fn finding(argument: Option<PassedArgument>, message: String, help: Option<Strin
 /// A `%` sequence.
 #[derive(Clone, Copy, Debug)]
 struct Conversion {
-    /// The letter; 0 if there is none that is known.
+    /// The letter; 0 if there is no known one.
     letter: u8,
     /// Number of `*` that take an argument.
     stars: u32,
-    /// `*` of a `scanf`: reads and stores nothing.
+    /// `*` in `scanf`: reads without storing.
     is_suppressed: bool,
     /// Number of `l`; `L` counts one.
     longs: u32,
@@ -214,7 +214,7 @@ struct Conversion {
 }
 
 impl Conversion {
-    /// Reads what follows a `%`; also what is left of the format.
+    /// Reads a conversion after `%`; returns it with the rest of the format.
     fn parse(text: &[u8], is_scan: bool) -> (Self, &[u8]) {
         let mut conversion = Self { letter: 0, stars: 0, is_suppressed: false, longs: 0, halves: 0 };
         let mut rest = text;
@@ -228,7 +228,7 @@ impl Conversion {
                 b'h' => conversion.halves += 1,
                 b'[' if is_scan => {
                     conversion.letter = byte;
-                    // A `]` directly behind `[` or `[^` belongs to the set.
+                    // A `]` directly after `[` or `[^` belongs to the set.
                     let skip = 1 + usize::from(rest.first() == Some(&b'^'));
                     let end = rest.iter().skip(skip).position(|byte| *byte == b']').map(|end| end + skip + 1);
                     return (conversion, end.and_then(|end| rest.get(end..)).unwrap_or_default());
@@ -292,7 +292,8 @@ fn points_to(types: &Types, ty: TypeId, is_wanted: impl Fn(TypeId) -> bool) -> b
 }
 
 impl Conversion {
-    /// The advice for an argument that does not fit: the value it points to, if that would, or another conversion.
+    /// The advice for an argument that does not match: the value to which it points, if that would match, or another
+    /// conversion.
     fn print_help(self, types: &Types, ty: TypeId) -> Option<String> {
         let to = types.pointee(ty).map(|to| to.ty).filter(|to| !to.is_character());
         match to {

@@ -13,7 +13,7 @@ use crate::typed::{ExprKind, PlaceKind};
 const START: &str = Function::TriggerGather.name();
 const BUFFER: &str = "gather_buffer";
 
-/// Functions of the board that let no time pass.
+/// Functions of the board during which no time passes.
 const INSTANT: [&str; 4] = [
     Function::printf.name(),
     Function::sprintf.name(),
@@ -21,7 +21,7 @@ const INSTANT: [&str; 4] = [
     Function::Time_sec.name(),
 ];
 
-/// Reports reads of what was recorded right after the recording has begun.
+/// Reports reads of recorded values directly after the recording has begun.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         let mut begun: Option<Span> = None;

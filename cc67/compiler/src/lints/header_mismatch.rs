@@ -1,7 +1,7 @@
 //! A copy of the vendor's headers in the program's folder that belongs to another firmware.
 //!
-//! The header decides where the fields of `CHAN` and similar structures are (`dialect.md` 1.2); with
-//! those of another version a program silently reads and writes the wrong ones.
+//! The header determines the offsets of the fields of `CHAN` and similar structures (`dialect.md` 1.2); with another
+//! version of it, a program silently accesses the wrong fields.
 
 use kmotiondef::boards::{StructureLayout, TargetBoard, boards};
 
@@ -49,7 +49,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     sink.report(diagnostic);
 }
 
-/// The board whose header states a version.
+/// The board whose header has this version.
 fn owner(headers: &[&SourceFile], version: &str) -> Option<&'static TargetBoard> {
     let is_of = |board: &&TargetBoard| {
         let define = format!("#define BOARD \"{}\"", board.kind());

@@ -9,7 +9,7 @@ use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::BinaryOp;
 use crate::typed::{ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind, Stmt, StmtKind};
 
-/// Reports `for (;;) ;` and `while (n) ;`, where nothing changes `n`.
+/// Reports `for (;;) ;` and `while (n) ;`, if nothing changes `n`.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.whole_functions() {
         function.each_stmt(&mut |stmt| {
@@ -152,7 +152,7 @@ impl Effects<'_> {
         })
     }
 
-    /// The local of a place that nothing else can reach.
+    /// The local that a place consists of, if only this function can change it.
     fn register(&self, place: PlaceId) -> Option<LocalId> {
         match self.function.places[place].kind {
             PlaceKind::Local(local, _) => (!self.function.locals[local].in_memory).then_some(local),

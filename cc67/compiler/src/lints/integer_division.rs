@@ -1,7 +1,7 @@
 //! `part = done / total` with integers: the quotient has lost its fraction before it becomes a floating-point number.
 //!
-//! Divisions of constants are found where they are computed. A program that also takes the remainder of the same number, or
-//! multiplies by the divisor again, wants whole numbers.
+//! Divisions of constants are found where they are folded. A program that also takes the remainder of the same number,
+//! or multiplies by the divisor again, intends whole numbers.
 
 use std::collections::BTreeSet;
 
@@ -29,7 +29,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// The message for a division whose quotient becomes a number of type `to`.
+/// The message for a division whose quotient is converted to the type `to`.
 fn finding(program: &AnalysedProgram<'_>, function: &Function, division: ExprId, to: &str) -> Diagnostic {
     let division = &function.exprs[division];
     let text = String::from_utf8_lossy(program.sources.text(division.span)).into_owned();
@@ -47,12 +47,12 @@ fn finding(program: &AnalysedProgram<'_>, function: &Function, division: ExprId,
 struct Search<'a> {
     program: &'a AnalysedProgram<'a>,
     function: &'a Function,
-    /// The numbers that are divided into a whole part and a remainder, as they are written.
+    /// The numbers that are divided into a quotient and a remainder, as written.
     split: BTreeSet<&'a [u8]>,
 }
 
 impl Search<'_> {
-    /// The division whose lost fraction a value lacks.
+    /// The division by which a value has lost its fraction.
     fn division(&self, value: ExprId) -> Option<ExprId> {
         match self.function.exprs[value].kind {
             ExprKind::Binary(BinaryOp::Divide, a, b) => self.is_cut(a, b).then_some(value),

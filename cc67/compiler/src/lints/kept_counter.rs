@@ -1,6 +1,6 @@
 //! `int step = 0; main() { while (step < 3) { …; step++; } }`: on the second start of the program `step` is still 3.
 //!
-//! A variable of the program gets its first value when the program is loaded, not when it is started.
+//! A global variable gets its initial value when the program is loaded, not when it is started.
 
 use super::changes::{Changes, symbol};
 use super::program::AnalysedProgram;
@@ -8,7 +8,7 @@ use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::CompareOp;
 use crate::typed::{Definition, ExprId, ExprKind, Function, StmtKind, SymbolId};
 
-/// Reports loops of `main` that end by counting a variable of the program that nothing sets.
+/// Reports loops of `main` that end by counting a global variable that is not set elsewhere.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     let Some(main) = program.whole_functions().find(|function| program.name(function.symbol) == "main")
     else {
@@ -53,7 +53,7 @@ fn counter(program: &AnalysedProgram<'_>, function: &Function, condition: ExprId
     };
     let ExprKind::Load(place) = function.exprs[value].kind else { return None };
     let symbol = symbol(function, place)?;
-    // A value that is written down is relied on.
+    // An explicit initial value is probably relied on.
     let is_own = matches!(program.unit.symbols[symbol].definition, Definition::Data(_));
     (is_own && matches!(function.exprs[end].kind, ExprKind::Int(_))).then_some(symbol)
 }

@@ -1,4 +1,4 @@
-//! `int lock; MutexLock(&lock);`: nobody else can wait for a local, and each program has its own globals.
+//! `int lock; MutexLock(&lock);`: no other thread can wait for a local, and each program has its own globals.
 
 use kmotiondef::firmware::Function;
 
@@ -9,13 +9,13 @@ use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::Span;
 use crate::typed::{Definition, ExprKind, PlaceKind, SymbolId};
 
-/// The functions that take or free the lock whose address they get.
+/// The functions that take or free the lock at an address.
 const TAKERS: [&str; 3] =
     [Function::MutexLock.name(), Function::MutexUnlock.name(), Function::TestAndSet.name()];
 
 const HELP: &str = "use an element of `persist.UserData`, as in `MutexLock(&persist.UserData[50])`";
 
-/// Reports locks that are locals or globals of one program, once each.
+/// Reports locks that are locals or globals of one program, each once.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         let mut reported = Vec::new();
@@ -43,7 +43,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     globals(program, sink);
 }
 
-/// Reports global locks whose address goes nowhere else: a program runs in one thread, and has a copy of its own.
+/// Reports global locks whose address is used for nothing else: a program runs in one thread, and has its own copy.
 fn globals(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     let mut locks: Vec<(SymbolId, Span, u32)> = Vec::new();
     let mut addresses: Vec<SymbolId> = Vec::new();

@@ -1,4 +1,4 @@
-//! `||` and `&&` with a number: bits are joined with `|`, and a second comparison needs its own left side.
+//! `||` and `&&` with a number: bits are combined with `|`, and a second comparison needs its own left side.
 
 use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;

@@ -17,7 +17,7 @@ use crate::typed::{ExprId, ExprKind, Function, LocalId, LoopTest, PlaceId, Place
 const PAUSES: [&str; 2] = [FirmwareFunction::WaitNextTimeSlice.name(), FirmwareFunction::Delay_sec.name()];
 
 /// Reports `for` loops whose first test fails, or whose step does not lead to the end, and loops that wait while an
-/// axis rests.
+/// axis is at rest.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         loops(function, &function.body, sink);
@@ -62,7 +62,7 @@ fn loops(function: &Function, stmts: &[Stmt], sink: &mut Sink) {
     }
 }
 
-/// A loop without work of its own that runs while an axis has arrived.
+/// A loop without work of its own that runs while an axis is at rest.
 fn waits_at_rest(
     program: &AnalysedProgram<'_>,
     function: &Function,
@@ -141,7 +141,7 @@ fn waits_for_0(
     })
 }
 
-/// Returns whether a statement does nothing but let time pass.
+/// Returns whether a statement only lets time pass.
 fn only_waits(program: &AnalysedProgram<'_>, function: &Function, stmt: &Stmt) -> bool {
     match &stmt.kind {
         StmtKind::Block(body) => body.iter().all(|stmt| only_waits(program, function, stmt)),

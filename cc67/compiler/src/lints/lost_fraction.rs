@@ -1,6 +1,7 @@
-//! `abs(error)` and `persist.UserData[40] = length` of numbers with a fraction: `abs` takes an `int`, and the elements are of type `int`.
+//! `abs(error)` and `persist.UserData[40] = length` with fractional numbers: `abs` takes an `int`, and the elements are
+//! of type `int`.
 //!
-//! Constants with a fraction are found where they are converted.
+//! Fractional constants are found where they are converted.
 
 use kmotiondef::firmware::Function;
 
@@ -83,7 +84,7 @@ fn is_persist(program: &AnalysedProgram<'_>, function: &TypedFunction, place: Pl
 
 /// Reports whether a number has no fraction, or loses it on purpose: it is scaled, rounded, or in counts.
 fn is_whole(program: &AnalysedProgram<'_>, function: &TypedFunction, number: ExprId) -> bool {
-    /// A factor that makes a whole number of a fraction, such as thousandths.
+    /// A factor that makes a fraction a whole number, such as thousandths.
     const SCALE: f64 = 10.0;
     let is_whole = |expr| is_whole(program, function, expr);
     let constant = |expr: ExprId| match function.exprs[expr].kind {
@@ -108,7 +109,8 @@ fn is_whole(program: &AnalysedProgram<'_>, function: &TypedFunction, number: Exp
         ExprKind::Conditional(_, a, b) => is_whole(*a) && is_whole(*b),
         // Functions of the board that return a number give times, counts or whole numbers.
         ExprKind::Call(call) => called_firmware(program.unit, call).is_some(),
-        // Fields of an axis are counts, and other variables whole numbers unless something else is stored there.
+        // Fields of an axis are counts, and other variables are whole numbers unless a fractional value is stored in
+        // them.
         ExprKind::Load(place) => is_of_axis(program, function, *place) || !holds_fraction(function, *place),
         _ => false,
     }

@@ -1,7 +1,7 @@
-//! `#define MM(x) x * 200` used as `MM(a + b)`, and `#define SUM a + b` used as `2 * SUM`: an operator of the text around takes a part
-//! of what was meant as one value.
+//! `#define MM(x) x * 200` used as `MM(a + b)`, and `#define SUM a + b` used as `2 * SUM`: an operator of the
+//! surrounding text takes a part of an expression that was meant as one value.
 //!
-//! The tree shows it: an operator has operands of both texts, and the tree above it continues with one of them.
+//! The tree shows this: an operator has operands from both texts, and the tree above it continues with one of them.
 
 use crate::ast::{Expression, ExpressionKind, UnaryOperator};
 use crate::diag::{Diagnostic, Lint};
@@ -61,9 +61,9 @@ fn torn(
         })
 }
 
-/// An operator with the operand that belongs to it and the one that it may have taken.
+/// An operator with its own operand and the operand that it may have taken.
 struct Part {
-    /// The operator as it is written; a cast without its type.
+    /// The operator as written; a cast without its type.
     spelling: &'static str,
     /// Its precedence.
     binding: u8,
@@ -71,7 +71,7 @@ struct Part {
     far: Span,
     /// The operand next to the tree above.
     near: Span,
-    /// True for `-`, `/` and `%`, and for casts: what is on their right is not grouped at will.
+    /// True for `-`, `/` and `%`, and for casts: their right side cannot be regrouped freely.
     is_strict: bool,
 }
 
@@ -150,7 +150,7 @@ fn body(sources: &SourceMap, expansion: &Expansion, taken: &str, operator: Binar
         .help("write parentheses around the body of the macro: `#define M (a + b)`")
 }
 
-/// The expansions that a token came through, the innermost first.
+/// The expansions from which a token comes, the innermost first.
 fn expansions(sources: &SourceMap, span: Span) -> impl Iterator<Item = ExpansionId> {
     let next = |id: &ExpansionId| sources.expansion(*id).map(|expansion| expansion.call.expansion);
     std::iter::successors(Some(span.expansion), next).take_while(|id| *id != ExpansionId::NONE)

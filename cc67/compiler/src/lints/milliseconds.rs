@@ -13,7 +13,7 @@ const DELAY: &str = Function::Delay_sec.name();
 /// Seconds from which on a constant is probably one of milliseconds.
 const LONG: f64 = 100.0;
 
-/// A number of milliseconds that people use, although it is whole minutes of seconds.
+/// A common number of milliseconds, although it is whole minutes in seconds.
 const COMMON: f64 = 300.0;
 
 /// Reports constant times that are too long for seconds; a product such as `20 * 60` is meant.

@@ -3,7 +3,7 @@
 use crate::diag::{Diagnostic, Lint};
 use crate::source::{SourceMap, Span};
 
-/// The message for an argument that is a variable of the type that the parameter points to.
+/// The message for an argument that is a variable of the parameter's pointee type.
 pub(crate) fn finding(sources: &SourceMap, subject: &str, span: Span) -> Diagnostic {
     Diagnostic::warning(Lint::MissingAddress, span, format!("{subject} must be the address of a variable"))
         .at("its value is passed, and used as an address")

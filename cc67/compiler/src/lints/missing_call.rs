@@ -5,7 +5,7 @@ use crate::diag::{Diagnostic, Lint, Sink};
 use crate::ty::Type;
 use crate::typed::{ExprId, ExprKind, Function, PlaceKind, StmtKind, SymbolId, UnaryOp};
 
-/// Reports functions that are tested or compared with a number, which their address always passes or never does.
+/// Reports functions that are tested or compared with a number, which is always or never true for their address.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         let mut tested = tested(function);
@@ -23,7 +23,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// The expressions whose truth is tested, in no order.
+/// The expressions that are tested for truth, in no particular order.
 fn tested(function: &Function) -> Vec<ExprId> {
     let mut tested = Vec::new();
     function.each_stmt(&mut |stmt| match &stmt.kind {
@@ -44,7 +44,7 @@ fn tested(function: &Function) -> Vec<ExprId> {
     tested
 }
 
-/// The function whose name is all of an expression.
+/// The function, if an expression is just its name.
 fn named(program: &AnalysedProgram<'_>, function: &Function, expr: ExprId) -> Option<SymbolId> {
     let place = match function.exprs[expr].kind {
         ExprKind::Address(place) => place,

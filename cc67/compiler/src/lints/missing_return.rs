@@ -1,7 +1,7 @@
-//! Functions that may end without the value they promise.
+//! Functions that may end without returning a value.
 //!
-//! Hardly any program for this board cares about the value of `main` or of a helper that is
-//! called as a statement; one that a caller uses is another matter (`dialect.md` section 8).
+//! Few programs for this board use the value of `main`, or of a helper that is called as a statement; only values that
+//! a caller uses matter (`dialect.md` section 8).
 
 use std::collections::BTreeSet;
 
@@ -10,7 +10,7 @@ use super::used_values;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::{Stmt, StmtKind};
 
-/// Reports every function but `main` whose end can be reached.
+/// Reports every function except `main` whose end can be reached.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     let used: BTreeSet<_> = program.functions().flat_map(used_values::used_in).collect();
     for function in program.whole_functions() {

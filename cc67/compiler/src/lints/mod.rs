@@ -1,8 +1,8 @@
 //! Searches for mistakes in programs; the list of all warnings is [`Lint`](crate::diag::Lint).
 //!
-//! A lint that needs a search of its own has a file in this folder: a pass over the finished typed tree, named in its
-//! row, or a `finding` that analysis calls where it has the syntax. A single condition of a rule that analysis checks
-//! anyway is reported there.
+//! A lint that needs its own search has a file in this folder: a pass over the finished typed tree, named in its row,
+//! or a `finding` that semantic analysis calls where it has the syntax. A mistake that semantic analysis detects anyway
+//! is reported there.
 
 mod call_graph;
 mod changes;

@@ -1,4 +1,5 @@
-//! `#define BOTH() SetBit(40); SetBit(41)` used as `if (on) BOTH();`: the condition is that of the first statement alone.
+//! `#define BOTH() SetBit(40); SetBit(41)` used as `if (on) BOTH();`: the condition only applies to the first
+//! statement.
 
 use super::misleading_indentation::unbraced_body;
 use crate::ast::{Statement, StatementKind};
@@ -30,7 +31,7 @@ pub(crate) fn finding(sources: &SourceMap, guard: &Statement, next: &Statement) 
     })
 }
 
-/// The name of the macro that a token came through, where it is defined, and the call in the source.
+/// The name of the macro from which a token comes, at its definition, and the call in the source.
 fn outermost(sources: &SourceMap, span: Span) -> Option<(Span, Span)> {
     let mut expansion = sources.expansion(span.expansion)?;
     while let Some(outer) = sources.expansion(expansion.call.expansion) {

@@ -48,7 +48,7 @@ const fn most(ty: TypeId) -> Option<i64> {
     }
 }
 
-/// The name of something whose values go beyond a type, and what they are.
+/// The name of an expression with values outside of a type's range, and those values.
 fn source(
     program: &AnalysedProgram<'_>,
     function: &Function,

@@ -1,4 +1,4 @@
-//! `int i = -1; if (i < count)` with an unsigned `count`: as unsigned, -1 is the largest number.
+//! `int i = -1; if (i < count)` with an unsigned `count`: converted to unsigned, -1 is the largest number.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use crate::source::Span;
 use crate::ty::Types;
 use crate::typed::{ExprId, ExprKind, Function, LocalId, PlaceKind, UnaryOp};
 
-/// Reports comparisons with an unsigned value of variables in which the function stores what can be negative.
+/// Reports comparisons with an unsigned value of variables to which the function may assign negative values.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         let negatives = negatives(program, function);
@@ -43,12 +43,12 @@ fn finding(function: &Function, local: LocalId, stored: Span, span: Span) -> Dia
         .help("make the other one an `int`, or write `(int)` before it")
 }
 
-/// The signed variable that C makes unsigned for a comparison; a cast that the program writes is meant.
+/// The signed variable that C converts to unsigned for a comparison; an explicit cast is intended.
 fn converted(function: &Function, (side, comparison): (ExprId, Span), other: ExprId) -> Option<LocalId> {
     let ExprKind::Convert(inner) = function.exprs[side].kind else { return None };
     let is_cast = function.exprs[side].span != comparison;
     let is_unsigned = function.exprs[side].ty == Types::UNSIGNED && function.exprs[inner].ty == Types::INT;
-    // The other side is unsigned by itself.
+    // The other side is unsigned without a conversion.
     let is_mixed = match function.exprs[other].kind {
         ExprKind::Convert(other) => function.exprs[other].ty.is_unsigned(),
         _ => true,
@@ -59,7 +59,7 @@ fn converted(function: &Function, (side, comparison): (ExprId, Span), other: Exp
     (is_unsigned && is_mixed && is_named && !is_cast).then_some(local)
 }
 
-/// The locals in which a function stores what can be negative, each with the first place that does.
+/// The locals to which a function may assign negative values, each with the first such assignment.
 fn negatives(program: &AnalysedProgram<'_>, function: &Function) -> BTreeMap<LocalId, Span> {
     let mut found = BTreeMap::new();
     for expr in function.exprs.values() {

@@ -31,7 +31,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// The values that are known in a function.
+/// The values known in a function.
 struct Known<'a> {
     program: &'a AnalysedProgram<'a>,
     function: &'a Function,
@@ -40,7 +40,7 @@ struct Known<'a> {
 }
 
 impl Known<'_> {
-    /// A constant, that of a variable, or what is computed of them.
+    /// A constant, the value of a known variable, or a value computed from these.
     fn value(&self, expr: ExprId, depth: u32) -> Option<i64> {
         match self.function.exprs[expr].kind {
             ExprKind::Int(number) => Some(number),
@@ -60,7 +60,7 @@ impl Known<'_> {
         self.function.exprs[expr].ty == Types::INT
     }
 
-    /// The first value of an `int` of the program, if nothing changes it.
+    /// The initial value of a global `int`, if nothing changes it.
     fn first(&self, symbol: SymbolId) -> Option<i64> {
         let Definition::Data(data) = &self.program.unit.symbols[symbol].definition else { return None };
         let bytes = <[u8; 4]>::try_from(data.bytes.as_slice()).ok().filter(|_| data.addresses.is_empty())?;

@@ -39,7 +39,7 @@ pub(crate) fn finding(left: &Expression, right: &Expression, span: Span) -> Opti
             finding.at(format!("this is {}", base ^ exponent)).help(format!("write `{power}`"))
         }
         Some(factor) => {
-            // A product with a fraction is refused, with a message of its own.
+            // A product with a fraction is an error with its own message.
             if matches!(factor.kind, ExpressionKind::Floating(_)) {
                 return None;
             }
@@ -59,7 +59,7 @@ fn number(expression: &Expression) -> Option<u64> {
     }
 }
 
-/// The first factor of a product that no parentheses are around, whose span would hold them.
+/// The first factor of a product without parentheses around it, which its span would include.
 fn factor(expression: &Expression) -> Option<&Expression> {
     match &expression.kind {
         ExpressionKind::Binary(BinaryOperator::Multiply, left, _) if expression.span.lo == left.span.lo => {
@@ -69,7 +69,7 @@ fn factor(expression: &Expression) -> Option<&Expression> {
     }
 }
 
-/// The number that `^` seems to belong to in `2 * 10 ^ 5`.
+/// The number to which `^` seems to apply in `2 * 10 ^ 5`.
 fn last_factor(expression: &Expression) -> &Expression {
     match &expression.kind {
         ExpressionKind::Binary(_, _, right) if factor(expression).is_some() => right,

@@ -4,7 +4,7 @@ use crate::ast::{Expression, ExpressionKind, UnaryOperator};
 use crate::diag::{Diagnostic, Lint};
 use crate::operators::{BinaryOperator, CompareOp, OperatorMeaning};
 
-/// The finding in a condition, whose parts, joined, compared or negated, are checked one by one.
+/// The finding in a condition; its parts, combined, compared or negated, are checked one by one.
 pub(crate) fn finding(condition: &Expression) -> Option<Diagnostic> {
     let (operator, left, right) = match &condition.kind {
         ExpressionKind::Unary(UnaryOperator::Not, operand) => return finding(operand),
@@ -94,7 +94,7 @@ fn mask(operator: BinaryOperator, left: &Expression, right: &Expression) -> Opti
         (Some(compare), None) if !is_truth(right) => (left, compare),
         _ => return None,
     };
-    // `a & b == 1` asks for the same, if both are 0 or 1.
+    // `a & b == 1` has the same value if both are 0 or 1.
     if matches!(compare.meaning(), OperatorMeaning::Compare(CompareOp::Equal)) && is_one(found) {
         return None;
     }
@@ -130,7 +130,7 @@ fn chain(
     )
 }
 
-/// The operator of a comparison that no parentheses are around, whose span would hold them.
+/// The operator of a comparison without parentheses around it, which its span would include.
 fn comparison(expression: &Expression) -> Option<BinaryOperator> {
     match &expression.kind {
         ExpressionKind::Binary(operator, left, _) => {

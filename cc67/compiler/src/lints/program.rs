@@ -34,14 +34,14 @@ pub(super) struct AnalysedProgram<'a> {
     pub(super) names: &'a Names,
     /// The source text.
     pub(super) sources: &'a SourceMap,
-    /// The board it is for.
+    /// The board for which it is compiled.
     pub(super) firmware: &'a dyn FirmwareNames,
     /// The elements of `persist.UserData` in which a `float` is stored before it starts.
     pub(super) float_elements: &'a [u32],
 }
 
 impl<'a> AnalysedProgram<'a> {
-    /// Every function; where something was wrong, what could not be understood is left out of it.
+    /// All functions; code with errors is left out of them.
     pub(super) fn functions(&self) -> impl Iterator<Item = &'a Function> + use<'a> {
         self.unit.functions.iter()
     }

@@ -25,15 +25,15 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// The functions that are called again on the way down from `root`, each with the call that does it first.
+/// The functions that are called again on a path from `root`, each with the first such call.
 fn calls_back(graph: &CallGraph<'_>, root: SymbolId) -> BTreeMap<SymbolId, (SymbolId, Span)> {
-    /// A function whose calls are being followed, and how many of them were.
+    /// A function whose calls are being followed, and the number of calls already followed.
     struct Open {
         symbol: SymbolId,
         followed: usize,
     }
     let mut found = BTreeMap::new();
-    // Whether a function that was met is still open.
+    // For each visited function, true if it is still open.
     let mut is_open = BTreeMap::from([(root, true)]);
     let mut path = vec![Open { symbol: root, followed: 0 }];
     while let Some(Open { symbol, followed }) = path.last_mut() {

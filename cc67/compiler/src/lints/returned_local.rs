@@ -1,4 +1,4 @@
-//! The address of a local array, returned from the function that it belongs to.
+//! The address of a local array, returned from its function.
 
 use super::program::AnalysedProgram;
 use super::walk::{Extent, Walk};
@@ -27,7 +27,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// The local that an address points into.
+/// The local into which an address points.
 fn addressed(function: &Function, expr: ExprId) -> Option<LocalId> {
     match function.exprs[expr].kind {
         ExprKind::Convert(inner) => addressed(function, inner),
@@ -42,7 +42,7 @@ fn addressed(function: &Function, expr: ExprId) -> Option<LocalId> {
     }
 }
 
-/// The local that the value of a pointer variable points into.
+/// The local into which the value of a pointer variable points.
 fn kept(function: &Function, expr: ExprId) -> Option<LocalId> {
     match function.exprs[expr].kind {
         ExprKind::Convert(inner) => kept(function, inner),
@@ -67,7 +67,7 @@ fn only_value(function: &Function, pointer: LocalId) -> Option<LocalId> {
         if !matches!(function.places[place].kind, PlaceKind::Local(local, _) if local == pointer) {
             return;
         }
-        // A pointer that moves on stays in what it points into.
+        // A pointer that is incremented stays in its object.
         let Some(value) = value else { return };
         let to = addressed(function, value);
         is_same &= to.is_some() && (found.is_none() || found == to);

@@ -4,7 +4,7 @@ use crate::ast::{Expression, ExpressionKind, UnaryOperator};
 use crate::diag::{Diagnostic, Lint};
 use crate::source::{ExpansionId, SourceMap};
 
-/// The message for an assignment of `from` whose sign is next to the `=` and apart from its operand.
+/// The message for an assignment of `from` with a sign next to the `=` and apart from its operand.
 pub(crate) fn finding(sources: &SourceMap, from: &Expression) -> Option<Diagnostic> {
     let ExpressionKind::Unary(operator, operand) = &from.kind else { return None };
     let sign = match operator {

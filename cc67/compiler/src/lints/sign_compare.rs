@@ -1,4 +1,4 @@
-//! A signed and an unsigned value compared: a negative one counts as a very large one.
+//! A signed and an unsigned value compared: a negative value becomes a very large one.
 
 use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;

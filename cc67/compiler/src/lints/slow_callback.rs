@@ -1,8 +1,8 @@
-//! A call-back of the servo interrupt that takes more of the interrupt's time than the servo leaves.
+//! A call-back of the servo interrupt that takes more time than the servo leaves.
 //!
-//! The estimate is that of one pass: the cycles of the called firmware functions on the board (`costs.md` section 2),
-//! and a few cycles for each operation of the program; a loop counts with its iterations if they are constant, else
-//! once. So it is a lower bound where nothing returns early; `cc67 cycles` counts the packets.
+//! The estimate is for one pass: the cycles of the called firmware functions on the board (`costs.md` section 2), and a
+//! few cycles for each operation of the program; a loop counts with its iterations if their number is constant,
+//! otherwise once. So it is a lower bound if the call-back does not return early; `cc67 cycles` counts the packets.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,16 +20,16 @@ use crate::typed::{
 
 /// Cycles between two interrupts: 90 µs at 200 MHz.
 const TICK: u64 = 18_000;
-/// Cycles of the interrupt with eight axes that move (`costs.md` section 5), and what is left for a call-back.
+/// Cycles of the interrupt with eight moving axes (`costs.md` section 5), and the cycles that are left for a call-back.
 const SERVO: u64 = 10_974;
 const LEFT: u64 = TICK - SERVO;
-/// Cycles of an operation of the program, and of a call beside what is called.
+/// Cycles of an operation of the program, and of a call without its callee.
 const OPERATION: u64 = 2;
 const CALL: u64 = 14;
 /// Cycles of a microsecond.
 const MICROSECOND: u64 = 200;
 
-/// Reports call-backs that take longer than the servo of a KFLOP leaves them; the times of others are not known.
+/// Reports call-backs that take longer than the servo of a KFLOP leaves; the times of other boards are unknown.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     if !program.firmware.board().is_proven {
         return;
@@ -94,7 +94,7 @@ impl Estimate<'_> {
         sum
     }
 
-    /// Cycles of a statement; `before` is the one that precedes it.
+    /// Cycles of a statement; `before` is the previous statement.
     fn stmt(&mut self, function: &Function, stmt: &Stmt, before: Option<&Stmt>) -> u64 {
         match &stmt.kind {
             StmtKind::Expr(expr) | StmtKind::Return(Some(expr)) | StmtKind::GotoAddress(expr) => {
@@ -110,7 +110,7 @@ impl Estimate<'_> {
                 let iteration = parts.sum::<u64>().saturating_add(self.stmts(function, body));
                 iteration.saturating_mul(iterations(function, stmt, before))
             }
-            // The cases are one after another: the longest is not known, all of them would be too many.
+            // Only one of the cases is executed, and the longest is unknown.
             StmtKind::Switch { value, .. } => self.expr(function, *value),
             _ => 0,
         }
@@ -147,7 +147,7 @@ fn firmware(name: &str) -> u64 {
     row_named(name).map_or(0, |function| function.cost.get().max(0).unsigned_abs())
 }
 
-/// Number of iterations of a loop whose counter grows from a constant by one up to a constant; 1 for every other.
+/// Number of iterations of a loop whose counter is incremented from a constant to a constant; 1 for any other loop.
 fn iterations(function: &Function, stmt: &Stmt, before: Option<&Stmt>) -> u64 {
     let StmtKind::Loop { condition: Some(condition), test: LoopTest::Before, step: Some(step), .. } =
         &stmt.kind

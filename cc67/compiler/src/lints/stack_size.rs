@@ -1,8 +1,8 @@
 //! Frames and call chains beyond the board's small stack.
 //!
-//! A thread has 2048 bytes, of which about 1.9 KiB are usable, with no guard after them: the
-//! next thread's stack begins there. The frame is that of the vendor's compiler (`dialect.md`
-//! section 7): all locals, 8-byte aligned, 8 bytes for each parameter, and 16.
+//! A thread has 2048 bytes, of which about 1.9 KiB are usable. There is no guard after them: the next thread's stack
+//! begins there. The frame is that of the vendor's compiler (`dialect.md` section 7): all locals, aligned to 8 bytes, 8
+//! bytes for each parameter, and 16 more.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::Span;
 use crate::typed::{Function, Local, SymbolId};
 
-/// A frame larger than this is reported on its own.
+/// The size above which a single frame is reported.
 const FRAME_LIMIT: u32 = 1024;
 
 /// A call chain from `main` larger than this is reported: 1.9 KiB.
@@ -73,14 +73,14 @@ fn large_frame(program: &AnalysedProgram<'_>, function: &Function, bytes: u32) -
 struct Depths<'a> {
     program: &'a AnalysedProgram<'a>,
     graph: &'a CallGraph<'a>,
-    /// The functions seen; `None` while one is analysed, so that a recursive one counts once.
+    /// The functions visited; `None` while a function is analysed, so that a recursive one counts once.
     known: BTreeMap<SymbolId, Option<Depth>>,
 }
 
 /// The stack that a function needs.
 #[derive(Clone, Copy)]
 struct Depth {
-    /// Its frame and those below.
+    /// Its frame and those of its callees.
     bytes: u32,
     /// The call that leads deepest.
     next: Option<(SymbolId, Span)>,
@@ -106,7 +106,7 @@ impl Depths<'_> {
     }
 }
 
-/// The finding about the chain that begins at `main`; `None` if `main` alone is all of it.
+/// The finding about the chain that begins at `main`; `None` if it consists of `main` alone.
 fn deep_chain(depths: &Depths<'_>, main: SymbolId) -> Option<Diagnostic> {
     let program = depths.program;
     let (mut symbol, mut chain, mut first_call) = (main, Vec::new(), None);

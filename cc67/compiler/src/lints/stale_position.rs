@@ -1,4 +1,5 @@
-//! `ch2->InputMode = NO_INPUT_MODE; … touched = ch2->Position;`: without an input the position of an axis stays as it is.
+//! `ch2->InputMode = NO_INPUT_MODE; … touched = ch2->Position;`: without an input the position of an axis does not
+//! change.
 
 use std::collections::BTreeSet;
 
@@ -39,7 +40,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// The arguments of calls: whoever prints a position, or enables an axis at it, asks nothing of it.
+/// The arguments of calls: printing a position, or enabling an axis at it, does not rely on its value.
 fn passed(function: &Function) -> BTreeSet<ExprId> {
     let unconverted = |mut expr: ExprId| {
         while let ExprKind::Convert(inner) = function.exprs[expr].kind {
@@ -56,14 +57,14 @@ fn passed(function: &Function) -> BTreeSet<ExprId> {
 const POSITION: u32 = Chan::POSITION.offset();
 const INPUT_MODE: u32 = Chan::INPUT_MODE.offset();
 
-/// Returns whether a place is the input mode of an axis that a variable points to.
+/// Returns whether a place is the input mode of an axis through a pointer variable.
 fn is_pointed_mode(function: &Function, place: PlaceId) -> bool {
     let PlaceKind::Pointer(pointer, field) = function.places[place].kind else { return false };
     let ExprKind::Load(pointer) = function.exprs[pointer].kind else { return false };
     u32::try_from(field) == Ok(INPUT_MODE) && matches!(function.places[pointer].kind, PlaceKind::Local(..))
 }
 
-/// The axes whose only input mode in the program is none, set by number or in a function that is called with their number.
+/// The axes whose input mode is always none in the program, set by number or in a function called with their number.
 fn axes_without_input(program: &AnalysedProgram<'_>) -> BTreeSet<u32> {
     let mut without = BTreeSet::new();
     let mut setters: BTreeSet<SymbolId> = BTreeSet::new();

@@ -8,7 +8,7 @@ use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::Span;
 use crate::typed::{self, Call, Definition, ExprId, ExprKind, PlaceKind};
 
-/// Reports calls whose shortest text, with its end, is longer than the array.
+/// Reports calls whose shortest text, including its terminator, is longer than the array.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         for (expr, call) in function.calls() {
@@ -88,7 +88,8 @@ fn constant(function: &typed::Function, value: ExprId) -> Option<i64> {
     }
 }
 
-/// Characters of the shortest text of a format; `next` is the next value, if there is one, and if it is known.
+/// The length of the shortest text of a format; `next` yields the next argument, if there is one, and its value if
+/// known.
 fn formatted(format: &[u8], next: &mut dyn FnMut() -> Option<Option<i64>>) -> usize {
     let mut length = 0;
     let mut rest = format;
@@ -128,7 +129,7 @@ fn formatted(format: &[u8], next: &mut dyn FnMut() -> Option<Option<i64>>) -> us
     length
 }
 
-/// The array that an address points into, and its bytes from there.
+/// The array into which an address points, and its remaining bytes.
 fn room<'p>(
     program: &AnalysedProgram<'p>,
     function: &'p typed::Function,

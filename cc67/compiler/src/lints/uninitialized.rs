@@ -1,10 +1,9 @@
-//! Reads of locals in which nothing was stored.
+//! Reads of uninitialised locals.
 //!
-//! A read is certain to find no value if no store comes before it in the text, and every path to
-//! a later store, in a loop around both, leads over a read. A read is doubtful if some path
-//! reaches it without a store; which paths are taken is not known, so that many of these are
-//! false alarms. Functions with labels are left out. Locals in memory are, too: their address may
-//! have been passed on.
+//! A read is certain to be uninitialised if no store comes before it in the text, and every path to a later store, in a
+//! loop around both, passes a read. A read is doubtful if some path reaches it without a store; since it is unknown
+//! which paths are taken, many of these are false alarms. Functions with labels are left out, and so are locals in
+//! memory, whose addresses may have been passed on.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,9 +15,9 @@ use crate::typed::{
     Callee, ExprId, ExprKind, Function, LocalId, LoopTest, PlaceId, PlaceKind, Stmt, StmtKind, UnaryOp,
 };
 
-/// Reports every local that is read before anything is stored in it, once.
+/// Reports every local that is read before a store, once.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
-    // What could not be read may have been the store.
+    // Code with errors may have contained the store.
     if sink.has_errors() {
         return;
     }
@@ -68,15 +67,15 @@ fn search(function: &Function, sink: &mut Sink) {
 
 struct Search<'a> {
     function: &'a Function,
-    /// Locals whose store was met in the text so far.
+    /// Locals with a store in the text so far.
     stored: BTreeSet<LocalId>,
     /// Locals with a store that some path reaches without a read of the local.
     stored_unread: BTreeSet<LocalId>,
     /// Locals that were read first, and where.
     suspects: BTreeMap<LocalId, Span>,
-    /// The locals that every path to the current position has stored in.
+    /// The locals in which every path to the current position has stored.
     flow: Flow,
-    /// Locals that were read where not every way stores in them, and where.
+    /// Locals that were read where not every path has stored in them, with the position.
     doubtful: BTreeMap<LocalId, Span>,
     /// The loops and switches around the current place, the innermost last.
     exits: Vec<Exits>,
@@ -141,7 +140,7 @@ impl Search<'_> {
         }
     }
 
-    /// A statement that nothing follows directly.
+    /// Handles a statement after which control continues elsewhere.
     fn leave(&mut self, kind: &StmtKind) {
         if let StmtKind::Return(Some(value)) | StmtKind::GotoAddress(value) = kind {
             self.expr(*value);
@@ -182,7 +181,7 @@ impl Search<'_> {
         self.flow = behind;
     }
 
-    /// A condition, or none that is always true: what is stored in if it holds, and if it does not.
+    /// A condition, or none, which is always true: the locals stored in if it holds, and if it does not.
     fn condition(&mut self, condition: Option<ExprId>) -> (Flow, Flow) {
         let Some(condition) = condition else { return (self.flow.clone(), Flow::Unreachable) };
         match self.function.exprs[condition].kind {
@@ -212,7 +211,7 @@ impl Search<'_> {
     }
 
     /// Analyses the body of a loop: a local that is stored in later in the body may be read earlier in the next
-    /// iteration, unless the path to that store leads over a read.
+    /// iteration, unless the path to that store passes a read.
     fn in_loop(&mut self, body: impl FnOnce(&mut Self)) {
         let known: BTreeSet<_> = self.suspects.keys().copied().collect();
         body(self);
@@ -221,7 +220,7 @@ impl Search<'_> {
     }
 
     fn expr(&mut self, expr: ExprId) {
-        // A long sum leans to the left: its spine is walked, not recursed into.
+        // A long sum is nested on the left: its spine is walked iteratively.
         let mut spine = Vec::new();
         let mut first = expr;
         while let ExprKind::Binary(_, a, b) | ExprKind::Compare(_, a, b) | ExprKind::Comma(a, b) =
@@ -314,7 +313,7 @@ impl Search<'_> {
         }
     }
 
-    /// Reports whether a value is computed from that of the place by sums, differences or products, on every path.
+    /// Reports whether a value is computed from the place's value by sums, differences or products, on every path.
     fn adds_to(&self, place: PlaceId, value: ExprId) -> bool {
         match self.function.exprs[value].kind {
             ExprKind::Load(from) => {

@@ -1,6 +1,6 @@
-//! Statements after `return`, `break`, `continue`, `goto` or an endless loop, and those before the first `case`.
+//! Statements after `return`, `break`, `continue`, `goto` or an endless loop, and statements before the first `case`.
 //!
-//! A jump there is not reported: `return x; break;` is a habit.
+//! An unreachable jump is not reported: `return x; break;` is a common habit.
 
 use super::missing_return::completes;
 use super::program::AnalysedProgram;
@@ -8,7 +8,7 @@ use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::{ExpansionId, Span};
 use crate::typed::{Function, Stmt, StmtKind};
 
-/// Reports the first statement of each block that nothing leads to.
+/// Reports the first statement of each unreachable block.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.whole_functions() {
         each_block(function, &mut |stmts| sink.report_if(after_jump(program, stmts)));
@@ -74,7 +74,7 @@ fn finding(span: Span) -> Diagnostic {
     Diagnostic::warning(Lint::UnreachableCode, span, "this statement is never executed")
 }
 
-/// The first word of a statement after which nothing follows, and the reason.
+/// The keyword of a statement after which control does not continue, and the reason.
 fn cause<'a>(program: &AnalysedProgram<'_>, before: &'a Stmt) -> Option<(Span, &'a str)> {
     let reason = match &before.kind {
         StmtKind::Return(_) => "the function ends here",
@@ -94,7 +94,7 @@ fn cause<'a>(program: &AnalysedProgram<'_>, before: &'a Stmt) -> Option<(Span, &
     Some((Span { hi, ..before.span }, reason))
 }
 
-/// A statement in a `switch` that no `case` leads to.
+/// A statement in a `switch` before its first `case`.
 fn before_cases(body: &[Stmt]) -> Option<Diagnostic> {
     let first = match body {
         [Stmt { kind: StmtKind::Block(inner), .. }] => inner.first(),
@@ -132,7 +132,7 @@ fn has_label(stmt: &Stmt) -> bool {
     }
 }
 
-/// Returns whether a statement of a `switch` has a label of its own, besides its cases.
+/// Returns whether a statement of a `switch` has a label in addition to its cases.
 fn has_goto_label(stmt: &Stmt) -> bool {
     !matches!(stmt.kind, StmtKind::Case(_) | StmtKind::DefaultCase) && has_label(stmt)
 }

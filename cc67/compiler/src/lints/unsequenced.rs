@@ -1,11 +1,11 @@
-//! `i = i++`, which stores into one variable twice, in no order.
+//! `i = i++`, which stores into one variable twice without a defined order.
 
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::BinaryOp;
 use crate::typed::{ExprId, ExprKind, Function, PlaceKind, UpdateResult};
 
-/// Reports assignments whose value changes the variable that is assigned.
+/// Reports assignments whose value changes the assigned variable.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         for expr in function.exprs.values() {
@@ -28,7 +28,8 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// Returns whether the value that a variable is assigned increments it, where nothing decides the order of the two stores.
+/// Returns whether the value assigned to a variable increments the same variable, with no defined order of the two
+/// stores.
 fn is_changed(function: &Function, assigned: PlaceKind, value: ExprId) -> bool {
     match &function.exprs[value].kind {
         ExprKind::Update(update) => {

@@ -1,4 +1,4 @@
-//! `CHAN c = chan[axis]; c.Vel = 1000;`: what is stored in a copy changes nothing else.
+//! `CHAN c = chan[axis]; c.Vel = 1000;`: a store into a copy does not change the original.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ struct Copied {
     stored: Option<Span>,
 }
 
-/// Reports copies of structures in which something is stored, and of which nothing is read.
+/// Reports copies of structures that are stored into but never read.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.whole_functions() {
         for (local, Copied { original, stored }) in copies(function) {
@@ -35,7 +35,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// The copies of which nothing is read.
+/// The copies that are never read.
 fn copies(function: &Function) -> BTreeMap<LocalId, Copied> {
     let local = |place: PlaceId| local_of(function, place);
     let mut copies = BTreeMap::new();
@@ -71,7 +71,7 @@ fn note_store(copies: &mut BTreeMap<LocalId, Copied>, local: Option<LocalId>, sp
     }
 }
 
-/// The local that a place is a part of.
+/// The local to which a place belongs.
 fn local_of(function: &Function, place: PlaceId) -> Option<LocalId> {
     match function.places[place].kind {
         PlaceKind::Local(local, _) => Some(local),

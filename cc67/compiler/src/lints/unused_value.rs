@@ -36,7 +36,7 @@ fn only_answers(name: &str) -> bool {
     matches!(polls, Some(Polled::Bit | Polled::Motion | Polled::Path | Polled::Recording))
 }
 
-/// The message for an expression statement whose value is not used; `is_function` if it only names one.
+/// The message for an expression statement whose value is not used; `is_function` if it is just the name of a function.
 pub(crate) fn finding(expression: &Expression, is_function: bool) -> Option<Diagnostic> {
     if let ExpressionKind::Unary(UnaryOperator::Dereference, pointer) = &expression.kind
         && let ExpressionKind::Increment { is_increment, is_prefix: false, .. } = pointer.kind
@@ -61,7 +61,7 @@ pub(crate) fn finding(expression: &Expression, is_function: bool) -> Option<Diag
     })
 }
 
-/// The message for `*p++;`, which moves the pointer and not what it points to.
+/// The message for `*p++;`, which increments the pointer and not its target.
 fn moved_pointer(span: Span, is_increment: bool) -> Diagnostic {
     let operator = if is_increment { "++" } else { "--" };
     let message = "this moves the pointer; the value that it points to stays the same";
@@ -97,7 +97,7 @@ fn whole(expression: &Expression) -> Option<u64> {
     }
 }
 
-/// Reports whether evaluating an expression has an effect, judged by its form.
+/// Reports whether evaluating an expression has an effect, judging by its form.
 fn has_effect(expression: &Expression) -> bool {
     match &expression.kind {
         ExpressionKind::Call(..)

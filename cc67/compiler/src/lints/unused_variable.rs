@@ -1,4 +1,4 @@
-//! Variables of a function that nothing in it mentions.
+//! Variables of a function that are never mentioned.
 
 use std::collections::BTreeSet;
 

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use crate::ty::Types;
 use crate::typed::{Callee, ExprId, ExprKind, Function, Stmt, StmtKind, SymbolId};
 
-/// The functions whose value `function` uses.
+/// The functions whose values are used by `function`.
 pub(super) fn used_in(function: &Function) -> BTreeSet<SymbolId> {
     let dropped = dropped(function);
     let calls = function.exprs.iter().filter(|(id, _)| !dropped.contains(id));

@@ -5,7 +5,7 @@ use super::user_data_index;
 use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;
 
-/// The last index at which there is room for one.
+/// The last index with room for a `double`.
 const LAST: i32 = 198;
 
 /// The message for a `double` at a byte offset of `persist`.
@@ -20,7 +20,7 @@ pub(crate) fn finding(offset: i32, span: Span) -> Option<Diagnostic> {
     })
 }
 
-/// The indexes beside this one that hold a `double`.
+/// The indexes next to this one that hold a `double`.
 fn neighbours(index: i32) -> String {
     match [index - 1, index + 1].map(|index| Some(index).filter(|index| (0..=LAST).contains(index))) {
         [Some(below), Some(above)] => format!("use index {below} or {above}"),

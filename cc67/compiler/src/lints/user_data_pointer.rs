@@ -13,7 +13,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
     for function in program.functions() {
         for expr in function.exprs.values() {
-            // Elements that hold addresses are given to other programs, which store and read more than single floats.
+            // Elements that hold addresses are passed to other programs, which access more than single floats.
             let ExprKind::Load(place) = expr.kind else { continue };
             let PlaceKind::Pointer(pointer, _) = function.places[place].kind else { continue };
             if expr.ty != Types::FLOAT {
@@ -31,7 +31,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// The element whose value is all of an address.
+/// The element whose value is used directly as an address.
 fn element(program: &AnalysedProgram<'_>, function: &Function, pointer: ExprId) -> Option<ExprId> {
     match function.exprs[pointer].kind {
         ExprKind::Convert(inner) => element(program, function, inner),

@@ -1,4 +1,4 @@
-//! Constants beyond what an output of the board takes.
+//! Constants out of the range of the board's outputs.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use crate::typed::{Callee, ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKi
 /// The words of the analog outputs.
 pub(crate) const DAC_WORDS: &str = "DAC_Buffer";
 
-/// The bits of such a word, which the macro `DAC` cuts its value to.
+/// The bits of such a word, to which the macro `DAC` truncates its value.
 const DAC_BITS: i64 = 0xfff;
 
 /// The encoding of 0 in such a word.
@@ -29,7 +29,7 @@ pub(crate) struct DacWord {
 }
 
 impl DacWord {
-    /// The state of the constant `x op y`, given that of `x`.
+    /// The state of the constant `x op y`, given the state of `x`.
     pub(crate) fn after(op: BinaryOp, (x, word): (i64, Option<&Self>), y: i64) -> Option<Self> {
         match (op, word) {
             (BinaryOp::Subtract, _) if y == DAC_ZERO => Some(Self { value: x, is_cut: false }),
@@ -38,7 +38,7 @@ impl DacWord {
         }
     }
 
-    /// The message where it is stored.
+    /// The message at the store of the constant.
     pub(crate) fn finding(self, span: Span) -> Option<Diagnostic> {
         let value = self.value;
         if self.is_cut && value != 0 && value.abs() as f64 <= VOLTS {
@@ -150,7 +150,7 @@ fn dac_variables(program: &AnalysedProgram<'_>, function: &Function, sink: &mut 
     }
 }
 
-/// The symbol that a place is an element of.
+/// The symbol to whose elements a place belongs.
 fn pointed(function: &Function, place: PlaceId) -> Option<SymbolId> {
     match function.places[place].kind {
         PlaceKind::Symbol(symbol, _) => Some(symbol),
@@ -200,12 +200,12 @@ fn plain(function: &Function, mut expr: ExprId) -> &ExprKind {
     &function.exprs[expr].kind
 }
 
-/// The variables into which one constant is stored, and nothing else, each with it.
+/// The variables that are only assigned one constant, with that constant.
 pub(super) fn single_values(function: &Function) -> BTreeMap<LocalId, i64> {
     single_stores(function, |value| constant(function, value))
 }
 
-/// The variables into which one value is stored, and nothing else, each with what `known` makes of it.
+/// The variables that are only assigned one value, with the result of `known` for it.
 pub(super) fn single_stores<T>(
     function: &Function,
     known: impl Fn(ExprId) -> Option<T>,

@@ -1,7 +1,7 @@
 //! Code that the vendor's compiler translates wrongly, for people who still use it.
 //!
-//! The list is that of `c67-subset.md` section 9; cc67 translates all of it as C says. Partly initialised locals are
-//! found where initialisers are, parameters in `vendor_parameter.rs`, the rest in the finished tree.
+//! The list is from `c67-subset.md` section 9; cc67 translates all of this code as C requires. Partly initialised
+//! locals are found with the initialisers, parameters in `vendor_parameter.rs`, the rest in the finished tree.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ use crate::source::Span;
 use crate::ty::{TypeId, Types};
 use crate::typed::{Expr, ExprId, ExprKind, Function, PlaceKind, UnaryOp};
 
-/// The first address of RAM that counts as negative when addresses are compared as signed numbers.
+/// The first address of RAM that is negative when addresses are compared as signed numbers.
 const NEGATIVE: u32 = 0x8000_0000;
 
 /// Looks at every function.
@@ -147,7 +147,7 @@ fn limit(function: &Function, pointer: ExprId, ty: TypeId) -> usize {
     }
 }
 
-/// The assignments whose value another assignment stores.
+/// The assignments whose values are stored by another assignment.
 fn inner_assignments(function: &Function) -> BTreeSet<ExprId> {
     let values = function.exprs.values().filter_map(|expr| match expr.kind {
         ExprKind::Assign(_, value) => Some(value),

@@ -1,6 +1,6 @@
-//! Parameters that the vendor's compiler handles wrongly: their addresses, and more of them than it can pass.
+//! Parameters that the vendor's compiler handles wrongly: their addresses, and more parameters than it can pass.
 //!
-//! The list is that of `c67-subset.md` section 9; cc67 translates all of it as C says.
+//! The list is from `c67-subset.md` section 9; cc67 translates all of this code as C requires.
 
 use std::collections::BTreeSet;
 
@@ -25,7 +25,7 @@ fn warning(span: Span, fault: &str) -> Diagnostic {
     Diagnostic::warning(Lint::VendorParameter, span, format!("the vendor's compiler {fault}"))
 }
 
-/// More parameters than it has registers for.
+/// More parameters than there are registers for them.
 fn many_parameters(program: &AnalysedProgram<'_>, function: &Function) -> Option<Diagnostic> {
     let count = function.parameters.len();
     let name = program.name(function.symbol);
@@ -36,8 +36,8 @@ fn many_parameters(program: &AnalysedProgram<'_>, function: &Function) -> Option
     })
 }
 
-/// Addresses of parameters that are stored, passed on or indexed. `*(int *)&parameter` is the parameter itself, which is
-/// right.
+/// Addresses of parameters that are stored, passed on or indexed. `*(int *)&parameter` is the parameter itself, which
+/// is translated correctly.
 fn addresses(function: &Function, sink: &mut Sink) {
     let mut seen = BTreeSet::new();
     Walk { function, extent: Extent::All }.stmts(&function.body, &mut |expr| {

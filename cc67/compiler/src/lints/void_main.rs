@@ -1,4 +1,4 @@
-//! `void main`, which every KFLOP compiler accepts and no C standard knows.
+//! `void main`, which every KFLOP compiler accepts and no C standard allows.
 
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};

@@ -32,7 +32,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// Reports whether a condition only tests whether axes move, with `&&` in between; counts them.
+/// Reports whether a condition only tests if axes move, combined with `&&`; counts them.
 fn moving(
     program: &AnalysedProgram<'_>,
     function: &typed::Function,

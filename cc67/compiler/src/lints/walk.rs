@@ -7,11 +7,11 @@ use crate::typed::{Callee, ExprId, ExprKind, Function, PlaceId, PlaceKind, Stmt,
 pub(super) enum Extent {
     /// Every one.
     All,
-    /// Expressions that are always evaluated exactly once, in a piece that is not left early.
+    /// Expressions that are always evaluated exactly once, in code that is not left early.
     Always,
 }
 
-/// Visits expressions, outer ones first; into no statement expression.
+/// Visits expressions, outer ones first, but not the inside of statement expressions.
 #[derive(Clone, Copy)]
 pub(super) struct Walk<'a> {
     pub(super) function: &'a Function,
@@ -103,7 +103,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Hands over what is evaluated to find a place.
+    /// Visits the expressions that are evaluated to determine a place.
     fn place(self, place: PlaceId, visit: &mut dyn FnMut(ExprId)) {
         match self.function.places[place].kind {
             PlaceKind::Pointer(pointer, _) => self.expr(pointer, visit),

@@ -8,7 +8,7 @@ use crate::ty::TypeId;
 use crate::typed::{self, Call, Expr, PlaceId};
 
 impl Lowering<'_> {
-    /// The call that an expression is. Whatever looks for its place finds that of the expression, not of its statement.
+    /// Lowers a call expression. The code is attributed to the expression, not to its statement.
     pub(super) fn call(&mut self, call: &Call, expr: &Expr, into: Option<ValueId>) -> Operand {
         let target = match call.callee {
             typed::Callee::Symbol(_) => None,
@@ -57,8 +57,8 @@ impl Lowering<'_> {
         }
     }
 
-    /// Evaluates the arguments from left to right; the variable ones go into the frame, their address becomes
-    /// the last argument.
+    /// Evaluates the arguments from left to right; variable arguments are stored in the frame, and their address
+    /// becomes the last argument.
     fn arguments(&mut self, call: &Call) -> Vec<Operand> {
         let bottom = self.held.len();
         let variable = call.variable.as_deref();
@@ -106,8 +106,8 @@ impl Lowering<'_> {
         self.address_value(Address::new(Base::Slot(slot)), None)
     }
 
-    /// The object that holds the variable arguments of whichever call is being made; arguments are complete
-    /// before the first is stored, so one is enough for nested calls too.
+    /// The frame object for the variable arguments of the current call; all arguments are evaluated before the first is
+    /// stored, so one object is enough even for nested calls.
     fn outgoing_area(&mut self) -> SlotId {
         if let Some(slot) = self.outgoing {
             return slot;
@@ -118,7 +118,7 @@ impl Lowering<'_> {
         slot
     }
 
-    /// Makes the arguments fit the definition of a function of this unit: a call through an old-style declaration may
+    /// Adapts the arguments to the definition of a function of this unit: a call through an old-style declaration may
     /// pass other types, too many or too few.
     fn fit(
         &mut self,

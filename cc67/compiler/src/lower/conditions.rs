@@ -24,8 +24,8 @@ impl Sense {
 }
 
 impl Lowering<'_> {
-    /// Branches to `then` if the expression is not zero, else to `otherwise`; `sense` is what the vendor's code does
-    /// and determines the costs of the paths.
+    /// Branches to `then` if the expression is not zero, otherwise to `otherwise`; `sense` is the direction of the
+    /// vendor's branch, which determines the costs of the paths.
     pub(super) fn branch(&mut self, condition: ExprId, sense: Sense, then: BlockId, otherwise: BlockId) {
         let expr = &self.function.exprs[condition];
         match expr.kind {
@@ -82,7 +82,7 @@ impl Lowering<'_> {
         matches!(self.function.exprs[id].kind, ExprKind::Compare(..))
     }
 
-    /// The ways of a condition that jumps in one sense where the other is wanted: the way on becomes a jump.
+    /// The paths of a condition that branches in the opposite sense: falling through becomes a jump.
     fn turned(
         &mut self,
         natural: Sense,
@@ -104,7 +104,7 @@ impl Lowering<'_> {
     }
 
     /// Tests the terms of a chain of one operator, `a && b && c …`: each but the last continues at the next through
-    /// `test`. Such chains lean to the left; they are walked, not recursed into.
+    /// `test`. Such chains are nested on the left; they are walked iteratively.
     fn chain(
         &mut self,
         id: ExprId,
@@ -172,8 +172,8 @@ impl Lowering<'_> {
         budget > 0
     }
 
-    /// Takes the nodes of an expression from `budget`; everything that makes more code than a few instructions
-    /// exhausts it.
+    /// Subtracts the nodes of an expression from `budget`; anything that needs more than a few instructions exhausts
+    /// it.
     fn count(&self, id: ExprId, budget: &mut u32) {
         *budget = budget.saturating_sub(1);
         if *budget == 0 {

@@ -32,8 +32,7 @@ impl Lowering<'_> {
         self.place_in(operand, into)
     }
 
-    /// The instructions that a conversion takes: to the class of the result by way of another class if need be,
-    /// then to its width.
+    /// The instructions of a conversion: to the class of the result, possibly through another class, then to its width.
     fn steps(&self, from: TypeId, to: TypeId) -> [Option<ConvertOp>; 3] {
         let types = &self.unit.types;
         let (Some(from_width), Some(to_width)) = (types::width(types, from), types::width(types, to)) else {
@@ -45,7 +44,7 @@ impl Lowering<'_> {
                 float_to_int(Class::F64, Class::I64, types::is_unsigned(types, to)),
             ],
             (source @ (Class::F32 | Class::F64), target @ (Class::I32 | Class::I64)) => {
-                // To `char` and `short` by way of `int` (specification, dialect.md 1.4).
+                // To `char` and `short` through `int` (specification, dialect.md 1.4).
                 let is_unsigned = types::is_unsigned(types, to) && to_width.normalize().is_none();
                 [float_to_int(source, target, is_unsigned), None]
             }

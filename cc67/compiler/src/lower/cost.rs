@@ -1,8 +1,8 @@
 //! Charges the cycles of the vendor's code while the typed tree is lowered.
 //!
-//! The vendor's compiler makes the same code for a construct wherever it is, so the costs follow the source and not our
-//! instructions: later optimisation does not change them. The rules are those of `spec/costs.md` section 6; a few
-//! smaller ones, marked here, follow from its recorded programs.
+//! The vendor's compiler generates the same code for a construct everywhere, so the costs follow the source and not our
+//! instructions: later optimisation does not change them. The rules are those of `spec/costs.md` section 6; a few minor
+//! ones, marked here, follow from its recorded programs.
 
 use cranelift_entity::SecondaryMap;
 use kmotiondef::timing::{Timing, WaitStates};
@@ -30,7 +30,7 @@ impl CostModel {
     pub(super) fn new(function: &typed::Function, timing: Timing) -> Option<Self> {
         let waits = timing.wait_states()?;
         let mut calls = table(function.exprs.len());
-        // Operands are numbered before what they are operands of.
+        // Operands have lower numbers than their parent expressions.
         for (id, expr) in &function.exprs {
             calls[id] = calls_itself(&expr.kind) || operands(function, id).any(|operand| calls[operand]);
         }
@@ -61,7 +61,7 @@ fn calls_itself(kind: &ExprKind) -> bool {
     }
 }
 
-/// The expressions that an expression evaluates directly; those of what calls do not matter.
+/// The expressions that an expression evaluates directly; those of calls do not matter.
 fn operands(function: &typed::Function, id: ExprId) -> impl Iterator<Item = ExprId> {
     let pointer = |place: PlaceId| match function.places[place].kind {
         PlaceKind::Pointer(pointer, _) => Some(pointer),
@@ -102,20 +102,20 @@ enum Reach {
     Local,
     /// A global, or an address that is a number; accesses may wait for memory.
     Global { waits: bool },
-    /// Through an address that takes `fixed` cycles, besides the expressions in it.
+    /// Through an address that takes `fixed` cycles, in addition to the expressions in it.
     Through { fixed: i32, waits: bool },
 }
 
 /// The location of an operand in the vendor's code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Nature {
-    /// A constant or a named variable: it is loaded when it is needed.
+    /// A constant or a named variable, loaded when it is needed.
     Simple,
     /// A load through an address that is in a register.
     Element,
     /// The result of a call.
     Result,
-    /// Anything else: it is in a register.
+    /// Any other value, which is in a register.
     Computed,
 }
 
@@ -133,7 +133,7 @@ impl Lowering<'_> {
         self.cost(words.saturating_mul(waits.cast_signed()));
     }
 
-    /// A block that charges `cycles`, if there are any, and continues at `to`.
+    /// A block that charges `cycles` and continues at `to`; just `to` if there are no cycles.
     pub(super) fn costly_way(&mut self, to: BlockId, cycles: u32) -> Option<BlockId> {
         self.cost_model.as_ref()?;
         Some(self.builder.way(to, cycles))
@@ -240,7 +240,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// Charges a load of a place, besides the expressions in its address.
+    /// Charges a load of a place, without the expressions in its address.
     pub(super) fn charge_load(&mut self, place: PlaceId) {
         if self.cost_model.is_none() {
             return;
@@ -266,7 +266,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// Charges the address of a place that is read or written more than once, besides the expressions in it.
+    /// Charges the address of a place that is accessed more than once, without the expressions in it.
     fn charge_reach(&mut self, place: PlaceId) {
         if let Reach::Through { fixed, .. } = self.reach(place) {
             self.cost(fixed);
@@ -285,7 +285,7 @@ impl Lowering<'_> {
         });
     }
 
-    /// Charges the store of a place whose address has been charged.
+    /// Charges the store to a place whose address has been charged.
     fn charge_store(&mut self, place: PlaceId) {
         let class = self.class_or_int(self.function.places[place].ty);
         let waits = match self.reach(place) {
@@ -312,7 +312,7 @@ impl Lowering<'_> {
         matches!(self.reach(place), Reach::Through { .. })
     }
 
-    /// Charges an assignment, its value apart.
+    /// Charges an assignment, without its value.
     pub(super) fn charge_assignment(&mut self, place: PlaceId, value: ExprId) {
         if self.cost_model.is_none() {
             return;
@@ -333,7 +333,7 @@ impl Lowering<'_> {
         self.charge_store(place);
     }
 
-    /// Charges `place = place op operand`, its operand apart.
+    /// Charges `place = place op operand`, without its operand.
     pub(super) fn charge_update(&mut self, update: &typed::Update) {
         if self.cost_model.is_none() {
             return;
@@ -359,7 +359,7 @@ impl Lowering<'_> {
         self.charge_store(place);
     }
 
-    /// Charges an operator with this right side, and takes back what a constant cost that leaves nothing to do.
+    /// Charges an operator with this right side, and takes back the cost of a constant that makes it a no-op.
     fn charge_operator(&mut self, op: BinaryOp, class: Class, b: ExprId) {
         let constant = match self.function.exprs[b].kind {
             ExprKind::Int(value) if class == Class::I32 => Some(value),
@@ -388,7 +388,7 @@ impl Lowering<'_> {
         });
     }
 
-    /// Charges what keeping the left side costs while the right one is evaluated.
+    /// Charges for saving the left side while the right one is evaluated.
     pub(super) fn charge_kept(&mut self, a: ExprId, b: ExprId) {
         if !self.calls(b) {
             return;
@@ -396,13 +396,13 @@ impl Lowering<'_> {
         self.cost(match self.nature(a) {
             Nature::Simple => 0,
             Nature::Element => cost_table::SAVE_ADDRESS,
-            // A result is saved from where it is, without being taken first.
+            // A result is saved directly from its register, without being moved first.
             Nature::Result => cost_table::save(self.class_of(a)) - cost_table::result(self.class_of(a)),
             Nature::Computed => cost_table::save(self.class_of(a)),
         });
     }
 
-    /// Charges a binary operator, its operands apart.
+    /// Charges a binary operator, without its operands.
     pub(super) fn charge_binary(&mut self, id: ExprId) {
         if self.cost_model.is_none() {
             return;
@@ -418,7 +418,7 @@ impl Lowering<'_> {
             Class::F32 if right == Nature::Element => cost_table::CROWDED_SINGLE,
             Class::I32 | Class::I64 | Class::F32 | Class::F64 => 0,
         });
-        // As recorded: the dividend is moved to the argument's register, an index to where it is scaled.
+        // As recorded: the dividend is moved to the argument register, an index to the register in which it is scaled.
         let divides = matches!(op, BinaryOp::Divide | BinaryOp::Remainder);
         let is_index = self.unit.types.is_pointer(ty) && self.is_shifted_sum(b);
         let is_moved = class == Class::I32 && if divides { left == Nature::Computed } else { is_index };
@@ -435,7 +435,7 @@ impl Lowering<'_> {
             && self.nature(index) == Nature::Computed
     }
 
-    /// Charges a unary operator but `!`, its operand apart.
+    /// Charges a unary operator except `!`, without its operand.
     pub(super) fn charge_unary(&mut self, operand: ExprId, op: UnaryOp) {
         let class = self.class_of(operand);
         match (op, class) {
@@ -452,7 +452,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// Charges a comparison, its operands apart.
+    /// Charges a comparison, without its operands.
     pub(super) fn charge_compare(&mut self, a: ExprId, b: ExprId) {
         if self.cost_model.is_none() {
             return;
@@ -477,7 +477,7 @@ impl Lowering<'_> {
         }
         let class = self.class_of(condition);
         match &self.function.exprs[condition].kind {
-            // The comparison itself decides; it is no value.
+            // The comparison itself decides; its value is not needed.
             ExprKind::Compare(..) => self.cost(-cost_table::MOVE),
             // As recorded: `while (i--)` takes a cycle more.
             ExprKind::Update(update) if update.result == typed::UpdateResult::Old => {
@@ -492,7 +492,7 @@ impl Lowering<'_> {
         self.cost(cost_table::BRANCH);
     }
 
-    /// Charges the comparison with 0 in front of a test, which is made without one.
+    /// Charges the comparison with 0 before a test that is not a comparison.
     pub(super) fn charge_zero_test(&mut self) {
         self.cost(cost_table::constant(Class::I32) + cost_table::compare(Class::I32));
     }
@@ -512,7 +512,7 @@ impl Lowering<'_> {
         self.cost(cost_table::convert(from, to));
     }
 
-    /// Charges the passing of the arguments of a call, their values apart, and the branch of the call.
+    /// Charges passing the arguments of a call, without their values, and the branch of the call.
     pub(super) fn charge_call(&mut self, call: &typed::Call) {
         if self.cost_model.is_none() {
             return;
@@ -529,7 +529,7 @@ impl Lowering<'_> {
         };
         self.cost(cost_table::BRANCH);
         let variable = call.variable.as_deref().unwrap_or(&[]);
-        // What is computed waits for what is called for a later argument.
+        // A computed argument is saved during a call for a later argument.
         let all: Vec<ExprId> = call.arguments.iter().chain(variable).copied().collect();
         let last = all.iter().rposition(|argument| self.calls(*argument)).unwrap_or(0);
         for (position, argument) in all.into_iter().enumerate() {
@@ -544,7 +544,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// Charges the way of a value to where an argument or result is expected.
+    /// Charges moving a value to the register of an argument or result.
     fn charge_moved(&mut self, value: ExprId) {
         let class = self.class_of(value);
         let is_comparison = matches!(self.function.exprs[value].kind, ExprKind::Compare(..));
@@ -563,7 +563,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// Charges a `return`, its value apart.
+    /// Charges a `return`, without its value.
     pub(super) fn charge_return(&mut self, value: Option<ExprId>) {
         if self.cost_model.is_none() {
             return;
@@ -574,7 +574,7 @@ impl Lowering<'_> {
         self.cost(cost_table::BRANCH);
     }
 
-    /// Charges the copy or the clearing of an object, its addresses apart.
+    /// Charges copying or clearing an object, without its addresses.
     pub(super) fn charge_block(&mut self, bytes: u32, is_copy: bool) {
         self.cost(if is_copy { cost_table::copy(bytes) } else { cost_table::clear(bytes) });
         let words = (bytes / 4).cast_signed();

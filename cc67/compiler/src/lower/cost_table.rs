@@ -1,13 +1,13 @@
 //! The costs of the vendor's code for each operation, in cycles without wait states (`spec/costs.md` section 6).
 //!
-//! [`super::cost`] says where each is charged.
+//! [`super::cost`] applies them.
 
 use crate::ir::inst::Class;
 use crate::operators::BinaryOp;
 
 /// A branch, taken or not; `goto`, `break`, `continue`, `return`.
 pub(super) const BRANCH: i32 = 8;
-/// Prologue and epilogue of a function; the branch to it is the caller's.
+/// Prologue and epilogue of a function; the branch to it is charged to the caller.
 pub(super) const ENTRY: i32 = 16;
 /// The branch of a call to a pointer, without loading it.
 pub(super) const POINTER_BRANCH: i32 = 6;
@@ -21,15 +21,15 @@ pub(super) const LOCAL_ADDRESS: i32 = 3;
 pub(super) const CASE: i32 = 12;
 /// Keeping the old value for a postfix operator.
 pub(super) const KEEP_OLD: i32 = 1;
-/// `...` arguments are passed at all.
+/// The presence of `...` arguments.
 pub(super) const VARIABLE_ARGUMENTS: i32 = 6;
 /// The cost of the value of a truth: on the path without a jump, on the path with it.
 pub(super) const TRUTH: [i32; 2] = [6, 1];
-/// Moving a computed value to where an argument or result is expected; a pair of registers twice.
+/// Moving a computed value to the register of an argument or result; a pair of registers counts twice.
 pub(super) const MOVE: i32 = 1;
 /// Saving an address in a register across a call.
 pub(super) const SAVE_ADDRESS: i32 = 10;
-/// A double operation whose right side is an element, or both sides of which are computed.
+/// A double operation whose right side is an element, or with both sides computed.
 pub(super) const CROWDED: i32 = 13;
 /// The cost of a comparison with an element, and with one on both sides.
 pub(super) const CROWDED_COMPARE: [i32; 2] = [11, 18];
@@ -41,7 +41,7 @@ const fn is_pair(class: Class) -> bool {
     matches!(class, Class::F64 | Class::I64)
 }
 
-/// `single` for what fits a register, `pair` for the others.
+/// `single` for classes that fit a register, `pair` for the others.
 pub(super) const fn either(class: Class, single: i32, pair: i32) -> i32 {
     if is_pair(class) { pair } else { single }
 }
@@ -90,7 +90,7 @@ pub(super) const fn division(class: Class) -> i32 {
     either(class, 30, 84)
 }
 
-/// An operator, with the function that divides where there is one.
+/// An operator, including the function that divides if it is one.
 pub(super) const fn binary(op: BinaryOp, class: Class) -> i32 {
     match (op, class) {
         (BinaryOp::Divide, Class::I32) => 13 + 20,

@@ -1,8 +1,7 @@
 //! Expressions to instructions.
 //!
-//! [`Lowering::value_in`] takes the value in which the result is wanted, if there is such a
-//! wish; that value is written by the last instruction only, so that the expression may
-//! still read it.
+//! [`Lowering::value_in`] takes the value that should receive the result, if any; that value is only written by the
+//! last instruction, so that the expression may still read it.
 
 use super::conditions::Sense;
 use super::places::Storage;
@@ -20,8 +19,8 @@ impl Lowering<'_> {
         self.value_in(id, None)
     }
 
-    /// Evaluates an expression into `into`, if given; returns the operand that holds the result. An expression
-    /// without a value gives an operand that nobody reads.
+    /// Evaluates an expression into `into`, if given; returns the operand that holds the result. An expression without
+    /// a value yields an operand that is never read.
     pub(super) fn value_in(&mut self, id: ExprId, into: Option<ValueId>) -> Operand {
         let expr = &self.function.exprs[id];
         match expr.kind {
@@ -132,7 +131,7 @@ impl Lowering<'_> {
         into.unwrap_or_else(|| self.builder.value(class))
     }
 
-    /// Brings an operand to the requested place, if there is one.
+    /// Moves an operand to the requested value, if there is one.
     pub(super) fn place_in(&mut self, operand: Operand, into: Option<ValueId>) -> Operand {
         let Some(dst) = into else { return operand };
         self.builder.copy(dst, operand);
@@ -257,7 +256,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// A binary operator; long chains such as `a + b + c + …` lean to the left and are walked, not recursed into.
+    /// A binary operator; long chains such as `a + b + c + …` are nested on the left and walked iteratively.
     fn binary(&mut self, id: ExprId, into: Option<ValueId>) -> Operand {
         let bottom = self.spine.len();
         let mut first = id;
@@ -283,7 +282,7 @@ impl Lowering<'_> {
         left
     }
 
-    /// `dst = a op b`, where the firmware may divide. Quotients of constants are computed before.
+    /// `dst = a op b`, where the firmware may divide. Quotients of constants have been folded before.
     fn operate(&mut self, op: BinaryOp, dst: ValueId, a: Operand, b: Operand) {
         let are_constant = a.as_value().is_none() && b.as_value().is_none();
         let class = self.builder.function.class(dst.into());

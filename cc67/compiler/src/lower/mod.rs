@@ -1,11 +1,10 @@
 //! Typed tree to IR.
 //!
-//! C's rules are already explicit in the typed tree; this stage decides the shape: where a local lives, how a condition
-//! becomes branches, the form of a loop, how a call passes its arguments.
+//! C's rules are already explicit in the typed tree; this stage decides the shape: the home of a local, the branches of
+//! a condition, the form of a loop, the passing of a call's arguments.
 //!
-//! Everything is evaluated from left to right. A local in a register is read by naming its
-//! value, not by copying it; where a later operand of the same expression writes that local,
-//! a copy is inserted afterwards ([`Lowering::hold`]).
+//! Everything is evaluated from left to right. A local in a register is read by naming its value, without a copy; if a
+//! later operand of the same expression writes that local, a copy is inserted afterwards ([`Lowering::hold`]).
 
 mod calls;
 mod conditions;
@@ -89,7 +88,7 @@ pub fn lower(
     lowering.builder.function
 }
 
-/// The classes of a function's parameters, hidden ones included, and of its result.
+/// The classes of a function's parameters, including hidden ones, and of its result.
 fn signature_of(unit: &Unit, function: &typed::Function) -> Signature {
     let class = |local: &LocalId| types::class(&unit.types, function.locals[*local].ty).unwrap_or(Class::I32);
     let params = (function.hidden.result_pointer.iter())
@@ -151,7 +150,7 @@ struct Lowering<'a> {
     jumps: Jumps,
     /// The slot for the variable arguments of calls.
     outgoing: Option<SlotId>,
-    /// Stack of operator nodes whose left operand is being descended into.
+    /// Stack of operator nodes whose left operands are being lowered.
     spine: Vec<ExprId>,
     /// Stack of arguments that wait for their call.
     held: Vec<Held>,
@@ -181,7 +180,7 @@ impl Lowering<'_> {
         function.source.variables = variables.collect();
     }
 
-    /// Gives every local its home and takes the arguments in.
+    /// Gives every local its home and receives the arguments.
     fn enter(&mut self) {
         let function = self.function;
         for local in function.locals.values() {
@@ -203,7 +202,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// A home in the frame. One that wants more alignment than the stack has lies somewhere in a larger slot.
+    /// A home in the frame. A local that needs more alignment than the stack provides is placed inside a larger slot.
     fn in_frame(&mut self, local: &typed::Local) -> Home {
         let (size, align) = types::layout(&self.unit.types, local.ty);
         let align = align.max(local.align);
@@ -221,7 +220,7 @@ impl Lowering<'_> {
         Home::Pointer(aligned)
     }
 
-    /// Takes one argument in; one that needs memory is stored there.
+    /// Receives one argument; an argument that needs memory is stored there.
     fn parameter(&mut self, local: LocalId) {
         let param = match self.homes[local] {
             Home::Value(value) | Home::Pointer(value) => value,
@@ -237,7 +236,7 @@ impl Lowering<'_> {
         self.builder.function.params.push(param);
     }
 
-    /// The class of a type; `void` and structures have none and never matter where this is asked.
+    /// The class of a type; `void` and structures have none, but it does not matter where this is called.
     fn class_or_int(&self, ty: crate::ty::TypeId) -> Class {
         types::class(&self.unit.types, ty).unwrap_or(Class::I32)
     }
@@ -253,7 +252,7 @@ impl Lowering<'_> {
         Held { operand, writes, point: self.builder.point() }
     }
 
-    /// The operand as it was when it was held. Operands that were held later must be released before.
+    /// The value of the operand when it was held. Operands that were held later must be released before.
     fn release(&mut self, held: Held) -> Operand {
         match held.operand {
             Operand::Value(value) if self.writes[value] != held.writes => {

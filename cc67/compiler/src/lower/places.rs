@@ -1,4 +1,4 @@
-//! Places: where something is stored, and reading and writing it.
+//! Places: storage locations, and their reads and writes.
 
 use super::{Held, Home, Lowering, types};
 use crate::ir::inst::{Address, Base, Class, Constant, InstKind, Operand, ValueId};
@@ -27,7 +27,7 @@ pub(super) struct Field {
 }
 
 impl Lowering<'_> {
-    /// Works out a place: evaluates the pointer in it, if there is one.
+    /// Computes a place: evaluates the pointer in it, if there is one.
     pub(super) fn place(&mut self, id: PlaceId) -> Storage {
         let place = &self.function.places[id];
         let width = types::width(&self.unit.types, place.ty).unwrap_or(Width::I32);
@@ -64,7 +64,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// The address that a pointer holds; constant steps and known places need no arithmetic.
+    /// The address in a pointer; constant steps and known places need no arithmetic.
     fn pointee(&mut self, pointer: ExprId) -> Address {
         let mut pointer = pointer;
         let mut offset = 0_i32;
@@ -137,7 +137,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// Reads what is stored.
+    /// Reads the stored value.
     pub(super) fn read(&mut self, storage: Storage, into: Option<ValueId>) -> Operand {
         match storage {
             Storage::Value(value) => self.place_in(value.into(), into),
@@ -154,7 +154,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// Writes a value, which has the type of the place; returns what reading would give.
+    /// Writes a value of the place's type; returns the value that reading would give.
     pub(super) fn write(&mut self, storage: Storage, value: Operand) -> Operand {
         match storage {
             Storage::Value(dst) => {

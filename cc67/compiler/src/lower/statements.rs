@@ -64,7 +64,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// A table of the labels that have an address; anything else stops the thread.
+    /// A table of the labels that have an address; any other value stops the thread.
     fn goto_address(&mut self, address: ExprId) {
         let index = self.value(address);
         self.cost(cost_table::POINTER_BRANCH);
@@ -96,8 +96,8 @@ impl Lowering<'_> {
         self.builder.open(end);
     }
 
-    /// Lowers a loop with its test at the bottom, so that an iteration costs one branch. A small condition is tested
-    /// again in front of the loop; a large one is jumped to.
+    /// Lowers a loop with its test at the bottom, so that an iteration costs one branch. A small condition is
+    /// duplicated before the loop; for a large one there is a jump to it.
     fn loop_statement(
         &mut self,
         condition: Option<ExprId>,

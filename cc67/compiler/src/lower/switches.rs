@@ -1,11 +1,11 @@
-//! Switches: tables where the cases are dense, else a search by halves.
+//! Switches: tables where the cases are dense, otherwise a binary search.
 
 use super::{Lowering, Switch, cost_table, types};
 use crate::ir::inst::{BlockId, Class, Constant, Operand, Terminator};
 use crate::ir::operators::{BinaryOp, CompareOp};
 use crate::typed::{Case, ExprId, Stmt};
 
-/// A table has at most this many entries.
+/// The limit of entries in a table.
 const MAX_TABLE: i128 = 4096;
 /// So few cases are compared one by one.
 const FEW: usize = 3;
@@ -16,7 +16,7 @@ struct CaseEntry {
     first: i128,
     last: i128,
     block: BlockId,
-    /// Values covered by this entry and those before it.
+    /// The number of values covered by this entry and those before it.
     covered: i128,
 }
 
@@ -62,7 +62,8 @@ impl Lowering<'_> {
         self.builder.open(end);
     }
 
-    /// The blocks that cost what finding the cases costs the vendor's code: it compares with one after another.
+    /// Blocks that charge the cost of finding each case in the vendor's code, which compares the cases one after
+    /// another.
     fn case_ways(&mut self, blocks: &[BlockId], default: BlockId) -> (Vec<BlockId>, BlockId) {
         if self.cost_model.is_none() {
             return (blocks.to_vec(), default);
@@ -70,7 +71,7 @@ impl Lowering<'_> {
         (blocks.iter().map(|_| self.builder.block()).collect(), self.builder.block())
     }
 
-    /// Fills them, if there are any.
+    /// Fills these blocks, if there are any.
     fn open_case_ways(
         &mut self,
         ways: &[BlockId],

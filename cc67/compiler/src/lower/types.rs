@@ -32,8 +32,8 @@ pub(super) fn width(types: &Types, ty: TypeId) -> Option<Width> {
     }
 }
 
-/// Reports whether values of the type compare, divide, shift and widen as unsigned ones. `char` and `short` have been
-/// promoted where that matters, except in bit-fields.
+/// Reports whether values of the type compare, divide, shift and widen as unsigned numbers. `char` and `short` have
+/// been promoted where that matters, except in bit-fields.
 pub(super) fn is_unsigned(types: &Types, ty: TypeId) -> bool {
     matches!(
         types.get(ty),

@@ -7,7 +7,7 @@ use coff::{BaseType, Derivation, Line, StorageClass, SymbolType};
 use super::SymbolKind;
 use crate::typed::Linkage;
 
-/// A line entry. The format counts lines in 16 bits; later ones cannot be recorded.
+/// A line entry. The format has 16 bits for a line; later lines cannot be recorded.
 pub(crate) fn statement(address: u32, line: u32) -> Option<Line> {
     let line = u16::try_from(line).ok().and_then(NonZeroU16::new)?;
     Some(Line::Statement { address, line })

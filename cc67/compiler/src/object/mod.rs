@@ -1,11 +1,11 @@
 //! The compiled form of one translation unit, ready to be linked with others.
 //!
-//! Code and data are cut into pieces, one for each function and object, so that the linker can place each separately
-//! and leave out unused ones. Words that depend on a symbol's address are listed as relocations; labels count from the
+//! Code and data are divided into pieces, one for each function and object, so that the linker can place each
+//! separately and omit unused ones. Words that depend on a symbol's address have relocations; labels count from the
 //! beginning of the unit's text.
 //!
-//! `cc67 build -c` keeps an object in a file: COFF with our target and relocations, `write` and
-//! `read` say how. The file keeps files and lines, but not the positions in the source text.
+//! `cc67 build -c` keeps an object in a file: COFF with our target and relocations, as described in `write` and `read`.
+//! The file contains source files and lines, but not the positions in the source text.
 
 mod coff_words;
 mod read;
@@ -66,7 +66,7 @@ impl Object {
         if self.code.is_some() { Target::C67x } else { Target::Sim }
     }
 
-    /// File and line in words; the file alone if the line is unknown.
+    /// File and line as text; only the file if the line is unknown.
     #[must_use]
     pub fn describe(&self, place: SourceLine) -> String {
         let file = self.files.get(place.file as usize).map_or("?", String::as_str);
@@ -98,7 +98,7 @@ pub struct Symbol {
     pub size: u32,
     /// Alignment of an object.
     pub align: u32,
-    /// The defining declaration, else the first one; `None` in an object that comes from a file.
+    /// The defining declaration, otherwise the first one; `None` in an object from a file.
     pub span: Option<Span>,
     /// The position as file and line.
     pub place: SourceLine,
@@ -128,7 +128,7 @@ pub enum SymbolKind {
     Char,
     /// `short`, `unsigned short`
     Short,
-    /// `int`, `unsigned` and everything else that is a number.
+    /// `int`, `unsigned` and all other numbers.
     Int,
     /// `float`
     Float,
@@ -154,11 +154,11 @@ pub struct Line {
     pub word: u32,
     /// The line.
     pub place: SourceLine,
-    /// The column, counted from 1; 0 in an object that comes from a file, as files of objects have none.
+    /// The column, counted from 1; 0 in an object from a file, as object files have no columns.
     pub column: u32,
 }
 
-/// The first place of each line: what a format without columns can hold.
+/// The first position in each line, for formats without columns.
 pub(crate) fn whole_lines<T>(places: &[T], line: impl Fn(&T) -> SourceLine) -> impl Iterator<Item = &T> {
     places.chunk_by(move |one, next| line(one) == line(next)).filter_map(|same| same.first())
 }
@@ -170,7 +170,7 @@ pub struct ObjectFunction {
     pub symbol: SymbolId,
     /// Its signature.
     pub signature: SignatureId,
-    /// Its words, the `func` word first.
+    /// Its words, beginning with the `func` word.
     pub words: Range<u32>,
     /// Its part of [`Object::relocations`].
     pub relocations: Range<u32>,
@@ -180,12 +180,12 @@ pub struct ObjectFunction {
     pub frame: u32,
     /// The line of its closing brace.
     pub end: SourceLine,
-    /// The locations of its locals; unknown in an object that comes from a file.
+    /// The locations of its locals; unknown in an object from a file.
     pub variables: Vec<VariablePlaces>,
-    /// The inlined calls; unknown in an object that comes from a file.
+    /// The inlined calls; unknown in an object from a file.
     pub inlined: Vec<InlinedPlaces>,
-    /// The loops that are scheduled without overlap because the search for it exceeded its limit of work; unknown in an
-    /// object that comes from a file.
+    /// The loops that are scheduled without overlap because the search exceeded its budget; unknown in an object from a
+    /// file.
     pub exceeded: Vec<SourceLine>,
 }
 
@@ -200,7 +200,7 @@ pub struct Initialized {
     pub relocations: Range<u32>,
 }
 
-/// A word of the data that the linker adds an address to.
+/// A word of the data to which the linker adds an address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DataRelocation {
     /// Offset in [`Object::data`].

@@ -1,7 +1,7 @@
-//! The bytes of a file to an object: the reverse of `write`.
+//! Reads an object from the bytes of a file: the reverse of `write`.
 //!
-//! A file is not trusted. What the linker relies on is checked here: every number of a symbol,
-//! signature, constant or word exists. Whether the code makes sense is for the machine's verifier.
+//! A file is not trusted. The assumptions of the linker are checked here: every number of a symbol, signature, constant
+//! or word exists. The code itself is checked by the machine's verifier.
 
 use std::ops::Range;
 
@@ -28,7 +28,7 @@ pub enum ReadError {
     /// The bytes are not COFF.
     #[error("not an object file: {0}")]
     NotCoff(#[from] coff::Error),
-    /// It is made for another machine.
+    /// It is for another machine.
     #[error("not an object file of cc67: it is for target {0}")]
     OtherTarget(Target),
     /// It is linked already.
@@ -37,7 +37,7 @@ pub enum ReadError {
     /// A section is missing.
     #[error("the object has no section {0}")]
     Missing(&'static str),
-    /// It was made by another version of cc67, or is damaged.
+    /// It was written by another version of cc67, or is damaged.
     #[error("the object was compiled by another version of cc67; compile it again")]
     Code,
     /// A symbol does not fit the sections.
@@ -53,7 +53,7 @@ pub enum ReadError {
     },
 }
 
-/// Reports whether bytes are an object of ours rather than an image or something else.
+/// Reports whether bytes are one of our object files rather than an image or another file.
 #[must_use]
 pub fn is_object(bytes: &[u8]) -> bool {
     coff::File::parse(bytes)
@@ -105,7 +105,7 @@ struct ObjectReader<'a> {
 struct Placed {
     words: Range<u32>,
     symbol: SymbolId,
-    /// Its index as the format counts.
+    /// The index in the format.
     index: u32,
     end: SourceLine,
 }

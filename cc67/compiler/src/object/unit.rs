@@ -1,6 +1,6 @@
-//! A unit as an object: symbols, data, and functions as they are generated.
+//! Builds the object of a unit: symbols, data, and functions as they are generated.
 //!
-//! The builder takes symbols and data of the typed tree over at once; functions follow one by one.
+//! The builder takes symbols and data from the typed tree at once; functions are added one by one.
 
 use super::{
     DataRelocation, Definition, Initialized, Line, Object, ObjectFunction, SourceLine, Symbol, SymbolKind,
@@ -16,7 +16,7 @@ use crate::source::{Place, SourceMap, Span};
 use crate::ty::{ParameterTypes, Type, TypeId, Types};
 use crate::typed::{self, Linkage, SymbolId, Unit};
 
-/// The properties of a function besides its words.
+/// The properties of a function other than its words.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct About {
     /// Its symbol.
@@ -114,7 +114,7 @@ impl<'a> UnitBuilder<'a> {
         self.function(about, generated);
     }
 
-    /// The object with the controller's code of its functions, and the names that this needs besides.
+    /// The object with the processor's code of its functions, and the further names that the code needs.
     pub(crate) fn finish_code(mut self, code: Vec<u32>, added: Vec<&'static str>) -> Object {
         for name in added {
             self.object.symbols.push(Symbol {
@@ -210,8 +210,8 @@ impl<'a> UnitBuilder<'a> {
         }
     }
 
-    /// The line of `file` that `span` belongs to, and the column: what a function's body includes counts as the
-    /// line of the `#include`, because an image knows one file a function.
+    /// The line and the column of `span` in `file`: text included in a function's body counts as the line of the
+    /// `#include`, because an image has one file per function.
     fn place_in(&self, file: u32, span: Span) -> (SourceLine, u32) {
         let mut at = span;
         loop {

@@ -1,21 +1,19 @@
-//! An object to the bytes of a file.
+//! Writes an object as the bytes of a file.
 //!
 //! The layout is that of images (`coff.md` of the specification), with these additions:
 //! - `.text` of bytecode begins with the unit's constants and signatures; addresses and labels count from
 //!   the beginning of the section;
-//! - the target is that of images: our own for bytecode, the processor's for its code;
-//! - relocations of kind [`ADDRESS`] add the symbol's address to the 32 bits at their address,
-//!   those of kind [`CALL`] complete the call instruction there, whose signature is their
-//!   displacement;
+//! - the target is the same as for images: our own for bytecode, the processor's for its code;
+//! - relocations of kind [`ADDRESS`] add the symbol's address to the 32 bits at their address, relocations of kind
+//!   [`CALL`] complete the call instruction there, whose signature is their displacement;
 //! - in code for the processor, [`LOW`] and [`HIGH`] put half of the symbol's address plus an offset into the constant
 //!   of an instruction, which holds that half of the offset, the displacement the other half; [`NEAR`] completes a
 //!   branch; [`OWN`] adds the function's address to the word;
-//! - the symbols after the file symbols are in the order of the unit's, without those that are only declared: a header
-//!   has hundreds. A tentative external
-//!   object is undefined with its size as value, as common objects always are in COFF; a
-//!   `static` one lies in `.bss`;
-//! - the auxiliary entry of an object has its alignment, file and line; `.bf` and `.ef` have the
-//!   index of the file in front of the line.
+//! - the symbols after the file symbols are in the order of the unit's symbols, without those that are only declared: a
+//!   header has hundreds. A tentative external object is undefined with its size as value, as common objects always are
+//!   in COFF; a `static` one is in `.bss`;
+//! - the auxiliary entry of an object has its alignment, file and line; `.bf` and `.ef` have the index of the file
+//!   before the line.
 
 use coff::raw::{BoundaryAux, FunctionAux, ObjectAux};
 use coff::{
@@ -60,7 +58,7 @@ impl Object {
     /// The bytes of an object file.
     ///
     /// # Errors
-    /// If the object exceeds what the format can count.
+    /// The object exceeds the limits of the format.
     pub fn write(&self) -> Result<Vec<u8>, Error> {
         let mut writer = Writer::new(self);
         for file in &self.files {
@@ -80,7 +78,7 @@ impl Object {
         writer.image()?.write()
     }
 
-    /// The symbols that code or data needs the address of.
+    /// The symbols whose addresses are used by code or data.
     fn used_symbols(&self) -> EntitySet<SymbolId> {
         let mut used = EntitySet::new();
         used.extend(self.relocations.iter().map(|relocation| relocation.symbol));
@@ -97,7 +95,7 @@ struct Writer<'a> {
     /// Bytes of a word.
     word: u32,
     symbols: Vec<Symbol>,
-    /// Entries so far, auxiliary ones included.
+    /// The number of entries so far, including auxiliary ones.
     entries: u32,
     /// The index of each of the unit's symbols in the symbol table.
     indexes: Vec<u32>,

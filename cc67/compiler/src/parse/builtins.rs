@@ -1,7 +1,6 @@
-//! Constructs that look like calls but take types, or know about the arguments of the function.
+//! Constructs that look like calls but take types, or access the arguments of the function.
 //!
-//! Those without underscores mean what they do in the C library unless the program declares
-//! the name itself.
+//! Those without underscores have the meaning of the C library, unless the program declares the name itself.
 
 use crate::ast::{Designator, Expression, ExpressionKind};
 use crate::diag::Diagnostic;

@@ -22,9 +22,9 @@ enum Declared {
 }
 
 impl Parser<'_> {
-    /// Reads everything.
+    /// Parses the whole unit.
     pub(super) fn translation_unit(&mut self) -> TranslationUnit {
-        // About ten tokens make a declaration of a header.
+        // A declaration in a header has about ten tokens.
         let mut unit = TranslationUnit { items: Vec::with_capacity(self.tokens.len() / 10) };
         while self.kind() != TokenKind::End {
             let start = self.at;
@@ -36,7 +36,7 @@ impl Parser<'_> {
                     self.skip_statement(0);
                 }
             }
-            // Whatever cannot begin a declaration is left out, so that parsing always goes on.
+            // A token that cannot begin a declaration is skipped, so that parsing always makes progress.
             if self.at == start && !self.recovery.is_stopped {
                 self.at += 1;
             }
@@ -53,7 +53,7 @@ impl Parser<'_> {
             }
             (TokenKind::RightBrace, _) => {
                 self.at += 1;
-                // Behind statements outside a function it ends what should be one.
+                // After statements outside of a function, it ends what should be a function.
                 if self.recovery.has_loose_statement {
                     return Ok(None);
                 }
@@ -105,7 +105,7 @@ impl Parser<'_> {
         let column = self.sources.place(first.span).map_or(1, |place| place.column);
         let is_outer = first.flags.has(Flags::LINE_START) && column == 1;
         if let Some(open) = self.recovery.open.iter().find(|token| token.kind == TokenKind::LeftBrace) {
-            // The function's own tokens say nothing about what is open before it.
+            // The function's own tokens do not show what was open before it.
             let end = std::mem::replace(&mut self.at, start);
             let open = if is_outer { self.unclosed(*open) } else { *open };
             self.at = end;
@@ -113,7 +113,7 @@ impl Parser<'_> {
         }
         if is_outer {
             self.report(diagnostic.help("is a `}` missing before it?"));
-            // One error too many has left out the rest, which must not be taken up again.
+            // After too many errors the rest was skipped, which must not be undone.
             if !self.recovery.is_stopped {
                 self.at = start;
                 self.recovery.is_unwinding = true;
@@ -189,7 +189,7 @@ impl Parser<'_> {
             }
         }
         let span = self.since(start);
-        // What was read is kept, even if its end is in doubt.
+        // The declaration is kept, even if its end is wrong.
         if self.semicolon(span).is_err() {
             let open = self.recovery.open.len();
             self.skip_statement(open);
@@ -285,7 +285,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Reports whether the declarator is that of a function whose body, or old-style declarations, come next.
+    /// Reports whether the declarator is of a function, followed by its body or old-style declarations.
     fn begins_body(&self, declarator: &Declarator) -> bool {
         match declarator.derived.first() {
             Some(Derived::Function(Parameters::Names(_))) => {
@@ -405,7 +405,7 @@ impl Parser<'_> {
         if self.kind() != TokenKind::Identifier {
             return self.fail_expected("a declaration");
         }
-        // The `}` that ended a function before this statement is the one too many.
+        // The `}` that ended a function before this statement is surplus.
         let before = self.at.checked_sub(1).and_then(|at| self.tokens.get(at)).copied();
         let token = self.next();
         let text = self.text(token.span);

@@ -8,7 +8,7 @@ use crate::source::Span;
 
 use super::{NESTING, Parsed, Parser};
 
-/// The name of a declarator and what is derived inside its parentheses.
+/// The name of a declarator and the derivations inside its parentheses.
 type Direct = (Option<(Name, Span)>, Vec<Derived>);
 
 /// The rule for the name of a declarator.
@@ -94,7 +94,7 @@ impl Parser<'_> {
 
     /// Reports whether the next parenthesis holds the parameters of a function without a name.
     ///
-    /// Attributes may begin either: `int (__attribute__((noinline)) *)(void)` is a pointer.
+    /// Attributes can begin both: `int (__attribute__((noinline)) *)(void)` is a pointer.
     fn opens_parameters(&self) -> bool {
         let first = self.after_attributes(1);
         self.kind_at(first) == TokenKind::RightParen
@@ -102,7 +102,7 @@ impl Parser<'_> {
             || self.name_at(first).is_some_and(|name| self.is_declaration_word(name))
     }
 
-    /// The index of the first token after attributes, counted from `ahead` on.
+    /// The index of the first token at or after `ahead` that does not belong to an attribute.
     fn after_attributes(&self, mut ahead: usize) -> usize {
         while matches!(self.name_at(ahead), Some(word::ATTRIBUTE | word::ATTRIBUTE__)) {
             let mut depth = 0;
@@ -210,7 +210,7 @@ impl Parser<'_> {
         Ok(Parameter { specifiers, declarator, span: self.since(start.span) })
     }
 
-    /// Skips the `&` of a C++ reference; what it declares has a type that was reported.
+    /// Skips the `&` of a C++ reference; the declared type has already been reported.
     fn reference(&mut self, specifiers: &mut Specifiers) {
         if self.kind() != TokenKind::And || !self.is_identifier_at(1) {
             return;

@@ -1,7 +1,7 @@
 //! Expressions: operands with operators between them, by precedence climbing.
 //!
-//! Parentheses nest through [`Parser::infix`] and [`Parser::unary`] alone. Rare cases are kept out of line, which keeps
-//! their frames on the stack small.
+//! Parentheses only nest through [`Parser::infix`] and [`Parser::unary`]. Rare cases are in separate functions, so that
+//! the stack frames of these two stay small.
 
 use crate::ast::{Expression, ExpressionKind};
 use crate::pp::TokenKind;
@@ -20,12 +20,12 @@ impl Parser<'_> {
         self.infix(ASSIGNMENT)
     }
 
-    /// `a ? b : c` and everything that binds tighter: what the grammar calls a constant expression.
+    /// `a ? b : c` and everything that binds tighter, called a constant expression in the grammar.
     pub(super) fn conditional(&mut self) -> Parsed<Expression> {
         self.infix(CONDITIONAL)
     }
 
-    /// Operands with operators that bind at least as tight as `least`.
+    /// Operands with operators of at least the precedence `least`.
     fn infix(&mut self, least: u8) -> Parsed<Expression> {
         let mut left = self.unary()?;
         let mut count = 0;

@@ -1,4 +1,4 @@
-//! Statements of other languages: reported once with what C has instead, and gone over.
+//! Statements of other languages: reported once, with the equivalent in C, and skipped.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use crate::words::foreign as foreign_words;
 use super::scopes::Meaning;
 use super::{Parsed, Parser};
 
-/// A language that a program turned out to be written in, in part.
+/// A language in which parts of a program turn out to be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Language {
     Basic,
@@ -30,7 +30,7 @@ impl Parser<'_> {
         }
     }
 
-    /// The spelling of the next token, if that is a name which means nothing here.
+    /// The spelling of the next token, if it is a name without a meaning here.
     fn unknown_word(&self) -> Option<&str> {
         let name = self.name().filter(|name| !name.is_keyword())?;
         (self.scopes.meaning(name) == Meaning::Unknown).then(|| self.spelling(name))
@@ -58,7 +58,7 @@ impl Parser<'_> {
         Some(keyword)
     }
 
-    /// Reports an `else if` in one word, which is then read as `if`; returns true if there is one.
+    /// Reads an `else if` written as one word, as if it were `if`; returns true if there is one.
     pub(super) fn is_else_if(&mut self) -> bool {
         let Some(written) = self.unknown_word() else { return false };
         let is_known = ["elseif", "elsif", "elif"].contains(&written.to_ascii_lowercase().as_str());
@@ -83,7 +83,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A statement of another language, gone over; `None` if the next one is none.
+    /// A statement of another language, which is skipped; `None` if there is none.
     pub(super) fn foreign_statement(&mut self) -> Option<Parsed<Statement>> {
         let start = self.peek().span;
         let written = self.unknown_word()?;
@@ -145,7 +145,7 @@ impl Parser<'_> {
         true
     }
 
-    /// `new type[count]`, gone over.
+    /// `new type[count]`, which is skipped.
     pub(super) fn foreign_operand(&mut self) -> Option<Expression> {
         if self.unknown_word() != Some("new") || self.kind_at(1) != TokenKind::Identifier {
             return None;

@@ -1,8 +1,8 @@
-//! The `{` that was probably left open, by indentation.
+//! Finds the `{` that was probably left open, by indentation.
 //!
-//! A missing `}` makes every later one close the wrong block, so that the first brace of the function is the one
-//! without a partner. But a `}` that begins a line is below the line of its `{`; the first one that is further left
-//! than the block it closes shows which block was not closed.
+//! After a missing `}`, every later one closes the wrong block, so that the first brace of the function remains open.
+//! But a `}` at the beginning of a line is indented like the line of its `{`; the first `}` that is further left than
+//! the block it closes shows which block was not closed.
 
 use crate::pp::{Flags, Token, TokenKind};
 
@@ -16,7 +16,7 @@ impl Parser<'_> {
         }
         let Some(tokens) = self.tokens.get(..self.at) else { return outer };
         let start = tokens.partition_point(|token| token.span.lo < outer.span.lo);
-        // Spans of included files do not ascend with those of the including one.
+        // Spans of included files are not in the order of the including file.
         let start = match tokens.get(start) {
             Some(token) if token.span == outer.span => start,
             _ => match tokens.iter().rposition(|token| token.span == outer.span) {

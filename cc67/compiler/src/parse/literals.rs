@@ -83,7 +83,7 @@ impl Parser<'_> {
                 parts.push((token, self.token_text(token)));
             }
         }
-        // One prefix is that of all: `L"a" "b"` is `L"ab"`.
+        // A prefix applies to all parts: `L"a" "b"` is `L"ab"`.
         let encodings = parts.iter().map(|(_, text)| quoted::encoding(text));
         let encoding = encodings.max_by_key(|encoding| encoding.size()).unwrap_or_default();
         let mut elements = Vec::new();

@@ -1,12 +1,11 @@
 //! The parser: tokens in, syntax tree out.
 //!
-//! Recursive descent with precedence climbing, after the grammar of C11 with the GNU
-//! extensions that the vendor's compiler has. It accepts implicit `int` wherever that compiler
-//! does. The only thing it must know about names is whether they are types ([`scopes`]).
+//! Recursive descent with precedence climbing, after the grammar of C11 with the GNU extensions that the vendor's
+//! compiler has. It accepts implicit `int` wherever that compiler does. It only needs to know which names are types
+//! ([`scopes`]).
 //!
-//! An error is reported where it is found and travels up as [`Reported`] to the next
-//! statement or declaration, which continues after it ([`recover`]): one run shows all
-//! independent errors, and few others.
+//! An error is reported where it is found and propagates as [`Reported`] to the enclosing statement or declaration,
+//! which continues after it ([`recover`]): one run shows all independent errors, and few others.
 
 #![cfg_attr(
     not(test),
@@ -79,7 +78,7 @@ pub fn parse(tokens: &[Token], sources: &SourceMap, names: &Names, sink: &mut Si
         has_function: false,
         tags: BTreeSet::new(),
     };
-    // The preprocessor may have found enough already.
+    // The preprocessor may already have found too many errors.
     if parser.sink.is_full() { TranslationUnit::default() } else { parser.translation_unit() }
 }
 
@@ -103,7 +102,7 @@ struct Parser<'a> {
     scopes: Scopes,
     nesting: Nesting,
     recovery: Recovery,
-    /// The block that is read next, or is being read, comes after `if (…)`.
+    /// True if the next or current block comes after `if (…)`.
     is_branch: bool,
     /// A function was defined.
     has_function: bool,
@@ -116,7 +115,7 @@ struct Parser<'a> {
 struct Nesting {
     /// Constructs within each other.
     constructs: usize,
-    /// Binary operators whose right operand is being parsed.
+    /// The number of binary operators whose right operands are being parsed.
     operators: usize,
 }
 
@@ -125,9 +124,9 @@ struct Nesting {
 struct Recovery {
     /// Brackets and braces that are open.
     open: Vec<Token>,
-    /// The rest of the tokens is not looked at, and errors about that are not reported.
+    /// True if the rest of the tokens is ignored, without errors about it.
     is_stopped: bool,
-    /// A function begins where the `}` of the one before is missing: its blocks end here.
+    /// True if a function begins before the `}` of the previous one: its blocks end here.
     is_unwinding: bool,
     /// A statement outside all functions was reported.
     has_loose_statement: bool,
@@ -146,12 +145,12 @@ impl Parser<'_> {
         self.kind_at(0)
     }
 
-    /// The kind of the token `ahead` of the next one.
+    /// The kind of the token `ahead` tokens after the next one.
     fn kind_at(&self, ahead: usize) -> TokenKind {
         self.tokens.get(self.at + ahead).map_or(TokenKind::End, |token| token.kind)
     }
 
-    /// The name of the token `ahead` of the next one, keyword or not.
+    /// The name of the token `ahead` tokens after the next one, keyword or not.
     fn name_at(&self, ahead: usize) -> Option<Name> {
         self.tokens
             .get(self.at + ahead)
@@ -164,7 +163,7 @@ impl Parser<'_> {
         self.name_at(0)
     }
 
-    /// Reports whether the token `ahead` is an identifier and no keyword.
+    /// Reports whether the token `ahead` is an identifier that is not a keyword.
     fn is_identifier_at(&self, ahead: usize) -> bool {
         self.name_at(ahead).is_some_and(|name| !name.is_keyword())
     }
@@ -176,12 +175,12 @@ impl Parser<'_> {
         token
     }
 
-    /// Reads the next token if it is of this kind.
+    /// Takes the next token if it is of this kind.
     fn take(&mut self, kind: TokenKind) -> Option<Token> {
         (self.kind() == kind).then(|| self.next())
     }
 
-    /// Reads the next token if it is this word.
+    /// Takes the next token if it is this word.
     fn take_word(&mut self, word: Name) -> Option<Token> {
         (self.name() == Some(word)).then(|| self.next())
     }
@@ -203,7 +202,7 @@ impl Parser<'_> {
         token
     }
 
-    /// Parses something one level further in.
+    /// Parses a construct one nesting level deeper.
     fn nested<T>(&mut self, parse: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
         if self.nesting.constructs >= NESTING {
             return Err(self.too_deep());

@@ -1,7 +1,7 @@
-//! The syntax tree as text: one S-expression an item.
+//! The syntax tree as text: one S-expression per item.
 //!
-//! Declarations show what C hides: `int *a[3];` is `(var int a [3] *)`, the derivations from
-//! the name outwards. Implicit `int` is `?`.
+//! Declarations are made explicit: `int *a[3];` is `(var int a [3] *)`, with derivations from the name outwards.
+//! Implicit `int` is `?`.
 
 use crate::ast::{
     BasicType, Declaration, Declarator, Derived, Designator, EnumSpecifier, Expression, ExpressionKind,
@@ -32,7 +32,7 @@ struct Printer<'a> {
 }
 
 impl Printer<'_> {
-    /// Appends a word, separated from the one before.
+    /// Appends a word, separated from the previous one.
     fn word(&mut self, word: impl AsRef<str>) {
         if !self.text.is_empty() && !self.text.ends_with(['(', '\n', ' ']) {
             self.text.push(' ');

@@ -8,7 +8,7 @@ use crate::source::Span;
 use super::{Parsed, Parser, Reported};
 
 impl Parser<'_> {
-    /// Reports something; nothing after the parser stopped.
+    /// Reports a diagnostic, unless the parser has stopped.
     pub(super) fn report(&mut self, diagnostic: Diagnostic) {
         if self.recovery.is_stopped {
             return;
@@ -33,7 +33,7 @@ impl Parser<'_> {
         Reported
     }
 
-    /// Reports that something else was expected than the next token.
+    /// Reports that the next token is not the expected one.
     pub(super) fn fail_expected<T>(&mut self, what: &str) -> Parsed<T> {
         let token = self.peek();
         if token.kind == TokenKind::End {
@@ -72,7 +72,7 @@ impl Parser<'_> {
         Some(advice.to_owned())
     }
 
-    /// The change to the `#define` that put `=` or `;` where it is not allowed.
+    /// Advice on the `#define` that has put `=` or `;` where it is not allowed.
     fn macro_advice(&self, token: Token) -> Option<String> {
         let expansion = self.sources.expansion(token.span.expansion)?;
         let text = match token.kind {
@@ -83,7 +83,7 @@ impl Parser<'_> {
         Some(format!("remove the `{text}` from `#define {}`", self.sources.macro_name(expansion)))
     }
 
-    /// Reads a token of this kind; `what` names the place where it is expected.
+    /// Takes a token of this kind; `what` describes the position where it is expected.
     pub(super) fn expect(&mut self, kind: TokenKind, what: &str) -> Parsed<Token> {
         match self.take(kind) {
             Some(token) => Ok(token),
@@ -94,7 +94,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Reads the bracket that closes the one opened last.
+    /// Takes the bracket that closes the last open one.
     pub(super) fn close(&mut self, kind: TokenKind) -> Parsed<Token> {
         if let Some(token) = self.take(kind) {
             self.recovery.open.pop();
@@ -128,7 +128,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Reports whether a parenthesis is that of `if`, `while` or `switch`.
+    /// Reports whether a parenthesis belongs to `if`, `while` or `switch`.
     fn is_condition(&self, opener: Token) -> bool {
         let tokens = self.tokens.get(..self.at).unwrap_or_default();
         let at = tokens.iter().rposition(|token| token.span == opener.span);
@@ -136,7 +136,7 @@ impl Parser<'_> {
         before.is_some_and(|word| matches!(word.name, word::IF | word::WHILE | word::SWITCH))
     }
 
-    /// A bracket whose partner was expected at `found`.
+    /// The error for a bracket whose partner was expected at `found`.
     fn unclosed_bracket(&self, opener: Token, found: Token, text: &str) -> Diagnostic {
         let is_forgotten = found.flags.has(Flags::LINE_START) || found.kind == TokenKind::Semicolon;
         let mut diagnostic = if is_forgotten {
@@ -156,7 +156,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A macro between whose parentheses one has no partner: its name, and its place.
+    /// The macro with an unclosed parenthesis in its arguments: its name, and its position.
     fn open_macro(&self) -> Option<(String, Span)> {
         let tokens = self.tokens.get(..self.at)?.iter().rev();
         let statement = tokens.take_while(|token| {
@@ -182,7 +182,7 @@ impl Parser<'_> {
         None
     }
 
-    /// Reads the `;` after `what`, whose missing is reported where it should be.
+    /// Takes the `;` after `what`; if it is missing, that is reported at its position.
     pub(super) fn semicolon(&mut self, what: Span) -> Parsed<()> {
         if self.take(TokenKind::Semicolon).is_some() {
             return Ok(());
@@ -233,16 +233,16 @@ impl Parser<'_> {
         String::from_utf8_lossy(self.sources.text(span)).into_owned()
     }
 
-    /// The text from the start of a construct to a place after it, if it is short and in one line.
+    /// The text from the start of a construct to a later position, if it is short and on one line.
     fn short_text(&self, start: Span, end: Span) -> Option<String> {
         let text = self.text(Span::new(self.sources.call_site(start).lo, end.lo));
         let is_short = !text.is_empty() && text.len() <= 40 && !text.contains(['\n', '`']);
         is_short.then_some(text)
     }
 
-    /// Reports that the file ends within something, and stops.
+    /// Reports that the file ends within a construct, and stops.
     fn report_end(&mut self, what: &str) -> Reported {
-        // The preprocessor gave up and said why.
+        // The preprocessor gave up and reported the reason.
         if self.end.flags.has(Flags::BROKEN) {
             return self.stop();
         }
@@ -265,7 +265,7 @@ impl Parser<'_> {
     }
 
     /// Skips to the end of a statement or declaration that could not be parsed. Brackets opened since there were `open`
-    /// of them are taken to be those of the failed construct.
+    /// of them are taken as part of the failed construct.
     pub(super) fn skip_statement(&mut self, open: usize) {
         if self.recovery.is_stopped || self.recovery.is_unwinding {
             self.recovery.open.truncate(open);

@@ -1,8 +1,8 @@
 //! The names that are types in the current scope.
 //!
 //! C cannot be parsed without them: `a * b;` declares `b` if `a` is a type. A name is looked up for every identifier
-//! token, so each has one entry with its present meaning, and blocks keep a list of the entries to restore at their
-//! end.
+//! token, so each name has a single entry with its current meaning, and blocks keep a list of entries to restore at
+//! their end.
 
 use cranelift_entity::SecondaryMap;
 
@@ -46,12 +46,12 @@ impl Scopes {
         }
     }
 
-    /// Makes a name a missing type everywhere, so that it is reported once.
+    /// Makes a name a missing type in all scopes, so that it is reported once.
     pub(super) fn set_missing_type(&mut self, name: Name) {
         *self.entry(name) = Meaning::MissingType;
     }
 
-    /// Reports whether no scope but that of the file is open.
+    /// Reports whether only the file scope is open.
     pub(super) fn is_outermost(&self) -> bool {
         self.starts.is_empty()
     }

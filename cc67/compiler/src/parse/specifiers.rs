@@ -85,21 +85,21 @@ impl Parser<'_> {
         Ok(specifiers)
     }
 
-    /// Reads qualifiers and whatever is in their place; true if something was read.
+    /// Reads qualifiers and misplaced tokens there; true if anything was read.
     pub(super) fn qualifier(&mut self, qualifiers: &mut Qualifiers) -> Parsed<bool> {
         match self.name() {
             Some(word::CONST | word::CONST_ | word::CONST__) => qualifiers.is_const = true,
             Some(word::VOLATILE | word::VOLATILE_ | word::VOLATILE__) => qualifiers.is_volatile = true,
             Some(word::RESTRICT | word::RESTRICT_ | word::RESTRICT__ | word::EXTENSION) => {}
             Some(word::ATOMIC) if self.kind_at(1) != TokenKind::LeftParen => {}
-            // Behind a `*` an attribute is about the pointer, and none of those means anything here.
+            // After a `*` an attribute applies to the pointer, and no such attribute has an effect here.
             _ => return self.attribute(&mut Vec::new()),
         }
         self.at += 1;
         Ok(true)
     }
 
-    /// Reads attributes; what remains of them are alignments.
+    /// Reads attributes; returns their alignments.
     pub(super) fn attributes(&mut self) -> Parsed<Vec<Alignment>> {
         let mut alignments = Vec::new();
         while matches!(self.name(), Some(word::ATTRIBUTE | word::ATTRIBUTE__)) {
@@ -299,7 +299,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A type that a keyword opens; `None` if the keyword belongs to something else.
+    /// A type that begins with a keyword; `None` if the keyword has another role.
     #[inline(never)]
     fn keyword_type(
         &mut self,
@@ -394,7 +394,7 @@ impl Parser<'_> {
         self.fail(diagnostic.help("is a `;` or `,` missing before it?"))
     }
 
-    /// Reports whether `struct { … }` is followed by a declaration on a line of its own.
+    /// Reports whether `struct { … }` is followed by a declaration on a new line.
     fn lacks_semicolon(&self) -> bool {
         let next = self.peek();
         let behind_brace = self.at.checked_sub(1).and_then(|at| self.tokens.get(at));

@@ -33,7 +33,7 @@ impl Parser<'_> {
         Ok(statements)
     }
 
-    /// A statement or declaration; an error is reported and gone over.
+    /// A statement or declaration; after an error it is reported and skipped.
     fn statement(&mut self) -> Statement {
         let (start, index, open) = (self.peek().span, self.at, self.recovery.open.len());
         match self.nested(Self::any_statement) {
@@ -79,7 +79,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A bracket that closes nothing, and the statement after it.
+    /// A bracket without an opening partner, and the statement after it.
     fn surplus_bracket(&mut self) -> Parsed<Statement> {
         let token = self.next();
         let text = token.kind.punctuator().unwrap_or_default();
@@ -188,7 +188,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A condition whose parentheses were forgotten, as in `if x > 3:`.
+    /// A condition without its parentheses, as in `if x > 3:`.
     fn bare_condition(&mut self, keyword: &str) -> Parsed<Expression> {
         let start = self.peek();
         let expected = format!("`(` after `{keyword}`");
@@ -235,7 +235,7 @@ impl Parser<'_> {
         is_else
     }
 
-    /// Reports a block after `if` that ends before an `else`, its `}` forgotten; returns true if there is one.
+    /// Reports a block after `if` that lacks its `}` before an `else`; returns true if there is one.
     fn ends_before_else(&mut self) -> bool {
         let Some(opener) = self.recovery.open.last().copied() else { return false };
         if self.name() != Some(word::ELSE) || !self.stands_left_of_block(opener) {
@@ -345,7 +345,7 @@ impl Parser<'_> {
         Ok(StatementKind::Case { first, last, body: self.labelled()? })
     }
 
-    /// Reads `:`; a `;` in its place is taken for it.
+    /// Takes `:`; a `;` in its place is accepted after an error.
     fn colon(&mut self, what: &str) -> Parsed<()> {
         if self.take(TokenKind::Colon).is_some() {
             return Ok(());
@@ -371,7 +371,7 @@ impl Parser<'_> {
         Ok(self.finish(StatementKind::Label { name, name_span, body }, start))
     }
 
-    /// Parses the statement after a label: perhaps nothing, at the end of a block.
+    /// Parses the statement after a label, which may be missing at the end of a block.
     fn labelled(&mut self) -> Parsed<Box<Statement>> {
         if self.kind() == TokenKind::RightBrace {
             return Ok(Box::new(Statement { kind: StatementKind::Empty, span: self.end_of_last() }));

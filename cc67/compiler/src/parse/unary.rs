@@ -8,7 +8,7 @@ use crate::pp::{Flags, Token, TokenKind};
 use super::{NESTING, Parsed, Parser};
 
 impl Parser<'_> {
-    /// An operand with its prefix operators, and what follows it.
+    /// An operand with its prefix and postfix operators.
     pub(super) fn unary(&mut self) -> Parsed<Expression> {
         let operand = match self.kind() {
             TokenKind::LeftParen if self.is_type_at(1) => return self.cast(),
@@ -200,7 +200,7 @@ impl Parser<'_> {
         Ok(arguments)
     }
 
-    /// Reports an argument in the same line without a `,` before it; returns true if there is one.
+    /// Reports an argument on the same line without a `,` before it; returns true if there is one.
     fn lacks_comma(&mut self) -> bool {
         let token = self.peek();
         let begins_operand =

@@ -1,8 +1,7 @@
-//! Names used like types that are none.
+//! Names used like types that are not types.
 //!
-//! The usual reason is a missing include, so this is the first error of many programs. Each
-//! such name is reported once; what it declares has the type of an expression that was
-//! diagnosed already.
+//! The usual reason is a missing include, so this is the first error of many programs. Each such name is reported once;
+//! its declarations get the type of an expression that was already diagnosed.
 
 use crate::ast::{Expression, ExpressionKind, Specifiers, TypeSpecifier};
 use crate::diag::Diagnostic;
@@ -39,7 +38,7 @@ const WORDS: &[&str] = &[
 ];
 
 impl Parser<'_> {
-    /// The type of what a missing type declares.
+    /// The type of declarations with a missing type.
     pub(super) fn missing_type(span: Span) -> TypeSpecifier {
         TypeSpecifier::TypeofExpression(Box::new(Expression { kind: ExpressionKind::Error, span }))
     }
@@ -81,7 +80,7 @@ impl Parser<'_> {
 
     fn report_unknown_type(&mut self, name: Name, span: Span) {
         self.scopes.set_missing_type(name);
-        // The file that was not found may define it.
+        // A file that was not found may define it.
         if self.sink.lacks_names() {
             return;
         }
@@ -113,7 +112,7 @@ impl Parser<'_> {
         }
     }
 
-    /// The keyword that makes a name a type, if it is a tag.
+    /// The keyword that would make a name a type, if it is a tag.
     fn tag_keyword(&self, spelling: &str) -> Option<&'static str> {
         let name = self.names.find(spelling)?;
         self.tags.iter().find(|(tag, _)| *tag == name).map(|(_, keyword)| *keyword)

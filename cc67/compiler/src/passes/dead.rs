@@ -1,7 +1,7 @@
 //! Removes instructions whose value is never read.
 //!
-//! Two ways to be dead: the value is read nowhere in the function, or it is written again in
-//! the same block, or the function is left, before anything reads it.
+//! There are two kinds: the value is never read in the function, or before any read it is written again in the same
+//! block, or the function ends.
 
 use cranelift_entity::SecondaryMap;
 

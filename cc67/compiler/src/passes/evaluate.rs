@@ -1,8 +1,8 @@
 //! Compile-time evaluation of loops that only compute with known numbers.
 //!
-//! A loop is evaluated if one block alone leads into it, everything that it reads is known there, and it neither reads
-//! nor writes memory nor calls. Its iterations are computed as the machine computes them, up to a limit; they are
-//! replaced by its last values. A loop with more iterations, such as a delay loop, stays.
+//! A loop is evaluated if it is entered from a single block, all its inputs are known there, and it neither accesses
+//! memory nor calls functions. Its iterations are computed as on the machine, up to a limit; they are replaced by its
+//! final values. A loop with more iterations, such as a delay loop, is kept.
 
 use std::collections::BTreeMap;
 
@@ -14,12 +14,12 @@ use crate::ir::inst::{BlockId, Constant, Inst, InstKind, Operand, Terminator, Va
 /// The most instructions that are computed for one loop, and for a function.
 const MOST: u32 = 20_000;
 const MOST_OF_ALL: u32 = 60_000;
-/// Blocks before a loop in which a first value is looked for.
+/// The number of blocks before a loop in which an initial value is searched for.
 const BEFORE: usize = 8;
-/// The largest function, in blocks, that is worked on.
+/// The size limit of functions, in blocks.
 const LARGEST: usize = 400;
 
-/// Replaces loops by their last values; returns whether anything changed.
+/// Replaces loops by their final values; returns whether anything changed.
 pub fn run(function: &mut Function) -> bool {
     let mut is_changed = false;
     let mut budget = MOST_OF_ALL;
@@ -82,7 +82,7 @@ fn replace(
 struct Machine<'a> {
     function: &'a Function,
     preheader: BlockId,
-    /// The constants looked up or written so far; `None` where they are unknown.
+    /// The constants looked up or written so far; `None` for unknown values.
     values: BTreeMap<ValueId, Option<Constant>>,
 }
 

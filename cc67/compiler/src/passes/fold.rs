@@ -1,8 +1,8 @@
 //! Folds constants and propagates copies and sums, within a block and into the block after it if that has no other
 //! predecessor.
 //!
-//! A fact about a value holds until the value, or the value the fact refers to, is written again; a counter of writes
-//! for each value shows that. Facts are never cleared, so the pass is linear.
+//! A fact about a value holds until that value, or the value to which the fact refers, is written again, which a
+//! counter of writes for each value shows. Facts are never cleared, so the pass is linear.
 
 use cranelift_entity::SecondaryMap;
 
@@ -20,17 +20,17 @@ enum Known {
     Operand(Operand),
     /// Equal to this address.
     Address(Address),
-    /// 1 if the operand is 0, else 0.
+    /// 1 if the operand is 0, otherwise 0.
     IsZero(Operand),
 }
 
-/// A fact and the state of affairs it was found in.
+/// A fact and the state in which it was found.
 #[derive(Clone, Copy, Debug)]
 struct Fact {
     known: Known,
-    /// The region of code it holds in.
+    /// The region of code in which it holds.
     region: u32,
-    /// Writes of the value that the fact refers to.
+    /// The number of writes of the value to which the fact refers.
     writes: u32,
 }
 
@@ -40,7 +40,7 @@ impl Default for Fact {
     }
 }
 
-/// Folds what can be folded; returns whether a branch was decided.
+/// Folds constants and copies; returns whether a branch was decided.
 pub fn run(function: &mut Function) -> bool {
     let mut folder =
         Folder { facts: table(function.values.len()), writes: table(function.values.len()), region: 0 };
@@ -49,7 +49,7 @@ pub fn run(function: &mut Function) -> bool {
     let mut previous = None;
     for index in 0..function.layout.len() {
         let id = function.layout[index];
-        // A block that only the one before it leads to knows what that one knew at its end.
+        // A block whose only predecessor is the previous block inherits the facts at its end.
         if !function.is_only_way(previous, id, &predecessors) {
             folder.region += 1;
         }
@@ -87,7 +87,7 @@ impl Folder {
         }
     }
 
-    /// The replacement of an operand: the constant or the older value that it is known to equal.
+    /// The replacement of an operand: the constant or the older value to which it is known to be equal.
     fn resolve(&self, operand: Operand) -> Operand {
         match operand.as_value().map(|value| self.known(value)) {
             Some(Known::Operand(known)) => known,
@@ -127,12 +127,12 @@ impl Folder {
             | InstKind::Cost { .. } => Known::Nothing,
         };
         let of = refers_to(known);
-        // `i = i + 1` says nothing about the new `i`.
+        // `i = i + 1` yields no fact about the new `i`.
         let known = if of == Some(dst) { Known::Nothing } else { known };
         self.facts[dst] = Fact { known, region: self.region, writes: of.map_or(0, |of| self.writes[of]) };
     }
 
-    /// Shortens addresses: what is known to be a sum becomes base and offset.
+    /// Simplifies addresses: a known sum becomes base and offset.
     fn addresses(&self, kind: &mut InstKind) {
         match kind {
             InstKind::Load { address, .. }
@@ -207,7 +207,7 @@ impl Folder {
         }
     }
 
-    /// A comparison; `(x == 0) == 0` and `(x == 0) != 0` look through to `x`.
+    /// A comparison; `(x == 0) == 0` and `(x == 0) != 0` are reduced to `x`.
     fn compare(&self, op: CompareOp, a: Operand, b: Operand) -> Simplified {
         if let (Operand::Value(value), Some(0)) = (a, b.as_int())
             && let Known::IsZero(inner) = self.known(value)
@@ -253,7 +253,7 @@ impl Folder {
     }
 }
 
-/// The value that a fact is about besides the one it is known about.
+/// The other value on which a fact depends.
 const fn refers_to(known: Known) -> Option<ValueId> {
     match known {
         Known::Operand(operand) | Known::IsZero(operand) => operand.as_value(),

@@ -1,11 +1,11 @@
 //! Inlining of small functions.
 //!
-//! The values, blocks and accesses of the callee are copied, its parameters are written before them, its result is
-//! written where it returned. A function with objects in the frame is not inlined, so that a frame grows only by its
+//! The values, blocks and accesses of the callee are copied; its parameters are written before them, and its result is
+//! written where it returned. A function with objects in the frame is not inlined, so that a frame contains only its
 //! own function's objects.
 //!
-//! A recursive function is inlined in itself, with its body from before that, a few levels deep. The calls that remain
-//! still use the stack, so a recursion without end still traps.
+//! A recursive function is inlined into itself, with its original body, a few levels deep. The remaining calls still
+//! use the stack, so an endless recursion still traps.
 
 use std::collections::BTreeMap;
 
@@ -26,16 +26,16 @@ const SMALL: usize = 40;
 /// and exit.
 const SMALLEST: usize = 32;
 
-/// The most instructions of a function whose calls of itself are replaced.
+/// The size limit, in instructions, of a function whose recursive calls are inlined.
 const SMALL_RECURSIVE: usize = 16;
 
 /// The depth to which recursive calls are inlined, unless another is requested.
 const LEVELS: usize = 3;
 
-/// The largest size that a function may grow to, in instructions.
+/// The size limit to which a function may grow, in instructions.
 const LARGEST: usize = 1500;
 
-/// The functions that may replace their calls, each with the source file that it is in.
+/// The functions that may be inlined, each with its source file.
 #[derive(Debug)]
 pub struct Candidates {
     /// The depth to which recursive calls are inlined.
@@ -52,7 +52,7 @@ impl Default for Candidates {
 }
 
 impl Candidates {
-    /// No candidates yet; the calls of a function in itself are replaced `levels` times.
+    /// No candidates yet; recursive calls are inlined `levels` times.
     #[must_use]
     pub const fn new(levels: usize) -> Self {
         Self { levels, largest: SMALL, functions: BTreeMap::new() }
@@ -71,9 +71,9 @@ impl Candidates {
         }
     }
 
-    /// Replaces what `function` of the source file `file` calls; returns whether there was anything.
+    /// Inlines calls in `function`, which is in the source file `file`; returns whether there were any.
     ///
-    /// Only functions of the same file: a function's instructions have lines of one file.
+    /// Only functions of the same file are inlined: a function's instructions have lines of a single file.
     pub fn run(&self, function: &mut Function, file: u32) -> bool {
         let itself = function.symbol;
         let is_small = size(function) <= SMALL_RECURSIVE && function.slots.is_empty();
@@ -101,7 +101,7 @@ fn size(function: &Function) -> usize {
     function.layout.iter().map(|id| function.blocks[*id].insts.iter().filter(is_work).count() + 1).sum()
 }
 
-/// The functions that are called by name, once for each call.
+/// The functions that are called directly, once for each call.
 fn callees(function: &Function) -> impl Iterator<Item = SymbolId> {
     let insts = function.layout.iter().flat_map(|id| &function.blocks[*id].insts);
     insts.filter_map(|inst| called(&inst.kind))
@@ -112,7 +112,7 @@ const fn called(kind: &InstKind) -> Option<SymbolId> {
     if let InstKind::Call { callee: Callee::Symbol(symbol), .. } = *kind { Some(symbol) } else { None }
 }
 
-/// Replaces every call for which `find` names a function, as it is now; returns whether there was one.
+/// Replaces every existing call for which `find` returns a function; returns whether there was one.
 fn replace_calls<'a>(function: &mut Function, find: impl Fn(SymbolId) -> Option<&'a Function>) -> bool {
     if callees(function).all(|symbol| find(symbol).is_none()) {
         return false;
@@ -170,14 +170,14 @@ struct Copier<'a> {
     writes: &'a SecondaryMap<ValueId, u32>,
     values: SecondaryMap<ValueId, ValueId>,
     blocks: SecondaryMap<BlockId, BlockId>,
-    /// The call that is replaced, and those in the called function, as they are known there.
+    /// The inlined call, and the inlined calls of the callee, with their numbers there.
     call: PackedOption<InlineId>,
     inner: SecondaryMap<InlineId, PackedOption<InlineId>>,
 }
 
 impl<'a> Copier<'a> {
     fn new(to: &'a mut Function, from: &'a Function, writes: &'a SecondaryMap<ValueId, u32>) -> Self {
-        // Entity 0 stands where nothing is copied; every one that is mentioned is.
+        // Entity 0 means that it is not copied; every entity that is mentioned is.
         let (mut values, mut blocks) = (
             SecondaryMap::with_default(ValueId::from_u32(0)),
             SecondaryMap::with_default(BlockId::from_u32(0)),
@@ -186,7 +186,7 @@ impl<'a> Copier<'a> {
             values[value] = to.values.push(*class);
         }
         for id in &from.layout {
-            // Which inlined call it is of is known when the block is copied.
+            // Its inlined call is known when the block is copied.
             let origin = from.blocks[*id].origin;
             blocks[*id] =
                 to.blocks.push(Block { insts: Vec::new(), terminator: Terminator::Unreachable, origin });
@@ -195,7 +195,7 @@ impl<'a> Copier<'a> {
         Self { to, from, writes, values, blocks, call, inner }
     }
 
-    /// Copies the function between `before`, which is to end with `call`, and `behind`.
+    /// Copies the function between `before`, which should end with `call`, and `behind`.
     fn copy(mut self, before: BlockId, call: Inst, behind: BlockId, layout: &mut Vec<BlockId>) {
         let InstKind::Call { arguments, dst, .. } = call.kind else { return };
         self.note(call.origin, arguments);
@@ -233,7 +233,7 @@ impl<'a> Copier<'a> {
         }
     }
 
-    /// Notes for debuggers which call is replaced, and where the called function's locals are then.
+    /// Records for debuggers the inlined call, and the locations of the callee's locals.
     fn note(&mut self, origin: CodeOrigin, arguments: ArgumentRange) {
         let variables = self.variables(&self.from.source.variables, arguments);
         let call = InlinedCall { callee: self.from.symbol, origin, variables };
@@ -277,7 +277,7 @@ impl<'a> Copier<'a> {
         let home = match variable.home {
             VariableHome::Value(value, writes) => VariableHome::Value(self.values[value], writes),
             VariableHome::Pointer(value) => VariableHome::Pointer(self.values[value]),
-            // What has objects in the frame is not copied.
+            // A function with objects in the frame is not copied.
             home @ (VariableHome::Slot(_) | VariableHome::Constant(_)) => home,
         };
         SourceVariable { home, ..variable }

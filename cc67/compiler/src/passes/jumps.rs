@@ -48,13 +48,13 @@ fn thread(function: &mut Function) {
     }
 }
 
-/// Follows jumps from block to block; what was passed is shortened, so that all look-ups together are linear. An
-/// endless loop of empty blocks ends at some block of it.
+/// Follows jumps from block to block; the path is shortened on the way, so that all look-ups together are linear. An
+/// endless loop of empty blocks ends at one of its blocks.
 fn resolve(forwards: &mut SecondaryMap<BlockId, PackedOption<BlockId>>, start: BlockId) -> BlockId {
     let mut end = start;
     let mut steps = 0;
     while let Some(next) = forwards[end].expand() {
-        // Halving the path as it is walked.
+        // Path halving.
         if let Some(after) = forwards[next].expand() {
             forwards[end] = after.into();
         }
@@ -87,7 +87,7 @@ pub fn remove_unreachable(function: &mut Function) {
 fn join(function: &mut Function) {
     let predecessors = function.predecessors();
     let Some(&entry) = function.layout.first() else { return };
-    // A block that will be appended to another is no head; only heads are worked on, so every instruction moves
+    // A block that will be appended to another is not a head; only heads are processed, so every instruction is moved
     // once.
     let mut appended: EntitySet<BlockId> = EntitySet::with_capacity(function.blocks.len());
     for &id in &function.layout {

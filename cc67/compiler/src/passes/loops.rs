@@ -1,14 +1,14 @@
 //! Loop-invariant code motion and strength reduction: invariants are computed before loops, and an expression that
 //! grows evenly with a counter becomes a sum carried from iteration to iteration.
 //!
-//! A loop is a segment of the layout from the target of a backward jump to the jump; it counts only if it is entered at
-//! its first block alone. Only values are moved, never a load or an instruction that may trap. All arithmetic is modulo
-//! 2³², so a carried sum stays exact.
+//! A loop is the part of the layout from the target of a backward jump to the jump, with its first block as the only
+//! entry. Only values are moved, never a load or an instruction that may trap. All arithmetic is modulo 2³², so a
+//! carried sum stays exact.
 //!
-//! Small loops come first, so that code moved out of an inner loop can leave the outer one as well.
+//! Small loops are processed first, so that code moved out of an inner loop can leave the outer one as well.
 //!
-//! Most functions have no loop, and most loops nothing to move, so the test for that has to be cheap: counts for the
-//! whole function are made once and kept up to date.
+//! Most functions have no loop, and most loops have nothing to move, so that test must be cheap: counts for the whole
+//! function are made once and kept up to date.
 
 use cranelift_entity::SecondaryMap;
 
@@ -17,11 +17,11 @@ use crate::ir::inst::{BlockId, Inst, InstKind, Operand, Terminator, ValueId};
 
 mod sums;
 
-/// The largest function that is worked on, in instructions and blocks, and the most loops of one.
+/// The size limits of a function, in instructions and blocks, and the limit of its loops.
 const LARGEST: usize = 4000;
 const MAX_LOOPS: usize = 64;
 
-/// Works on every loop; returns whether anything changed.
+/// Optimises every loop; returns whether anything changed.
 pub fn run(function: &mut Function) -> bool {
     let size: usize = function.layout.iter().map(|id| function.blocks[*id].insts.len() + 1).sum();
     if size > LARGEST {
@@ -159,7 +159,7 @@ impl<'a> Worker<'a> {
             .all(|target| !inside.contains(&self.places[target]))
     }
 
-    /// Hands the count of every value that the loop writes to `change`, once for each write.
+    /// Passes the count of every value that the loop writes to `change`, once for each write.
     fn count_inside(&mut self, range: LoopRange, change: impl Fn(&mut u32)) {
         for id in &self.function.layout[range.first..=range.last] {
             for dst in self.function.blocks[*id].insts.iter().filter_map(|inst| inst.kind.dst()) {
@@ -168,7 +168,7 @@ impl<'a> Worker<'a> {
         }
     }
 
-    /// Takes out what does not change.
+    /// Hoists loop invariants.
     fn hoist(&mut self, range: LoopRange) {
         for place in range.first..=range.last {
             let id = self.function.layout[place];
@@ -200,7 +200,7 @@ impl<'a> Worker<'a> {
         self.before.push(inst);
     }
 
-    /// Puts a block with what was taken out in front of the loop.
+    /// Inserts a block with the hoisted instructions before the loop.
     fn insert_before(&mut self, range: LoopRange) {
         let insts = std::mem::take(&mut self.before);
         let function = &mut *self.function;
@@ -225,7 +225,7 @@ impl<'a> Worker<'a> {
 
 /// Reports whether an instruction without effect is loop-invariant.
 fn is_fixed(kind: &InstKind, writes_inside: &SecondaryMap<ValueId, u32>) -> bool {
-    // A constant costs nothing where it is.
+    // A constant costs nothing at its place.
     let mut is_fixed = !matches!(kind, InstKind::Copy { src: Operand::Constant(_), .. });
     let mut kind = *kind;
     kind.visit_operands(|operand| is_fixed &= is_invariant(*operand, writes_inside));

@@ -1,8 +1,8 @@
-//! Optimisations of the IR, one a file.
+//! Optimisations of the IR, one per file.
 //!
-//! All are local to a block or to the graph of blocks and take linear time, except for the loops, each of which takes a
-//! pass over its function, up to a limit. They work on values only: loads, stores and calls keep their number and order
-//! (specification, `dialect.md` 1.5); only calls of small functions are inlined.
+//! All are local to a block or to the control-flow graph and take linear time, except for the loop passes, which take
+//! one pass over the function per loop, up to a limit. They only change values: loads, stores and calls keep their
+//! number and order (specification, `dialect.md` 1.5); only calls of small functions are inlined.
 
 #![deny(clippy::wildcard_enum_match_arm, reason = "a new instruction, operator or mode must be decided")]
 
@@ -26,12 +26,13 @@ pub enum Level {
     /// Nothing: the code follows the source (`-O0`).
     None,
     /// Optimise for size (`-Os`): only calls of short functions are inlined, and no recursive ones; loops that only
-    /// compute with known numbers are replaced by their last values.
+    /// compute with known numbers are replaced by their final values.
     Small,
     /// Everything that makes code faster without making it much larger (`-O1`).
     #[default]
     Full,
-    /// For the controller's processor also what makes it larger (`-O2`); bytecode is that of `Full`.
+    /// For the controller's processor, also optimisations that make code larger (`-O2`); bytecode is the same as for
+    /// `Full`.
     Fast,
 }
 
@@ -51,7 +52,7 @@ pub const ALL: &[(&str, Pass)] = &[
     ("inline", inline_all),
 ];
 
-/// Puts functions of the unit, taken as one file, in place of their later calls.
+/// Inlines functions of the unit, taken as one file, into later functions.
 fn inline_all(unit: &mut [Function]) {
     let mut candidates = Candidates::default();
     for function in unit {
@@ -76,7 +77,7 @@ pub fn run(function: &mut Function, level: Level) {
     divide::run(function);
 }
 
-/// Looks at loops again: what the first look folded may grow evenly, too.
+/// Optimises loops again: values folded in the first run may have become linear.
 pub fn loops_again(function: &mut Function) {
     if loops::run(function) {
         fold::run(function);
@@ -86,7 +87,7 @@ pub fn loops_again(function: &mut Function) {
     }
 }
 
-/// Replaces loops that only compute with known numbers by their last values, and cleans up after it.
+/// Replaces loops that only compute with known numbers by their final values, and cleans up afterwards.
 pub fn evaluate(function: &mut Function) {
     if evaluate::run(function) {
         reuse::run(function);

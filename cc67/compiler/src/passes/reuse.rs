@@ -1,8 +1,8 @@
 //! Computes an expression once where it occurs several times, within a block and into the block
 //! after it if that has no other predecessor.
 //!
-//! Only what works on values: every load of the source stays a load. The last few expressions are
-//! remembered until something they mention is written.
+//! Only expressions over values are reused: every load of the source remains a load. The last few expressions are
+//! remembered until one of their operands is written.
 
 use crate::ir::function::Function;
 use crate::ir::inst::{InstKind, Operand, ValueId};

@@ -1,7 +1,6 @@
 //! Results of operators on constants, and cheaper operators with the same result.
 //!
-//! Constants are computed by [`vm::arith`], as the machine does; what would trap is left
-//! alone.
+//! Constants are computed by [`vm::arith`], as on the machine; operations that would trap are left unchanged.
 
 use vm::arith;
 
@@ -249,7 +248,7 @@ pub(super) fn convert(op: ConvertOp, src: Operand) -> Simplified {
     Simplified::from(converted(op, constant))
 }
 
-/// The constant that a conversion gives; none for the address of a symbol, and where it is a NaN.
+/// The result of converting a constant; `None` for the address of a symbol, and for a NaN.
 fn converted(op: ConvertOp, constant: Constant) -> Option<Constant> {
     let int = || if let Constant::I32(value) = constant { Some(value) } else { None };
     let unsigned = || int().map(i32::cast_unsigned);

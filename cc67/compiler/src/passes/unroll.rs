@@ -1,10 +1,10 @@
 //! Unrolling of loops with a known number of iterations, partly or completely.
 //!
-//! A loop is unrolled if its last block alone jumps back and ends with the comparison of a counter with a constant; the
-//! counter is incremented by a constant in that block only, and its first value is known. Then the number of iterations
-//! is known, and their copies need no test between them. Loads, stores and calls keep their number and order. The
-//! values that an iteration of one block writes get new names, so that iterations overlap where the processor can; the
-//! last one writes the old names, which the rest of the function reads.
+//! A loop is unrolled if only its last block jumps back, with the comparison of a counter with a constant; the counter
+//! is incremented by a constant in that block only, and its initial value is known. Then the trip count is known, and
+//! the copies need no test between them. Loads, stores and calls keep their number and order. The values written by an
+//! iteration of a single block get new names, so that iterations can overlap on the processor; the last one writes the
+//! old names, which the rest of the function reads.
 
 use cranelift_entity::SecondaryMap;
 
@@ -21,17 +21,17 @@ const MAX_FULL_UNROLL_INSTS: u32 = 120;
 const MAX_FULL_UNROLL_TRIPS: u32 = 32;
 /// The most instructions of a partly unrolled loop.
 const MAX_PARTIAL_UNROLL_INSTS: u32 = 96;
-/// The most instructions of a partly unrolled loop of one block, whose iterations overlap anyway.
+/// The limit of instructions in a partly unrolled single-block loop, whose iterations overlap anyway.
 const MAX_PARTIAL_UNROLL_INSTS_OF_ONE_BLOCK: u32 = 40;
 /// The most iterations that become one.
 const MAX_UNROLL_FACTOR: u32 = 8;
-/// The largest function, in instructions, whose loops grow.
+/// The size limit of functions with unrolled loops, in instructions.
 const MAX_FUNCTION_INSTS: usize = 3000;
 
 /// Unrolls loops; returns whether anything changed.
 pub fn run(function: &mut Function) -> bool {
     let mut is_changed = false;
-    // Every loop is looked at once; those that were unrolled are not again.
+    // Every loop is visited once; unrolled loops are not visited again.
     let mut done: Vec<BlockId> = Vec::new();
     loop {
         let size: usize = function.layout.iter().map(|id| function.blocks[*id].insts.len() + 1).sum();
@@ -52,7 +52,7 @@ pub fn run(function: &mut Function) -> bool {
             Unroller::new(function, range).run(plan);
             is_changed = true;
             if plan.is_whole {
-                // What is left may make an outer loop one block.
+                // The rest may turn an outer loop into a single block.
                 super::jumps::run(function);
                 super::fold::run(function);
                 super::jumps::run(function);
@@ -64,7 +64,7 @@ pub fn run(function: &mut Function) -> bool {
 /// The unrolling of a loop.
 #[derive(Clone, Copy, Debug)]
 struct Plan {
-    /// Iterations before the loop, or all of them.
+    /// The number of iterations before the loop, or of all iterations.
     before: u32,
     /// Iterations of the old loop in one of the new loop.
     copies: u32,
@@ -88,7 +88,7 @@ fn plan(function: &Function, places: &SecondaryMap<BlockId, u32>, range: LoopRan
         if blocks.len() == 1 { MAX_PARTIAL_UNROLL_INSTS_OF_ONE_BLOCK } else { MAX_PARTIAL_UNROLL_INSTS };
     let fits = |copies: &u32| (copies + trips % copies) * size <= most && trips >= 2 * copies;
     let copies = (2..=MAX_UNROLL_FACTOR).rev().filter(fits);
-    // One that leaves nothing over is better, unless it is much smaller.
+    // A divisor of the trip count is better, unless it is much smaller.
     let copies = copies.max_by_key(|copies| if trips % copies == 0 { 2 * copies } else { *copies })?;
     Some(Plan { before: trips % copies, copies, is_whole: false })
 }
@@ -179,7 +179,7 @@ struct Unroller<'a> {
     range: LoopRange,
     /// The present name of each value that an iteration writes.
     names: SecondaryMap<ValueId, Option<ValueId>>,
-    /// The block alone that mentions a value, which it writes first.
+    /// The only block that mentions a value, if it writes the value first.
     own: SecondaryMap<ValueId, Option<BlockId>>,
 }
 
@@ -283,7 +283,7 @@ impl<'a> Unroller<'a> {
         }
     }
 
-    /// Copies an iteration of a loop of one block; the last writes of the last iteration keep their old names.
+    /// Copies an iteration of a single-block loop; the last writes of the last iteration keep their old names.
     fn iteration(&mut self, body: &[Inst], is_last: bool, out: &mut Vec<Inst>) {
         for (index, inst) in body.iter().enumerate() {
             let mut inst = *inst;
@@ -351,7 +351,7 @@ fn back_to(mut terminator: Terminator, outside: BlockId, back: BlockId) -> Termi
     terminator
 }
 
-/// For each value the block that alone mentions it, if it writes it before it reads it.
+/// For each value, the only block that mentions it, if the block writes it before it reads it.
 fn own(function: &Function) -> SecondaryMap<ValueId, Option<BlockId>> {
     let mut own: SecondaryMap<ValueId, Option<BlockId>> = table(function.values.len());
     let mut shared: SecondaryMap<ValueId, bool> = table(function.values.len());

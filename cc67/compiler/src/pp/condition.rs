@@ -1,7 +1,7 @@
 //! The expressions of `#if`.
 //!
-//! They are computed in 64 bits, signed unless an operand is unsigned, as C99 says. Operands
-//! that `&&`, `||` and `?:` do not need are parsed but cannot divide by zero.
+//! They are computed in 64 bits, signed unless an operand is unsigned, as in C99. Operands that `&&`, `||` and `?:` do
+//! not evaluate are parsed, but cannot divide by zero.
 
 use crate::diag::Diagnostic;
 use crate::names::word;
@@ -37,13 +37,13 @@ impl ConditionValue {
 /// Says that the expression was reported to be wrong.
 struct Reported;
 
-/// The binding of `,`, looser than that of any operator.
+/// The precedence of `,`, lower than that of any operator.
 const COMMA: u8 = 0;
 
 type Evaluated = Result<ConditionValue, Reported>;
 
 impl Preprocessor<'_> {
-    /// The truth of the expression on the rest of the line; false, with an error, if it is none.
+    /// The truth of the expression on the rest of the line; false, with an error, if it is not an expression.
     pub(super) fn condition(&mut self, directive: Span) -> bool {
         let tokens = self.condition_tokens();
         if tokens.is_empty() {
@@ -130,7 +130,7 @@ impl Parser<'_, '_> {
         Ok(value)
     }
 
-    /// Operators that bind at least as tight as `least`.
+    /// Operators of at least the precedence `least`.
     fn binary(&mut self, least: u8) -> Evaluated {
         let mut left = self.unary()?;
         while let Some(token) = self.peek() {
@@ -274,7 +274,7 @@ impl Parser<'_, '_> {
         Ok(ConditionValue { bits, is_unsigned })
     }
 
-    /// Parses something whose value counts only under a condition.
+    /// Parses an operand that is only evaluated under a condition.
     fn when(&mut self, is_needed: bool, parse: impl Fn(&mut Self) -> Evaluated) -> Evaluated {
         let outer = self.is_evaluated;
         self.is_evaluated &= is_needed;

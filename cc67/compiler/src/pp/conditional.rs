@@ -15,7 +15,7 @@ pub(super) struct Conditional {
     opener: Span,
     /// A branch was taken; the rest are skipped.
     is_taken: bool,
-    /// The `#else`, after which only `#endif` may come.
+    /// The position of `#else`, after which only `#endif` may follow.
     else_at: Option<Span>,
 }
 
@@ -26,7 +26,7 @@ impl Preprocessor<'_> {
         self.open_conditional(span, condition);
     }
 
-    /// `#ifdef name` and, for `wanted` false, `#ifndef name`
+    /// `#ifdef name` or, if `wanted` is false, `#ifndef name`
     pub(super) fn open_ifdef(&mut self, span: Span, wanted: bool) {
         let Some(name) = self.macro_name(if wanted { "ifdef" } else { "ifndef" }) else {
             return self.open_conditional(span, false);
@@ -90,7 +90,7 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// The innermost `#if`, for a further branch of it; reports one that cannot come here.
+    /// The innermost `#if` for a further branch; reports a branch that is not allowed here.
     fn check_branch(&mut self, span: Span, directive: &str) -> Option<Conditional> {
         let conditional = self.open.last().and_then(|file| file.conditionals.last()).copied();
         let Some(conditional) = conditional else {
@@ -107,7 +107,7 @@ impl Preprocessor<'_> {
         Some(conditional)
     }
 
-    /// Notes what a further branch means for those after it.
+    /// Records a further branch for the branches after it.
     fn note_branch(&mut self, span: Span, is_else: bool) {
         let Some(file) = self.open.last_mut() else { return };
         if file.conditionals.len() == 1 {

@@ -14,7 +14,7 @@ const DIRECTIVES: &[&str] = &[
     "pragma", "line",
 ];
 
-/// Pragmas of compilers that programs are also written for.
+/// Pragmas of other compilers for which programs are also written.
 const KNOWN_PRAGMAS: &[&str] = &["TI_COMPILER", "once", "push_macro", "pop_macro"];
 
 impl Preprocessor<'_> {
@@ -36,7 +36,7 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// Skips what is left of a directive's line.
+    /// Skips the rest of a directive's line.
     pub(super) fn finish_line(&mut self) {
         if let Some((lexer, mut cx)) = self.lexer() {
             lexer.skip_line(&mut cx);
@@ -105,7 +105,7 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// The name that `#define`, `#undef` or `#ifdef` is about.
+    /// The name in `#define`, `#undef` or `#ifdef`.
     pub(super) fn macro_name(&mut self, directive: &str) -> Option<Token> {
         let token = self.directive_token();
         if token.kind == TokenKind::Identifier && token.name != word::DEFINED {

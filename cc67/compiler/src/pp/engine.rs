@@ -1,8 +1,7 @@
 //! The preprocessor's state and its main loop.
 //!
-//! Tokens come from two stacks: the expansions being read ([`super::expand`]) and, when there
-//! are none, the files being read. A line that begins with `#` is acted on as soon as its
-//! first token is met, and never seen by anyone else.
+//! Tokens come from two stacks: the expansions being read ([`super::expand`]) and, if there are none, the files being
+//! read. A line that begins with `#` is executed as soon as its first token is read, and never passed on.
 
 use std::path::PathBuf;
 
@@ -20,13 +19,13 @@ use super::search::FileReader;
 use super::token::{Flags, Token, TokenKind};
 use super::{Files, Headers, HeadersRead, Options, limits};
 
-/// Room for the tokens of a usual program and its headers; what is not filled is never touched.
+/// Room for the tokens of a usual program and its headers; unused room is never touched.
 const USUAL_TOKENS: usize = 1 << 16;
 
 /// A file being read.
 pub(super) struct OpenFile {
     pub(super) lexer: Lexer,
-    /// Its path, to recognise it when it is included again; none for text without a file.
+    /// Its path, to recognise repeated inclusion; `None` for text without a file.
     pub(super) path: Option<PathBuf>,
     /// The directory that its includes are searched in first.
     pub(super) directory: PathBuf,
@@ -75,10 +74,10 @@ pub(super) struct Preprocessor<'a> {
     pub(super) work: Work,
 }
 
-/// The work done so far, and whether a limit was reached.
+/// The work done so far, and the state of the limits.
 #[derive(Debug, Default)]
 pub(super) struct Work {
-    /// Tokens that macros made.
+    /// The number of tokens made by macros.
     pub(super) expanded: usize,
     /// Macro calls within arguments being expanded.
     pub(super) nesting: usize,
@@ -113,7 +112,7 @@ impl<'a> Preprocessor<'a> {
         }
     }
 
-    /// All tokens of the main file and what it includes, and how much of the headers is among them.
+    /// All tokens of the main file and its includes, and how much of the headers they contain.
     pub(super) fn run(mut self, main: FileId) -> (Vec<Token>, HeadersRead) {
         self.define_predefined();
         let mut output = Vec::with_capacity(USUAL_TOKENS);
@@ -135,7 +134,7 @@ impl<'a> Preprocessor<'a> {
         (output, self.prepared.read())
     }
 
-    /// The next token of the innermost file; directives on the way are obeyed.
+    /// The next token of the innermost file; directives before it are executed.
     pub(super) fn next_of_file(&mut self) -> Token {
         loop {
             let Some(file) = self.open.last_mut() else {
@@ -161,7 +160,7 @@ impl<'a> Preprocessor<'a> {
         }
     }
 
-    /// The innermost file with what its lexer needs.
+    /// The innermost file with its lexer's context.
     pub(super) fn lexer(&mut self) -> Option<(&mut Lexer, LexerContext<'_>)> {
         let file = self.open.last_mut()?;
         Some((&mut file.lexer, LexerContext { names: self.names, sink: self.sink }))

@@ -1,13 +1,11 @@
-//! Macro expansion: which tokens take the place of a macro's name.
+//! Macro expansion: replaces a macro's name by its tokens.
 //!
-//! The replacement of a name is put on a stack of frames and read from there, so that what
-//! follows the call in the file can belong to a macro call that the replacement starts.
-//! While a frame is on the stack its macro is active: its name, met inside, is marked
-//! `NO_EXPAND` and stays a name forever. The active macros are the hide set of the C
+//! The replacement of a name is pushed on a stack of frames and read from there, so that the text after the call in the
+//! file can complete a macro call that the replacement starts. While a frame is on the stack its macro is active: its
+//! name, found inside, is marked `NO_EXPAND` and never expanded. The active macros are the hide set of the C
 //! literature, kept per frame instead of per token.
 //!
-//! Arguments are expanded by themselves before they replace a parameter, in a frame that
-//! nothing can be read beyond.
+//! Arguments are expanded separately before they replace a parameter, in a closed frame.
 
 use crate::diag::Diagnostic;
 use crate::source::{Expansion, ExpansionId, Span};
@@ -26,14 +24,14 @@ pub(super) struct Frame {
     end: usize,
     /// The macro that is active as long as the frame is on the stack.
     active: Option<MacroId>,
-    /// Nothing is read beyond this frame: it holds a macro argument.
+    /// True for a macro argument: nothing is read beyond this frame.
     is_closed: bool,
 }
 
 enum Tokens {
-    /// In the macro's body; what the span and spacing of each become.
+    /// Tokens of a macro's body, with the span and spacing that each gets.
     Body { expansion: ExpansionId, start: usize, spacing: Flags },
-    /// In a list of their own.
+    /// Tokens of a separate list.
     List(Vec<Token>),
 }
 
@@ -121,7 +119,7 @@ impl Preprocessor<'_> {
         self.open.last().is_some_and(|file| file.lexer.is_before_paren())
     }
 
-    /// Expands a name if it is a macro's; otherwise gives it back.
+    /// Expands a name if it is a macro; otherwise returns it.
     fn expand(&mut self, mut token: Token) -> Option<Token> {
         let Some(id) = self.find_macro(token.name) else { return Some(token) };
         if token.flags.has(Flags::NO_EXPAND) {
@@ -172,7 +170,7 @@ impl Preprocessor<'_> {
         self.sources.add_expansion(Expansion { definition, call })
     }
 
-    /// Counts tokens made by macros; false, with an error, when there are too many.
+    /// Counts tokens made by macros; false, with an error, if there are too many.
     pub(super) fn count(&mut self, tokens: usize, call: Span) -> bool {
         self.work.expanded = self.work.expanded.saturating_add(tokens).saturating_add(1);
         if self.work.expanded > limits::EXPANDED_TOKENS {
@@ -215,7 +213,7 @@ pub(super) fn spacing(token: Token) -> Flags {
 }
 
 impl Preprocessor<'_> {
-    /// Expands the call of a function-like macro whose `(` is next.
+    /// Expands the call of a function-like macro before its `(`.
     fn expand_call(&mut self, id: MacroId, name: Token) -> Option<Token> {
         if self.work.nesting >= limits::NESTING {
             let message = format!("macro calls nested deeper than {}", limits::NESTING);
@@ -225,7 +223,7 @@ impl Preprocessor<'_> {
         let (raw, arguments, close) = self.collect_arguments(name)?;
         let call = name.span.to(close);
         let Some(arguments) = self.fit_arguments(id, name, call, &raw, arguments) else {
-            // The call stands for something that was meant to be an operand.
+            // The call was probably meant to be an operand.
             return Some(Token::new(TokenKind::Number, spacing(name).with(Flags::BROKEN), call));
         };
         let expansion = self.add_expansion(id, call);
@@ -251,7 +249,7 @@ impl Preprocessor<'_> {
                 TokenKind::RightParen => depth -= 1,
                 TokenKind::LeftParen => depth += 1,
                 TokenKind::Comma if depth == 0 => {
-                    // The comma stays in the list, between the arguments, for variadic ones.
+                    // The comma remains in the list, between the arguments, for variadic macros.
                     arguments.push(start..tokens.len());
                     start = tokens.len() + 1;
                 }
@@ -274,8 +272,8 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// Reports a call without `)`. What was read is read again as if there were no macro, so that the parser can report
-    /// where the parenthesis is missing.
+    /// Reports a call without `)`. Its tokens are read again as if there were no macro, so that the parser can report
+    /// the position of the missing parenthesis.
     fn unclosed_call(&mut self, name: Token, open: Token, tokens: Vec<Token>) {
         if self.work.is_stopped {
             return;
@@ -288,7 +286,8 @@ impl Preprocessor<'_> {
         self.frames.push(Frame { tokens: Tokens::List(list), at: 0, end, active: None, is_closed: false });
     }
 
-    /// A name inside the expansion of its own macro stays a name, also when it is moved out as an argument.
+    /// Marks a name inside the expansion of its own macro, which is never expanded, even if it is moved out as an
+    /// argument.
     fn mark_active(&self, token: &mut Token) {
         let definition = self.macros.defined(token.name).and_then(|id| self.macros.get(id));
         if definition.is_some_and(|definition| definition.is_active) {

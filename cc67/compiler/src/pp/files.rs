@@ -1,7 +1,6 @@
 //! The preprocessor's access to files.
 //!
-//! Everything it reads goes through [`Files`], so that a test, an editor or a tool that lists dependencies can be
-//! between.
+//! All reads go through [`Files`], so that tests, editors and tools that list dependencies can intercept them.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -21,7 +20,7 @@ pub trait Files {
     /// The names of the entries of a directory, in any order.
     ///
     /// # Errors
-    /// Whatever the file system says; the directory then counts as empty.
+    /// The error of the file system; the directory then counts as empty.
     fn list(&self, directory: &Path) -> io::Result<Vec<String>>;
 }
 
@@ -86,7 +85,7 @@ impl Files for MemoryFiles {
     }
 }
 
-/// The path without `.` and with `..` taken back.
+/// The path with `.` and `..` resolved.
 fn normalized(path: &Path) -> PathBuf {
     let mut result = PathBuf::new();
     for component in path.components() {

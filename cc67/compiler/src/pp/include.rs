@@ -1,10 +1,9 @@
 //! `#include`.
 //!
-//! The order of the search, for a name in quotes: the directory of the including file, each
-//! directory of `-I`, the directory of the main file, the current one; in angle brackets only
-//! `-I`. Then the embedded headers, then the C library's, which are as good as empty.
-//! Backslashes are slashes, letter case does not matter, and a name that begins with a slash
-//! is also looked for below each directory.
+//! The order of the search, for a name in quotes: the directory of the including file, each directory of `-I`, the
+//! directory of the main file, the current one; in angle brackets only `-I`. Then come the embedded headers, then the C
+//! library's, which are effectively empty. Backslashes are slashes, letter case does not matter, and a name that begins
+//! with a slash is also searched for below each directory.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -127,7 +126,7 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// The directories to look in, each once.
+    /// The directories to search, each once.
     fn directories(&self, is_angled: bool) -> Vec<PathBuf> {
         let including = self.open.last().map(|file| file.directory.clone());
         let before = including.into_iter().filter(|_| !is_angled);
@@ -242,7 +241,7 @@ impl Preprocessor<'_> {
         if header.is_angled && directories.is_empty() {
             diagnostic = diagnostic.note("names in `<>` are searched for only in the directories of `-I`");
         }
-        // What headers of C++ declare gets messages of its own.
+        // Names from C++ headers get their own messages.
         if header.is_angled && !file_name.contains('.') {
             self.sink.report(diagnostic.help("headers of C++ do not exist here; leave it out"));
             return;
@@ -262,8 +261,7 @@ impl Preprocessor<'_> {
 /// Files with functions that the vendor's software brings and many programs include.
 const VENDOR_HELPERS: &[&str] = &["KflopToKMotionCNCFunctions.c", "KflopToMach3Functions.c"];
 
-/// The path that a header of the compiler counts as: no directory can hold one with a NUL in it, so that it never meets a
-/// real file.
+/// The pseudo path of a built-in header: it contains a NUL, so it never equals the path of a real file.
 pub(super) fn embedded_path(name: &str) -> PathBuf {
     PathBuf::from(format!("\0{}", name.to_ascii_lowercase()))
 }

@@ -1,9 +1,8 @@
-//! Bytes to tokens, one at a time.
+//! Converts bytes to tokens, one at a time.
 //!
-//! The lexer works on bytes and never copies them. It is lazy because what a byte means
-//! depends on the directives: text left out by `#if` need not consist of tokens, and the
-//! text of `#error` is just text. A backslash at the end of a line joins it with the next
-//! anywhere, which only the slow paths know: the fast ones stop at any backslash.
+//! The lexer works on bytes and never copies them. It is lazy because the meaning of a byte depends on the directives:
+//! text skipped by `#if` need not consist of tokens, and the text of `#error` is plain text. A backslash at the end of
+//! a line joins it with the next, which only the slow paths handle: the fast ones stop at any backslash.
 //!
 //! Files come from Windows tools: a lone carriage return is white space, a `//` comment that
 //! ends in a backslash (a path) is not continued, a string may run over several lines.
@@ -45,7 +44,7 @@ pub(super) struct Lexer {
     is_line_start: bool,
     /// A line feed ends the tokens and is not consumed.
     pub(super) in_directive: bool,
-    /// Splices before this offset have been complained about.
+    /// Splices before this offset have been reported.
     checked_splices: usize,
     /// Bytes that need only one complaint a file had theirs.
     complained: foreign::Complained,
@@ -55,7 +54,7 @@ impl Lexer {
     /// A lexer at the start of a file.
     pub(super) fn new(text: Arc<Vec<u8>>, base: u32) -> Self {
         let at = if text.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 };
-        // A Ctrl-Z ended text files once; behind it only padding may follow.
+        // A Ctrl-Z used to end text files; only padding may follow it.
         let padding =
             text.iter().rev().take_while(|byte| matches!(byte, 0x1A | 0) || byte.is_ascii_whitespace());
         let tail = text.len() - padding.count();
@@ -94,7 +93,7 @@ impl Lexer {
         self.span_to(self.at, self.at)
     }
 
-    /// Reads a token. At the end of the file or, in a directive, of the line: `End`, again and again.
+    /// Reads a token. At the end of the file or, in a directive, of the line: repeatedly `End`.
     pub(super) fn next(&mut self, cx: &mut LexerContext<'_>) -> Token {
         loop {
             let flags = self.skip_space(cx);
@@ -141,7 +140,7 @@ impl Lexer {
         }
     }
 
-    /// Reports whether the next byte is `(`, which makes a definition that of a function-like macro.
+    /// Reports whether the next byte is `(`, which makes a definition a function-like macro.
     pub(super) fn is_at_paren(&self) -> bool {
         self.byte(self.past_splices(self.at)) == b'('
     }
@@ -196,7 +195,7 @@ impl Lexer {
         } else {
             cx.names.intern_hashed(self.bytes(lo, self.at), hash)
         };
-        // The bytes were looked at one by one: letters, digits and underscores.
+        // Every byte was checked to be a letter, a digit or an underscore.
         let name = name.unwrap_or(word::FUNC);
         Token { kind: TokenKind::Identifier, flags, name, span: self.span_from(lo) }
     }

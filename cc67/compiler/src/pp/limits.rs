@@ -1,6 +1,6 @@
 //! The limits of the preprocessor.
 //!
-//! Every limit is far above the needs of a program for the board, and is a number in the message about it. They keep
+//! Every limit is far above the needs of a program for the board, and is given in its error message. The limits keep
 //! hostile text from exhausting memory, time or the stack.
 
 use crate::files;
@@ -14,17 +14,17 @@ pub const INCLUDES: usize = 20_000;
 /// Bytes of one file.
 pub const FILE_BYTES: u32 = files::SOURCE_BYTES;
 
-/// Bytes of all files together, each inclusion counted.
+/// The size limit of all files together, counting each inclusion.
 pub const TOTAL_BYTES: u32 = 64 << 20;
 
-/// Tokens of a translation unit after preprocessing. The densest source, string constants as statements, takes 350
-/// bytes for each through all stages, so this is what keeps the compiler below a gigabyte.
+/// The limit of tokens in a translation unit after preprocessing. The densest source, string constants as statements,
+/// takes 350 bytes of memory per token through all stages, so this keeps the compiler below a gigabyte.
 pub const TOKENS: usize = 2_000_000;
 
 /// Tokens that macros put in place of their names, in one translation unit.
 pub const EXPANDED_TOKENS: usize = 2_000_000;
 
-/// Bytes of a token made by `#` or `##`.
+/// The size limit of a token made by `#` or `##`.
 pub const MADE_BYTES: usize = 1 << 20;
 
 /// Macro calls within arguments of macro calls, and parentheses within `#if` expressions.

@@ -9,7 +9,7 @@ use crate::source::Span;
 
 use super::token::Token;
 
-/// A definition; redefining a name makes a new one.
+/// A definition; redefining a name creates a new one.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct MacroId(u32);
 entity_impl!(MacroId, "macro");
@@ -17,24 +17,24 @@ entity_impl!(MacroId, "macro");
 /// A definition.
 #[derive(Debug)]
 pub(super) struct Macro {
-    /// The name where it is defined.
+    /// The name at its definition.
     pub(super) definition: Span,
     /// The parameters of a function-like macro.
     pub(super) parameters: Option<Parameters>,
     /// The body, in [`Macros::body_token`].
     pub(super) body: Range<usize>,
-    /// The body has no parameters and no `##`, so that it can be read where it lies.
+    /// True if the body has no parameters and no `##`, so that it can be read in place.
     pub(super) is_plain: bool,
     /// The computation of the value in place of a body.
     pub(super) builtin: Option<Builtin>,
-    /// Its expansion is being read, so that its name means nothing.
+    /// True while its expansion is being read, so that its name is not expanded.
     pub(super) is_active: bool,
 }
 
 /// The parameters of a function-like macro.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Parameters {
-    /// Their names; the last one of a variadic macro is `__VA_ARGS__` or the user's name for it.
+    /// The parameter names; the last one of a variadic macro is `__VA_ARGS__` or the user's name for it.
     pub(super) names: Vec<Name>,
     /// The last parameter takes all remaining arguments.
     pub(super) is_variadic: bool,
@@ -54,12 +54,12 @@ pub(super) enum Builtin {
 /// The meaning of a name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Standing {
-    /// Not looked up yet: it may be the name of a macro that is defined before the program begins.
+    /// Not looked up yet: it may be the name of a predefined macro.
     #[default]
     Unknown,
-    /// No text that was read so far defines it.
+    /// It is not defined in any text read so far.
     Free,
-    /// Its definition was taken back.
+    /// It was undefined.
     Undefined,
     /// The definition in force.
     Defined(MacroId),
@@ -91,7 +91,7 @@ impl Macros {
         *self.slot(name) = Standing::Free;
     }
 
-    /// Forgets which names no text defines: there are more texts now.
+    /// Drops the knowledge of undefined names, because there are more texts now.
     pub(super) fn forget_free(&mut self) {
         for standing in self.current.values_mut().filter(|standing| **standing == Standing::Free) {
             *standing = Standing::Unknown;
@@ -128,12 +128,12 @@ impl Macros {
         *self.slot(name) = Standing::Undefined;
     }
 
-    /// Puts the definition of a name aside, or that there is none.
+    /// Saves the definition of a name, or the fact that there is none.
     pub(super) fn save(&mut self, name: Name) {
         self.saved.push((name, self.standing(name)));
     }
 
-    /// Puts the definition in force that was put aside last; nothing if there is none.
+    /// Restores the definition that was saved last, if there is one.
     pub(super) fn restore(&mut self, name: Name) {
         if let Some(at) = self.saved.iter().rposition(|(saved, _)| *saved == name) {
             *self.slot(name) = self.saved.remove(at).1;

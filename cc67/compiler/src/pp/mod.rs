@@ -1,14 +1,12 @@
 //! The preprocessor: source files in, tokens out.
 //!
-//! It is our own because programs for the board come from Windows editors and a lax compiler:
-//! backslashes and the wrong letter case in includes, a missing quote, `//` comments that end
-//! in a path, bytes of any code page. Every token keeps the position it was written at, and
-//! the macros it came through.
+//! It is our own because programs for the board come from Windows editors and a lax compiler: backslashes and the wrong
+//! letter case in includes, a missing quote, `//` comments that end in a path, bytes of any code page. Every token
+//! keeps its position in the source, and the macros from which it comes.
 //!
-//! Layers, each knowing only those before it: `token`, `lexer` (bytes to tokens), `macros`
-//! (what is defined), `expand` (tokens to tokens), `directive` and `condition` (lines that
-//! begin with `#`), `include` (files). [`number`] and [`quoted`] read what literals mean, for
-//! `#if` here and for the parser.
+//! Layers, each depending only on those before it: `token`, `lexer` (bytes to tokens), `macros` (definitions), `expand`
+//! (tokens to tokens), `directive` and `condition` (lines that begin with `#`), `include` (files). [`number`] and
+//! [`quoted`] compute the values of literals, for `#if` here and for the parser.
 
 #![cfg_attr(
     not(test),
@@ -70,11 +68,11 @@ pub struct Options {
     pub undefines: Vec<String>,
     /// Headers that are there when no directory has them: name and text.
     pub embedded: &'static [(&'static str, &'static [u8])],
-    /// The standard of C that the program is written in.
+    /// The C standard of the program.
     pub standard: Standard,
 }
 
-/// The standard of C that a program is written in, as far as it makes a difference.
+/// The C standard of a program, as far as it makes a difference.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Standard {
     /// The vendor's compiler: the rules of 1990 for constants.
@@ -129,14 +127,14 @@ pub enum HeadersRead {
     /// Without the declarations that the program does not name. The result is the same as long as the program has no
     /// errors.
     Partly,
-    /// Less than needed: the result means nothing.
+    /// Less than needed: the result is not valid.
     TooLittle,
 }
 
-/// Preprocesses a file of `sources` with everything it includes; the last token is `End`.
+/// Preprocesses a file of `sources` with all of its includes; the last token is `End`.
 ///
-/// What is wrong goes to `sink`. After a limit was exceeded or too many errors were found the
-/// tokens are those up to that place, and the `End` is `BROKEN`; so it is after a comment without an end.
+/// Errors are reported to `sink`. If a limit is exceeded or there are too many errors, the tokens end there, and the
+/// `End` is `BROKEN`; the same after an unterminated comment.
 pub fn preprocess(
     main: FileId,
     options: &Options,
@@ -148,7 +146,7 @@ pub fn preprocess(
     preprocess_as(Headers::Whole, main, options, files, sources, names, sink).0
 }
 
-/// Preprocesses a program; the board's headers may be read in part.
+/// Preprocesses a program; only a part of the board's headers may be read.
 pub fn preprocess_as(
     headers: Headers,
     main: FileId,

@@ -1,7 +1,7 @@
 //! The values of preprocessing numbers.
 //!
 //! Integers are decimal, octal, hexadecimal or binary, floating constants decimal or hexadecimal. A floating constant
-//! is rounded once, to the type its suffix gives it.
+//! is rounded once, to the type given by its suffix.
 
 use std::ops::Range;
 
@@ -26,7 +26,7 @@ pub enum Number {
 pub struct Problem {
     /// The finding.
     pub message: String,
-    /// The bytes of the text that it is about.
+    /// The bytes of the text that it refers to.
     pub range: Range<usize>,
     /// The replacement.
     pub help: Option<String>,
@@ -115,7 +115,7 @@ fn decimal_floating(text: &[u8]) -> Result<Number, Problem> {
     }
     let is_single = floating_suffix(text, at)?;
     let digits = text.get(..at).and_then(|digits| std::str::from_utf8(digits).ok()).unwrap_or_default();
-    // The standard library rounds correctly, and to `f32` directly, not by way of `f64`.
+    // The standard library rounds correctly, and directly to `f32` instead of through `f64`.
     let value = if is_single { digits.parse::<f32>().map(f64::from) } else { digits.parse::<f64>() };
     match value {
         Ok(value) => Ok(Number::Floating(FloatingLiteral { value, is_single })),
@@ -184,7 +184,7 @@ impl Mantissa {
         }
         let exponent = self.exponent.saturating_add(exponent);
         let length = i64::from(64 - self.bits.leading_zeros());
-        // How many low bits do not fit: because the number is long, or because it is tiny.
+        // The number of low bits that do not fit, because the number is long or tiny.
         let drop = (length - i64::from(bits)).max(lowest.saturating_sub(exponent)).max(0);
         let Some(drop) = u32::try_from(drop).ok().filter(|drop| *drop <= 64) else { return 0.0 };
         let kept = self.bits.checked_shr(drop).unwrap_or(0);
@@ -299,7 +299,7 @@ mod tests {
         check("0.1f", f64::from(0.1_f32), true);
         check("1e400", f64::INFINITY, false);
         check("1.0L", 1.0, false);
-        // A double rounding by way of `double` would give 1.0.
+        // Double rounding through `double` would give 1.0.
         check("1.00000005960464485f", f64::from(1.000_000_1_f32), true);
     }
 

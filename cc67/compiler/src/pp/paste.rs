@@ -1,4 +1,4 @@
-//! `#` and `##`: tokens that are made, not written.
+//! `#` and `##`: tokens that are made by the preprocessor.
 
 use std::sync::Arc;
 
@@ -40,7 +40,7 @@ impl Preprocessor<'_> {
         Token::new(TokenKind::String, Flags::NONE, span)
     }
 
-    /// Appends the token that `first` and `second` make together, or both if they make none.
+    /// Appends the token formed by `first` and `second`, or both if they do not form one.
     pub(super) fn paste(
         &mut self,
         output: &mut Vec<Token>,

@@ -1,8 +1,8 @@
-//! Macros that are there before the first line.
+//! Macros that are defined before the first line.
 //!
-//! Most of them are those of `predefined.h`, which are read when they are met ([`super::prepared`]): first what makes
-//! programs for other compilers compile, then what GCC defines about its types, and its names for functions of the C
-//! library. Date and time are fixed, so that the same source always gives the same program.
+//! Most of them are in `predefined.h`, which are read on first use ([`super::prepared`]): first macros that make
+//! programs for other compilers compile, then GCC's definitions about its types, and its names for functions of the C
+//! library. Date and time are fixed, so that the same source always yields the same program.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use super::engine::{OpenFile, Preprocessor};
 use super::lexer::Lexer;
 
 impl Preprocessor<'_> {
-    /// Makes the predefined macros known and defines those of the command line.
+    /// Makes the predefined macros available and defines those of the command line.
     pub(super) fn define_predefined(&mut self) {
         self.begin_predefined(self.options.standard.macros());
         let one_line = |text: &String| text.replace(['\n', '\r'], " ");
@@ -33,7 +33,7 @@ impl Preprocessor<'_> {
         self.open.clear();
     }
 
-    /// Puts a file on the stack of those being read.
+    /// Pushes a file on the stack of files being read.
     pub(super) fn open_file(&mut self, file: FileId, path: Option<PathBuf>, directory: PathBuf) {
         let source = self.sources.file(file);
         let lexer = Lexer::new(Arc::clone(&source.text), source.start);

@@ -12,7 +12,7 @@ pub struct Problem {
     pub kind: ProblemKind,
     /// The finding.
     pub message: String,
-    /// The bytes of the text that it is about.
+    /// The bytes of the text that it refers to.
     pub range: Range<usize>,
     /// The replacement.
     pub help: Option<String>,
@@ -23,11 +23,11 @@ pub struct Problem {
 pub enum ProblemKind {
     /// The program is wrong.
     Error,
-    /// The value is the one that the vendor's compiler takes.
+    /// The value is the same as with the vendor's compiler.
     Warning,
 }
 
-/// The elements that a string in its quotes has in an encoding, and what is wrong with them.
+/// The elements of a quoted string in an encoding, and its errors.
 #[must_use]
 pub fn string(text: &[u8], encoding: Encoding) -> (Vec<i32>, Vec<Problem>) {
     let mut problems = Vec::new();
@@ -35,7 +35,7 @@ pub fn string(text: &[u8], encoding: Encoding) -> (Vec<i32>, Vec<Problem>) {
     (elements, problems)
 }
 
-/// The value of a character constant in its quotes, and what is wrong with it.
+/// The value of a quoted character constant, and its errors.
 #[must_use]
 pub fn character(text: &[u8]) -> (i32, Vec<Problem>) {
     let mut problems = Vec::new();
@@ -75,7 +75,7 @@ fn decode(text: &[u8], encoding: Encoding, problems: &mut Vec<Problem>) -> Vec<i
     while at < end {
         let Some(byte) = text.get(at) else { break };
         if *byte != b'\\' {
-            // A string over several lines of a Windows file has the line feeds only.
+            // A string over several lines of a Windows file only contains the line feeds.
             if *byte == b'\r' && text.get(at + 1) == Some(&b'\n') {
                 at += 1;
             } else {
@@ -100,7 +100,7 @@ fn decode(text: &[u8], encoding: Encoding, problems: &mut Vec<Problem>) -> Vec<i
     elements
 }
 
-/// Reads one character unchanged; returns its length. Bytes that are not UTF-8 stand for themselves, as in latin-1.
+/// Reads one ordinary character; returns its length. Bytes that are not UTF-8 represent themselves, as in Latin-1.
 fn plain(text: &[u8], encoding: Encoding, elements: &mut Vec<i32>) -> usize {
     let byte = text.first().copied().unwrap_or(0);
     let length = match byte {

@@ -11,9 +11,9 @@ use super::Files;
 
 /// The result of searching a name.
 pub(super) enum Found {
-    /// A file; its real spelling may be another one than was requested.
+    /// A file, possibly with another spelling than requested.
     File { path: PathBuf, text: Arc<Vec<u8>>, is_respelled: bool },
-    /// Names that differ from the requested one, and from each other, in letter case only.
+    /// Names that differ from the requested one, and from each other, only in letter case.
     Ambiguous(Vec<PathBuf>),
     /// A file that cannot be read.
     Unreadable(PathBuf, io::Error),
@@ -42,7 +42,7 @@ impl<'a> FileReader<'a> {
         }
     }
 
-    /// Remembers that a file gives nothing while `guard` is defined.
+    /// Records that a file yields nothing while `guard` is defined.
     pub(super) fn set_guard(&mut self, path: PathBuf, guard: Name) {
         self.guards.insert(path, guard);
     }

@@ -1,8 +1,8 @@
 //! Headers of the C library.
 //!
-//! No header but the vendor's exists for the board; yet programs that were tried on a PC first include them. They say
-//! what the firmware offers, and what our own C library adds (`driver/library`). All may be beside the vendor's
-//! header. The others are taken as if empty, because the compiler knows the board's functions.
+//! For the board only the vendor's header exists; but programs that were first tried on a PC include others. They
+//! declare the functions of the firmware, and those added by our own C library (`driver/library`). All can be combined
+//! with the vendor's header. Other headers are treated as empty, because the compiler knows the board's functions.
 
 macro_rules! headers {
     ($($name:literal)*) => {
@@ -15,7 +15,7 @@ headers! {
     "stdarg.h" "stdbool.h" "stddef.h" "stdint.h" "stdio.h" "stdlib.h" "stdnoreturn.h" "string.h" "wchar.h"
 }
 
-/// Headers of other systems without a use here.
+/// Headers of other systems that are not needed here.
 const EMPTY: &[&str] = &["locale.h", "memory.h", "signal.h", "strings.h", "tgmath.h", "time.h"];
 
 /// The text of a standard header, if `name` is one.

@@ -14,7 +14,7 @@ use super::token::{Flags, Token, TokenKind};
 struct MacroArguments<'a> {
     raw: &'a [Token],
     ranges: &'a [Range<usize>],
-    /// Each with its macros expanded, once that was needed.
+    /// The arguments with their macros expanded, once needed.
     expanded: Vec<Option<Vec<Token>>>,
 }
 
@@ -123,7 +123,7 @@ impl Preprocessor<'_> {
         None
     }
 
-    /// Reports whether the rest of the arguments has tokens once its macros are expanded.
+    /// Reports whether the variable arguments have tokens after macro expansion.
     fn has_rest(&mut self, rest: usize, arguments: &mut MacroArguments<'_>) -> bool {
         let mut tokens = Vec::new();
         self.append_expanded(&mut tokens, rest, arguments);
@@ -186,7 +186,7 @@ impl Preprocessor<'_> {
             output.extend_from_slice(raw);
         }
         for token in output.iter_mut().skip(start) {
-            // What was the start of a line in the file is a blank in the replacement.
+            // The start of a line in the file is a blank in the replacement.
             if token.flags.has(Flags::LINE_START) {
                 token.flags = token.flags.without(Flags::LINE_START).with(Flags::SPACE);
             }
@@ -204,7 +204,7 @@ impl Preprocessor<'_> {
     ) {
         let is_comma = output.last().is_some_and(|token| token.kind == TokenKind::Comma);
         if is_rest && is_comma {
-            // GNU: the comma before an empty rest of the arguments is dropped, else nothing is joined.
+            // GNU: the comma before empty variable arguments is dropped; otherwise nothing is joined.
             if arguments.raw(operand.parameter()).is_empty() {
                 output.pop();
             } else {

@@ -1,8 +1,8 @@
 //! Preprocessing tokens.
 //!
-//! A token is twenty bytes and `Copy`: its kind, the name of an identifier, and the span where
-//! its text stands. Text made by the preprocessor (joined and quoted tokens) is in the
-//! source map's scratch space, so that a span is enough for every token.
+//! A token is twenty bytes and `Copy`: its kind, the name of an identifier, and the span of its text. Text made by the
+//! preprocessor (joined and quoted tokens) is in the source map's scratch space, so that a span is enough for every
+//! token.
 
 use std::borrow::Cow;
 
@@ -56,13 +56,13 @@ pub struct Flags(u8);
 impl Flags {
     /// Nothing.
     pub const NONE: Self = Self(0);
-    /// White space or a comment comes before it.
+    /// White space or a comment precedes it.
     pub const SPACE: Self = Self(1);
     /// It is the first of its line.
     pub const LINE_START: Self = Self(1 << 1);
-    /// A macro name met inside its own expansion; it is never expanded again.
+    /// A macro name found in its own expansion; it is never expanded.
     pub const NO_EXPAND: Self = Self(1 << 2);
-    /// Its text contains a backslash and newline that do not belong to it.
+    /// Its text contains a line splice, which does not belong to it.
     pub const SPLICED: Self = Self(1 << 3);
     /// It was diagnosed already; its value is meaningless.
     pub const BROKEN: Self = Self(1 << 4);
@@ -91,7 +91,7 @@ impl Flags {
         self.0 & other.0 != 0
     }
 
-    /// Reports whether anything separates the token from the one before.
+    /// Reports whether the token is separated from the previous one.
     #[must_use]
     pub const fn is_separated(self) -> bool {
         self.has(Self(Self::SPACE.0 | Self::LINE_START.0))
@@ -133,7 +133,7 @@ macro_rules! token_kinds {
 /// A punctuator and its text.
 type Spelled = (&'static [u8], TokenKind);
 
-/// The punctuators, those with the same first byte next to each other, the longest first.
+/// The punctuators, grouped by first byte, the longest first.
 static BY_FIRST_BYTE: [Spelled; TokenKind::PUNCTUATORS.len()] = by_first_byte();
 
 /// For each byte, which of them begin with it.
@@ -164,7 +164,7 @@ const fn by_first_byte() -> [Spelled; TokenKind::PUNCTUATORS.len()] {
     sorted
 }
 
-/// Reports whether a punctuator comes before another one.
+/// Reports whether a punctuator is ordered before another one.
 #[expect(clippy::indexing_slicing, reason = "runs when the compiler is built")]
 const fn is_before(text: &[u8], other: &[u8]) -> bool {
     text[0] < other[0] || text[0] == other[0] && text.len() > other.len()

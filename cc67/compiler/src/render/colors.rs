@@ -1,6 +1,6 @@
 //! The colours of a diagnostic, as escape sequences of ANSI.
 //!
-//! What writes them knows no terminal: who prints the text decides whether it is coloured.
+//! The renderer is independent of the terminal: the caller that prints the text decides whether it is coloured.
 
 use std::io::{Result, Write};
 
@@ -80,7 +80,7 @@ impl WriteStyle for Colored {
     }
 }
 
-/// The colour of how grave something is.
+/// The colour of a severity.
 const fn hue(severity: Severity) -> Hue {
     match severity {
         Severity::Bug | Severity::Error => Hue::Red,

@@ -1,9 +1,8 @@
 //! Diagnostics with their source lines, for people at a terminal.
 //!
-//! The reader is shown the place in the program: for text that came through a macro that is
-//! the call, with the macro's own text beside it; for a header the `#include`s that led to it
-//! follow. Source text is shown byte for byte as far as it is UTF-8 and cannot upset a
-//! terminal; other bytes become question marks, so that every range keeps its place.
+//! The position shown is the one in the program: for text from a macro that is the call, together with the macro's own
+//! text; for a header the chain of `#include`s follows. Source text is shown byte for byte as far as it is UTF-8 and
+//! harmless to a terminal; other bytes become question marks, so that every range keeps its position.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -130,7 +129,7 @@ impl<'a> Files<'a> for Renderer<'_> {
     }
 }
 
-/// The text with as many bytes, all of them harmless.
+/// The text with the same number of bytes, all of them harmless.
 fn printable(text: &[u8]) -> String {
     let mut result = String::with_capacity(text.len());
     for chunk in text.utf8_chunks() {

@@ -1,7 +1,7 @@
 //! The ranges and explanations of a diagnostic, for every format.
 //!
-//! Text that came through a macro is marked at the call, with the macro's own text beside it;
-//! for a header the `#include`s that led to it follow.
+//! Text from a macro is marked at the call, together with the macro's own text; for a header the chain of `#include`s
+//! follows.
 
 use std::ops::Range;
 
@@ -23,7 +23,7 @@ pub(super) struct Mark {
     pub(super) range: Range<usize>,
     /// True for the primary range, false for one that explains it.
     pub(super) is_primary: bool,
-    /// The message; may be empty.
+    /// The message, which may be empty.
     pub(super) message: String,
 }
 
@@ -43,7 +43,7 @@ pub(super) fn marks(diagnostic: &Diagnostic, sources: &SourceMap) -> Vec<Mark> {
     marks
 }
 
-/// The explanations of a diagnostic, those about its place first.
+/// The explanations of a diagnostic, beginning with those about its position.
 pub(super) fn notes(diagnostic: &Diagnostic, sources: &SourceMap) -> Vec<String> {
     let mut notes = diagnostic.span.map_or_else(Vec::new, |span| included_from(span, sources));
     notes.extend(diagnostic.notes.iter().cloned());
@@ -59,7 +59,7 @@ fn mark(span: Span, message: &str, sources: &SourceMap) -> Option<Mark> {
     Some(Mark { file, range, is_primary: false, message: message.to_owned() })
 }
 
-/// The places in macro bodies that the text came from, the innermost first.
+/// The positions in macro bodies from which the text comes, the innermost first.
 fn macro_marks(span: Span, sources: &SourceMap) -> Vec<Mark> {
     let mut marks = Vec::new();
     let mut span = span;

@@ -1,10 +1,9 @@
 //! Diagnostics for the controller's own PC software, in the form of its compiler.
 //!
-//! `file:line: message`, warnings `file:line: warning: message`, before text of an included file
-//! `In file included from main.c:3:` (specification, `dialect.md` section 4). The software waits
-//! for the compiler before it reads what it wrote, so [`LIMIT`] bytes must not be reached; it
-//! shows the first 499 characters, so errors come first; and one of its libraries takes any
-//! output for a failure, so a program without errors gets none.
+//! `file:line: message`, warnings `file:line: warning: message`, before text of an included file `In file included from
+//! main.c:3:` (specification, `dialect.md` section 4). The software waits for the compiler before it reads the output,
+//! so [`LIMIT`] bytes must not be reached; it shows the first 499 characters, so errors come first; and one of its
+//! libraries takes any output for a failure, so a program without errors gets none.
 
 use crate::diag::{Diagnostic, Severity};
 use crate::source::SourceMap;
@@ -17,14 +16,14 @@ pub const LIMIT: usize = 4000;
 /// Levels of inclusion that are shown.
 const SHOWN_INCLUDES: usize = 4;
 
-/// Renders the diagnostics of a compilation: nothing without an error.
+/// Renders the diagnostics of a compilation; empty without an error.
 #[must_use]
 pub fn render(diagnostics: &[Diagnostic], sources: &SourceMap) -> String {
     if diagnostics.iter().all(|diagnostic| diagnostic.severity != Severity::Error) {
         return String::new();
     }
     let of = |severity| diagnostics.iter().filter(move |diagnostic| diagnostic.severity == severity);
-    // The vendor's compiler links what it could compile: undefined symbols are found last.
+    // The vendor's compiler links units that compile, so undefined symbols are found last.
     let is_linked = |diagnostic: &&Diagnostic| diagnostic.linker_words.is_some();
     let compiled = of(Severity::Error).filter(|error| !is_linked(error));
     let linked = of(Severity::Error).filter(is_linked);
@@ -44,10 +43,10 @@ pub fn render(diagnostics: &[Diagnostic], sources: &SourceMap) -> String {
     text
 }
 
-/// A diagnostic with everything that belongs to it, in whole lines.
+/// A diagnostic with all of its parts, in whole lines.
 fn entry(diagnostic: &Diagnostic, sources: &SourceMap) -> String {
     let mut text = String::new();
-    // Its own words first: other programs look for them.
+    // Its own words first, because other programs search for them.
     if let Some(words) = &diagnostic.linker_words {
         text.push_str(&format!("tcc: {words}\n"));
     }

@@ -71,7 +71,7 @@ impl Sema<'_> {
 
     fn foreign_advice(&mut self, word: &'static Word) -> Advice {
         let is_first = self.noted.origins.insert(word.origin);
-        // `true` of a program whose `bool` was reported needs no second error.
+        // After an error about `bool`, `true` needs no second error.
         let is_answered = matches!(word.spelling, "true" | "false")
             && self.sink.has_errors()
             && self.names.find("bool").is_some();
@@ -86,7 +86,7 @@ fn say(change: impl FnOnce(Diagnostic) -> Diagnostic + 'static) -> Advice {
     Advice::Say(Box::new(change))
 }
 
-/// Reports whether a name is that of an axis pointer, except for the number.
+/// Reports whether a name is an axis pointer's except for the number.
 pub(super) fn is_axis(spelling: &str) -> bool {
     spelling
         .strip_prefix("ch")

@@ -11,7 +11,7 @@ use crate::typed::{ExprId, PlaceKind};
 const MAX_ALIGNMENT: i64 = 0x1000;
 
 impl Sema<'_> {
-    /// The strictest of some alignments; 1 if there are none.
+    /// The strictest of several alignments; 1 if there are none.
     pub(super) fn alignment(&mut self, alignments: &[Alignment]) -> u32 {
         alignments.iter().filter_map(|alignment| self.one_alignment(alignment)).max().unwrap_or(1)
     }
@@ -37,11 +37,11 @@ impl Sema<'_> {
             );
             return None;
         }
-        // `_Alignas(0)` asks for nothing.
+        // `_Alignas(0)` has no effect.
         u32::try_from(value.max(1)).ok()
     }
 
-    /// `__alignof__ a`: of a variable what its declaration requested, of anything else that of its type.
+    /// `__alignof__ a`: for a variable the alignment of its declaration, otherwise that of its type.
     pub(super) fn alignof_expression(&mut self, operand: &Expression, span: Span) -> Option<ExprId> {
         self.unevaluated += 1;
         let meaning = self.operand(operand);

@@ -50,7 +50,7 @@ impl Sema<'_> {
         }
     }
 
-    /// Reports `if (f() = 1)`, which cannot be meant as it is written.
+    /// Reports `if (f() = 1)`, which cannot be intended.
     pub(super) fn refuse_assigned_call(&mut self, condition: &Expression) -> bool {
         let ExpressionKind::Assign(to, _) = &condition.kind else { return false };
         let is_call = matches!(to.kind, ExpressionKind::Call(..));
@@ -222,7 +222,7 @@ impl Sema<'_> {
     }
 }
 
-/// The operator of a compound assignment; `None` for those that cannot be one.
+/// The operator of a compound assignment; `None` for operators without one.
 const fn update_op(operator: BinaryOperator) -> Option<BinaryOp> {
     match operator.meaning() {
         OperatorMeaning::Arithmetic(op) | OperatorMeaning::Bitwise(op) | OperatorMeaning::Shift(op) => {

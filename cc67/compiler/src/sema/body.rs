@@ -1,6 +1,6 @@
 //! The function under construction: its expressions, places, locals and labels.
 //!
-//! The constructors here fold what is constant; they know nothing of diagnostics.
+//! The constructors here fold constants; they do not report diagnostics.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,7 +16,7 @@ use crate::typed::{
     Expr, ExprId, ExprKind, Hidden, Label, LabelId, Local, LocalId, Place, PlaceId, PlaceKind, UnaryOp,
 };
 
-/// The parts of a function that are being built, and what its statements must know.
+/// The parts of a function that are being built, and the state needed by its statements.
 #[derive(Debug)]
 pub(super) struct Body {
     /// Name of the function; empty at file scope.
@@ -34,13 +34,13 @@ pub(super) struct Body {
     /// Places.
     pub(super) places: PrimaryMap<PlaceId, Place>,
     pub(super) jumps: Jumps,
-    /// Integer constants that a division cut off on the way, with the first such division.
+    /// Integer constants that were truncated by a division, with the first such division.
     pub(super) cut: BTreeMap<ExprId, (i64, i64)>,
     /// Integer constants that are computed as the word of an analog output is.
     pub(super) dac_words: BTreeMap<ExprId, DacWord>,
     /// Undeclared names that were reported in this function.
     pub(super) undeclared: BTreeSet<Name>,
-    /// It calls `setjmp`, which returns again after what came between.
+    /// True if it calls `setjmp`, which can return again.
     pub(super) returns_twice: bool,
 }
 
@@ -98,12 +98,12 @@ impl Body {
         self.exprs[expr].span
     }
 
-    /// Adds an expression as it is.
+    /// Adds an expression without changes.
     pub(super) fn expr(&mut self, kind: ExprKind, ty: TypeId, span: Span) -> ExprId {
         self.exprs.push(Expr { kind, ty, span })
     }
 
-    /// Adds a place as it is.
+    /// Adds a place without changes.
     pub(super) fn place(&mut self, kind: PlaceKind, ty: TypeId, span: Span) -> PlaceId {
         self.places.push(Place { kind, ty, span })
     }
@@ -139,8 +139,8 @@ impl Body {
         }
     }
 
-    /// Keeps all locals in memory: after a second return of `setjmp` they are what they were last, in whichever way the
-    /// function came there. A function with something in its frame does not become a part of others, either.
+    /// Keeps all locals in memory: after a second return of `setjmp` they have their last values, whatever the path. A
+    /// function with objects in its frame is also not inlined.
     pub(super) fn keep_in_memory(&mut self, span: Span) {
         let hidden = [self.hidden.result_pointer, self.hidden.variable_arguments];
         for (id, local) in &mut self.locals {
@@ -198,7 +198,7 @@ impl Body {
         self.expr(ExprKind::Compare(CompareOp::NotEqual, value, zero), Types::INT, span)
     }
 
-    /// A unary operator; `!` has type `int`, the others that of the operand.
+    /// A unary operator; `!` has type `int`, the others have the type of the operand.
     pub(super) fn unary(&mut self, op: UnaryOp, value: ExprId, span: Span) -> ExprId {
         let operand = self.ty(value);
         let ty = if op == UnaryOp::Not { Types::INT } else { operand };
@@ -252,7 +252,7 @@ impl Body {
         }
     }
 
-    /// Reports whether evaluating twice is the same as once.
+    /// Reports whether evaluating it twice has the same effect as once.
     pub(super) fn is_repeatable(&self, expr: ExprId) -> bool {
         match self.exprs[expr].kind {
             ExprKind::Int(_) | ExprKind::Float(_) | ExprKind::Address(_) | ExprKind::Load(_) => true,
@@ -262,7 +262,7 @@ impl Body {
         }
     }
 
-    /// Reports whether evaluating has no effect and reads nothing.
+    /// Reports whether evaluation has no effect and reads nothing.
     fn is_idle(&self, expr: ExprId) -> bool {
         match self.exprs[expr].kind {
             ExprKind::Int(_) | ExprKind::Float(_) => true,
@@ -271,7 +271,7 @@ impl Body {
         }
     }
 
-    /// Evaluates the first, then the second, whose value it has.
+    /// Evaluates the first, then the second, and has the value of the second.
     pub(super) fn comma(&mut self, first: ExprId, second: ExprId, span: Span) -> ExprId {
         if self.is_idle(first) {
             return second;

@@ -45,7 +45,7 @@ impl Sema<'_> {
         Some(Operand::Value(self.body.convert(value, ty, span)))
     }
 
-    /// A structure among the variable arguments: its address was passed.
+    /// A structure among the variable arguments, which was passed by address.
     fn record_argument(&mut self, list: PlaceId, ty: TypeId, span: Span) -> Operand {
         let pointer = self.types.pointer_to(ty);
         let address = self.body.expr(ExprKind::VaArg(list), pointer, span);

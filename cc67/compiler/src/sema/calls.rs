@@ -1,8 +1,7 @@
-//! Calls: which type the arguments are converted to, and messages about them.
+//! Calls: the conversion of arguments, and messages about them.
 //!
-//! A function that this unit defines is always called with the type of its definition, even
-//! where another prototype, or none, is in sight (`dialect.md` 2.2, 2.3). So a call in the
-//! typed tree always fits the function it reaches.
+//! A function that this unit defines is always called with the type of its definition, even where another prototype, or
+//! none, is visible (`dialect.md` 2.2, 2.3). So a call in the typed tree always matches its function.
 
 use kmotiondef::jumps::JumpFunction;
 
@@ -42,7 +41,7 @@ impl Sema<'_> {
         }
     }
 
-    /// The function that is called and its type as far as it is visible.
+    /// The function that is called, and its type as far as it is visible.
     fn callee(&mut self, callee: &Expression) -> Option<(Callee, TypeId)> {
         if let ExpressionKind::Identifier(name) = callee.kind
             && self.scopes.lookup(name).is_none()
@@ -135,7 +134,7 @@ impl Sema<'_> {
         let given = values.len();
         let visible = self.types.function(visible)?.clone();
         match &visible.parameters {
-            // The prototype in sight does not fit either: the call is wrong.
+            // The visible prototype does not match either: the call is wrong.
             ParameterTypes::Prototype { .. } if !fits(&visible, given) => {
                 self.check_count(Some(symbol), &visible, given, span)?;
                 None
@@ -177,8 +176,8 @@ impl Sema<'_> {
         Some(converted)
     }
 
-    /// A call with another number of arguments than the definition has: missing ones are 0, further ones are
-    /// evaluated and dropped.
+    /// A call with another number of arguments than the definition: missing ones are 0, surplus ones are evaluated and
+    /// dropped.
     fn call_adapted(
         &mut self,
         symbol: SymbolId,
@@ -205,7 +204,7 @@ impl Sema<'_> {
         Some(result)
     }
 
-    /// The message for a call without prototype that does not fit the definition.
+    /// The message for a call without prototype that does not match the definition.
     fn lint_count(&mut self, symbol: SymbolId, definition: &FunctionType, given: usize, span: Span) {
         let (wanted, _) = prototype(definition);
         let name = self.symbols.get(symbol).name.clone();
@@ -218,7 +217,7 @@ impl Sema<'_> {
         self.report(Diagnostic::warning(lint, span, message).at(at).label(definition, "defined here"));
     }
 
-    /// A type whose parameters are all known: without a prototype, those that the arguments have.
+    /// A type whose parameters are all known: without a prototype, they have the types of the arguments.
     fn open_type(&mut self, declared: &FunctionType, values: &[Argument]) -> FunctionType {
         if declared.parameters != ParameterTypes::Unspecified {
             return declared.clone();
@@ -326,7 +325,7 @@ impl Sema<'_> {
         Some(self.made(call, place, span))
     }
 
-    /// An argument in the type of its parameter; a structure is copied, and its address passed.
+    /// An argument converted to the type of its parameter; a structure is copied, and its address passed.
     fn argument(
         &mut self,
         operand: Operand,

@@ -11,7 +11,7 @@ use crate::operators::{BinaryOp, CompareOp};
 use crate::ty::{TypeId, Types};
 use crate::typed::UnaryOp;
 
-/// The value of a constant; its type is known beside it.
+/// The value of a constant; its type is kept separately.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Constant {
     /// An integer or pointer.
@@ -30,7 +30,7 @@ impl Constant {
     }
 }
 
-/// An integer cut to the width of its type and extended again.
+/// An integer truncated to the width of its type and extended again.
 pub(crate) const fn wrap(value: i64, ty: TypeId) -> i64 {
     match ty {
         Types::BOOL => (value != 0) as i64,

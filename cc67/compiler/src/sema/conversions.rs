@@ -1,4 +1,4 @@
-//! Implicit conversions, and messages about the doubtful ones.
+//! Implicit conversions, and warnings about doubtful ones.
 //!
 //! The table of pairs that are silent, warned about or refused: `dialect.md` 2.4.
 
@@ -23,7 +23,7 @@ pub(super) enum AssignmentTarget {
     Argument(usize, Option<SymbolId>),
 }
 
-/// The judgement of two pointer types that meet without a cast.
+/// The result of comparing two pointer types without a cast.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Agreement {
     Silent,
@@ -32,8 +32,8 @@ enum Agreement {
 }
 
 impl Sema<'_> {
-    /// An integer operand in the type it is computed in. A bit-field becomes `int` or `unsigned`, the first
-    /// that holds all its values; one too wide for both keeps its declared type.
+    /// An integer operand in its promoted type. A bit-field becomes `int` or `unsigned`, the first that holds all its
+    /// values; one too wide for both keeps its declared type.
     pub(super) fn promote(&mut self, value: ExprId, span: Span) -> ExprId {
         let ty = self.body.ty(value);
         let to = match self.field_width(value) {
@@ -50,7 +50,7 @@ impl Sema<'_> {
         self.field_width(value).is_some_and(|width| width < bits)
     }
 
-    /// The width of the bit-field that a value is read from.
+    /// The width of the bit-field from which a value is read.
     fn field_width(&self, value: ExprId) -> Option<u8> {
         let ExprKind::Load(place) = self.body.exprs[value].kind else { return None };
         match self.body.places[place].kind {
@@ -124,13 +124,13 @@ impl Sema<'_> {
             && self.types.pointee(to).is_some_and(|to| to.ty == self.body.ty(value))
     }
 
-    /// Warns about a number that may not fit where it is stored; constants are known.
+    /// Warns about a number that may not fit its destination; constants are known.
     fn lint_narrowing(&mut self, value: ExprId, to: TypeId, span: Span) {
         let from = self.body.ty(value);
         let Some(loss) = conversion::loss(&self.types, from, to) else { return };
         match self.body.as_constant(value) {
             None => self.report(conversion::finding(&self.spell(from), &self.spell(to), loss, span)),
-            // What is computed, such as `0.5 / TIMEBASE`, is meant to be cut off.
+            // The truncation of a computed value, such as `0.5 / TIMEBASE`, is intended.
             Some(Constant::Float(number))
                 if to.is_integer() && number.fract() != 0.0 && self.is_written(value, number) =>
             {
@@ -167,7 +167,7 @@ impl Sema<'_> {
         }
     }
 
-    /// Converts a value to another type, pointers and integers alike; the caller has checked that this is valid.
+    /// Converts a value to another type, including pointers; the caller has checked that this is valid.
     pub(super) fn converted(&mut self, value: ExprId, to: TypeId, span: Span) -> ExprId {
         self.lint_misaligned(value, to, span);
         if self.types.is_pointer(to) && self.types.is_pointer(self.body.ty(value)) {
@@ -202,7 +202,7 @@ impl Sema<'_> {
         Some(())
     }
 
-    /// The judgement of two pointer types; the table is `dialect.md` 2.4.
+    /// Compares two pointer types; the table is `dialect.md` 2.4.
     fn agreement(&self, a: QualifiedType, b: QualifiedType) -> Agreement {
         let (a, b) = (a.ty, b.ty);
         if a.is_void() || b.is_void() || self.types.compatible(a, b) {
@@ -212,7 +212,7 @@ impl Sema<'_> {
             return self.function_agreement(a, b);
         }
         if self.types.record_of(a).is_some() || self.types.record_of(b).is_some() {
-            // The bytes of a structure are looked at through a `char *`, if seldom on purpose.
+            // The bytes of a structure may be accessed through a `char *`, although this is seldom intended.
             let is_bytes = a.is_character() || b.is_character();
             return if is_bytes { Agreement::Warn } else { Agreement::Refuse };
         }
@@ -255,7 +255,7 @@ impl Sema<'_> {
         self.report(Diagnostic::warning(Lint::PointerMismatch, span, message));
     }
 
-    /// `&persist.UserData[k]` may be taken for a pointer to any number: that is how programs use it.
+    /// Reports whether a value is `&persist.UserData[k]`, which may be used as a pointer to any number, as programs do.
     fn is_persist_address(&self, value: ExprId) -> bool {
         self.persist_offset(value).is_some()
     }
@@ -286,7 +286,7 @@ impl Sema<'_> {
         self.report_finding(finding);
     }
 
-    /// Warns about a use of what is directly after `persist.UserData`; its address alone is fine.
+    /// Warns about a use of the memory directly after `persist.UserData`; its address alone is fine.
     pub(super) fn lint_user_data_end(&mut self, pointer: ExprId, span: Span) {
         let end = user_data_index::range().1;
         if self.persist_offset(pointer) == Some(end) {

@@ -11,7 +11,7 @@ use crate::ty::layout::MAX_OBJECT_SIZE;
 use crate::ty::{QualifiedType, Type, TypeId, Types};
 use crate::typed::{Definition, Linkage, SymbolId};
 
-/// A declared name with its type, before it is entered anywhere.
+/// A declared name with its type, before it is bound.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Declared<'t> {
     /// The name.
@@ -20,7 +20,7 @@ pub(super) struct Declared<'t> {
     pub(super) span: Span,
     /// The type.
     pub(super) ty: QualifiedType,
-    /// The alignment requested, else 1.
+    /// The requested alignment, otherwise 1.
     pub(super) align: u32,
     /// The initialiser.
     pub(super) initializer: Option<&'t Initializer>,
@@ -55,7 +55,7 @@ impl Sema<'_> {
         }
     }
 
-    /// A declared name with its type; one whose type is wrong is entered as poisoned.
+    /// A declared name with its type; a name with a wrong type is bound as poisoned.
     pub(super) fn declared_name<'t>(
         &mut self,
         base: Option<QualifiedType>,
@@ -280,8 +280,8 @@ impl Sema<'_> {
         Some(symbol)
     }
 
-    /// The longer of two arrays that differ only in their length, if neither has a value yet: the vendor's compiler accepts
-    /// both.
+    /// The longer of two arrays that differ only in their length, if neither has a value yet: the vendor's compiler
+    /// accepts both.
     fn longer_array(&self, symbol: SymbolId, known: TypeId, new: TypeId) -> Option<TypeId> {
         let (a, length) = self.types.array(known)?;
         let (b, new_length) = self.types.array(new)?;
@@ -315,7 +315,7 @@ impl Sema<'_> {
         size.is_none().then_some(())
     }
 
-    /// Refuses a variable whose size is not known.
+    /// Rejects a variable of unknown size.
     pub(super) fn check_complete(&mut self, name: Name, ty: TypeId, span: Span) -> Option<()> {
         if self.types.is_object(ty) {
             return self.check_size(name, ty, span);

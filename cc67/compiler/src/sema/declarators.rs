@@ -19,9 +19,9 @@ pub(super) const MAX_SEARCH: u32 = 64;
 pub(super) struct DeclaredParameter {
     /// Its name.
     pub(super) name: Option<Name>,
-    /// Its type; arrays and functions have become pointers.
+    /// Its type, with arrays and functions converted to pointers.
     pub(super) ty: QualifiedType,
-    /// Its name's place, else that of the whole parameter.
+    /// The position of its name, otherwise of the whole parameter.
     pub(super) span: Span,
 }
 
@@ -169,8 +169,8 @@ impl Sema<'_> {
         Some(QualifiedType::plain(self.types.intern(Type::Function(function))))
     }
 
-    /// The parameters of a list; old-style names are `int` until their declarations are seen. The innermost
-    /// scope must be that of the list.
+    /// The parameters of a list; old-style names are `int` until their declarations are seen. The innermost scope must
+    /// be the scope of the list.
     pub(super) fn parameters(&mut self, parameters: &Parameters) -> Option<Vec<DeclaredParameter>> {
         match parameters {
             Parameters::Unspecified => Some(Vec::new()),
@@ -184,7 +184,7 @@ impl Sema<'_> {
                     })
                     .collect(),
             ),
-            // Every parameter is looked at, so that all mistakes of a list are reported.
+            // Every parameter is checked, so that all mistakes of a list are reported.
             Parameters::Prototype { parameters, .. } => parameters
                 .iter()
                 .map(|parameter| self.parameter(parameter))

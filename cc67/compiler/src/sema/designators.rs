@@ -39,7 +39,7 @@ impl Sema<'_> {
         Some(times)
     }
 
-    /// Opens a level for the part that the innermost level is at.
+    /// Opens a level for the current part of the innermost level.
     fn open_current(&mut self, stack: &mut Vec<Level>, span: Span) -> Option<()> {
         let slot = self.next_slot(stack, span)?;
         let Some(level) = self.level(slot) else {

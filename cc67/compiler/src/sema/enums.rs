@@ -1,7 +1,7 @@
 //! Enumerations: constants of type `int`.
 //!
-//! An object of enumeration type is an `int` too. Only a bit-field sees a difference: without negative constants it is
-//! unsigned, so that `enum { OFF, ON } state : 1` holds `ON`.
+//! An object of enumeration type is an `int`, too. Only a bit-field makes a difference: without negative constants it
+//! is unsigned, so that `enum { OFF, ON } state : 1` holds `ON`.
 
 use super::Sema;
 use super::scope::{Entity, Tag};
@@ -49,14 +49,14 @@ impl Sema<'_> {
         self.noted.unsigned_enums.contains(&place)
     }
 
-    /// A `typedef` of an enumeration is one too.
+    /// Records that a `typedef` names an enumeration.
     pub(super) fn note_enum_typedef(&mut self, specifier: Option<&TypeSpecifier>, name: Span) {
         if specifier.is_some_and(|specifier| self.is_unsigned_enum(specifier)) {
             self.noted.unsigned_enums.insert(name);
         }
     }
 
-    /// The identity of an enumeration: the first declaration of its tag, else itself.
+    /// The identity of an enumeration: the first declaration of its tag, otherwise itself.
     fn enum_place(&self, specifier: &EnumSpecifier) -> Span {
         let tag = specifier.tag.and_then(|(tag, _)| self.scopes.lookup_tag(tag));
         tag.map_or(specifier.span, |binding| binding.span)
@@ -74,7 +74,7 @@ impl Sema<'_> {
         Some(value as i32)
     }
 
-    /// An enumerator may be declared again; the new value counts from there on (`dialect.md` 2.2).
+    /// Declares an enumerator, which may be declared again; the new value applies from there on (`dialect.md` 2.2).
     fn declare_enumerator(&mut self, enumerator: &Enumerator, value: Option<i32>) {
         let known = self.scopes.lookup_here(enumerator.name).map(|binding| (binding.entity, binding.span));
         match (known, value) {

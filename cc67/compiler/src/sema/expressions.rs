@@ -1,4 +1,4 @@
-//! Expressions: the dispatcher and the forms that have no file of their own.
+//! Expressions: the dispatcher, and the forms without a separate file.
 
 use super::Sema;
 use super::conversions::AssignmentTarget;
@@ -17,7 +17,7 @@ use crate::typed::{Callee, ExprId, ExprKind, PlaceKind, UnaryOp};
 use crate::words::suggest;
 
 impl Sema<'_> {
-    /// The meaning of an expression; `None` if something is wrong with it.
+    /// Analyses an expression; `None` if it has an error.
     pub(super) fn operand(&mut self, expression: &Expression) -> Option<Operand> {
         let span = expression.span;
         match &expression.kind {
@@ -166,7 +166,7 @@ impl Sema<'_> {
         Operand::Place(self.pointed(pointer, to, span))
     }
 
-    /// A function by its address; one whose address is a symbol's by its name.
+    /// A function by its address; if the address is a symbol's, by its name.
     pub(super) fn callee_of(&self, pointer: ExprId) -> Callee {
         if let ExprKind::Address(place) = self.body.exprs[pointer].kind
             && let PlaceKind::Symbol(symbol, 0) = self.body.places[place].kind
@@ -374,7 +374,7 @@ impl Sema<'_> {
             return None;
         }
         if to == from && self.is_narrow_field(value) {
-            // The cast stays: its value is no longer that of a bit-field, which would become an `int`.
+            // The cast is kept: its value is no longer a bit-field, which would become an `int`.
             return Some(Operand::Value(self.body.expr(ExprKind::Convert(value), to, span)));
         }
         Some(Operand::Value(self.converted(value, to, span)))
@@ -475,7 +475,7 @@ impl Sema<'_> {
         }
     }
 
-    /// `_Generic`: the choice whose type is that of the value.
+    /// `_Generic`: selects the association whose type is that of the value.
     fn generic(
         &mut self,
         value: &Expression,

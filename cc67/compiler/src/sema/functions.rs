@@ -125,7 +125,7 @@ impl Sema<'_> {
         Some(parameters)
     }
 
-    /// `main` is seen by the linker whatever is written, and gets no arguments.
+    /// Checks `main`, which is visible to the linker whatever its declaration, and gets no arguments.
     fn check_main(
         &mut self,
         name: Name,
@@ -277,7 +277,7 @@ impl Sema<'_> {
             let message = format!("label `{}` is used but not defined", self.spelling(name));
             self.report(Diagnostic::error(span, message));
         }
-        // What could not be read may have been the `goto`.
+        // Code with errors may have contained the `goto`.
         if self.sink.has_errors() {
             return;
         }

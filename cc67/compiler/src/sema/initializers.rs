@@ -1,9 +1,8 @@
 //! Initialisers: assigns each value to a part of an object.
 //!
-//! A list, nested or not, designated or not, is flattened into [`Leaf`]s: offset, type,
-//! value. A stack of levels says where the next value goes; braces start a stack of their
-//! own, a value that does not fill an aggregate as a whole opens a level for it. Static
-//! objects turn leaves into bytes, locals into stores.
+//! A list, nested or not, designated or not, is flattened into [`Leaf`]s: offset, type, value. A stack of levels gives
+//! the position of the next value; braces start a new stack, and a value that does not initialise an aggregate as a
+//! whole opens a level for it. Leaves become bytes of static objects, or stores to locals.
 
 use super::Sema;
 use super::conversions::AssignmentTarget;
@@ -44,11 +43,11 @@ pub(super) enum LeafValue {
     Scalar(ExprId),
     /// A whole structure.
     Record(PlaceId),
-    /// The bytes of a character array, all of it.
+    /// All bytes of a character array.
     Text(Vec<u8>),
 }
 
-/// A part of the object that a value can go to.
+/// A part of the object that a value can initialise.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slot {
     pub(super) ty: QualifiedType,
@@ -163,7 +162,7 @@ impl Sema<'_> {
         (!self.body.name.is_empty()).then(|| self.anonymous_local(QualifiedType::plain(to), &[leaf], span))
     }
 
-    /// A local without a name that is initialised where it is used.
+    /// A local without a name that is initialised at its use.
     fn anonymous_local(&mut self, qualified: QualifiedType, leaves: &[Leaf], span: Span) -> Operand {
         let complete = qualified.ty;
         let local = self.add_local(String::new(), qualified, span);
@@ -235,7 +234,7 @@ impl Sema<'_> {
         end == Some(size)
     }
 
-    /// Flattens an initialiser; the type that comes back has its array length.
+    /// Flattens an initialiser; the returned type has its array length.
     fn flatten(
         &mut self,
         ty: QualifiedType,
@@ -299,7 +298,7 @@ impl Sema<'_> {
         record.is_none().then_some(())
     }
 
-    /// Fills a part from a list in braces; an array without length gets the one that was reached.
+    /// Initialises a part from a list in braces; an array without length gets the length that was reached.
     fn fill_list(
         &mut self,
         leaves: &mut Vec<Leaf>,
@@ -363,7 +362,7 @@ impl Sema<'_> {
         Some(slot.ty.ty)
     }
 
-    /// Fills in an item of a list: the value, or the value of a range several times.
+    /// Fills in an item of a list; the value of a range is used several times.
     fn fill_item(
         &mut self,
         leaves: &mut Vec<Leaf>,
@@ -399,8 +398,8 @@ impl Sema<'_> {
         Some(())
     }
 
-    /// Drops the values that the list gave to parts of an aggregate before: another initialiser of the whole replaces
-    /// them all (C17 6.7.9, 19).
+    /// Drops earlier values of the list for parts of an aggregate, which another initialiser of the whole replaces (C17
+    /// 6.7.9, 19).
     fn replace(&self, leaves: &mut Vec<Leaf>, slot: Slot, initialized: &mut InitializedRange) {
         for leaf in leaves.iter().skip(initialized.seen) {
             initialized.end = initialized.end.max(leaf.offset.saturating_add(1));
@@ -418,7 +417,7 @@ impl Sema<'_> {
         initialized.seen = leaves.len();
     }
 
-    /// The value of a range is computed for its first part only and kept for the others.
+    /// Evaluates the value of a range for its first part, and keeps it for the others.
     fn evaluate_once(
         &mut self,
         leaf: Option<&mut Leaf>,
@@ -437,7 +436,7 @@ impl Sema<'_> {
         kept
     }
 
-    /// A range can ask for any number of values; there is an end.
+    /// Limits the number of values, as a range can request any number.
     fn check_leaves(&mut self, leaves: &[Leaf]) -> Option<()> {
         if leaves.len() < MAX_VALUES {
             return Some(());
@@ -533,7 +532,7 @@ impl Sema<'_> {
         Some(())
     }
 
-    /// A string in a character array; the type that comes back has the array's length.
+    /// A string in a character array; the returned type has the array's length.
     fn fill_text(&mut self, leaves: &mut Vec<Leaf>, slot: Slot, text: &StringLiteral, span: Span) -> TypeId {
         let mut bytes = string_bytes(text);
         let (ty, size) = match (self.types.array(slot.ty.ty), self.types.size_of(slot.ty.ty)) {
@@ -561,7 +560,7 @@ impl Sema<'_> {
         ty
     }
 
-    /// Reports whether a string alone fills an object of this type.
+    /// Reports whether a string initialises a whole object of this type.
     fn takes_text(&self, ty: TypeId, text: &StringLiteral) -> bool {
         self.types.array(ty).is_some_and(|(element, _)| match text.encoding.size() {
             1 => element.ty.is_character(),

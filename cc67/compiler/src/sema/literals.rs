@@ -39,7 +39,7 @@ impl Sema<'_> {
     fn string_place(&mut self, ty: TypeId, bytes: impl FnOnce() -> Vec<u8>, span: Span) -> Located {
         let qualified = QualifiedType::plain(ty);
         if self.unevaluated > 0 {
-            // Only the type is wanted: nothing goes into `.data`.
+            // Only the type is needed: nothing is added to `.data`.
             let nowhere = self.body.int(0, Types::INT, span);
             let place = self.body.place(PlaceKind::Pointer(nowhere, 0), ty, span);
             return Located { place, ty: qualified, is_lvalue: true };
@@ -74,8 +74,8 @@ pub(super) const fn character_type(encoding: Encoding) -> TypeId {
     }
 }
 
-/// The vendor's way is C90 with a 32-bit `long`, then `long long` (`dialect.md` 1.1): decimal 2147483648 is `unsigned`.
-/// From C99 on a decimal constant without `u` is signed.
+/// The type of an integer constant. The vendor's rule is C90 with a 32-bit `long`, then `long long` (`dialect.md` 1.1):
+/// decimal 2147483648 is `unsigned`. From C99 on a decimal constant without `u` is signed.
 fn integer_type(literal: IntegerLiteral, standard: Standard) -> TypeId {
     let IntegerLiteral { value, is_unsigned, is_long_long, is_decimal } = literal;
     let may_be_unsigned = is_unsigned || !is_decimal || standard == Standard::Vendor;

@@ -29,7 +29,7 @@ impl Sema<'_> {
         }
     }
 
-    /// A static variable of a function: a symbol of its own.
+    /// A static variable of a function, which gets its own symbol.
     fn declare_static(&mut self, declared: Declared<'_>) {
         let Declared { name, span, ty, align, initializer } = declared;
         self.lint_declared_twice(name, span);
@@ -77,7 +77,7 @@ impl Sema<'_> {
         out.extend(effects.into_iter().map(|effect| Stmt { kind: StmtKind::Expr(effect), span }));
     }
 
-    /// A variable of the function; aggregates and volatile ones live in memory.
+    /// A variable of the function; aggregates and volatile variables are in memory.
     pub(super) fn add_local(&mut self, name: String, ty: QualifiedType, span: Span) -> LocalId {
         let in_memory = ty.is_volatile || self.types.is_aggregate(ty.ty);
         self.body.locals.push(Local { name, ty: ty.ty, align: 1, in_memory, by_pointer: false, span })
@@ -88,7 +88,8 @@ impl Sema<'_> {
         self.body.locals[local].ty = ty;
     }
 
-    /// The same name twice in a block, or a parameter's name: accepted, the new one counts from there on.
+    /// Warns about the same name twice in a block, or a parameter's name: it is accepted, and the new one applies from
+    /// there on.
     fn lint_declared_twice(&mut self, name: Name, span: Span) {
         let (first, what) = if let Some(binding) = self.scopes.lookup_here(name) {
             (binding.span, "is declared twice in one block")

@@ -1,15 +1,13 @@
 //! Semantic analysis: from the syntax tree to the typed tree.
 //!
-//! Two passes. The first enters every file-scope declaration and the type of every function
-//! definition, in order; the second looks at the bodies. So a call knows the function that
-//! the unit defines later, which is what programs for this board rely on
-//! (`dialect.md` 2.3), while names still become visible only where they are declared.
+//! There are two passes. The first binds every file-scope declaration and the type of every function definition, in
+//! order; the second analyses the bodies. So a call can use the type of a function that is defined later, on which
+//! programs for this board rely (`dialect.md` 2.3), while names still become visible only where they are declared.
 //!
-//! Analysis continues after an error. A diagnosed expression yields `None`, and nothing derived from it is reported; so
-//! each mistake is reported once.
+//! Analysis continues after an error. A diagnosed expression yields `None`, and expressions derived from it are not
+//! reported, so each mistake is reported once.
 //!
-//! Nothing here knows the target beyond the sizes in [`crate::ty::layout`] and the arithmetic
-//! of `vm::arith`.
+//! This module depends on the target only through the sizes in [`crate::ty::layout`] and the arithmetic of `vm::arith`.
 
 mod advice;
 mod alignment;
@@ -62,9 +60,9 @@ use functions::Pending;
 use scope::Scopes;
 use symbols::Symbols;
 
-/// Checks a translation unit and gives it types.
+/// Checks a translation unit and builds its typed tree.
 ///
-/// The result is complete even after errors, but fit for lowering only if `sink` has none.
+/// The result is complete even after errors, but it can only be lowered if `sink` has none.
 pub fn analyze(
     unit: &ast::TranslationUnit,
     names: &mut Names,
@@ -118,7 +116,7 @@ struct Sema<'a> {
     body: Body,
     /// The name of the memory that threads and the PC share.
     persist: Name,
-    /// The standard of C that the program is written in.
+    /// The C standard of the program.
     standard: Standard,
     /// Depth of operands that are not evaluated, only analysed for their type.
     unevaluated: u32,
@@ -128,7 +126,7 @@ struct Sema<'a> {
 /// Facts noted for later messages.
 #[derive(Debug, Default)]
 struct Noted {
-    /// Structures with a wrong definition: messages about their members would be wrong too.
+    /// Structures with a wrong definition, for whose members no messages are reported.
     broken: BTreeSet<RecordId>,
     /// The declarations of enumerations without negative constants, and of their typedefs.
     unsigned_enums: BTreeSet<Span>,
@@ -153,7 +151,7 @@ impl Sema<'_> {
         pending
     }
 
-    /// Says what is left open at the end of the unit.
+    /// Reports symbols that are still incomplete at the end of the unit.
     fn finish_symbols(&mut self) {
         let mut open = Vec::new();
         for (id, symbol) in self.symbols.iter() {
@@ -188,7 +186,7 @@ impl Sema<'_> {
         }
     }
 
-    /// Reports something, unless there are enough messages.
+    /// Reports a diagnostic, unless there are too many.
     fn report(&mut self, diagnostic: Diagnostic) {
         if self.sink.is_full() {
             return;
@@ -199,7 +197,7 @@ impl Sema<'_> {
         }
     }
 
-    /// Reports what a lint found, if it found something.
+    /// Reports the finding of a lint, if there is one.
     fn report_finding(&mut self, finding: Option<Diagnostic>) {
         self.sink.report_if(finding);
     }

@@ -1,8 +1,7 @@
-//! Operands: what an expression is before it is known how it will be used.
+//! Operands: the result of an expression before its use is known.
 //!
-//! `a` is a place when it is assigned to, a value when it is read, and an address when it is
-//! an array that is passed on. `None` instead of an operand means that something was
-//! diagnosed: nothing computed from it is reported again.
+//! `a` is a place when it is assigned to, a value when it is read, and an address when it is an array that is passed
+//! on. `None` instead of an operand means that it was diagnosed: expressions computed from it are not reported again.
 
 use super::Sema;
 use super::places::Located;
@@ -16,7 +15,7 @@ use crate::typed::{Callee, ExprId, ExprKind, PlaceId, PlaceKind};
 pub(super) enum Operand {
     /// A value of scalar type, or an effect of type `void`.
     Value(ExprId),
-    /// Storage: an lvalue, or a structure that an expression made.
+    /// Storage: an lvalue, or a structure result of an expression.
     Place(Located),
     /// A function and its type.
     Function(Callee, TypeId),
@@ -120,7 +119,7 @@ impl Sema<'_> {
         );
     }
 
-    /// Evaluates an operand for its effect only: an expression that lowering may drop if it has none.
+    /// Evaluates an operand only for its effect; lowering may drop the expression if it has none.
     pub(super) fn effect(&mut self, operand: Operand, span: Span) -> ExprId {
         match operand {
             Operand::Value(value) => value,
@@ -130,7 +129,7 @@ impl Sema<'_> {
         }
     }
 
-    /// The effect of naming a place: a read of a scalar, the pointer expression of anything larger.
+    /// The effect of evaluating a place: a read of a scalar, the pointer expression of anything larger.
     fn place_effect(&mut self, located: Located, span: Span) -> ExprId {
         if self.types.is_scalar(located.ty.ty) {
             return self.body.expr(ExprKind::Load(located.place), located.ty.ty, span);
@@ -141,7 +140,7 @@ impl Sema<'_> {
         }
     }
 
-    /// A structure that an expression makes: `effect` is evaluated, then the place holds the value.
+    /// A structure result: `effect` is evaluated, then the place holds the value.
     pub(super) fn made(&mut self, effect: ExprId, place: PlaceId, span: Span) -> Operand {
         let ty = self.body.places[place].ty;
         let pointer_type = self.types.pointer_to(ty);

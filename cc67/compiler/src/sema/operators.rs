@@ -88,7 +88,7 @@ impl Sema<'_> {
         self.body.ty(a).is_integer() && self.body.ty(b).is_integer()
     }
 
-    /// A shift count as `int`; a constant one outside the width is worth a word.
+    /// A shift count as `int`; warns about a constant outside of the width.
     pub(super) fn shift_count(&mut self, count: ExprId, shifted: TypeId, span: Span) -> ExprId {
         let width = if shifted.is_long_long() { 64 } else { 32 };
         if let Some(value) = self.body.as_int(count).filter(|value| !(0..width).contains(value)) {
@@ -111,7 +111,7 @@ impl Sema<'_> {
         };
         let bytes = self.scaled(count, element, span)?;
         let moved = self.step(pointer, bytes, span);
-        // The address behind the last element may be computed.
+        // The address after the last element may be computed.
         self.lint_user_data(pointer, moved, None, span);
         Some(moved)
     }

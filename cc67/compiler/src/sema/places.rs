@@ -1,8 +1,7 @@
 //! Places: taking addresses, following pointers, stepping to members and elements.
 //!
-//! A place is kept in its simplest form, so that `persist.UserData[5]` is a symbol and an
-//! offset and `*&x` is `x`. A place of a local always lies inside it; what reaches beyond
-//! goes through arithmetic on its address.
+//! A place is kept in its simplest form, so that `persist.UserData[5]` is a symbol and an offset, and `*&x` is `x`. A
+//! place of a local is always inside of it; accesses beyond it use arithmetic on its address.
 
 use super::Sema;
 use crate::operators::BinaryOp;
@@ -15,9 +14,9 @@ use crate::typed::{ExprId, ExprKind, LocalId, PlaceId, PlaceKind, SymbolId};
 pub(super) struct Located {
     /// The place.
     pub(super) place: PlaceId,
-    /// The type of what is stored, with qualifiers.
+    /// The type of the stored value, with qualifiers.
     pub(super) ty: QualifiedType,
-    /// True if it may be assigned to or its address be taken; a structure result may not.
+    /// True if it can be assigned to or its address taken; false for a structure result.
     pub(super) is_lvalue: bool,
 }
 
@@ -69,7 +68,7 @@ impl Sema<'_> {
         }
     }
 
-    /// The place that a pointer points to.
+    /// The place to which a pointer points.
     pub(super) fn pointed(&mut self, pointer: ExprId, ty: QualifiedType, span: Span) -> Located {
         let size = self.types.size_of(ty.ty).unwrap_or(0);
         let (base, offset) = self.based(pointer);
@@ -99,7 +98,7 @@ impl Sema<'_> {
         }
     }
 
-    /// Reports whether `size` bytes at a place are still inside its local; true for places outside locals.
+    /// Reports whether `size` bytes at a place are inside its local; true for places not in locals.
     fn holds(&self, place: PlaceId, size: u32) -> bool {
         match self.body.places[place].kind {
             PlaceKind::Local(local, offset) => offset.saturating_add(size) <= self.local_size(local),
@@ -140,7 +139,7 @@ impl Sema<'_> {
         }
     }
 
-    /// A place `offset` bytes further on, if that needs no arithmetic.
+    /// A place moved by `offset` bytes, if that needs no arithmetic.
     fn moved(&self, kind: PlaceKind, offset: i32) -> Option<PlaceKind> {
         Some(match kind {
             PlaceKind::Local(local, own) => {

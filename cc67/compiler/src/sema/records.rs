@@ -10,7 +10,7 @@ use crate::source::Span;
 use crate::ty::layout::{LayoutBuilder, MAX_OBJECT_SIZE};
 use crate::ty::{Layout, QualifiedType, RecordId, TypeId, Types};
 
-/// Members of a structure; each is compared with those before it.
+/// The limit of members of a structure; each is compared with all earlier ones.
 const MEMBERS: usize = 10_000;
 
 impl Sema<'_> {
@@ -268,7 +268,7 @@ impl Sema<'_> {
         Some(())
     }
 
-    /// The members of an anonymous structure are members of the one around it.
+    /// Checks the members of an anonymous structure, which are also members of the enclosing one.
     fn check_inner_names(&mut self, builder: &LayoutBuilder, inner: RecordId, span: Span) -> Option<()> {
         let names: Vec<_> = self
             .types

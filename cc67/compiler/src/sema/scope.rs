@@ -1,8 +1,8 @@
-//! Scopes: the declaration that a name refers to at a position.
+//! Scopes: the declaration to which a name refers at a position.
 //!
-//! The bindings of a name form a chain from the innermost outwards; leaving a block unwinds the bindings it made.
-//! File-scope declarations are all entered before the first body is analysed, so each carries the number of the item
-//! that made it, and a body sees only those up to its own item.
+//! The bindings of a name form a chain from the innermost outwards; leaving a block unwinds the bindings it made. All
+//! file-scope declarations are bound before the first body is analysed, so each carries the number of its item, and a
+//! body only sees declarations up to its own item.
 
 use cranelift_entity::SecondaryMap;
 
@@ -177,7 +177,7 @@ impl Scopes {
         self.lookup(name).filter(|binding| binding.depth + 1 == self.depth())
     }
 
-    /// A file-scope declaration that comes after the present item.
+    /// A file-scope declaration after the present item.
     pub(super) fn lookup_later(&self, name: Name) -> Option<&Binding<Entity>> {
         self.ordinary.chain(name).find(|binding| binding.depth == 0 && binding.since > self.now)
     }

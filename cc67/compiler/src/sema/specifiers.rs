@@ -8,7 +8,7 @@ use crate::names::{Name, word};
 use crate::source::Span;
 use crate::ty::{QualifiedType, TypeId, Types};
 
-/// The judgement of a declaration that names no type.
+/// The treatment of a declaration without a type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ImplicitInt {
     /// `main() {…}`, `static n;` in a block: programs mean it.

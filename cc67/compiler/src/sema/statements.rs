@@ -81,7 +81,7 @@ impl Sema<'_> {
         }
     }
 
-    /// A statement with a controlling expression, whose scope is open: what the expression declares ends with the
+    /// A statement with a controlling expression, whose scope is open: declarations in the expression end with the
     /// statement (C99 6.8.4, 6.8.5).
     fn controlled_statement(&mut self, statement: &Statement, out: &mut Vec<Stmt>) {
         let span = statement.span;
@@ -138,7 +138,7 @@ impl Sema<'_> {
         }
     }
 
-    /// A condition: a scalar value; 0 in its place if it is wrong.
+    /// A condition: a scalar value; 0 instead if it is wrong.
     pub(super) fn condition(&mut self, expression: &Expression) -> ExprId {
         if self.refuse_assigned_call(expression) {
             return self.placeholder(expression.span);
@@ -224,7 +224,7 @@ impl Sema<'_> {
             out.push(Stmt { kind, span });
             return;
         }
-        // A `case` outside its `switch` has said all that there is to say.
+        // A `case` outside of a `switch` was already reported.
         if is_break && self.body.jumps.has_lost_case {
             return;
         }
@@ -257,7 +257,7 @@ impl Sema<'_> {
         label
     }
 
-    /// `&&name`: a number of its own, of type `void *`, which only `goto *` understands.
+    /// `&&name`: a unique number of type `void *`, which only `goto *` can use.
     pub(super) fn label_address(&mut self, name: Name, name_span: Span, span: Span) -> Option<ExprId> {
         if self.body.name.is_empty() {
             self.report(Diagnostic::error(span, "the address of a label cannot be taken outside a function"));
@@ -307,7 +307,7 @@ impl Sema<'_> {
     fn return_value(&mut self, expression: &Expression) -> Option<ExprId> {
         let (result, span) = (self.body.result, expression.span);
         let operand = self.operand(expression)?;
-        // `return f();` between `void` functions passes nothing on.
+        // `return f();` in a `void` function passes no value if `f` is `void`, too.
         if self.body.is_void && self.operand_type(operand).ty.is_void() {
             let effect = self.effect(operand, span);
             let zero = self.body.int(0, result, span);
@@ -317,7 +317,7 @@ impl Sema<'_> {
         self.assigned(value, result, AssignmentTarget::Return, span)
     }
 
-    /// Copies a structure to where the caller wants it.
+    /// Copies a structure to the caller's result object.
     fn return_record(&mut self, expression: &Expression) -> Option<ExprId> {
         let (result, span) = (self.body.result, expression.span);
         let operand = self.operand(expression)?;

@@ -13,7 +13,7 @@ use crate::ty::layout::MAX_OBJECT_SIZE;
 use crate::ty::{BitRange, TypeId, Types};
 use crate::typed::{AddressWord, ExprId, ExprKind, PlaceKind, StaticData, SymbolId};
 
-/// A value that is known before the program runs.
+/// A value that is known at link time.
 #[derive(Clone, Copy, Debug)]
 enum StaticValue {
     Constant(Constant),
@@ -100,7 +100,7 @@ impl Sema<'_> {
                 PlaceKind::Symbol(symbol, offset) => Ok(StaticValue::Address(symbol, offset)),
                 _ => Err(value),
             },
-            // An address keeps its value in any type of its size.
+            // An address has the same value in any type of its size.
             ExprKind::Convert(inner) if self.types.size_of(expr.ty) == Some(4) && !expr.ty.is_floating() => {
                 self.static_value(inner, depth)
             }
@@ -124,7 +124,7 @@ impl Sema<'_> {
         }
     }
 
-    /// The part that keeps an expression from being constant, in words.
+    /// A description of the part because of which an expression is not constant.
     fn culprit(&self, value: ExprId) -> &'static str {
         match &self.body.exprs[value].kind {
             ExprKind::Load(_) => "the value of a variable",
@@ -168,7 +168,7 @@ impl Image {
     }
 }
 
-/// A constant as it lies in memory.
+/// The bytes of a constant in memory.
 fn bytes_of(constant: Constant, ty: TypeId, size: u32) -> Vec<u8> {
     match constant {
         Constant::Float(value) if ty == Types::FLOAT => (value as f32).to_le_bytes().to_vec(),

@@ -13,7 +13,7 @@ use crate::typed::{Case, Stmt, StmtKind};
 pub(super) struct Switch {
     /// The type that its value and its cases have.
     ty: TypeId,
-    /// The value was refused: its cases are what they should not be, too.
+    /// True if the value was rejected: errors of its cases are then not reported.
     is_broken: bool,
     cases: Vec<(Case, Span)>,
     default: Option<Span>,
@@ -129,7 +129,7 @@ impl Sema<'_> {
         for ((low, high), span) in sorted {
             match reach {
                 Some((end, first)) if low <= end => {
-                    // The one that stands later in the text is the mistake.
+                    // The one later in the text is the mistake.
                     let (early, late) = if span.lo >= first.lo { (first, span) } else { (span, first) };
                     let message = format!("`case {low}` appears twice in one `switch`");
                     self.report(Diagnostic::error(late, message).label(early, "first"));

@@ -11,7 +11,7 @@ use crate::typed::{Definition, Linkage, StaticData, Symbol, SymbolId};
 /// The calling convention of a function that this unit defines.
 #[derive(Clone, Debug)]
 pub(super) struct Definer {
-    /// The type that every call is converted to; its parameters are always a prototype.
+    /// The type to which every call is converted; its parameters are always a prototype.
     pub(super) call: FunctionType,
     /// The type as declared, for comparison with other declarations.
     pub(super) declared: TypeId,
@@ -21,7 +21,7 @@ pub(super) struct Definer {
     pub(super) is_void_with_value: bool,
 }
 
-/// Facts about a symbol besides its typed form.
+/// Facts about a symbol other than its typed form.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Facts {
     /// For a function that this unit defines.

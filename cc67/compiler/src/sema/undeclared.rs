@@ -1,7 +1,7 @@
-//! Names that nothing visible declares.
+//! Names without a visible declaration.
 //!
-//! A call finds the unit's own later definition, then the firmware's prototype
-//! (`dialect.md` 2.3). Everything else is an error with the nearest name.
+//! A call finds the unit's own later definition, then the firmware's prototype (`dialect.md` 2.3). Everything else is
+//! an error that suggests the nearest name.
 
 use kmotiondef::CType;
 use kmotiondef::boards::TargetBoard;
@@ -33,7 +33,7 @@ impl Sema<'_> {
         }
     }
 
-    /// A function that is declared or defined further down.
+    /// A function that is declared or defined later.
     fn late_function(&mut self, symbol: SymbolId, span: Span) {
         if std::mem::replace(&mut self.symbols.facts_mut(symbol).is_reported, true) {
             return;
@@ -57,7 +57,7 @@ impl Sema<'_> {
         );
     }
 
-    /// Reports whether a call without prototype works on the board as well: integers and pointers only.
+    /// Reports whether a call without prototype also works on the board: only integers and pointers.
     fn is_plain(&self, ty: TypeId) -> bool {
         let is_word = |ty: TypeId| self.types.is_pointer(ty) || (ty.is_integer() && !ty.is_long_long());
         self.types.function(ty).is_some_and(|function| {
@@ -71,7 +71,7 @@ impl Sema<'_> {
         })
     }
 
-    /// A function that only the firmware knows.
+    /// A function that is only known from the firmware.
     fn implicit_firmware(&mut self, name: Name, span: Span) -> Option<(Callee, TypeId)> {
         let later = self.scopes.lookup_later(name).map(|binding| binding.entity);
         if later == Some(Entity::Poisoned) {
@@ -86,7 +86,7 @@ impl Sema<'_> {
         let prototype = self.types.spell_declaration(self.names, ty, spelling);
         let symbol = self.symbols.declare(name, spelling, Linkage::External, ty, span);
         self.symbols.facts_mut(symbol).is_reported = true;
-        // The header that declares it may be the file that was not found.
+        // A header that was not found may declare it.
         if !self.sink.lacks_names() {
             let is_library = self.firmware.origin(spelling) == Some(Origin::Library);
             let message = format!("`{spelling}` is not declared");
@@ -199,7 +199,7 @@ impl Sema<'_> {
         self.report(advice(diagnostic));
     }
 
-    /// A variable without declaration; reported once in a function.
+    /// A variable without declaration; reported once per function.
     pub(super) fn undeclared(&mut self, name: Name, span: Span) {
         if !self.body.undeclared.insert(name) {
             return;
@@ -254,7 +254,8 @@ fn of_other_board(board: &TargetBoard, name: &str, span: Span) -> Option<Diagnos
     Some(Diagnostic::error(span, message).help(format!("`--board {}` builds for that firmware", other.name)))
 }
 
-/// Reports whether a name may be suggested for another: one letter is close to every other, only its case can be meant.
+/// Reports whether a name may be suggested for another: every single letter is close to every other, so only its case
+/// may differ.
 pub(super) fn is_sensible(spelling: &str, name: &str) -> bool {
     spelling.len() > 1 || name.eq_ignore_ascii_case(spelling)
 }

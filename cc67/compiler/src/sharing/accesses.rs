@@ -18,16 +18,16 @@ use crate::lower::{self, Definitions};
 use crate::source::{SourceMap, Span};
 use crate::typed::{SymbolId, Unit};
 
-/// The most accesses of a program that are looked at.
+/// The limit of accesses of a program that are analysed.
 const MAX_ACCESSES: usize = 4000;
 
-/// The most blocks of a function that is looked at: the conditions of each are found from those of all others.
+/// The limit of blocks of a function that is analysed: the conditions of each depend on all others.
 const MAX_BLOCKS: usize = 500;
 
 /// The deepest chain of calls that is followed.
 const MAX_DEPTH: usize = 12;
 
-/// A program of a thread, and what it does to memory that others can share.
+/// A program of a thread, and its accesses to memory that can be shared.
 #[derive(Debug)]
 pub(crate) struct ThreadProgram<'a> {
     pub(super) thread: ThreadId,
@@ -46,11 +46,11 @@ pub(super) enum Action {
     Load,
     /// It is stored, perhaps always the same value.
     Store(Option<i32>),
-    /// It is stored with a value that is made of the one that was loaded from it.
+    /// A store of a value that was computed from its old value.
     Update(UpdateKind),
-    /// A function of the firmware changes bits of it at once.
+    /// A firmware function changes bits of it atomically.
     Change,
-    /// It is a lock that is taken.
+    /// A lock is taken.
     Lock,
     /// It is a lock that is freed.
     Unlock,
@@ -58,7 +58,7 @@ pub(super) enum Action {
     Start(ThreadId),
 }
 
-/// The operation that makes a cell of its old value.
+/// The operation that computes a cell's new value from the old one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum UpdateKind {
     /// By arithmetic.
@@ -140,7 +140,7 @@ struct AccessWalk<'a> {
     call_backs: BTreeSet<SymbolId>,
     found: Listed,
     locks: BTreeSet<Cell>,
-    /// The guards that functions which have returned have waited for.
+    /// The guards for which functions that have returned have waited.
     waited: BTreeSet<Guard>,
 }
 

@@ -14,7 +14,7 @@ use crate::diag::{Diagnostic, Lint};
 use crate::ir::operators::Width;
 use crate::typed::SymbolId;
 
-/// The way to more.
+/// The reference to further information.
 const MORE: &str = "`cc67 explain races` has the ways that are right on the board";
 
 /// The context that executes accesses.
@@ -31,8 +31,8 @@ pub(crate) fn report_call_back_sharing(program: &ThreadProgram<'_>) -> Vec<Diagn
     lost_updates(main, call_back).chain(torn_doubles(main, call_back)).collect()
 }
 
-/// The advice for one of several programs about what it shares with the others; of two programs that both change a
-/// cell, the one in the lower thread gets it.
+/// The advice for one of several programs about the memory that it shares with the others; if two programs both change
+/// a cell, the advice is given for the one in the lower thread.
 pub(crate) fn advise(program: &ThreadProgram<'_>, programs: &[ThreadProgram<'_>]) -> Vec<Diagnostic> {
     let [main, call_back] = contexts(program);
     let others = programs.iter().filter(|other| other.thread != program.thread);
@@ -53,7 +53,7 @@ fn contexts<'a>(program: &'a ThreadProgram<'a>) -> [SharingContext<'a>; 2] {
     ]
 }
 
-/// Statements of `ours` whose load and store `theirs` can come between.
+/// Statements of `ours` whose load and store can be interrupted by `theirs`.
 fn lost_updates<'a>(
     ours: SharingContext<'a>,
     theirs: SharingContext<'a>,
@@ -290,8 +290,8 @@ fn is_conflict(ours: SharingContext<'_>, number: usize, theirs: SharingContext<'
     !is_ordered
 }
 
-/// Returns whether what `one` does at `number` is done when `other` comes to `place`: because it then stores a flag that the
-/// other has tested, or starts the other.
+/// Returns whether the access `number` of `one` is complete when `other` reaches `place`: because `one` then stores a
+/// flag that `other` has tested, or starts `other`.
 fn comes_before(one: SharingContext<'_>, number: usize, other: SharingContext<'_>, place: usize) -> bool {
     let cell = one.accesses[number].cell;
     let guards = &other.accesses[place].guards;
@@ -305,7 +305,7 @@ fn comes_before(one: SharingContext<'_>, number: usize, other: SharingContext<'_
     })
 }
 
-/// Returns whether the call-back is set where a program makes an access.
+/// Returns whether the call-back is set when a program makes an access.
 fn is_called_back(main: SharingContext<'_>, number: usize) -> bool {
     let cell = Cell::Board(USER_CALL_BACK.address().get());
     let sets: Vec<_> = main
@@ -317,7 +317,7 @@ fn is_called_back(main: SharingContext<'_>, number: usize) -> bool {
     let before = sets.iter().rev().find(|(place, _)| *place < number);
     match before {
         Some((_, access)) => access.action != Action::Store(Some(0)),
-        // A loop may come here again.
+        // A loop may get here again.
         None => {
             sets.is_empty()
                 || main.accesses[number].is_repeated && sets.iter().any(|(_, set)| set.is_repeated)

@@ -9,12 +9,12 @@ use crate::ir::inst::{BlockId, Constant, Inst, InstKind, Operand, Terminator};
 use crate::ir::operators::CompareOp;
 use crate::source::Span;
 
-/// A cell whose value decided that an instruction is reached.
+/// A cell whose value decides whether an instruction is reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Guard {
     /// The cell.
     pub(super) cell: Cell,
-    /// The comparison with a constant, if it is so simple.
+    /// The comparison with a constant, if it is that simple.
     test: Option<Test>,
 }
 
@@ -29,7 +29,7 @@ struct Test {
 }
 
 impl Guard {
-    /// Returns whether no value of the cell lets both conditions hold.
+    /// Returns whether no value of the cell satisfies both conditions.
     pub(super) fn excludes(&self, other: &Self) -> bool {
         let constants = [self.test, other.test].map(|test| test.map(|test| test.constant));
         let [Some(one), Some(two)] = constants else { return false };
@@ -61,7 +61,7 @@ impl Guard {
     }
 }
 
-/// A loop that does nothing but look at a cell.
+/// A loop that only polls a cell.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wait {
     pub(super) cell: Cell,
@@ -72,7 +72,7 @@ pub(super) struct Wait {
 #[derive(Debug)]
 pub(super) struct Conditions {
     guards: BTreeMap<BlockId, BTreeSet<Guard>>,
-    /// The blocks that can be executed again.
+    /// The blocks that can be executed more than once.
     repeated: BTreeSet<BlockId>,
 }
 
@@ -103,7 +103,7 @@ impl Conditions {
         self.guards.get(&block).into_iter().flatten().copied()
     }
 
-    /// The loops of the function in which nothing is called or stored, and what they look at.
+    /// The loops of the function without calls and stores, and the cells that they poll.
     pub(super) fn waits(&self, function: &Function, values: &Values<'_>) -> Vec<Wait> {
         let ends_idle_loop = |block: &&BlockId| {
             let loop_blocks = reached(function, values, **block, None);
@@ -140,7 +140,7 @@ const fn is_idle(inst: &Inst) -> bool {
     )
 }
 
-/// The blocks that are reached from one, without those after `barrier` or the end of the thread.
+/// The blocks that are reachable from one, except those after `barrier` or the end of the thread.
 fn reached(
     function: &Function,
     values: &Values<'_>,

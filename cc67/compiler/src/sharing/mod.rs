@@ -1,10 +1,10 @@
 //! Advice about memory that programs share, from their texts alone.
 //!
-//! [`ThreadProgram::new`] lists the accesses of a program to cells of known address in the order of the text, with the locks
-//! that are held there and the flags that were tested before. [`advise`] compares the lists of the programs of all
-//! threads, [`report_call_back_sharing`] those of a program and of its call-back: a load and a store of one statement that another program can come between, a `double` that another program
-//! can read half old. It is advice, so a pair of accesses that a lock, a flag or the start of a thread may put in order
-//! is not reported.
+//! [`ThreadProgram::new`] lists the accesses of a program to cells with known addresses in the order of the text, with
+//! the locks held at each and the flags tested before it. [`advise`] compares the lists of the programs of all threads,
+//! [`report_call_back_sharing`] those of a program and its call-back. They find a load and a store of one statement
+//! that another program can interrupt, and a `double` that another program can read half updated. It is advice, so a
+//! pair of accesses that a lock, a flag or the start of a thread may put in order is not reported.
 
 mod accesses;
 mod advice;

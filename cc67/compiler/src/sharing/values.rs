@@ -1,4 +1,4 @@
-//! Constants and loads that the values of a function come from.
+//! The constants and loads from which the values of a function are computed.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,12 +11,12 @@ use crate::ir::inst::{Address, Base, Callee, Constant, Inst, InstKind, Operand, 
 use crate::ir::operators::BinaryOp;
 use crate::typed::{Definition, StaticData, SymbolId, Unit};
 
-/// The pointers of a unit that keep the value of their initialiser.
+/// The pointers of a unit that keep their initial value.
 #[derive(Debug, Default)]
 pub(super) struct Pointers(BTreeMap<SymbolId, Constant>);
 
 impl Pointers {
-    /// Finds those that no function stores to.
+    /// Finds the pointers to which no function stores.
     pub(super) fn new<'a>(unit: &Unit, functions: impl Iterator<Item = &'a Function>) -> Self {
         let initialised = unit.symbols.iter().filter_map(|(symbol, declared)| {
             let Definition::Data(StaticData { bytes, addresses }) = &declared.definition else { return None };
@@ -43,7 +43,7 @@ pub(super) struct Values<'a> {
     unit: &'a Unit,
     pointers: &'a Pointers,
     writes: BTreeMap<ValueId, Vec<InstKind>>,
-    /// The constants that the caller passes.
+    /// The constants passed by the caller.
     passed: BTreeMap<ValueId, Constant>,
 }
 
@@ -59,7 +59,7 @@ impl<'a> Values<'a> {
         Self { unit, pointers, writes, passed: BTreeMap::new() }
     }
 
-    /// The values where the caller passes these arguments.
+    /// The values if the caller passes these arguments.
     pub(super) fn with_arguments(mut self, function: &Function, arguments: &[Option<Constant>]) -> Self {
         let passed = function.params.iter().zip(arguments);
         let passed = passed.filter_map(|(value, constant)| Some((*value, (*constant)?)));
@@ -122,7 +122,7 @@ impl<'a> Values<'a> {
         }
     }
 
-    /// The cell at an address, if it is always the same one.
+    /// The cell at an address, if it is constant.
     pub(super) fn cell(&self, address: Address) -> Option<Cell> {
         let place = match address.base {
             Base::Absolute => Constant::I32(address.offset),
@@ -139,7 +139,7 @@ impl<'a> Values<'a> {
         self.cell_of(place)
     }
 
-    /// The cell that a constant is the address of.
+    /// The cell whose address is a constant.
     pub(super) fn cell_of(&self, constant: Constant) -> Option<Cell> {
         let (symbol, offset) = match constant {
             Constant::I32(address) => return Some(Cell::Board(address.cast_unsigned())),
@@ -157,7 +157,7 @@ impl<'a> Values<'a> {
         }
     }
 
-    /// The cells of the loads that an operand is computed from.
+    /// The cells from whose loads an operand is computed.
     pub(super) fn loads(&self, operand: Operand) -> BTreeSet<Cell> {
         let mut found = BTreeSet::new();
         let mut seen = BTreeSet::new();

@@ -5,7 +5,7 @@
 
 use super::{FunctionType, ParameterTypes, QualifiedType, Type, TypeId, Types};
 
-/// The type that an integer narrower than `int` is computed in.
+/// The promoted type of an integer narrower than `int`.
 #[must_use]
 pub fn promoted(ty: TypeId) -> TypeId {
     if (Types::BOOL..=Types::UNSIGNED_SHORT).contains(&ty) { Types::INT } else { ty }
@@ -18,7 +18,7 @@ pub fn common(a: TypeId, b: TypeId) -> TypeId {
     promoted(a).max(promoted(b))
 }
 
-/// The type in which a value without prototype is passed.
+/// The type in which a value is passed without a prototype.
 #[must_use]
 pub fn argument_promoted(ty: TypeId) -> TypeId {
     if ty == Types::FLOAT { Types::DOUBLE } else { promoted(ty) }
@@ -43,8 +43,8 @@ impl Types {
         }
     }
 
-    /// Reports whether two functions can be called alike; `()` agrees with every list that the promotions do not
-    /// change.
+    /// Reports whether two functions can be called in the same way; `()` is compatible with every list that promotions
+    /// do not change.
     #[must_use]
     pub fn compatible_parameters(&self, a: &FunctionType, b: &FunctionType) -> bool {
         match (&a.parameters, &b.parameters) {
@@ -77,7 +77,7 @@ impl Types {
         if knows_more { old } else { new }
     }
 
-    /// The qualified type that `&` of something of type `ty` points to, as a pointer type.
+    /// The type of `&` applied to a value of type `ty`.
     pub fn pointer_to_qualified(&mut self, ty: QualifiedType) -> TypeId {
         if ty == QualifiedType::plain(ty.ty) {
             self.pointer_to(ty.ty)

@@ -1,14 +1,15 @@
 //! Sizes, alignments and the layout of structures.
 //!
-//! Natural alignment, members in order, `double` on 8 (`dialect.md` 1.2). A bit-field follows the bit before it, from bit 0
-//! upwards, unless it would straddle a unit of its declared type, which it then opens; width 0 closes the unit. That is the
-//! layout of `gcc -m32 -malign-double`. The vendor's differs where types are mixed, and lets such fields overlap.
+//! Natural alignment, members in order, `double` on 8 (`dialect.md` 1.2). A bit-field follows the previous bit, from
+//! bit 0 upwards, unless it would straddle a unit of its declared type, in which case it begins a new one; width 0 ends
+//! the unit. That is the layout of `gcc -m32 -malign-double`. The vendor's layout differs where types are mixed, and
+//! lets such fields overlap.
 
 use super::{BitRange, Layout, Member, QualifiedType, RecordId, Type, TypeId, Types};
 use crate::ast::RecordKind;
 use crate::names::Name;
 
-/// The largest object that a declaration may ask for: all of the board's SDRAM.
+/// The size limit of an object: all of the board's SDRAM.
 pub const MAX_OBJECT_SIZE: u32 = 0x100_0000;
 /// Bytes of the largest structure.
 const LARGEST: u32 = i32::MAX as u32 - 8;
@@ -67,7 +68,7 @@ impl Types {
 pub struct LayoutBuilder {
     kind: RecordKind,
     members: Vec<Member>,
-    /// First byte after the members so far; for a union, the size of the largest.
+    /// The first byte after the members so far; for a union, the size of the largest.
     end: u32,
     align: u32,
     /// The bit after the last member, if that is a bit-field.
@@ -87,8 +88,8 @@ impl LayoutBuilder {
         &self.members
     }
 
-    /// Adds a member, aligned to `align` at least; an incomplete array takes no room. `None` if the structure grows
-    /// beyond all bounds.
+    /// Adds a member, aligned to at least `align`; an incomplete array takes no room. `None` if the structure becomes
+    /// too large.
     pub fn member(&mut self, types: &Types, name: Option<Name>, ty: QualifiedType, align: u32) -> Option<()> {
         self.end_bit = None;
         let offset = self.reserve(types.size_of(ty.ty).unwrap_or(0), types.align_of(ty.ty).max(align))?;
@@ -96,7 +97,7 @@ impl LayoutBuilder {
         Some(())
     }
 
-    /// Adds a bit-field; without a name it is only room, and of width 0 it closes the unit.
+    /// Adds a bit-field; without a name it is only padding, and with width 0 it ends the unit.
     pub fn bit_field(
         &mut self,
         types: &Types,

@@ -1,8 +1,8 @@
 //! Types of the target: kinds, sizes, conversions.
 //!
-//! Types are interned in [`Types`]; a [`TypeId`] is a number, equal numbers are equal types.
-//! `long` is `int`, an enumeration is `int`, `long double` is `double` (specification,
-//! `dialect.md` 1.1); they have no type of their own. Qualifiers travel beside the type.
+//! Types are interned in [`Types`]; a [`TypeId`] is a number, equal numbers are equal types. `long` is `int`, an
+//! enumeration is `int`, `long double` is `double` (specification, `dialect.md` 1.1); they are not separate types.
+//! Qualifiers are kept next to the type.
 
 pub mod class;
 pub mod convert;
@@ -22,7 +22,7 @@ use crate::names::Name;
 pub struct TypeId(u32);
 entity_impl!(TypeId, "type");
 
-/// A structure or union; every definition is a type of its own.
+/// A structure or union; every definition is a distinct type.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RecordId(u32);
 entity_impl!(RecordId, "record");
@@ -134,7 +134,7 @@ pub struct Record {
 /// The layout of a structure or union.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
-    /// The members in order; those of anonymous members appear inside theirs.
+    /// The members in order; members of anonymous members appear inside theirs.
     pub members: Vec<Member>,
     /// Size in bytes, a multiple of the alignment.
     pub size: u32,
@@ -180,7 +180,7 @@ macro_rules! basic_types {
         impl Types {
             basic_types!(@constants 0; $($name = $variant,)*);
 
-            /// The table with the types that are always there.
+            /// The table with the predefined types.
             #[must_use]
             pub fn new() -> Self {
                 let mut types = Self {
@@ -254,7 +254,7 @@ impl Types {
         id
     }
 
-    /// Opens a structure or union whose members come later.
+    /// Adds a structure or union whose members follow later.
     pub fn add_record(&mut self, kind: RecordKind, name: Option<Name>) -> (RecordId, TypeId) {
         let record = self.records.push(Record { kind, name, is_tagged: name.is_some(), layout: None });
         (record, self.intern(Type::Record(record)))

@@ -1,7 +1,7 @@
 //! Words of other languages and boards, and their counterparts in a program for KFLOP.
 //!
-//! People come to KFLOP from Arduino, C++, Python, Basic and G-code, and write the words they know; or they take a call
-//! from an example of the manual and not the function. A row of [`WORDS`] is such a word with its replacement.
+//! People come to KFLOP from Arduino, C++, Python, Basic and G-code, and use the words they know; or they copy a call
+//! from an example of the manual without the function. A row of [`WORDS`] is such a word with its replacement.
 
 /// The origin of a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -16,7 +16,7 @@ pub enum Origin {
     Computer,
     /// Examples of the manual, which define it themselves.
     Example,
-    /// Names that people expect in the firmware, by the pattern of those it has.
+    /// Names that people expect in the firmware, by the pattern of existing ones.
     Board,
     /// Script commands of the board's console.
     Console,
@@ -29,7 +29,7 @@ pub struct Word {
     pub spelling: &'static str,
     /// Its origin.
     pub origin: Origin,
-    /// It accompanies other words of its origin, so that it is not reported after one of them.
+    /// It accompanies other words of its origin, so it is not reported after one of them.
     pub is_companion: bool,
     /// The replacement.
     pub advice: &'static str,
@@ -202,7 +202,7 @@ pub const TYPES: &[(&str, &str)] = &[
     ("int64_t", "include <stdint.h>"),
 ];
 
-/// Reports whether a word looks like one of G-code: a letter and a number.
+/// Reports whether a word looks like G-code: a letter and a number.
 #[must_use]
 pub fn is_g_code(word: &str) -> bool {
     const LETTERS: &str = "ABCDFGHIJKLMNPQRSTXYZ";

@@ -1,11 +1,11 @@
-//! Suggestions: the known name that was probably meant.
+//! Suggestions: finds the known name that was probably meant.
 
-/// The candidate that looks most like `name`, if any is close enough to be meant.
+/// The candidate most similar to `name`, if any is close enough.
 ///
-/// Closeness counts the letters that are changed, added, left out or swapped with their
-/// neighbour (optimal string alignment); another letter case counts a quarter. A third of the
-/// letters may differ. Failing that, the longest candidate that abbreviates the name; one of six or more letters
-/// comes before a candidate that is only close: `MoveRel` for `MoveRelative`.
+/// The distance is the number of letters that are changed, added, left out or swapped with their neighbour (optimal
+/// string alignment); another letter case counts as a quarter. A third of the letters may differ. Otherwise the longest
+/// candidate that abbreviates the name is taken; an abbreviation of six or more letters takes precedence over a
+/// candidate that is only similar: `MoveRel` for `MoveRelative`.
 pub fn suggest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let limit = (name.chars().count() * CHANGE / 3).max(CHANGE);
     let mut best: Option<(usize, &str)> = None;

@@ -7,7 +7,7 @@ use crate::c67x::code::{Arg, Base, Call, CallTarget, Inst, MemoryPlace, VReg};
 use crate::c67x::forms::Kind;
 use crate::ir::inst::{ArgumentRange, Callee, Class, Operand, SignatureId, ValueId};
 
-/// Reports whether the callee does not use the last argument of a call, the address of its variable ones.
+/// Reports whether the callee ignores the last argument of a call, the address of its variable arguments.
 pub(super) fn takes_stack_alone(callee: Callee, externs: &Externs) -> bool {
     matches!(callee, Callee::Symbol(symbol) if externs.takes_stack_alone(symbol))
 }
@@ -50,13 +50,13 @@ impl Selector<'_> {
                 CallTarget::Register
             }
         };
-        // What a function returns comes in its registers, wanted or not.
+        // A function's result is in its registers, needed or not.
         let class = self.signatures.get(signature).result;
         let result = dst.filter(|_| class.is_some()).map(|dst| self.value(dst));
         self.emit_call(target, arguments, result);
     }
 
-    /// The last named argument of a function with variable ones is in memory too (`c67x.md` 6.1).
+    /// The last named argument of a variadic function, which is also passed in memory (`c67x.md` 6.1).
     fn last_named(&mut self, last: Option<(VReg, Class)>) {
         self.code.has_variable_calls = true;
         if let Some((reg, class)) = last.filter(|(_, class)| !is_pair(*class)) {
@@ -67,7 +67,7 @@ impl Selector<'_> {
         }
     }
 
-    /// The number of the thread, as the firmware has it: functions keep other values in its register.
+    /// The number of the thread, from the firmware, since functions keep other values in its register.
     fn thread(&mut self) -> VReg {
         let symbol = self.externs.symbol("CurrentThread");
         let base = self.known(Value::Symbol(symbol, 0));
@@ -117,7 +117,7 @@ impl Selector<'_> {
             }
             None => Arg::None,
         };
-        // Arguments from the seventh on go to registers that functions keep.
+        // Arguments from the seventh on are passed in callee-saved registers.
         let written = arguments.iter().fold(0, |set, (reg, at)| {
             let high = if self.code.regs[*reg].is_pair { at.pair().high() } else { *at };
             set | abi::bit(*at) | abi::bit(high)
@@ -133,7 +133,7 @@ impl Selector<'_> {
         self.out.push(inst);
     }
 
-    /// The register that an operand is returned in.
+    /// The register in which an operand is returned.
     pub(super) fn returned(&mut self, operand: Operand) -> VReg {
         let reg = self.operand(operand);
         let info = &mut self.code.regs[reg];

@@ -20,7 +20,7 @@ impl Selector<'_> {
         }
     }
 
-    /// A register that holds a word that is known, shared with who else needs it.
+    /// A register that holds a known word, shared by its users.
     pub(super) fn known(&mut self, value: Value) -> VReg {
         let early = || self.early.constants.iter().find(|(known, _)| *known == value).map(|(_, reg)| *reg);
         if let Some(reg) = self.constants.get(&value).copied().or_else(early) {
@@ -45,7 +45,7 @@ impl Selector<'_> {
         let reg = self.pair();
         if self.depth > 0 && self.early.insts.len() < MAX_EARLY {
             self.early.wide_constants.push((bits, reg));
-            // Made once, in front of everything.
+            // Made once, before everything else.
             let here = std::mem::take(&mut self.out);
             self.wide_in(reg, bits);
             let insts = std::mem::replace(&mut self.out, here);
@@ -77,7 +77,7 @@ impl Selector<'_> {
         self.out.extend(make(dst.into(), value, span));
     }
 
-    /// An operand of class `I32` as a source that may be a constant in the range.
+    /// An operand of class `I32` as a source, which may be a constant in the range.
     pub(super) fn small(&mut self, operand: Operand, range: std::ops::RangeInclusive<i32>) -> Arg {
         match operand.as_int() {
             Some(value) if range.contains(&value) => Arg::number(value),
@@ -86,7 +86,7 @@ impl Selector<'_> {
     }
 }
 
-/// The instructions that make a word that is known.
+/// The instructions that make a known word.
 pub(in crate::c67x) fn make(dst: Arg, value: Value, span: crate::source::Span) -> impl Iterator<Item = Inst> {
     let is_short = matches!(value, Value::Number(number) if i16::try_from(number).is_ok());
     let low = Inst::new(Kind::Mvk, dst, Arg::Value(value), Arg::None, span);

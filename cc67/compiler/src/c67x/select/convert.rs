@@ -49,7 +49,7 @@ impl Selector<'_> {
         }
     }
 
-    /// Both words are exact as doubles, and so is the high one times 2³²: their sum rounds once.
+    /// Converts both words to doubles, which is exact, and so is the high one times 2³²; only their sum is rounded.
     fn double_from_wide(&mut self, high: Kind, dst: crate::c67x::code::VReg, src: crate::c67x::code::VReg) {
         let factor = self.constant(Constant::F64(TWO_TO_32));
         let (upper, lower, scaled) = (self.pair(), self.pair(), self.pair());

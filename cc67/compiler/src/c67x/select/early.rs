@@ -1,9 +1,9 @@
-//! Early stores of variable arguments: as soon as they are known, if calls come between, so that no register has to
-//! keep them.
+//! Early stores of variable arguments: as soon as they are known, if other calls come in between, so that no register
+//! has to hold them.
 //!
-//! The area of the frame that holds them belongs to one call until it is made, unless a call before it has variable
-//! arguments too, as a function called by its address may. If a function with variable arguments was inlined, other
-//! instructions may read its arguments there; then nothing is moved.
+//! The area of the frame that holds them belongs to one call until that call is made, unless an earlier call is
+//! variadic, too, as a function called by its address may be. If a variadic function was inlined, other instructions
+//! may read its arguments there; then nothing is moved.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,7 +11,7 @@ use crate::c67x::Externs;
 use crate::ir::function::{Block, Function};
 use crate::ir::inst::{Base, Callee, InstKind, Operand, ValueId};
 
-/// The numbers of a block's instructions in the order in which they are selected; none may move if the area is shared.
+/// The numbers of a block's instructions in the order in which they are selected; unchanged if the area is shared.
 pub(super) fn order(function: &Function, block: &Block, externs: &Externs, is_shared: bool) -> Vec<usize> {
     if is_shared || function.outgoing.is_none() {
         return (0..block.insts.len()).collect();
@@ -29,7 +29,7 @@ pub(super) fn order(function: &Function, block: &Block, externs: &Externs, is_sh
     kept.flat_map(|index| std::iter::once(index).chain(followers[index].iter().copied())).collect()
 }
 
-/// The calls before each instruction of a block, and the last instruction before it that makes what it stores.
+/// The calls before each instruction of a block, and the last instruction before it that computes the value it stores.
 struct AreaUses {
     /// Number of calls, and of users of the area: calls with variable arguments, and loads from it.
     counts: Vec<[usize; 2]>,
@@ -68,8 +68,8 @@ impl AreaUses {
     }
 }
 
-/// The instruction that makes what a store of a variable argument stores, if it can follow that one and calls are
-/// between them.
+/// The instruction that computes the value of a variable-argument store, if the store can follow it directly and calls
+/// are between them.
 fn maker(function: &Function, block: &Block, uses: &AreaUses, index: usize) -> Option<usize> {
     let outgoing = function.outgoing?;
     let InstKind::Store { src: Operand::Value(_), address, .. } = block.insts[index].kind else {
@@ -84,11 +84,11 @@ fn maker(function: &Function, block: &Block, uses: &AreaUses, index: usize) -> O
     if uses_after > uses_before {
         return None;
     }
-    // The result of such a call is stored where the source says.
+    // The result of such a call is stored at its position in the source.
     (after > before && !uses.has_variable[maker]).then_some(maker)
 }
 
-/// Reports whether anything but calls with variable arguments uses the address of their area.
+/// Reports whether the address of the variable-argument area is used by anything except variadic calls.
 pub(super) fn is_area_shared(function: &Function, externs: &Externs) -> bool {
     let insts = || function.layout.iter().flat_map(|block| &function.blocks[*block].insts);
     let addresses: BTreeSet<ValueId> = insts()

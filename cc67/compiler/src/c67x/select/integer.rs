@@ -69,7 +69,7 @@ impl Selector<'_> {
         self.push(kind, dst, b, a);
     }
 
-    /// `dst = a + b`; a constant is b. Where a register counts on, more constants need no register.
+    /// `dst = a + b`; a constant is b. For a register that is incremented, more constants fit the instruction.
     pub(super) fn add(&mut self, dst: VReg, a: Operand, b: Operand) {
         let a = self.operand(a);
         let range = if a == dst { i16::MIN.into()..=i16::MAX.into() } else { C5 };
@@ -97,7 +97,7 @@ impl Selector<'_> {
         self.push(Kind::And, dst, mask, a);
     }
 
-    /// A shift; counts are taken modulo 64, as the processor does.
+    /// A shift; counts are taken modulo 64, as on the processor.
     fn shift(&mut self, kind: Kind, dst: VReg, a: Operand, b: Operand) {
         let Some(count) = b.as_int() else {
             let (count, a) = (self.operand(b), self.operand(a));
@@ -159,7 +159,7 @@ impl Selector<'_> {
         }
     }
 
-    /// Compares; returns whether `dst` is the opposite of what is requested.
+    /// Compares; returns whether `dst` is the opposite of the requested result.
     pub(super) fn compare(&mut self, op: CompareOp, dst: VReg, a: Operand, b: Operand) -> bool {
         match self.function.class(a) {
             Class::I32 => self.compare_i32(op, dst, a, b),

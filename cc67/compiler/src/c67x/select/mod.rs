@@ -1,8 +1,7 @@
 //! IR to instructions over virtual registers.
 //!
-//! Every IR value has one virtual register. Constants that no instruction can hold are made where they are needed;
-//! inside a loop they are made in front of the first block, and the allocator makes them again where it has no
-//! register for them.
+//! Every IR value has one virtual register. Constants that no instruction can hold are made where they are needed; in a
+//! loop they are made before the first block, and the allocator rematerialises them where it has no register for them.
 
 #![deny(clippy::wildcard_enum_match_arm, reason = "a new instruction, operator or mode must be decided")]
 
@@ -104,9 +103,9 @@ fn count_uses(function: &Function, externs: &Externs) -> SecondaryMap<ValueId, u
 #[derive(Default)]
 struct Early {
     insts: Vec<Inst>,
-    /// Constants that are in registers from there on.
+    /// Constants that are available in registers from the present position on.
     constants: Vec<(Value, VReg)>,
-    /// Pairs that hold constants from there on.
+    /// Constants that are available in pairs from the present position on.
     wide_constants: Vec<(u64, VReg)>,
 }
 
@@ -151,7 +150,8 @@ impl Selector<'_> {
         self.enter();
     }
 
-    /// Puts what is done early in front of the first block; a block that is jumped to gets one before it.
+    /// Inserts the early instructions before the first block; if that block is a jump target, another block is put
+    /// before it.
     fn enter(&mut self) {
         let early = std::mem::take(&mut self.early.insts);
         let is_target = self.code.blocks.iter().any(|block| block.end.targets().any(|to| to == 0));
@@ -241,14 +241,14 @@ impl Selector<'_> {
         self.push(kind, dst, Arg::None, src);
     }
 
-    /// An instruction that takes or makes a field of bits.
+    /// An instruction that extracts or inserts a bit field.
     fn field(&mut self, kind: Kind, dst: impl Into<Arg>, src: impl Into<Arg>, field: (u8, u8)) {
         let mut inst = Inst::new(kind, dst.into(), Arg::None, src.into(), self.span);
         inst.field = field;
         self.out.push(inst);
     }
 
-    /// The last instruction happens under a condition alone.
+    /// Puts the last instruction under a condition.
     fn only_if(&mut self, condition: Condition) {
         if let Some(last) = self.out.last_mut() {
             last.condition = condition;
@@ -260,7 +260,7 @@ impl Selector<'_> {
         self.push(Kind::Move, dst, Arg::number(0), src);
     }
 
-    /// `dst = src`, of a pair. Nothing if they are the same: what begins is not read before it is written.
+    /// `dst = src` for a pair. Nothing if they are the same, since `Begin` must not precede a read.
     fn copy_pair(&mut self, dst: VReg, src: VReg) {
         if dst == src {
             return;
@@ -345,7 +345,7 @@ fn depths(function: &Function) -> Vec<u32> {
     for (index, id) in function.layout.iter().enumerate() {
         places[*id] = index as u32;
     }
-    // The last jump back to each block: several of them make one loop.
+    // The last jump back to each block: several such jumps form one loop.
     let mut ends = vec![None; function.layout.len()];
     for (index, id) in function.layout.iter().enumerate() {
         for target in function.blocks[*id].terminator.targets().map(|to| places[to] as usize) {

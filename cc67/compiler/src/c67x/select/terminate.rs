@@ -9,7 +9,7 @@ use crate::ir::function::{Block, Function};
 use crate::ir::inst::{InstKind, Operand, Terminator, ValueId};
 use crate::ir::operators::CompareOp;
 
-/// The comparison that a block ends with, if nothing but its branch wants it.
+/// The comparison at the end of a block, if only its branch uses it.
 pub(super) fn fused_compare(
     function: &Function,
     block: &Block,
@@ -67,7 +67,7 @@ impl Selector<'_> {
         (tested, is_inverted)
     }
 
-    /// A register with a word that is tested: its own if this block has just made it and nothing else wants it.
+    /// A register with a word that can be tested: its own register if this block has just made it for no other use.
     fn in_condition(&mut self, operand: Operand) -> VReg {
         let value = operand.as_value().filter(|value| self.uses[*value] == 1);
         let own = self.operand(operand);
@@ -82,7 +82,7 @@ impl Selector<'_> {
         tested
     }
 
-    /// A jump through a table of addresses; the block is cut where the index is found too large.
+    /// A jump through a table of addresses; the block is split where the index is found to be too large.
     fn table(&mut self, index: Operand, targets: Vec<u32>, default: u32) -> End {
         let table = self.code.tables.len() as u32;
         let count = targets.len() as i32;

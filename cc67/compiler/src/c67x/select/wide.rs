@@ -1,6 +1,6 @@
 //! Integers of 64 bits, in pairs.
 //!
-//! Results are made in words of their own and joined at the end, because the destination may be a source.
+//! Results are computed in separate words and joined at the end, because the destination may be a source.
 
 use super::Selector;
 use crate::c67x::code::{Arg, VReg};
@@ -72,8 +72,8 @@ impl Selector<'_> {
         self.helper(name, &[a, b], dst);
     }
 
-    /// The low 64 bits of a product. The processor multiplies signed words to 64 bits; a factor whose top bit is set
-    /// counts 2³² too little.
+    /// The low 64 bits of a product. The processor multiplies signed words to 64 bits; a factor with its top bit set
+    /// counts as 2³² too little.
     fn product(&mut self, a: Operand, b: Operand) -> (VReg, VReg) {
         let (a, b) = (self.operand(a), self.operand(b));
         let whole = self.pair();
@@ -93,7 +93,7 @@ impl Selector<'_> {
         (low, high)
     }
 
-    /// A shift; `name` is the function for a count that is not known.
+    /// A shift; `name` is the function for an unknown count.
     fn shift_i64(&mut self, op: BinaryOp, name: &'static str, dst: VReg, a: Operand, b: Operand) {
         let a = self.operand(a);
         let Some(count) = b.as_int() else {
@@ -103,7 +103,7 @@ impl Selector<'_> {
         let count = count & 63;
         let is_left = op == BinaryOp::ShiftLeft;
         let down = if op == BinaryOp::ShiftRight { Kind::Shr } else { Kind::Shru };
-        // The word that bits leave, and the one they enter.
+        // The word out of which bits are shifted, and the word into which they are shifted.
         let (from, into) = if is_left { (Arg::Low(a), Arg::High(a)) } else { (Arg::High(a), Arg::Low(a)) };
         let (same, back) = if is_left { (Kind::Shl, Kind::Shru) } else { (Kind::Shru, Kind::Shl) };
         let outer = if is_left { Kind::Shl } else { down };
@@ -145,7 +145,7 @@ impl Selector<'_> {
         }
     }
 
-    /// `dst = a < b`: by the high words, by the low ones where those are equal.
+    /// `dst = a < b`: by the high words, or by the low words if the high ones are equal.
     fn less_i64(&mut self, dst: VReg, a: VReg, b: VReg, high: Kind, is_inverted: bool) -> bool {
         let above = self.make(high, Arg::High(a), Arg::High(b));
         let same = self.make(Kind::CmpEq, Arg::High(a), Arg::High(b));

@@ -1,4 +1,4 @@
-//! A function while its lines are read, and the checks that need all of them.
+//! Reads the lines of a function, and makes the checks that need all of its lines.
 
 use std::collections::BTreeMap;
 
@@ -55,7 +55,7 @@ pub(super) struct Body {
 }
 
 impl Body {
-    /// Reads what follows the word `function`.
+    /// Reads the text after the word `function`.
     pub(super) fn begin(line: &mut Cursor<'_>, at: usize, unit: &mut Functions) -> Read<Self> {
         let name = line.word()?;
         let symbol = unit.symbols.intern(name.strip_prefix('@').unwrap_or(name));
@@ -207,7 +207,7 @@ impl Body {
         }
     }
 
-    /// Gives every value its class; those that are not mentioned are never looked at.
+    /// Gives every value its class; values that do not occur are ignored.
     fn fill_values(&mut self) -> Result<(), ParseError> {
         self.classes.settle();
         let count = self.values.keys().next_back().map_or(0, |last| last.index() + 1);

@@ -1,6 +1,6 @@
 //! One line of the text, read from left to right.
 //!
-//! A word is what is between white space and the characters `, ( ) [ ] = :`.
+//! A word ends at white space or at one of the characters `, ( ) [ ] = :`.
 
 use cranelift_entity::EntityRef;
 
@@ -21,7 +21,7 @@ impl<'a> Cursor<'a> {
         Self { rest }
     }
 
-    /// Reads `text` if it comes next; reports whether it did.
+    /// Takes `text` if it comes next; reports whether it did.
     pub(super) fn take(&mut self, text: &str) -> bool {
         match self.rest.trim_start().strip_prefix(text) {
             Some(rest) => {
@@ -32,7 +32,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Reads `word` if it is the next word; reports whether it was.
+    /// Takes `word` if it is the next word; reports whether it was.
     pub(super) fn keyword(&mut self, word: &str) -> bool {
         let mut ahead = *self;
         let is_next = ahead.word().is_ok_and(|found| found == word);
@@ -77,7 +77,7 @@ impl<'a> Cursor<'a> {
         word.parse().map_err(|_| format!("a number is expected, not `{word}`"))
     }
 
-    /// Reads ` + 4` or ` - 4`, if that comes next; 0 if not.
+    /// Takes ` + 4` or ` - 4` if it comes next; returns 0 if not.
     pub(super) fn offset(&mut self) -> Result<i32, String> {
         let is_negative = if self.take("+ ") {
             false

@@ -12,7 +12,7 @@ use super::cursor::{Cursor, number};
 /// The content of a line of a block.
 pub(super) enum Content {
     Inst(InstKind),
-    /// A call; its signature is known when the classes of its arguments are.
+    /// A call; its signature is determined once the classes of its arguments are known.
     Call(InstKind, Option<Class>),
     Terminator(Terminator),
 }

@@ -65,7 +65,7 @@ impl Worker<'_> {
         }
     }
 
-    /// The values that are written once in the loop, by adding a constant to them.
+    /// The values that are written once in the loop, by adding a constant.
     fn counters(&self, range: LoopRange) -> BTreeMap<ValueId, i32> {
         let blocks = &self.function.layout[range.first..=range.last];
         (blocks.iter().flat_map(|id| &self.function.blocks[*id].insts))
@@ -91,7 +91,7 @@ impl Worker<'_> {
             .collect()
     }
 
-    /// The values, each written once, that grow evenly with a counter.
+    /// The values, each written once, that are linear in a counter.
     fn linear_values(
         &self,
         range: LoopRange,
@@ -122,7 +122,7 @@ impl Worker<'_> {
         linear
     }
 
-    /// A value that grows evenly, given as its counter, scale and cost, combined with another operand.
+    /// A linear value, given by its counter, scale and cost, combined with another operand.
     fn combined(
         &self,
         op: BinaryOp,
@@ -152,7 +152,7 @@ impl Worker<'_> {
         }
     }
 
-    /// The linear values that something else than another linear value reads.
+    /// The linear values that are read by anything except another linear value.
     fn read_as_such(&self, linear: &BTreeMap<ValueId, Linear>) -> EntitySet<ValueId> {
         let mut read = EntitySet::with_capacity(self.function.values.len());
         let mut note = |operand: Operand| {

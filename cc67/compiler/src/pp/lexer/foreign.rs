@@ -1,7 +1,7 @@
-//! Bytes that C has no use for outside comments and strings.
+//! Bytes without a meaning in C outside of comments and strings.
 //!
-//! They come from word processors, web pages and other keyboards. Each gets one message with
-//! the character's name and what to write instead, and is then taken for what was meant.
+//! They come from word processors, web pages and other keyboards. Each gets one message with the character's name and
+//! its replacement, and is then treated as that replacement.
 
 use crate::diag::Diagnostic;
 use crate::names::is_name_byte;
@@ -73,7 +73,7 @@ impl Lexer {
         Token { kind: TokenKind::Identifier, flags, name, span: self.span_from(lo) }
     }
 
-    /// Reads a token that starts with a byte no token of C starts with; `None` if nothing is left of it.
+    /// Reads a token from a byte that cannot begin a C token; `None` if nothing remains of it.
     pub(super) fn foreign(&mut self, flags: Flags, cx: &mut LexerContext<'_>) -> Option<Token> {
         let lo = self.at;
         let (character, length) = self.character();
@@ -166,7 +166,7 @@ impl Lexer {
     }
 }
 
-/// Code page 1252, as far as it differs from Latin-1 in a way that matters here.
+/// Code page 1252, as far as relevant differences from Latin-1 are concerned.
 fn from_windows(byte: u8) -> char {
     match byte {
         0x82 | 0x91 => '\u{2018}',

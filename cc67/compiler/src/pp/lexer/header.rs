@@ -11,7 +11,7 @@ pub(in super::super) struct HeaderName {
     pub(in super::super) name: String,
     /// It is in `<>`, not in quotes.
     pub(in super::super) is_angled: bool,
-    /// The closing delimiter is there.
+    /// True if the closing delimiter exists.
     pub(in super::super) is_closed: bool,
     /// From delimiter to delimiter.
     pub(in super::super) span: Span,

@@ -15,7 +15,7 @@ impl Lexer {
         None
     }
 
-    /// The end of a punctuator whose first byte is the next one, if it is there.
+    /// The end of a punctuator that begins with the next byte, if the rest of it follows.
     fn past(&self, text: &[u8]) -> Option<usize> {
         let mut end = self.at + 1;
         for byte in text.iter().skip(1) {

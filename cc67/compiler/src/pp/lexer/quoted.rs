@@ -55,7 +55,7 @@ impl Lexer {
     ) -> Token {
         let line_end = self.end_of_line(quote);
         let line = self.bytes(quote, line_end);
-        // `printf("a);` probably lacks the quote before `);`, `'a;` the one behind `a`.
+        // `printf("a);` probably lacks the quote before `);`, and `'a;` the quote after `a`.
         self.at = match kind {
             TokenKind::String => {
                 let tail = line.iter().rev().take_while(|byte| b");\r \t".contains(byte)).count();

@@ -9,7 +9,7 @@ use super::super::token::Flags;
 use super::{Lexer, LexerContext, is_blank};
 
 impl Lexer {
-    /// Skips to the next token; in a directive at most to the end of the line.
+    /// Skips to the next token, in a directive at most to the end of the line.
     pub(super) fn skip_space(&mut self, cx: &mut LexerContext<'_>) -> Flags {
         let mut flags = if self.is_line_start { Flags::LINE_START } else { Flags::NONE };
         loop {
@@ -31,7 +31,7 @@ impl Lexer {
         }
     }
 
-    /// Skips the rest of a directive's line. Quotes in it mean nothing.
+    /// Skips the rest of a directive's line, in which quotes have no meaning.
     pub(in super::super) fn skip_line(&mut self, cx: &mut LexerContext<'_>) {
         loop {
             match self.byte(self.at) {
@@ -59,7 +59,7 @@ impl Lexer {
         super::without_splices(self.bytes(lo, self.at)).trim_ascii().to_vec()
     }
 
-    /// Reads the name of a directive in text that is skipped; none if no name is next.
+    /// Reads the name of a directive in skipped text; `None` if there is no name.
     pub(in super::super) fn directive_name(&mut self, cx: &mut LexerContext<'_>) -> Option<Name> {
         let flags = self.skip_space(cx);
         match self.byte(self.at) {
@@ -68,7 +68,7 @@ impl Lexer {
         }
     }
 
-    /// Skips lines that `#if` leaves out up to the next directive, and its `#`; none before the end of the file.
+    /// Skips excluded lines up to the next directive, and its `#`; `None` if there is none before the end of the file.
     pub(in super::super) fn skip_to_directive(&mut self, cx: &mut LexerContext<'_>) -> Option<Span> {
         self.in_directive = false;
         while self.at < self.end {
@@ -84,13 +84,13 @@ impl Lexer {
         None
     }
 
-    /// The offset of the line feed that ends the line of `at`, whatever comes before it.
+    /// The offset of the line feed that ends the line of `at`.
     pub(super) fn end_of_line(&self, at: usize) -> usize {
         let rest = self.bytes(at, self.end);
         at + memchr::memchr(b'\n', rest).unwrap_or(rest.len())
     }
 
-    /// The offset after the end of the block comment whose text is at `at`.
+    /// The offset after the end of the block comment whose text begins at `at`.
     pub(super) fn end_of_comment(&self, at: usize) -> Option<usize> {
         Some(at + find_pair(self.bytes(at, self.end), *b"*/")? + 2)
     }
@@ -144,7 +144,7 @@ impl Lexer {
         self.at = end;
     }
 
-    /// Skips a quoted text if it ends on this line, else the quote alone: an apostrophe.
+    /// Skips a quoted text if it ends on this line, otherwise only the quote: an apostrophe.
     fn skip_quoted_in_line(&mut self) {
         let quote = self.byte(self.at);
         let mut at = self.at + 1;

@@ -1,9 +1,9 @@
-//! An index of the names in the texts that every compilation begins with, made while the compiler itself is built.
+//! An index of the names in the texts at the beginning of every compilation, built together with the compiler.
 //!
 //! The predefined macros and the headers of the board have a thousand names, of which a program uses a few. The index
-//! has the position of each name's macro or declaration, so that only those few are read. It is a constant: the
-//! functions here run when the compiler is built. They know no more of C than those texts need, and refuse to build an
-//! index of anything else; a test of [`crate::driver`] checks that they understand the headers as the parser does.
+//! contains the position of each name's macro or declaration, so that only those few are read. It is a constant: the
+//! functions here run when the compiler is built. They support only the subset of C in those texts, and refuse to index
+//! anything else; a test of [`crate::driver`] checks that they agree with the parser on the headers.
 
 #![expect(
     clippy::indexing_slicing,
@@ -74,7 +74,7 @@ pub(super) struct IndexedName {
     length: u8,
     /// It is read when the headers are: as the name of a macro, or within a declaration.
     is_of_headers: bool,
-    /// A declaration of the headers means something else if a program makes a macro of the name.
+    /// True if a declaration of the headers changes its meaning when a program defines a macro with the name.
     pub(super) is_in_declaration: bool,
     definition: At,
     piece: u16,
@@ -183,7 +183,7 @@ impl Index {
         }
     }
 
-    /// Enters what a header defines and declares, and the header that it includes.
+    /// Adds the definitions and declarations of a header, and the header that it includes.
     const fn header(&mut self, number: usize) {
         let text = TEXTS[number];
         let mut at = past_space(text, 0);
@@ -277,7 +277,7 @@ impl Index {
         }
     }
 
-    /// Notes the names in the body of a macro; whether any was not noted before.
+    /// Marks the names in the body of a macro; returns whether any was not marked before.
     const fn spread_body(&mut self, definition: At) -> bool {
         let text = TEXTS[definition.text()];
         let mut at = name_end(text, definition.offset());
@@ -347,7 +347,7 @@ const fn is_at(text: &[u8], at: usize, bytes: &[u8]) -> bool {
     true
 }
 
-/// The offset after `bytes`, which come next.
+/// The offset after `bytes`, which must come next.
 const fn past_word(text: &[u8], at: usize, bytes: &[u8]) -> usize {
     assert!(is_at(text, at, bytes), "a line that the index does not know");
     at + bytes.len()

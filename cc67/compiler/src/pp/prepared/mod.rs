@@ -1,17 +1,17 @@
-//! Texts of which only the parts that a program uses are read.
+//! Texts of which a program only reads the parts it uses.
 //!
-//! The predefined macros and the headers of the board are the same for every program, and most of what they define and
-//! declare is never used. So their text is among the sources, but a macro is read when its name is met. Declarations
-//! are read after everything else: those that the rest of the tokens name, and those that these name in turn. [`index`]
-//! has their positions.
+//! The predefined macros and the headers of the board are the same for every program, and most of their definitions and
+//! declarations are never used. So their text is among the sources, but a macro is only read on first use. Declarations
+//! are read after everything else: those named by the other tokens, and those that these name in turn. [`index`] has
+//! their positions.
 //!
-//! For the predefined macros there is no visible difference. For the headers there are cases where the result would not
-//! be the same; then the headers have to be read whole:
-//! - A file in the folder has the name of one of them, or a macro that is defined before has a name of theirs: this is
-//!   known when the program includes them.
+//! For the predefined macros there is no visible difference. For the headers the result would differ in some cases, in
+//! which the headers must be read completely:
+//! - A file in the folder has the name of one of them, or a macro defined earlier has one of their names: this is known
+//!   when the program includes them.
 //! - The program redefines a macro that a declaration uses, or may exceed a limit: this is known at the end, and
-//!   everything has to be read again. Other macros that are defined later do not affect the declarations.
-//! - Something is wrong in the program, and a message could name any declaration: the caller knows that.
+//!   everything must be read again. Other macros that are defined later do not affect the declarations.
+//! - The program has errors, and a message could name any declaration: the caller handles this.
 
 mod index;
 pub(super) mod state;
@@ -38,7 +38,7 @@ use state::HeaderState;
 const USED_BY_THREAD_DONE: &str = "CurrentThread";
 
 impl Preprocessor<'_> {
-    /// The definition in force for a name; the prepared texts are searched for it when it is met first.
+    /// The current definition of a name; the prepared texts are searched on its first use.
     pub(super) fn find_macro(&mut self, name: Name) -> Option<MacroId> {
         match self.macros.standing(name) {
             Standing::Defined(id) => (!self.prepared.in_declaration || self.is_prepared(id)).then_some(id),
@@ -47,7 +47,7 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// Begins the text of the predefined macros, and defines those after it.
+    /// Begins the text of the predefined macros, and defines further ones after it.
     pub(super) fn begin_predefined(&mut self, more: &str) {
         let predefined = TEXTS.get(PREDEFINED).copied().unwrap_or(&[]);
         let text = [predefined, more.as_bytes()].concat();
@@ -108,7 +108,7 @@ impl Preprocessor<'_> {
             self.reader.set_guard(super::include::embedded_path(index::name(number)), guard);
             self.reader.included += 1;
         }
-        // The end of this file is where the tokens belong.
+        // The tokens belong at the end of this file.
         self.open_range(BOARD, 0, 0);
         true
     }
@@ -136,7 +136,7 @@ impl Preprocessor<'_> {
         output.splice(place..place, declarations.into_iter().flatten());
     }
 
-    /// Adds the declarations of names that were not seen before to those that are needed.
+    /// Adds the declarations of names that were not seen before to the needed ones.
     fn find_needed(&self, tokens: &[Token], seen: &mut EntitySet<Name>, needed: &mut Vec<usize>) {
         for token in tokens.iter().filter(|token| token.kind == TokenKind::Identifier) {
             if seen.insert(token.name) {
@@ -184,7 +184,7 @@ impl Preprocessor<'_> {
         self.macros.defined(name)
     }
 
-    /// Reads the definition whose name is at a place, if its text was begun.
+    /// Reads the definition whose name is at a position, if its text was begun.
     fn define_at(&mut self, at: At) {
         let end = TEXTS.get(at.text()).map_or(0, |text| text.len());
         if self.open_range(at.text(), at.offset(), end) {
@@ -196,7 +196,7 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// Opens a part of a text as if it were a file; false if the text was not begun.
+    /// Opens a part of a text as if it were a file; false if the text was not opened before.
     fn open_range(&mut self, text: usize, lo: usize, hi: usize) -> bool {
         let Some(file) = self.prepared.files.get(text).copied().flatten() else { return false };
         let source = self.sources.file(file);
@@ -205,7 +205,7 @@ impl Preprocessor<'_> {
         true
     }
 
-    /// The span of a range of a text that was begun.
+    /// The span of a range of an opened text.
     fn prepared_span(&self, text: usize, lo: usize, hi: usize) -> Span {
         let file = self.prepared.files.get(text).copied().flatten();
         let start = file.map_or(0, |file| self.sources.file(file).start);

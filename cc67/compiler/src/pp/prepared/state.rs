@@ -8,10 +8,10 @@ use super::index::TEXTS;
 /// The texts in one compilation.
 #[derive(Debug)]
 pub(in crate::pp) struct Prepared {
-    /// The files that were begun.
+    /// The files that were opened.
     pub(super) files: [Option<FileId>; TEXTS.len()],
     pub(super) headers: HeaderState,
-    /// A declaration is read: macros of the program mean nothing there.
+    /// True while a declaration is read, in which macros of the program have no effect.
     pub(super) in_declaration: bool,
 }
 
@@ -24,7 +24,7 @@ pub(super) enum HeaderState {
     AsNeeded,
     /// As needed; the program has just included them.
     Begun,
-    /// As needed; the declarations come before the token of this number.
+    /// As needed; the declarations come before the token with this number.
     Included(usize),
     /// As needed, which was wrong.
     Wrong,
@@ -48,7 +48,7 @@ impl Prepared {
         }
     }
 
-    /// Says where the tokens of the headers belong, if the program has just included them.
+    /// Records the position of the headers' tokens, if the program has just included them.
     pub(in crate::pp) fn take_place(&mut self, tokens: usize) {
         if self.headers == HeaderState::Begun {
             self.headers = HeaderState::Included(tokens);
