@@ -1,35 +1,35 @@
-//! Capabilities of targets, and the message that one is missing.
+//! Capabilities of targets, and the message for a missing one.
 
 use std::fmt;
 
-/// Something that not every target can do.
+/// An ability that only some targets have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Capability {
-    /// Time passes only in calls.
+    /// Time passes only during calls.
     StopTime,
-    /// It goes back to an earlier state.
+    /// The target can return to an earlier state.
     Snapshots,
-    /// Programs stop between two instructions: breakpoints and steps.
+    /// Programs can be stopped between two instructions, by breakpoints and steps.
     Breakpoints,
-    /// Programs stop where a variable changes.
+    /// Programs can be stopped when a variable changes.
     Watchpoints,
-    /// Programs stop where a variable is read.
+    /// Programs can be stopped when a variable is read.
     AccessWatchpoints,
-    /// Functions of programs are called from expressions.
+    /// Expressions can call functions of programs.
     Calls,
-    /// Programs stop that are code of the controller's processor.
+    /// Programs that are code for the controller's processor can be stopped.
     ProcessorCode,
-    /// A stimulus, a machine file and the serial port are connected to it, and all that happens is recorded.
+    /// A stimulus, a machine file and the serial port can be connected, and all events are recorded.
     Surroundings,
-    /// Variables are recorded.
+    /// Variables can be recorded.
     Recordings,
-    /// Variables are sampled by the target itself, more often than they can be read one by one.
+    /// The target itself can sample variables, faster than they could be read one by one.
     FastSamples,
-    /// Threads are paused one by one while the others run.
+    /// Single threads can be paused while the others run.
     Pauses,
-    /// Received lines are echoed to the client.
+    /// Received lines can be echoed to the client.
     Echoes,
-    /// Boxes of programs are answered by calls, not by statements.
+    /// Boxes of programs are answered by calls instead of statements.
     Answers,
 }
 
@@ -53,11 +53,11 @@ impl fmt::Display for Capability {
     }
 }
 
-/// A target cannot do what was requested.
+/// The error for something that a target cannot do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{target} cannot {capability}")]
 pub struct Unsupported {
-    /// The target in words.
+    /// The kind of target, for the message.
     pub target: &'static str,
     /// The missing capability.
     pub capability: Capability,

@@ -1,4 +1,4 @@
-//! A client of the board, and the token that gives it the board to itself.
+//! A client of the board, and the token that gives it exclusive use of the board.
 
 use std::path::Path;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -25,9 +25,9 @@ const LOCATION: i32 = 1;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Lock {
-    /// This client has the board to itself.
+    /// This client has exclusive use of the board.
     Locked = 0,
-    /// Another client has it.
+    /// Another client has the token.
     InUse = 1,
     /// There is no connection, and none could be made.
     NotConnected = 2,
@@ -39,7 +39,7 @@ pub enum Lock {
 pub enum Readiness {
     /// There was no message.
     NoData = 0,
-    /// A part of a line came, without `Ready`.
+    /// Part of a line came, without `Ready`.
     Partial = 1,
     /// `Ready` came.
     Ready = 2,
@@ -55,10 +55,9 @@ struct Shared {
     released: Condvar,
 }
 
-/// A client of a simulated board.
 ///
-/// [`another_client`](Self::another_client) makes more of them for the same board. A client that is dropped gives its
-/// token back, and its console call-back is taken out.
+/// A client of a simulated board; [`another_client`](Self::another_client) creates further clients of the same board.
+/// When a client is dropped, its token is released and its console call-back is removed.
 #[derive(Debug)]
 pub struct Board {
     shared: Arc<Shared>,
@@ -80,13 +79,13 @@ impl Drop for Board {
 }
 
 impl Board {
-    /// A board at power-up, without files on the PC.
+    /// Creates a board at power-up, without files on the PC.
     #[must_use]
     pub fn new() -> Self {
         Self::with(Config::default())
     }
 
-    /// A board with these settings.
+    /// Creates a board with these settings.
     ///
     /// ```
     /// use cc67_host::Board;
@@ -102,18 +101,18 @@ impl Board {
         Self::from_session(session.expect("nothing is loaded that could be refused"))
     }
 
-    /// A board that runs a firmware file, with these settings; programs are compiled for it.
+    /// Creates a board that runs a firmware file, with these settings; programs are compiled for that firmware.
     ///
     /// # Errors
-    /// The flash is of another firmware, or this firmware cannot be connected to what the settings describe.
+    /// The flash belongs to another firmware, or this firmware cannot be connected to the hardware in the settings.
     pub fn booted(firmware: &BootedFirmware, config: Config) -> Result<Self, HostError> {
         let options = firmware.options(Options::default());
         let setup = Setup { config, options, ..Setup::default() };
         Ok(Self::from_session(setup.session_on_any(Some(firmware))?))
     }
 
-    /// The first client of a board that is under control already. What clients do is not recorded: they may do it
-    /// forever.
+    /// Returns the first client of a board that is already under control. The actions of clients are not recorded, as
+    /// they may go on forever.
     #[must_use]
     pub fn from_session(session: Session<AnyTarget>) -> Self {
         let mut state = State::new(session);
@@ -122,7 +121,7 @@ impl Board {
         Self { shared: Arc::new(shared), number, has_token: false }
     }
 
-    /// One more client of the same board.
+    /// Returns a further client of the same board.
     ///
     /// ```
     /// use cc67_host::{Board, Lock};
@@ -146,15 +145,15 @@ impl Board {
         self.state().session.options().clone()
     }
 
-    /// Sets how programs are compiled from now on: include directories, macros, firmware.
+    /// Sets the options for programs compiled from now on: include directories, macros, firmware.
     pub fn set_options(&mut self, options: Options) {
         self.state().session.set_options(options);
     }
 
-    /// Compiles a source, links it for a thread and loads it there; it does not start.
+    /// Compiles a source, links it for a thread and loads it there, without starting it.
     ///
     /// # Errors
-    /// Why not: what was in the thread is still there, and still running.
+    /// The program cannot be compiled or loaded; the previous program remains in the thread, and continues if it runs.
     ///
     /// ```
     /// use cc67_host::Board;
@@ -173,13 +172,13 @@ impl Board {
         let id = ThreadId::new(thread).ok_or(HostError::Thread(thread))?;
         self.state().connected()?;
         let options = self.state().session.options().clone();
-        // Other clients go on while this one compiles.
+        // Other clients continue while this one compiles.
         let program = UserProgram::compile(file, id, &options)?;
         self.state().session.load(program)
     }
 
-    /// The same for callers with a buffer: 0, or else another number and the message in the buffer, which is cut to
-    /// fit and always ended with a 0.
+    /// Does the same as [`compile_and_load_coff`](Self::compile_and_load_coff) for callers with a buffer: returns 0, or
+    /// another number with the message in the buffer. The message is cut to fit and always ends with a 0.
     ///
     /// ```
     /// use cc67_host::Board;
@@ -210,7 +209,7 @@ impl Board {
     /// Loads an image, as `cc67 build` writes it, into a thread.
     ///
     /// # Errors
-    /// Why not: what was in the thread is still there, and still running.
+    /// The image cannot be loaded; the previous program remains in the thread, and continues if it runs.
     ///
     /// ```
     /// use cc67_host::Board;
@@ -225,7 +224,7 @@ impl Board {
         state.session.load(program)
     }
 
-    /// Sends a line of script commands and waits for no reply.
+    /// Sends a line of script commands without waiting for a reply.
     ///
     /// # Errors
     /// [`HostError::NotConnected`].
@@ -242,10 +241,10 @@ impl Board {
         Ok(())
     }
 
-    /// Sends a line that the board echoes, and after which it says `Ready`.
+    /// Sends a line that the board echoes; the board then replies `Ready`.
     ///
     /// # Errors
-    /// [`HostError::NotConnected`]; [`HostError::Unsupported`] of a connected controller.
+    /// [`HostError::NotConnected`]; [`HostError::Unsupported`] for a connected controller.
     ///
     /// ```
     /// use cc67_host::{Board, Readiness};
@@ -263,7 +262,7 @@ impl Board {
         Ok(())
     }
 
-    /// The next line of a reply, with its line end, if it comes within this many milliseconds of board time.
+    /// Returns the next line of a reply, with its line end, if it comes within this many milliseconds of board time.
     ///
     /// # Errors
     /// [`HostError::Timeout`], [`HostError::NotConnected`].
@@ -283,10 +282,10 @@ impl Board {
         state.read_line(ticks(f64::from(milliseconds) / 1000.0)).ok_or(HostError::Timeout)
     }
 
-    /// Sends a line and reads a line of its reply, without line end; waits for the token before.
+    /// Sends a line and returns a line of its reply, without the line end; first waits for the token.
     ///
     /// # Errors
-    /// [`HostError::Timeout`] when there is no reply within 3 s, [`HostError::NotConnected`].
+    /// [`HostError::Timeout`] if there is no reply within 3 s, [`HostError::NotConnected`].
     ///
     /// ```
     /// let mut board = cc67_host::Board::new();
@@ -317,7 +316,7 @@ impl Board {
         Ok(reply.trim_end_matches(['\r', '\n']).to_owned())
     }
 
-    /// Asks for the token once; connects first if necessary.
+    /// Requests the token once; connects first if necessary.
     ///
     /// ```
     /// use cc67_host::{Board, Lock};
@@ -343,7 +342,7 @@ impl Board {
         Lock::Locked
     }
 
-    /// Waits for the token until another client releases it, at most so long, or 2000 s as the vendor's library does.
+    /// Waits until another client releases the token: at most `limit`, or 2000 s, as the vendor's library does.
     ///
     /// ```
     /// use std::time::Duration;
@@ -375,7 +374,7 @@ impl Board {
         Lock::Locked
     }
 
-    /// Gives the token back; without it nothing happens.
+    /// Releases the token; has no effect without it.
     pub fn release_token(&mut self) {
         if std::mem::take(&mut self.has_token) {
             self.state().is_locked = false;
@@ -383,7 +382,7 @@ impl Board {
         }
     }
 
-    /// Gives the connection up, as after a failure; [`kmotion_lock`](Self::kmotion_lock) connects again.
+    /// Closes the connection, as after a failure; [`kmotion_lock`](Self::kmotion_lock) connects again.
     ///
     /// ```
     /// use cc67_host::{Board, HostError, Lock};
@@ -398,13 +397,13 @@ impl Board {
         self.state().is_connected = false;
     }
 
-    /// Gives the connection up.
+    /// Closes the connection.
     pub fn disconnect(&mut self) {
         self.failed();
     }
 
-    /// Takes at most one console line: it goes to the call-back, or is returned where there is none. Nothing happens
-    /// while another client has the token.
+    /// Takes at most one console line: passes it to the call-back, or returns it if there is none. Does nothing while
+    /// another client has the token.
     ///
     /// ```
     /// let mut board = cc67_host::Board::new();
@@ -422,8 +421,8 @@ impl Board {
         state.take_console()
     }
 
-    /// Has console lines handed to a function as they come, in whatever call that is. The board is in use meanwhile:
-    /// the function must not call any of its clients.
+    /// Passes console lines to a function as they come, during any call. The board is in use meanwhile: the function
+    /// must not call any of its clients.
     ///
     /// ```
     /// use std::sync::mpsc;
@@ -439,7 +438,7 @@ impl Board {
         self.state().set_callback(self.number, Box::new(callback));
     }
 
-    /// Takes the call-back of this client out: console lines wait for [`service_console`](Self::service_console) again.
+    /// Removes the call-back of this client: console lines wait for [`service_console`](Self::service_console) again.
     ///
     /// ```
     /// let mut board = cc67_host::Board::new();
@@ -453,7 +452,7 @@ impl Board {
         self.state().drop_callback(self.number);
     }
 
-    /// Reads lines until `Ready` comes, or none for 0.1 s.
+    /// Reads lines until `Ready` comes, or until no line comes for 0.1 s.
     ///
     /// # Errors
     /// [`HostError::NotConnected`].
@@ -478,7 +477,7 @@ impl Board {
         Ok(if state.has_partial_line() { Readiness::Partial } else { Readiness::NoData })
     }
 
-    /// The status record, as applications poll it.
+    /// Returns the status record, as applications poll it.
     ///
     /// # Errors
     /// [`HostError::Timeout`], [`HostError::NotConnected`].
@@ -489,7 +488,7 @@ impl Board {
         state.read_status().ok_or(HostError::Timeout)
     }
 
-    /// The identifiers of the boards that are connected: there is one.
+    /// Returns the identifiers of the connected boards: there is one.
     ///
     /// ```
     /// assert_eq!(cc67_host::Board::new().list_locations().len(), 1);
@@ -499,7 +498,7 @@ impl Board {
         vec![LOCATION]
     }
 
-    /// The generation of the firmware: 2, as of every board but the oldest.
+    /// Returns the generation of the firmware: 2, as for all boards except the oldest.
     #[must_use]
     pub const fn firmware_version(&self) -> i32 {
         2
@@ -519,7 +518,7 @@ impl Board {
     }
 
     /// Lets board time pass until `is_over` returns true after a tick, at most this many seconds; returns whether it
-    /// did.
+    /// has.
     ///
     /// ```
     /// let mut board = cc67_host::Board::new();
@@ -536,7 +535,7 @@ impl Board {
         self.state().advance(ticks(seconds), &mut |state| is_over(&mut state.session))
     }
 
-    /// Does something with the session itself: look into memory, drive inputs.
+    /// Accesses the session directly, to inspect memory or drive inputs.
     ///
     /// ```
     /// use kmotiondef::Bit;
@@ -551,7 +550,7 @@ impl Board {
         work(&mut self.state().session)
     }
 
-    /// Takes the remarks since the last call: traps, remarks, actions of the PC for programs.
+    /// Takes the remarks since the last call: traps, remarks, and actions of the PC for programs.
     ///
     /// ```
     /// let mut board = cc67_host::Board::new();
@@ -563,7 +562,7 @@ impl Board {
         self.state().take_remarks()
     }
 
-    /// The oldest of these remarks in words, as `cc67 run` shows it: a trap with its source line.
+    /// Takes the oldest of these remarks as text, as `cc67 run` shows it: a trap with its source line.
     ///
     /// ```
     /// let mut board = cc67_host::Board::new();
@@ -576,7 +575,7 @@ impl Board {
         self.state().take_remark()
     }
 
-    /// The shared state. A client that panicked in the middle of a call leaves a board that others can use.
+    /// The shared state. A client that panics during a call leaves the board usable for others.
     fn state(&self) -> MutexGuard<'_, State> {
         self.shared.state.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -14,7 +14,8 @@ use crate::capability::Unsupported;
 /// The reason for which a call failed.
 #[derive(Debug, thiserror::Error)]
 pub enum HostError {
-    /// The connection was given up, by [`Board::failed`](crate::Board::failed) or [`Board::disconnect`](crate::Board::disconnect).
+    /// The connection was closed, by [`Board::failed`](crate::Board::failed) or
+    /// [`Board::disconnect`](crate::Board::disconnect).
     #[error("not connected to the board")]
     NotConnected,
     /// No reply came in time.
@@ -31,13 +32,13 @@ pub enum HostError {
     Read {
         /// The file.
         path: PathBuf,
-        /// The error of the system.
+        /// The error of the operating system.
         error: std::io::Error,
     },
-    /// The source has errors; the text has the compiler's messages.
+    /// The source has errors; the text contains the compiler's messages.
     #[error("{0}")]
     Compile(CompileError),
-    /// The image is refused.
+    /// The image was rejected.
     #[error("{program}: {error}")]
     Refused {
         /// The file of the program.
@@ -45,12 +46,12 @@ pub enum HostError {
         /// The reason.
         error: LoadError,
     },
-    /// The file is another tool's.
+    /// The file was made by another tool.
     #[error("{program} is {what}, not an image of `cc67 build`")]
     Foreign {
         /// The file.
         program: String,
-        /// The kind of file that it is.
+        /// The kind of file.
         what: String,
     },
     /// A thread has no program that could be started.
@@ -59,16 +60,16 @@ pub enum HostError {
     /// An expression of the stimulus is wrong.
     #[error(transparent)]
     Stimulus(#[from] StimulusError),
-    /// There is no memory at an address.
+    /// An address is outside memory.
     #[error("there is no memory at {0}")]
     Unmapped(GuestAddr),
-    /// A firmware file does not start, or does not take what it is given.
+    /// A firmware file does not start, or rejects its settings.
     #[error("{0}")]
     Firmware(String),
-    /// A connected controller does not execute a command, or is not connected any more.
+    /// A connected controller does not execute a command, or has been disconnected.
     #[error("{0}")]
     Link(String),
-    /// A firmware file does not start from what a flash holds.
+    /// A firmware file does not start from the contents of a flash.
     #[error("the flash does not work with this firmware: {0}")]
     Flash(#[from] FlashError),
     /// The target cannot do that.
@@ -88,10 +89,10 @@ pub enum SnapshotError {
     /// The target has no snapshots.
     #[error(transparent)]
     Unsupported(#[from] Unsupported),
-    /// It was taken by another engine, whose threads cannot continue here.
+    /// The snapshot was taken with another engine, whose threads cannot continue here.
     #[error(transparent)]
     Foreign(#[from] ForeignSnapshot),
-    /// It is of another kind of target.
+    /// The snapshot belongs to another kind of target.
     #[error("the snapshot is from another kind of board")]
     OtherTarget,
 }
@@ -103,10 +104,10 @@ pub struct CompileError {
     messages: Vec<CompileMessage>,
 }
 
-/// An error of a source, with its place.
+/// An error in a source, with its position.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CompileMessage {
-    /// The file, as messages name it.
+    /// The file, as named in messages.
     pub file: Option<String>,
     /// The line in it, from 1.
     pub line: Option<u32>,
@@ -114,12 +115,12 @@ pub struct CompileMessage {
     pub column: Option<u32>,
     /// The message alone.
     pub message: String,
-    /// The message as a terminal shows it: with the source line, the range in it, notes and help.
+    /// The message as a terminal shows it: with the source line, the marked range, notes and help.
     pub report: String,
 }
 
 impl CompileMessage {
-    /// A message without a place.
+    /// A message without a position.
     #[must_use]
     pub fn new(message: String) -> Self {
         Self { file: None, line: None, column: None, report: message.clone(), message }

@@ -1,11 +1,11 @@
 //! A simulated KFLOP board under control, as a library.
 //!
-//! Everything here is a view of a [`session`]: a board with its programs. Its owner decides how far time goes, reads
-//! and changes the board with the names of its programs, and acts as the world around it. [`Session`] is for a single
-//! owner: the command, a test, a debugger or a page. [`Board`] shares a session among clients, with the operations of
-//! the vendor's library for PC programs: compile and load, script commands and their replies, status, console, and the
-//! token, which reserves the board for one client. Both use the simulated board (`cc67-runtime`) and the compiler
-//! (`cc67-compiler`), which are independent of each other.
+//! Everything here is a view of a [`session`]: a board with its programs. Its owner controls time, reads and changes
+//! the board by the names in its programs, and acts as the world around it. [`Session`] is for a single owner: the
+//! command, a test, a debugger or a page. [`Board`] shares a session among clients, with the operations of the vendor's
+//! library for PC programs: compile and load, script commands and their replies, status, console, and the token, which
+//! reserves the board for one client. Both use the simulated board (`cc67-runtime`) and the compiler (`cc67-compiler`),
+//! which are independent of each other.
 //!
 //! ```text
 //! client     Board: one of several clients, with the token and the calls of the vendor's library
@@ -17,7 +17,7 @@
 //! seats      connections of a server: a new one always gets a place
 //! ```
 //!
-//! No board time passes between calls. Each exchange takes the time that was measured on the board, and
+//! Board time does not pass between calls. Each exchange takes the time that was measured on a real board;
 //! [`run_for`](Board::run_for) and [`run_until`](Board::run_until) let more time pass. So a test of a PC program is as
 //! deterministic as the board.
 //!
@@ -70,10 +70,10 @@ pub use target::{
     Target, TargetSnapshot,
 };
 pub use user_program::UserProgram;
-/// The crates whose types are in this interface, for programs that depend on no other crate of ours.
+/// The crates whose types appear in this interface, for programs that depend on none of our other crates.
 pub use {kmotiondef, runtime};
 
-/// The programs in the book are tests, too.
+/// The programs in the book are also tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../book/src/embedding.md")]
 struct Book;

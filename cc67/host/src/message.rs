@@ -1,8 +1,8 @@
-//! Messages in buffers of a caller.
+//! Messages in a caller's buffer.
 
-/// Copies as much of `text` as fits, and ends it with a 0; a character that does not fit whole is left out.
+/// Copies as much of `text` as fits, and ends it with a 0; a character that does not fit completely is omitted.
 ///
-/// Nothing is written to a buffer of no length.
+/// Nothing is written to an empty buffer.
 ///
 /// ```
 /// let mut buffer = [0xff; 4];

@@ -1,4 +1,4 @@
-//! Events of the board in words.
+//! Text for events of the board.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use runtime::debug::{DebugInfo, SourcePlace};
 use runtime::{Event, EventKind, Message, OtherPlace, Remark, Severity, Speaker};
 use vm::trap::{Scene, Trap, TrapKind};
 
-/// A place in a source.
+/// A position in a source.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SourceCall {
     /// The file.
@@ -17,7 +17,7 @@ pub struct SourceCall {
     pub line: Option<u32>,
     /// The column, from 1, if the compiler knows it.
     pub column: Option<u32>,
-    /// The function around it.
+    /// The function that contains the position.
     pub function: String,
 }
 
@@ -41,7 +41,7 @@ impl fmt::Display for SourceCall {
     }
 }
 
-/// Describes an event in a sentence; `None` for console text, which is shown as it is.
+/// Describes an event in a sentence; `None` for console text, which is shown unchanged.
 pub fn describe(event: &Event, programs: &[DebugInfo]) -> Option<String> {
     match &event.kind {
         EventKind::ConsoleLine(_)
@@ -60,7 +60,7 @@ pub fn describe(event: &Event, programs: &[DebugInfo]) -> Option<String> {
     }
 }
 
-/// Registers and code around the place where code of the real processor has stopped; `None` for other events.
+/// Registers and code around the position where code of the real processor stopped; `None` for other events.
 pub fn scene(event: &Event) -> Option<&Scene> {
     match &event.kind {
         EventKind::Trap(trap) => trap.scene.as_deref(),
@@ -68,18 +68,18 @@ pub fn scene(event: &Event) -> Option<&Scene> {
     }
 }
 
-/// A remark with who it is about and where: "thread 1 at home.c:12:5 in `main`: SetBit(3000): …".
+/// A remark with its subject and position: "thread 1 at home.c:12:5 in `main`: SetBit(3000): …".
 #[must_use]
 pub fn words(remark: &Remark, programs: &[DebugInfo]) -> String {
     let who = who(remark, programs);
     if let Some(other) = remark.message.other() {
         let text = remark.message.to_string().replace(&other.to_string(), &place_of(other, programs));
-        // Most go on after the place; others begin with the function.
+        // Most texts continue after the position; others begin with the function.
         let mark = if text.starts_with(char::is_uppercase) { ":" } else { "" };
         return format!("{who}{mark} {text}");
     }
     match &remark.message {
-        // A sentence about the reader.
+        // A sentence about the thread that reads.
         message @ (Message::UndrivenInput { .. } | Message::Assisted { .. } | Message::MovesAway { .. }) => {
             format!("{who} {message}")
         }
@@ -88,7 +88,7 @@ pub fn words(remark: &Remark, programs: &[DebugInfo]) -> String {
     }
 }
 
-/// Names the subject and the place of a remark: "thread 1 at home.c:12:5 in `main`"; empty for the board.
+/// Names the subject and the position of a remark: "thread 1 at home.c:12:5 in `main`"; empty for the board.
 #[must_use]
 pub fn who(remark: &Remark, programs: &[DebugInfo]) -> String {
     let who = match remark.speaker {
@@ -101,13 +101,13 @@ pub fn who(remark: &Remark, programs: &[DebugInfo]) -> String {
     place.map_or(who.clone(), |place| format!("{who} at {place}"))
 }
 
-/// The second place of a remark: "thread 2 at b.c:7:3 in `main`".
+/// The second position of a remark: "thread 2 at b.c:7:3 in `main`".
 fn place_of(other: OtherPlace, programs: &[DebugInfo]) -> String {
     let Some(place) = source(other.at, programs) else { return other.to_string() };
     other.thread.map_or(format!("the call-back at {place}"), |thread| format!("thread {thread} at {place}"))
 }
 
-/// One remark on inputs that nothing drives, their levels, and who read each of them first.
+/// One remark on undriven inputs: their levels, and the first reader of each.
 pub fn undriven(inputs: &[(String, Bit, u8)]) -> String {
     if let [(reader, bit, level)] = inputs {
         let message = Message::UndrivenInput { bit: *bit, level: *level };
@@ -140,7 +140,7 @@ fn describe_trap(trap: &Trap, programs: &[DebugInfo]) -> String {
     format!("{who} at {place}: {}{nearby}", trap.kind)
 }
 
-/// The elements of `persist.UserData` in which a `double` cannot be.
+/// The elements of `persist.UserData` at which no `double` can be stored.
 fn odd_element(kind: &TrapKind) -> Option<String> {
     let TrapKind::Misaligned { addr, size: 8, .. } = *kind else { return None };
     let name = cell_name(addr, 8);
@@ -148,7 +148,7 @@ fn odd_element(kind: &TrapKind) -> Option<String> {
         .then(|| format!("{name}; a `double` takes an even element and the next"))
 }
 
-/// The data address that a trap is about.
+/// The data address of a trap.
 fn address(kind: &TrapKind) -> Option<kmotiondef::GuestAddr> {
     match kind {
         TrapKind::Unmapped { addr, .. }
@@ -167,7 +167,7 @@ pub fn place(address: CodeAddr, programs: &[DebugInfo]) -> Option<SourceCall> {
     programs.iter().find_map(|debug| debug.place(address)).map(SourceCall::from)
 }
 
-/// The source position of a code address, in words.
+/// The source position of a code address, as text.
 fn source(address: CodeAddr, programs: &[DebugInfo]) -> Option<String> {
     place(address, programs).map(|place| place.to_string())
 }

@@ -1,9 +1,10 @@
-//! Schedules: moments that the board leaves open, fixed so that a run can be repeated.
+//! Schedules: timing that the board leaves open, fixed so that a run can be repeated.
 //!
-//! On the board, programs that a PC starts together begin some ticks apart, a hand on a switch is not exact to the tick,
-//! and a servo interrupt can fall between any two accesses to shared memory. A schedule fixes these: offsets of starts,
-//! an offset of the stimulus, and the accesses before which a thread is switched. A seed makes one with few switches,
-//! as in probabilistic concurrency testing (Burckhardt and others, 2010): most errors need one or two.
+//! On the board, programs that a PC starts together begin some ticks apart, an operator does not press a switch at an
+//! exact tick, and a servo interrupt can fall between any two accesses to shared memory. A schedule fixes these:
+//! offsets of starts, an offset of the stimulus, and the accesses before which a thread is switched. A seed results in
+//! a schedule with few switches, as in probabilistic concurrency testing (Burckhardt and others, 2010): most errors
+//! need only one or two.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -15,28 +16,27 @@ use vm::engine::{Observed, Preemption};
 
 use crate::{HostError, Setup};
 
-/// A schedule.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Schedule {
-    /// By thread, the number of ticks that its start is late.
+    /// The delay of each thread's start, in ticks.
     starts: BTreeMap<ThreadId, u64>,
-    /// The number of ticks that statements of the stimulus with a time after the start are late; negative for early.
+    /// The delay of stimulus statements with a time after the start, in ticks; negative for early.
     input: i64,
-    /// The numbers of the accesses to shared memory before which a thread is switched, from 1.
+    /// The accesses to shared memory before which a thread is switched, numbered from 1.
     switches: BTreeSet<u64>,
 }
 
-/// The most ticks that a seed delays a start.
+/// The longest delay of a start that a seed selects, in ticks.
 const MAX_START: u64 = 40;
 
-/// The most ticks by which a seed moves the stimulus.
+/// The largest shift of the stimulus that a seed selects, in ticks.
 const MAX_INPUT: u64 = 20;
 
-/// A seed chooses accesses up to a power of 2 with an exponent up to this.
+/// A seed selects accesses up to a power of 2 with at most this exponent.
 const MAX_EXPONENT: u64 = 14;
 
 impl Schedule {
-    /// The schedule of a seed; seed 0 is the plain run.
+    /// The schedule for a seed; seed 0 is the plain run.
     #[must_use]
     pub fn from_seed(seed: u64) -> Self {
         let mut schedule = Self::default();
@@ -62,7 +62,7 @@ impl Schedule {
         schedule
     }
 
-    /// The schedules with one part less than this one.
+    /// The schedules with one part less than this one has.
     pub fn smaller(&self) -> impl Iterator<Item = Self> + '_ {
         let without_switch = self.switches.iter().map(|number| {
             let mut smaller = self.clone();
@@ -89,10 +89,10 @@ impl Setup {
     /// Makes the board run by a schedule.
     ///
     /// # Errors
-    /// The stimulus does not take the delayed starts.
+    /// The stimulus cannot be combined with the delayed starts.
     pub fn schedule(&mut self, schedule: &Schedule) -> Result<(), HostError> {
         for rule in &mut self.stimulus.rules {
-            // What holds from the start is no event.
+            // A rule that holds from the start is not an event.
             if let Trigger::At(time) = &mut rule.trigger
                 && *time > Cycles::default()
             {
@@ -116,7 +116,7 @@ impl Setup {
     }
 }
 
-/// A schedule as text: `start2+7,input-3,switch57`, `plain` for one without parts.
+/// A schedule as text: `start2+7,input-3,switch57`, or `plain` for one without parts.
 impl fmt::Display for Schedule {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let starts = self.starts.iter().map(|(thread, ticks)| format!("start{thread}+{ticks}"));
@@ -127,7 +127,7 @@ impl fmt::Display for Schedule {
     }
 }
 
-/// A seed, or what [`fmt::Display`] shows.
+/// Reads a seed, or the text that [`fmt::Display`] writes.
 impl FromStr for Schedule {
     type Err = String;
 
@@ -159,7 +159,7 @@ impl Schedule {
     }
 }
 
-/// A small generator of numbers (Steele and others, splitmix64).
+/// A small random number generator (Steele and others, splitmix64).
 struct Numbers(u64);
 
 impl Numbers {

@@ -1,15 +1,15 @@
-//! Seats of a server: a number of connections at a time, of which a new one always gets one.
+//! Seats of a server: a limited number of connections, in which a new connection always gets a place.
 //!
-//! Whoever connects and is silent costs a seat. When all are taken, the connection that has been silent the longest is
-//! closed for the new one: first one that has said nothing at all, then one whose last words are the oldest. So no
-//! number of idle clients keeps a new one out. The order is that of events, not of a clock. A connection that cannot
-//! be closed from outside keeps its seat.
+//! An idle connection occupies a seat. When all are taken, the connection that has been silent the longest is closed
+//! for the new one: first one that has never sent anything, then the one whose last data are the oldest. So idle
+//! clients, however many, cannot keep a new one out. The order is the order of events, not of a clock. A connection
+//! that cannot be closed from outside keeps its seat.
 
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// The time that a server gives a client for its first words.
+/// The time that a server waits for a client's first data.
 pub const FIRST_WORDS: Duration = Duration::from_secs(10);
 
 /// Closes a connection, so that its reader reaches the end.
@@ -24,7 +24,7 @@ pub struct Seats {
 
 #[derive(Debug, Default)]
 struct Taken {
-    /// Events so far.
+    /// The number of events so far.
     events: u64,
     seats: Vec<TakenSeat>,
 }
@@ -43,19 +43,18 @@ impl fmt::Debug for TakenSeat {
     }
 }
 
-/// A seat, which is free again when it is dropped.
+/// A seat, which becomes free when this is dropped.
 #[derive(Debug)]
 pub struct Seat {
     seats: Seats,
     number: u64,
 }
 
-/// A new connection's seat.
+/// The seat of a new connection.
 #[derive(Debug)]
 pub struct Admission {
-    /// Its seat.
     pub seat: Seat,
-    /// True if another connection was closed for it.
+    /// True if another connection was closed for this one.
     pub has_closed_another: bool,
 }
 
@@ -67,7 +66,7 @@ impl Seats {
     }
 
     fn taken(&self) -> MutexGuard<'_, Taken> {
-        // The list is whole at any time.
+        // The list is consistent at all times.
         self.taken.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -94,7 +93,7 @@ impl Seats {
 }
 
 impl Seat {
-    /// Notes that the client has sent something.
+    /// Notes that the client has sent data.
     pub fn hear(&self) {
         let mut taken = self.seats.taken();
         taken.events += 1;
@@ -131,14 +130,14 @@ mod tests {
         let _second = take("second");
         let third = take("third");
         assert!(!third.has_closed_another && names().is_empty());
-        // Silent ones go first, in the order in which they came.
+        // Silent connections are closed first, in the order in which they came.
         let fourth = take("fourth");
         assert!(fourth.has_closed_another);
         assert_eq!(names(), ["second"]);
         third.seat.hear();
         fourth.seat.hear();
         first.hear();
-        // Of those that have spoken, the one whose last words are the oldest.
+        // Of the others, the one whose last data are the oldest.
         let fifth = take("fifth");
         assert_eq!(names(), ["second", "third"]);
         drop(fifth);

@@ -1,4 +1,4 @@
-//! The board and its one link, which all clients share.
+//! The board and its single link, which all clients share.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -12,9 +12,9 @@ use crate::target::CONSOLE_LINES;
 use crate::target::Target as _;
 use crate::{AnyTarget, HostError, Session, remark};
 
-/// Bytes of replies that wait for a client; what comes then is lost.
+/// The size of the reply buffer; further bytes are lost.
 pub const REPLY_BYTES: usize = 1 << 20;
-/// Remarks that are kept; older ones are dropped.
+/// The number of remarks that are kept; older ones are dropped.
 const REMARK_LIMIT: usize = 1000;
 
 /// The receiver of console lines.
@@ -24,7 +24,7 @@ pub(super) type Callback = Box<dyn FnMut(&str) + Send>;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Status(Vec<u8>);
 
-/// Bytes of the record.
+/// The size of the record in bytes.
 const STATUS_SIZE: usize = 464;
 
 impl Status {
@@ -45,21 +45,21 @@ impl Status {
         T::Value::from_bits(bits)
     }
 
-    /// The record as it lies in the memory of a PC.
+    /// The record as it is laid out in the memory of a PC.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.0
     }
 }
 
-/// The board, its link, and what came over it.
+/// The board, its link, and the data received over it.
 pub(super) struct State {
     pub(super) session: Session<AnyTarget>,
     pub(super) is_locked: bool,
     pub(super) is_connected: bool,
-    /// Bytes of replies that are not read yet.
+    /// Bytes of replies that have not been read yet.
     incoming: VecDeque<u8>,
-    /// True if the loss of entries was reported.
+    /// True if the loss of entries has been reported.
     has_told_loss: bool,
     console: VecDeque<String>,
     callback: Option<(u64, Callback)>,
@@ -89,7 +89,7 @@ impl State {
         }
     }
 
-    /// A number for one more client.
+    /// A number for a new client.
     pub(super) fn number(&mut self) -> u64 {
         self.clients += 1;
         self.clients
@@ -99,7 +99,7 @@ impl State {
         self.callback = Some((client, callback));
     }
 
-    /// Takes out the call-back of a client that is gone.
+    /// Removes the call-back of a client that has been dropped.
     pub(super) fn drop_callback(&mut self, client: u64) {
         self.callback.take_if(|(owner, _)| *owner == client);
     }
@@ -109,13 +109,13 @@ impl State {
         mem::take(&mut self.remarks).into()
     }
 
-    /// The next of them in words.
+    /// The next remark as text.
     pub(super) fn take_remark(&mut self) -> Option<String> {
         let programs: Vec<_> = self.session.debug().into_iter().map(|(_, debug)| debug).collect();
         std::iter::from_fn(|| self.remarks.pop_front()).find_map(|event| remark::describe(&event, &programs))
     }
 
-    /// Fails when the connection was given up or lost.
+    /// Returns an error if the connection was closed or lost.
     pub(super) fn connected(&self) -> Result<(), HostError> {
         if self.is_connected && !self.is_lost() { Ok(()) } else { Err(HostError::NotConnected) }
     }
@@ -125,7 +125,7 @@ impl State {
         self.session.target().lost().is_some()
     }
 
-    /// Connects again: what was under way is dropped.
+    /// Connects again: data in transit are dropped.
     pub(super) fn connect(&mut self) {
         self.is_connected = true;
         self.incoming.clear();
@@ -133,7 +133,7 @@ impl State {
         self.advance(EXCHANGE, &mut |_| false);
     }
 
-    /// Bytes for the board.
+    /// Sends bytes to the board.
     pub(super) fn send(&mut self, bytes: &[u8]) {
         self.session.receive(bytes);
     }
@@ -144,7 +144,7 @@ impl State {
         self.advance(ticks(1.0), &mut |state| !state.session.target().is_receiving());
     }
 
-    /// The next line of a reply, with its line end, if it comes within some ticks.
+    /// The next line of a reply, with its line end, if it comes within a number of ticks.
     pub(super) fn read_line(&mut self, limit: u64) -> Option<String> {
         self.advance(limit, &mut |state| state.has_line());
         self.take_line()
@@ -165,7 +165,7 @@ impl State {
         !self.incoming.is_empty()
     }
 
-    /// The next console line that waits.
+    /// The next waiting console line.
     pub(super) fn take_console(&mut self) -> Option<String> {
         self.console.pop_front()
     }
@@ -175,7 +175,7 @@ impl State {
         !self.console.is_empty()
     }
 
-    /// Runs for some ticks, or until `is_over` returns true after one of them; returns whether it did.
+    /// Runs for a number of ticks, or until `is_over` returns true after one of them; returns whether it did.
     pub(super) fn advance(&mut self, count: u64, is_over: &mut dyn FnMut(&mut Self) -> bool) -> bool {
         if is_over(self) {
             return true;
@@ -190,7 +190,7 @@ impl State {
         false
     }
 
-    /// Runs to the end of the next tick in which something happens, and takes what comes over the link.
+    /// Runs to the end of the next tick in which something happens, and takes the data from the link.
     fn step(&mut self, end: Ticks) {
         self.session.listen(self.callback.is_some() || self.console.len() < CONSOLE_LINES);
         let mut events = Vec::new();
@@ -226,7 +226,7 @@ impl State {
         self.remarks.push_back(event);
     }
 
-    /// Says once that no client reads the replies.
+    /// Reports once that no client reads the replies.
     fn tell_loss(&mut self, at: Cycles) {
         if !std::mem::replace(&mut self.has_told_loss, true) {
             let message = Message::RepliesLost { bytes: REPLY_BYTES };

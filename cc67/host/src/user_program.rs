@@ -1,4 +1,4 @@
-//! User programs: from a file to an image for a thread, with the compiler's answer as the vendor's tools show it.
+//! User programs: from a file to an image for a thread, with compiler messages in the form of the vendor's tools.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -22,11 +22,11 @@ use crate::error::{CompileError, CompileMessage, HostError};
 /// A program for a thread.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UserProgram {
-    /// The thread it is linked for.
+    /// The thread for which it is linked.
     pub thread: ThreadId,
-    /// The file it was made of: a source, or the image itself.
+    /// The file from which it was made: a source, or the image itself.
     pub path: PathBuf,
-    /// True if that is an image rather than a source.
+    /// True if the file is an image rather than a source.
     pub is_image: bool,
     /// The linked program.
     pub image: Vec<u8>,
@@ -40,12 +40,12 @@ impl UserProgram {
     /// Compiles a source and links it for a thread.
     ///
     /// # Errors
-    /// The file cannot be read, or what the compiler says.
+    /// The file cannot be read, or the source does not compile.
     pub fn compile(path: &Path, thread: ThreadId, options: &Options) -> Result<Self, HostError> {
         Self::compile_text(path, read(path)?, thread, options)
     }
 
-    /// Compiles a source that is in memory and links it for a thread; `path` is its name in messages.
+    /// Compiles a source in memory and links it for a thread; `path` is its name in messages.
     ///
     /// # Errors
     /// The source has errors, or it cannot be linked.
@@ -62,7 +62,7 @@ impl UserProgram {
     /// A program that was compiled from `path` and linked.
     ///
     /// # Errors
-    /// If it exceeds what an image can hold.
+    /// The program exceeds the limits of an image.
     pub fn of_linked(path: &Path, linked: &Linked) -> Result<Self, image::WriteError> {
         let image = image::write(linked)?;
         let detail = |line: &LinkedLine| CodeDetail {
@@ -75,7 +75,7 @@ impl UserProgram {
         Ok(Self { thread, path, is_image: false, image, details, starts: false })
     }
 
-    /// A program for `thread` from an image whose bytes are there.
+    /// A program for `thread` from the bytes of an image.
     #[must_use]
     pub fn of_bytes(path: &Path, thread: ThreadId, image: Vec<u8>) -> Self {
         Self { thread, path: path.to_owned(), is_image: true, image, details: Arc::default(), starts: false }
@@ -89,33 +89,33 @@ impl UserProgram {
         Ok(Self::of_bytes(path, thread, read(path)?))
     }
 
-    /// Has the program started when it is loaded.
+    /// Marks the program as started when it is loaded.
     #[must_use]
     pub fn started(self) -> Self {
         Self { starts: true, ..self }
     }
 
-    /// Names and lines of its code; none of an image that cannot be loaded.
+    /// The names and lines of its code; empty for an image that cannot be loaded.
     #[must_use]
     pub fn debug_info(&self) -> DebugInfo {
         let prepared = prepare(&self.image, self.thread, &board_of(&self.image), |_| false);
         prepared.map(|prepared| prepared.debug.with_details(self.details.clone())).unwrap_or_default()
     }
 
-    /// Returns the beginnings and ends of its functions.
+    /// Returns the first and last addresses of its functions.
     pub(crate) fn functions(&self) -> BTreeMap<u32, u32> {
         let Ok(image) = Inspection::read(&self.image) else { return BTreeMap::new() };
         let functions = image.symbols.iter().filter(|entry| entry.kind == EntryKind::Function);
         functions.map(|entry| (entry.address, entry.address + entry.size.unwrap_or(0).max(4))).collect()
     }
 
-    /// The file's name for messages, and for a stimulus that loads it.
+    /// The file's name, as used in messages and by a stimulus that loads it.
     #[must_use]
     pub fn name(&self) -> String {
         self.path.display().to_string()
     }
 
-    /// Returns the error for refusing it; for another tool's file, it names the kind.
+    /// Returns the error for rejecting it; for another tool's file, it names the kind.
     pub(crate) fn refused(&self, error: LoadError) -> HostError {
         match (&error, files::describe(&self.image)) {
             (LoadError::NotAnImage(_), Some(what)) => HostError::Foreign { program: self.name(), what },

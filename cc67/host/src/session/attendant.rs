@@ -1,4 +1,4 @@
-//! A second party, beside the owner of a session, that may stop its time.
+//! A second party, besides the owner of a session, that can stop its time.
 
 use std::fmt::Debug;
 use std::ops::ControlFlow;
@@ -9,13 +9,14 @@ use runtime::Event;
 
 use super::Session;
 
-/// The work that is done while an attendant holds the board; returns whether it may go on holding it.
+/// The work done while an attendant holds the board; returns whether the attendant may continue to hold it.
 pub type Idle<'a, T> = &'a mut dyn FnMut(&mut Session<T>) -> ControlFlow<()>;
 
-/// Somebody through whom the owner of a session lets time pass, and who may stop it: a debugger that an editor attaches.
+/// A party through which the owner of a session lets time pass, and which can stop time: a debugger attached by an
+/// editor.
 pub trait Attendant<T: Target>: Debug {
-    /// Does what is asked of it, and runs to the end of tick `limit`, also when everything has ended. While it stops the
-    /// board it calls `idle` about a hundred times in a second; it comes back when the board may continue.
+    /// Executes pending requests, and runs to the end of tick `limit`, even when everything has ended. While it holds
+    /// the board it calls `idle` about a hundred times per second; it returns when the board may continue.
     fn advance(
         &mut self,
         session: &mut Session<T>,

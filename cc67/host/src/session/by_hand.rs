@@ -1,8 +1,8 @@
 //! Manual actions: the owner of a session acts as the world around the board, and as its PC.
 //!
-//! Whatever a person does is a statement of a stimulus at the beginning of the next tick. So it is done by what plays
-//! stimuli, and what was done is a stimulus: the same setup with that text does it all again, tick for tick. What no
-//! statement says is done as well, and the recording says that it lacks it.
+//! Each manual action is a statement of a stimulus at the beginning of the next tick. So the stimulus player executes
+//! it, and the actions together are a stimulus: the same setup with that text repeats them, tick for tick. Actions that
+//! no statement expresses are executed as well, and the recording notes that they are missing from it.
 
 use std::fmt::Write as _;
 
@@ -19,27 +19,27 @@ use super::{Input, Session, UserProgram};
 use crate::HostError;
 use crate::capability::Capability;
 
-/// The name of the statement's text in messages.
+/// The name used in messages for the text of the statement.
 const SOURCE: &str = "by hand";
 
-/// The actions by hand in a session.
+/// The manual actions in a session.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Recording {
     text: String,
     is_incomplete: bool,
     is_off: bool,
-    /// Most bytes of the text; `None` without a limit.
+    /// The maximum number of bytes of the text; `None` for no limit.
     limit: Option<usize>,
 }
 
 impl Recording {
-    /// All of it as a stimulus, a statement a line; actions without a statement are comments.
+    /// The recording as a stimulus, one statement per line; actions without a statement are comments.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// Returns whether the text has all actions, so that a run with it is the same.
+    /// Returns whether the text contains all actions, so that a run with it is the same.
     #[must_use]
     pub const fn is_complete(&self) -> bool {
         !self.is_incomplete
@@ -50,7 +50,7 @@ impl Recording {
         self.is_off
     }
 
-    /// Adds a statement without its moment.
+    /// Adds a statement, which is given without its time.
     fn add(&mut self, tick: Ticks, action: &str) {
         if self.is_off {
             self.is_incomplete = true;
@@ -61,7 +61,7 @@ impl Recording {
         }
     }
 
-    /// Ends the recording when its text is as long as it may be.
+    /// Ends the recording when its text has reached the limit.
     fn end_at_limit(&mut self, tick: Ticks) {
         if let Some(limit) = self.limit.filter(|limit| self.text.len() >= *limit) {
             (self.is_off, self.is_incomplete) = (true, true);
@@ -75,7 +75,7 @@ impl Recording {
         self.add(tick, &format!("persist {index} = {value}"));
     }
 
-    /// Adds an action that has no statement.
+    /// Adds an action that no statement expresses.
     pub(super) fn cannot(&mut self, tick: Ticks, what: &str) {
         self.is_incomplete = true;
         if !self.is_off {
@@ -85,16 +85,16 @@ impl Recording {
     }
 }
 
-/// Formats an action as a statement at the start of the next tick.
+/// Formats an action as a statement for the start of the next tick.
 fn statement(tick: Ticks, action: &str) -> String {
     let us = Cycles::PER_TICK.get() / (Cycles::PER_SECOND.get() / 1_000_000);
     format!("at {}us {action}", (tick.get() + 1).saturating_mul(us.unsigned_abs()))
 }
 
-/// Reads an action as a statement for the beginning of the tick after this one, with the names of these programs.
+/// Parses an action as a statement for the beginning of the tick after this one, with the names of these programs.
 ///
 /// # Errors
-/// What is wrong with it, and at which character.
+/// The error, with the position of the character.
 pub fn by_hand(
     tick: Ticks,
     action: &str,
@@ -106,7 +106,7 @@ pub fn by_hand(
     Ok(stimulus)
 }
 
-/// Bytes between quotation marks, as statements have them.
+/// A byte string in quotation marks, as statements have it.
 fn quoted(bytes: &[u8]) -> String {
     let mut text = String::from("\"");
     for &byte in bytes {
@@ -122,27 +122,27 @@ fn quoted(bytes: &[u8]) -> String {
 }
 
 impl<T: Target> Session<T> {
-    /// Returns the actions by hand so far.
+    /// Returns the manual actions so far.
     #[must_use]
     pub const fn recording(&self) -> &Recording {
         &self.recording
     }
 
-    /// Keeps no account of what is done by hand from now on, for a session without end.
+    /// Stops recording manual actions, for a session without end.
     pub const fn stop_recording(&mut self) {
         self.recording.is_off = true;
     }
 
-    /// Ends the account of what is done by hand when its text has `bytes` bytes; a comment then says so.
+    /// Ends the recording of manual actions when its text has `bytes` bytes; a comment then says so.
     pub const fn limit_recording(&mut self, bytes: usize) {
         self.recording.limit = Some(bytes);
     }
 
     /// Executes a statement of a stimulus, such as `bit 136 = 1`, `adc 3 = 1500`, `pulse bit 137 for 50ms` or `encoder
-    /// 0 moves 400 in 1s`, at the beginning of the next tick. The statement has no moment of its own.
+    /// 0 moves 400 in 1s`, at the beginning of the next tick. The statement must not have a time of its own.
     ///
     /// # Errors
-    /// What is wrong with it, and at which character; nothing happens then.
+    /// The error, with the position of the character; nothing is executed then.
     ///
     /// ```
     /// let mut session = cc67_host::Setup::default().session()?;
@@ -165,11 +165,11 @@ impl<T: Target> Session<T> {
         Ok(())
     }
 
-    /// Gives the PC its next answer, such as `msgbox=ok`: of a simulated board by a [statement](Self::act), of a connected
-    /// one at once.
+    /// Sets the next answer of the PC, such as `msgbox=ok`: for a simulated board by a [statement](Self::act), for a
+    /// connected one at once.
     ///
     /// # Errors
-    /// The answer is wrong.
+    /// The answer is not valid.
     pub fn answer(&mut self, setting: &str) -> Result<(), HostError> {
         match self.can(Capability::Answers) {
             true => self.target.answer(setting),
@@ -180,7 +180,7 @@ impl<T: Target> Session<T> {
     /// Drives an input from outside at once.
     ///
     /// # Errors
-    /// What is wrong with the bit: only the board drives an output.
+    /// The bit is not an input: outputs are driven only by the board.
     pub fn drive_input(&mut self, bit: Bit, level: bool) -> Result<(), HostError> {
         let action = format!("bit {bit} = {}", u8::from(level));
         Stimulus::parse(&action, SOURCE)?;
@@ -191,7 +191,7 @@ impl<T: Target> Session<T> {
         Ok(())
     }
 
-    /// Stores an element of `persist.UserData` at once; `false` beyond the last.
+    /// Stores an element of `persist.UserData` at once; returns `false` if there is no such element.
     pub fn set_user_data(&mut self, index: usize, value: i32) -> bool {
         let address = PERSIST.field(Persist::USER_DATA).element(index.min(N_USER_DATA_VARS - 1)).address();
         let address = self.target.place_of(address);
@@ -203,13 +203,13 @@ impl<T: Target> Session<T> {
         is_stored
     }
 
-    /// Sends a line of script commands, or a data line that a command waits for; the board takes it as time passes.
+    /// Sends a line of script commands, or a data line for which a command waits; the board takes it as time passes.
     pub fn command(&mut self, line: &[u8]) {
         let line: Vec<u8> = line.iter().copied().filter(|byte| *byte != b'\r').collect();
         self.receive(&[b"\x1b\x01", &line[..], b"\r"].concat());
     }
 
-    /// Sends bytes over the USB link as they are: lines, ended by CR; one that begins with 0x1B and another byte is not
+    /// Sends raw bytes over the USB link: lines that end with CR; a line that begins with 0x1B and another byte is not
     /// echoed.
     pub fn receive(&mut self, bytes: &[u8]) {
         self.target.receive(bytes);
@@ -223,14 +223,14 @@ impl<T: Target> Session<T> {
         self.note(Input::Receive(bytes.to_vec()));
     }
 
-    /// Puts characters on the line to the serial port; they arrive one after another at its rate.
+    /// Puts characters on the line to the serial port; they arrive one after another at its baud rate.
     pub fn send_to_uart(&mut self, bytes: &[u8]) {
         self.target.send_to_uart(bytes);
         self.recording.add(self.target.tick(), &format!("uart {}", quoted(bytes)));
         self.note(Input::Uart(bytes.to_vec()));
     }
 
-    /// Starts a thread at its entry point, also if it is active.
+    /// Starts a thread at its entry point, even if it is active.
     ///
     /// # Errors
     /// [`HostError::NotLoaded`].
@@ -244,12 +244,12 @@ impl<T: Target> Session<T> {
     /// Pauses a thread while the others run ([`Capability::Pauses`]).
     ///
     /// # Errors
-    /// The target cannot, or does not answer.
+    /// The target cannot pause threads, or does not answer.
     pub fn pause(&mut self, thread: ThreadId) -> Result<(), HostError> {
         self.target.pause(thread)
     }
 
-    /// Lets a paused thread continue.
+    /// Resumes a paused thread.
     ///
     /// # Errors
     /// As [`pause`](Self::pause).
@@ -257,25 +257,25 @@ impl<T: Target> Session<T> {
         self.target.resume(thread)
     }
 
-    /// Stops a thread where it is.
+    /// Stops a thread at its present position.
     pub fn stop(&mut self, thread: ThreadId) {
         self.target.stop(thread);
         self.recording.add(self.target.tick(), &format!("stop {thread}"));
         self.note(Input::Stop(thread));
     }
 
-    /// Keeps from now on the bytes that the board sends over its link, for a PC that is elsewhere.
+    /// From now on keeps the bytes that the board sends over its link, for a PC outside this process.
     pub fn tap_wire(&mut self) {
         self.target.tap_wire();
     }
 
-    /// Takes the bytes of the link since the last call.
+    /// Takes the bytes sent over the link since the last call.
     pub fn take_wire(&mut self) -> Vec<u8> {
         self.target.take_wire()
     }
 
-    /// Says whether the PC takes console lines. If not, they wait in the board's queue, and once that is full, so do the
-    /// programs that print.
+    /// Sets whether the PC takes console lines. If not, they wait in the board's queue, and once it is full, programs
+    /// that print wait too.
     pub fn listen(&mut self, listens: bool) {
         self.target.listen(listens);
         if self.journal.listens() != listens {

@@ -1,7 +1,7 @@
-//! Running the board: to a tick, to an end, to a condition, or by a step.
+//! Running the board: to a tick, to an end, to a condition, or for one step.
 //!
-//! Every call takes the receiver of what happens meanwhile. A step of the board goes to the next tick in which something
-//! can happen; nothing is seen in between, as there is nothing to see.
+//! Every call takes a receiver for the events during the run. A step of the board ends at the next tick in which
+//! something can happen; the ticks in between are not visible.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,11 +19,11 @@ use crate::target::EventSink;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum End {
-    /// No thread is active, and nothing moves, records, prints or waits for the PC.
+    /// No thread is active, and there is no motion, recording, output or wait for the PC.
     AllEnded,
-    /// The limit is reached.
+    /// The limit was reached.
     Limit,
-    /// Somebody [interrupted](Interrupter::interrupt) it.
+    /// The run was [interrupted](Interrupter::interrupt).
     Interrupted,
 }
 
@@ -32,7 +32,7 @@ pub enum End {
 pub struct Interrupter(Arc<AtomicBool>);
 
 impl Interrupter {
-    /// Ends the run that is under way, or else the next one at once.
+    /// Ends the run in progress, or otherwise the next one at once.
     pub fn interrupt(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
@@ -68,15 +68,15 @@ impl<T: Target> Session<T> {
         }
     }
 
-    /// Runs to the end of tick `limit`, also when everything has ended.
+    /// Runs to the end of tick `limit`, even when everything has ended.
     pub fn advance(&mut self, limit: Ticks, events: EventSink<'_>) {
         while self.tick() < limit {
             self.step(limit, events);
         }
     }
 
-    /// Runs until a condition is met, at most to the end of tick `limit`; whether it is. One that is met already takes
-    /// no time.
+    /// Runs until a condition is met, at most to the end of tick `limit`; returns whether it is met. A condition that
+    /// is already met takes no time.
     ///
     /// An [expression](Until::True) is evaluated after every tick.
     pub fn run_until(&mut self, condition: &Until, limit: Ticks, events: EventSink<'_>) -> bool {
@@ -101,7 +101,7 @@ impl<T: Target> Session<T> {
     }
 
     /// Runs to the end of the next tick in which a user thread has the processor, at most to the end of tick `limit`;
-    /// which thread it was. A thread that has the processor but waits there counts, too.
+    /// returns the thread. A thread that has the processor but waits there also counts.
     pub fn step_slice(&mut self, limit: Ticks, events: EventSink<'_>) -> Option<ThreadId> {
         while self.tick() < limit {
             self.step_tick(events);
@@ -112,7 +112,7 @@ impl<T: Target> Session<T> {
         None
     }
 
-    /// Runs to the end of the next slice of a thread, at most to the end of tick `limit`; whether it had one.
+    /// Runs to the end of the next slice of a thread, at most to the end of tick `limit`; returns whether it had one.
     pub fn step_thread(&mut self, thread: ThreadId, limit: Ticks, events: EventSink<'_>) -> bool {
         while let Some(other) = self.step_slice(limit, events) {
             if other == thread {
@@ -142,13 +142,13 @@ impl<T: Target> Session<T> {
         self.sample();
     }
 
-    /// Ends the run: sends the console lines still waiting, and checks what the stimulus expects at the end.
+    /// Ends the run: sends the console lines that still wait, and checks the stimulus's expectations for the end.
     pub fn finish(&mut self, events: EventSink<'_>) {
         self.target.finish(events);
     }
 
-    /// Sends a line of script commands, or a data line that a command waits for, and lets pass the time that it and its
-    /// answer take on the wire.
+    /// Sends a line of script commands, or a data line for which a command waits, and lets the time pass that the line
+    /// and its answer take on the wire.
     pub fn exchange(&mut self, line: &[u8], events: EventSink<'_>) {
         let is_data = self.target.is_in_command();
         let begin = self.tick().get();

@@ -10,9 +10,9 @@ use crate::capability::Capability;
 use crate::target::Target;
 
 impl<T: Target> Session<T> {
-    /// Whose program holds the tick in progress, and the instant; `None` between two ticks.
+    /// The context whose program holds the tick in progress, and the time; `None` between two ticks.
     ///
-    /// Whatever lets time pass continues with that tick first.
+    /// Every call that lets time pass first completes that tick.
     #[must_use]
     pub fn held(&self) -> Option<(ContextId, Cycles)> {
         self.target.held()
@@ -20,18 +20,18 @@ impl<T: Target> Session<T> {
 }
 
 impl<T: Target> Session<T> {
-    /// A measure of what the computer has done so far; see [`Target::work`].
+    /// A measure of the computer's work so far; see [`Target::work`].
     #[must_use]
     pub fn work(&self) -> u64 {
         self.target.work()
     }
 
-    /// Prepares the board for a debugger: follows the calls in progress from now on.
+    /// Prepares the board for a debugger: tracks the calls in progress from now on.
     pub fn prepare_to_hold(&mut self) {
         self.target.prepare_to_hold();
     }
 
-    /// The programs in the threads.
+    /// The programs loaded in the threads.
     #[must_use]
     pub fn programs(&self) -> &[UserProgram] {
         &self.programs
@@ -43,17 +43,19 @@ impl<T: Target> Session<T> {
         Item::among(self.target.axes(), name).ok().map(|item| self.target.value(item))
     }
 
-    /// Holds programs before these instructions, and before no others. What a program does, and when, stays the same.
+    /// Holds programs before these instructions, and before no others. The execution and timing of programs stay the
+    /// same.
     pub fn set_breakpoints(&mut self, addresses: impl IntoIterator<Item = CodeAddr>) {
         self.target.set_breakpoints(&addresses.into_iter().collect::<Vec<_>>());
     }
 
-    /// Holds a context after each instruction, the next one included; `None` none.
+    /// Holds a context after each instruction, beginning with the next one; `None` for no context.
     pub fn set_stepping(&mut self, context: Option<ContextId>) {
         self.target.set_stepping(context);
     }
 
-    /// Holds programs after these bytes, addresses and how many, are not what they are now; and after no others.
+    /// Holds programs after one of these bytes has changed from its present value, and for no others; each range is an
+    /// address and a number of bytes.
     pub fn set_watched(&mut self, ranges: &[(GuestAddr, u32)]) {
         self.target.set_watched(ranges);
     }
@@ -68,7 +70,7 @@ impl<T: Target> Session<T> {
         self.target.take_change()
     }
 
-    /// Takes the context that was held last, with the reason.
+    /// Takes the context that was held last, and the reason.
     pub fn take_hold(&mut self) -> Option<Hold> {
         self.target.take_hold()
     }
@@ -79,19 +81,20 @@ impl<T: Target> Session<T> {
         self.target.frames(id)
     }
 
-    /// Sets a register of a call in progress, the innermost of which is number 0; whether there is such a register.
+    /// Sets a register of a call in progress, where 0 is the innermost call; returns whether there is such a register.
     ///
-    /// No journal has it: a [timeline](super::Timeline) is informed by [`branch`](super::Timeline::branch).
+    /// The change is not in the journal; a [timeline](super::Timeline) must be informed by
+    /// [`branch`](super::Timeline::branch).
     pub fn set_register(&mut self, id: ContextId, frame: usize, register: u16, slot: u64) -> bool {
         self.target.set_register(id, frame, register, slot)
     }
 
-    /// Calls a function of a program or of the firmware in a context, with the arguments each as a slot. The instant and
-    /// the context are then as before. What the function has stored stays, and no journal has it, as with
-    /// [`set_register`](Self::set_register); all is as before the call if it has another end than a result.
+    /// Calls a function of a program or of the firmware in a context; each argument is a slot. Afterwards the time and
+    /// the context are as before. Values stored by the function remain, and are not in the journal, as with
+    /// [`set_register`](Self::set_register); if the call does not end with a result, all memory is as before the call.
     ///
     /// # Errors
-    /// The target makes no calls.
+    /// The target does not support calls.
     pub fn call_function(
         &mut self,
         id: ContextId,
@@ -150,7 +153,7 @@ mod tests {
         setup.session().expect("a board")
     }
 
-    /// All events of a run to a tick, and the memory then; `after` is called wherever a program is held.
+    /// All events of a run to a tick, and the memory at its end; `after` is called each time a program is held.
     fn run(mut session: Session, mut after: impl FnMut(&mut Session)) -> (Vec<Event>, Session) {
         let mut events = Vec::new();
         while session.tick() < Ticks::new(300) || session.held().is_some() {
@@ -197,7 +200,7 @@ mod tests {
             assert!(hold.is_none_or(|hold| hold == Hold { context: two, reason: HoldReason::Step }));
             steps += usize::from(hold.is_some());
             if hold.is_some() {
-                // Where it is held, a snapshot is as good as the session.
+                // A snapshot taken while a program is held can replace the session.
                 let snapshot = session.snapshot().expect("it has snapshots");
                 session.restore(&snapshot).expect("it is of this session");
                 session.set_stepping(Some(two));

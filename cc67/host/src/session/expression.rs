@@ -1,7 +1,7 @@
-//! Expressions in the words of the programs: C, read from the board's memory and written to it.
+//! Expressions with the names of the programs: C, read from the board's memory and written to it.
 //!
-//! `axis0` is all that belongs to an axis, `bit46` and similar names are items of the board; everything else is C in
-//! the words of the programs that are loaded. `2:count` is the `count` of the program in thread 2. To look at an
+//! `axis0` is the set of all variables of an axis, `bit46` and similar names are items of the board; everything else is
+//! C with the declarations of the loaded programs. `2:count` is the `count` of the program in thread 2. Reading an
 //! expression changes nothing and takes no time.
 
 use std::cell::Cell;
@@ -31,22 +31,22 @@ const NOT_DECLARED: &str = "is not declared";
 /// The addition to that message: the names that need no declaration.
 const KNOWN: &str = ", nor is it an item of the board, such as axis0, bit46, persist.5, adc0";
 
-/// Most characters of an expression.
+/// The maximum number of characters of an expression.
 const MOST: usize = 500;
 
 /// The reason for which something cannot be watched.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WatchError {
-    /// The number of an item is too high.
+    /// There is no item with this number.
     #[error(transparent)]
     Item(#[from] UnknownItem),
-    /// There is nothing between two commas.
+    /// Nothing is between two commas.
     #[error("an expression is missing, such as axis0,bit46,persist.5")]
     Missing,
-    /// It is too long to be one.
+    /// The text exceeds the length limit.
     #[error("an expression can have at most {MOST} characters")]
     TooLong,
-    /// The compiler refuses it.
+    /// The compiler rejects it.
     #[error("`{expression}`: {message}")]
     Wrong {
         /// The expression.
@@ -54,15 +54,15 @@ pub enum WatchError {
         /// The message.
         message: String,
     },
-    /// It has a value, but no place where another one can be stored.
+    /// It has a value, but is not a place where another value can be stored.
     #[error("`{0}` is not a variable, so nothing can be stored in it")]
     NoPlace(String),
 }
 
-/// Something that can be looked at: an item of the board, or an expression in the words of a program.
+/// Something whose value can be read: an item of the board, or an expression with the declarations of a program.
 ///
-/// It belongs to the programs that were loaded when it was [made](Session::watch): where another one is loaded, it
-/// reads what is there then.
+/// It belongs to the programs that were loaded when it was [created](Session::watch): after another program is loaded,
+/// it still reads the same addresses.
 #[derive(Clone, Debug)]
 pub struct Watch(Watched);
 
@@ -73,7 +73,7 @@ enum Watched {
 }
 
 impl Watch {
-    /// The least and the greatest value of the integer that is stored here; `None` of anything else.
+    /// The least and the greatest value of the integer that is stored here; `None` for other types.
     #[must_use]
     pub fn limits(&self) -> Option<(f64, f64)> {
         match &self.0 {
@@ -94,7 +94,7 @@ impl Watch {
         }
     }
 
-    /// The same for what records the board as it runs.
+    /// The same value for the recorder of a running board.
     pub(super) fn into_quantity(self) -> Quantity {
         match self.0 {
             Watched::Item(item) => item.into(),
@@ -113,23 +113,23 @@ impl fmt::Display for Watch {
 }
 
 impl<T: Target> Session<T> {
-    /// Prepares an item or an expression to be looked at, once or again and again.
+    /// Prepares an item or an expression whose value is read, once or repeatedly.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The item or expression is not valid.
     pub fn watch(&self, text: &str) -> Result<Watch, WatchError> {
         watch(text, &self.programs, &self.options)
     }
 
-    /// Reads a list of names for a [recording](Self::record), separated by commas: `axis0` is all of an axis.
+    /// Parses a list of names for a [recording](Self::record), separated by commas: `axis0` is all of an axis.
     ///
     /// # Errors
-    /// What is wrong with one of them.
+    /// One of the names is not valid.
     pub fn quantities(&self, list: &str) -> Result<Vec<Quantity>, WatchError> {
         quantities(list, &self.programs, &self.options)
     }
 
-    /// The present value of what is watched; not a number where it divides an integer by 0.
+    /// The present value of a watch; NaN if it divides an integer by 0.
     #[must_use]
     pub fn value(&self, watch: &Watch) -> f64 {
         watch.value(&self.target)
@@ -138,25 +138,24 @@ impl<T: Target> Session<T> {
     /// The present value of an item or an expression.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The item or expression is not valid.
     pub fn read(&self, text: &str) -> Result<f64, WatchError> {
         Ok(self.value(&self.watch(text)?))
     }
 
-    /// Stores a value in a variable, a field, an element or what a pointer points at, as an assignment in C would.
+    /// Stores a value in a variable, field or element, or through a pointer, as an assignment in C would.
     ///
     /// # Errors
-    /// The expression is wrong, or it is no place.
+    /// The expression is not valid, or is not a place.
     pub fn write(&mut self, text: &str, value: f64) -> Result<(), WatchError> {
         let place = self.place(text)?;
         self.write_to(&place, value)
     }
 
-    /// Prepares a variable, a field, an element or what a pointer points at to be [written](Self::write_to), once or
-    /// again and again.
+    /// Prepares a variable, field, element or dereferenced pointer to be [written](Self::write_to), once or repeatedly.
     ///
     /// # Errors
-    /// The expression is wrong, or it is no place.
+    /// The expression is not valid, or is not a place.
     pub fn place(&self, text: &str) -> Result<Watch, WatchError> {
         let watch = self.watch(&with_user_data(text))?;
         match &watch.0 {
@@ -168,7 +167,7 @@ impl<T: Target> Session<T> {
     /// Stores a value in a [place](Self::place), as an assignment in C would.
     ///
     /// # Errors
-    /// There is no memory where a pointer points.
+    /// A pointer points outside memory.
     pub fn write_to(&mut self, place: &Watch, value: f64) -> Result<(), WatchError> {
         let no_place = || WatchError::NoPlace(place.to_string());
         let Watch(Watched::Compiled(text, compiled)) = place else { return Err(no_place()) };
@@ -184,7 +183,7 @@ impl<T: Target> Session<T> {
         Ok(())
     }
 
-    /// Records from now on what is requested; the records come as events. Only a target with
+    /// Starts recording as requested; the records come as events. Only a target with
     /// [recordings](crate::Capability::Recordings) records.
     pub fn record(&mut self, request: runtime::trace::TraceRequest) {
         self.target.record(request);
@@ -194,17 +193,17 @@ impl<T: Target> Session<T> {
 fn watch(text: &str, programs: &[UserProgram], options: &Options) -> Result<Watch, WatchError> {
     match Item::among(options.firmware.board().axes, text) {
         Ok(item) => Ok(Watch(Watched::Item(item))),
-        // A number that is too high is not the name of a variable.
+        // An item number that is too high is not the name of a variable.
         Err(error) if Item::is_kind(text.trim_end_matches(|c: char| c.is_ascii_digit())) => Err(error.into()),
         Err(_) => formula(text, programs, options),
     }
 }
 
-/// Reads a list of names for a recording with the declarations of these programs, separated by commas: `axis0` is all
+/// Parses a list of names for a recording with the declarations of these programs, separated by commas: `axis0` is all
 /// of an axis.
 ///
 /// # Errors
-/// What is wrong with one of them.
+/// One of the names is not valid.
 pub fn quantities(
     list: &str,
     programs: &[UserProgram],
@@ -235,7 +234,7 @@ fn is_number(text: &str) -> bool {
     !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-/// The expressions of a list, commas in between; those within brackets belong to an expression.
+/// The expressions of a list separated by commas; commas within brackets belong to an expression.
 ///
 /// ```
 /// assert_eq!(cc67_host::session::expressions("dest0, max(a, b)"), ["dest0", "max(a, b)"]);
@@ -254,8 +253,8 @@ pub fn expressions(list: &str) -> Vec<&str> {
     parts.map(str::trim).collect()
 }
 
-/// An expression in the words of the first program that understands it, or of the one in the thread that it names;
-/// without a program, in those of the board's header.
+/// An expression with the declarations of the first program that can compile it, or of the program in the thread that
+/// it names; without a program, with the declarations of the board's header.
 fn formula(text: &str, programs: &[UserProgram], options: &Options) -> Result<Watch, WatchError> {
     if text.is_empty() {
         return Err(WatchError::Missing);
@@ -285,13 +284,13 @@ fn formula(text: &str, programs: &[UserProgram], options: &Options) -> Result<Wa
         }
     }
     let error = first_error.unwrap_or_else(|| "there is no program in that thread".to_owned());
-    // With nothing near there is nothing else to say.
+    // Without a similar name there is nothing else to report.
     let is_strange = error.ends_with(NOT_DECLARED);
     let message = error + if is_strange { KNOWN } else { "" };
     Err(WatchError::Wrong { expression: text.to_owned(), message })
 }
 
-/// Compiles an expression of a stimulus with the declarations of its programs.
+/// Compiles an expression in a stimulus with the declarations of the stimulus's programs.
 pub(super) fn for_stimulus(
     text: &str,
     programs: &[UserProgram],
@@ -321,7 +320,7 @@ pub fn with_user_data(text: &str) -> String {
     whole
 }
 
-/// An expression of a program, with the items that it names.
+/// A compiled expression, with the items that it names.
 #[derive(Debug)]
 struct Compiled {
     expression: Expression,
@@ -330,7 +329,7 @@ struct Compiled {
 
 /// The names that expressions may use.
 struct Vocabulary<'a> {
-    /// The file beside which includes are looked for.
+    /// The file whose folder is searched for includes.
     path: &'a Path,
     /// Declarations.
     text: Vec<u8>,
@@ -339,7 +338,7 @@ struct Vocabulary<'a> {
 }
 
 impl<'a> Vocabulary<'a> {
-    /// The declarations of a program: its source, and where its image has the variables.
+    /// The declarations of a program: its source, and the addresses of the variables from its image.
     fn of_program(program: &'a UserProgram) -> Result<Self, String> {
         let inspection = Inspection::read(&program.image).map_err(|error| error.to_string())?;
         let objects = inspection.symbols.iter().filter(|entry| entry.kind == EntryKind::Object);
@@ -353,7 +352,7 @@ impl<'a> Vocabulary<'a> {
         Ok(Self { path, text, symbols })
     }
 
-    /// The declarations of the board, where there is no program.
+    /// The declarations of the board, for use without a program.
     fn of_board() -> Self {
         let text = b"#include \"KMotionDef.h\"\n".to_vec();
         Self { path: Path::new("board"), text, symbols: BTreeMap::new() }
@@ -366,7 +365,7 @@ impl<'a> Vocabulary<'a> {
             Ok(expression) => return Ok(Compiled { expression, items: Vec::new() }),
             Err(error) => error,
         };
-        // A name of the program goes before that of an item; so items are tried second.
+        // A name in the program takes precedence over an item; so items are tried second.
         let item = |name: &str| Item::among(options.firmware.board().axes, name).ok();
         let mut names: Vec<&str> =
             words(text).filter(|word| !symbols.contains_key(*word) && item(word).is_some()).collect();
@@ -380,7 +379,7 @@ impl<'a> Vocabulary<'a> {
     }
 }
 
-/// The variables of an image whose types it records: not structures and pointers.
+/// The variables of an image whose types are recorded in it: not structures and pointers.
 fn declarations(inspection: &Inspection) -> String {
     let mut text = "#include \"KMotionDef.h\"\n".to_owned();
     let objects = inspection.symbols.iter().filter(|entry| entry.kind == EntryKind::Object);
@@ -401,7 +400,7 @@ fn declarations(inspection: &Inspection) -> String {
     text
 }
 
-/// Returns the parts of a text that have the form of a name.
+/// Returns the parts of a text that have the form of an identifier.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|character: char| !(character.is_ascii_alphanumeric() || character == '_'))
 }
@@ -420,12 +419,12 @@ impl Formula for Compiled {
     }
 }
 
-/// The eight bytes from an address on; what is at the end of a region has fewer.
+/// The eight bytes at an address, padded at the end of a region.
 fn eight(memory: &vm::memory::GuestMemory, address: GuestAddr) -> [u8; 8] {
     std::array::from_fn(|offset| memory.peek::<u8>(address.offset(offset as u32)))
 }
 
-/// A target between two steps, as an expression reads it.
+/// A target between two steps, as the environment of an expression.
 struct OnTarget<'a, T> {
     target: &'a T,
     items: &'a [Item],
@@ -447,7 +446,7 @@ impl<T: Target> ItemReader for OnTarget<'_, T> {
     }
 }
 
-/// A board that is recorded, as an expression reads it.
+/// A recorded board, as the environment of an expression.
 struct InView<'a> {
     view: &'a View<'a>,
     items: &'a [Item],

@@ -8,14 +8,14 @@ use kmotiondef::{Bit, GuestAddr, ThreadId, Ticks};
 use super::{Session, UserProgram};
 use crate::HostError;
 
-/// Something that the owner of a session does to the board.
+/// An action of a session's owner on the board.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Input {
-    /// A statement of a stimulus, without its moment.
+    /// A statement of a stimulus, without its time.
     Act(String),
     /// An input is driven from outside.
     Drive(Bit, bool),
-    /// Bytes are stored from an address on.
+    /// Bytes are stored at an address.
     Store(GuestAddr, Vec<u8>),
     /// Bytes come over the USB link.
     Receive(Vec<u8>),
@@ -31,7 +31,7 @@ pub enum Input {
     Load(Box<UserProgram>),
 }
 
-/// Everything that was done to a session since its beginning, shared with its snapshots.
+/// All inputs to a session since its beginning, shared with its snapshots.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Journal {
     entries: Arc<Vec<(Ticks, Input)>>,
@@ -39,7 +39,7 @@ pub(super) struct Journal {
 }
 
 impl Journal {
-    /// Adds what was done after a tick.
+    /// Adds an input that was made after a tick.
     pub(super) fn note(&mut self, tick: Ticks, input: Input) {
         if let Input::Listen(listens) = input {
             self.is_deaf = !listens;
@@ -52,14 +52,14 @@ impl Journal {
         !self.is_deaf
     }
 
-    /// All of it, in order.
+    /// All inputs, in order.
     pub(super) fn entries(&self) -> &[(Ticks, Input)] {
         &self.entries
     }
 }
 
 impl<T: Target> Session<T> {
-    /// Everything that was done to this session since its beginning, each with the tick after which it was done.
+    /// All inputs to this session since its beginning, each with the tick after which it was made.
     #[must_use]
     pub fn journal(&self) -> &[(Ticks, Input)] {
         self.journal.entries()
@@ -68,7 +68,8 @@ impl<T: Target> Session<T> {
     /// Repeats an input of a journal now.
     ///
     /// # Errors
-    /// Why it cannot be done here: a bit that is not an input, a thread without a program, a program that is refused.
+    /// The input cannot be repeated here: a bit that is not an input, a thread without a program, a program that is
+    /// rejected.
     pub fn redo(&mut self, input: &Input) -> Result<(), HostError> {
         match input {
             Input::Act(action) => self.act(action)?,
@@ -84,7 +85,7 @@ impl<T: Target> Session<T> {
         Ok(())
     }
 
-    /// Stores bytes from an address on.
+    /// Stores bytes at an address.
     ///
     /// # Errors
     /// [`HostError::Unmapped`].
@@ -99,7 +100,7 @@ impl<T: Target> Session<T> {
         Ok(())
     }
 
-    /// Adds to the journal what was done just now; a session that keeps no account of it has none.
+    /// Adds an input that was just made; has no effect in a session without a journal.
     pub(super) fn note(&mut self, input: Input) {
         if self.recording.is_off() {
             return;

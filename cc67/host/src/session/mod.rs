@@ -1,11 +1,11 @@
 //! The session: a board under control.
 //!
-//! A [`Setup`] says what board it is and which programs it runs; a [`Session`] is that board with somebody in charge of
-//! it. Its owner decides how far time goes ([`advance`](Session::advance), [`run`](Session::run),
-//! [`run_until`](Session::run_until), [`step_thread`](Session::step_thread)), looks at it and changes it in the words of
-//! its programs ([`read`](Session::read), [`write`](Session::write)), follows signals
-//! ([`subscribe`](Session::subscribe)), acts as the world around the board ([`act`](Session::act)), and goes back to an
-//! instant ([`snapshot`](Session::snapshot), [`restore`](Session::restore)).
+//! A [`Setup`] describes a board and its programs; a [`Session`] is that board under the control of an owner. The owner
+//! lets time pass ([`advance`](Session::advance), [`run`](Session::run), [`run_until`](Session::run_until),
+//! [`step_thread`](Session::step_thread)), reads and changes the board by the names in its programs
+//! ([`read`](Session::read), [`write`](Session::write)), follows signals ([`subscribe`](Session::subscribe)), acts as
+//! the world around the board ([`act`](Session::act)), and returns to an earlier time ([`snapshot`](Session::snapshot),
+//! [`restore`](Session::restore)).
 //!
 //! ```
 //! use cc67_host::{Until, Session, Setup, UserProgram};
@@ -64,9 +64,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Time is board time, and passes only in calls that say so. An event carries its instant; between two events of a
-//! call the board has moved on. A session is deterministic: the same setup and the same calls at the same ticks give the
-//! same events and the same memory, on either engine.
+//! Time is board time, and passes only in calls that are documented to let it pass. An event carries its time; by the
+//! time a call returns, the board may have moved on. A session is deterministic: the same setup and the same calls at
+//! the same ticks give the same events and the same memory, on any engine.
 
 mod attendant;
 mod by_hand;
@@ -121,7 +121,7 @@ pub struct Session<T = Board> {
     target: T,
     /// The options with which programs and expressions are compiled.
     options: Options,
-    /// The programs in the threads: expressions are in their words.
+    /// The programs in the threads: expressions use their declarations.
     programs: Arc<Vec<UserProgram>>,
     /// The programs that a stimulus may load, with their debug information.
     offered: Vec<(UserProgram, DebugInfo)>,
@@ -133,7 +133,7 @@ pub struct Session<T = Board> {
 
 /// The session, and the present state of its board.
 impl<T: Target> Session<T> {
-    /// A session with a target whose programs are loaded.
+    /// Creates a session with a target whose programs are loaded.
     #[must_use]
     pub fn on_target(
         target: T,
@@ -169,7 +169,7 @@ impl<T: Target> Session<T> {
         Session { target: map(target), options, programs, offered, signals, recording, journal, interrupter }
     }
 
-    /// The target, to look at.
+    /// The target, for reading.
     #[must_use]
     pub const fn target(&self) -> &T {
         &self.target
@@ -181,7 +181,7 @@ impl<T: Target> Session<T> {
         self.target.can(capability)
     }
 
-    /// Returns nothing where the target can do something, and otherwise the sentence that it cannot.
+    /// Returns an error if the target lacks a capability.
     ///
     /// # Errors
     /// [`Unsupported`].
@@ -189,12 +189,12 @@ impl<T: Target> Session<T> {
         self.target.require(capability)
     }
 
-    /// Reads the status record of a connected target, so that what is looked at next is present.
+    /// Reads the status record of a connected target, so that the values read next are up to date.
     pub fn refresh(&mut self) {
         self.target.refresh();
     }
 
-    /// A value in memory; 0 where there is none, or where the target does not answer.
+    /// A value in memory; 0 if there is no memory, or if the target does not answer.
     #[must_use]
     pub fn peek<S: Scalar>(&self, address: GuestAddr) -> S {
         let mut bytes = [0; 8];
@@ -205,13 +205,13 @@ impl<T: Target> Session<T> {
         }
     }
 
-    /// A value in an object of the board's tables, wherever the target has it.
+    /// A value in an object of the board's tables, at the target's own address for it.
     #[must_use]
     pub fn peek_object<S: Scalar>(&self, address: GuestAddr) -> S {
         self.peek(self.target.place_of(address))
     }
 
-    /// A value in an object of the board's tables, as far as it is known [without an exchange](Target::glance).
+    /// A value in an object of the board's tables, if it is known [without an exchange](Target::glance).
     #[must_use]
     pub fn glance_at_object<S: Scalar>(&self, address: GuestAddr) -> Option<S> {
         let mut bytes = [0; 8];
@@ -220,13 +220,13 @@ impl<T: Target> Session<T> {
         S::get(&bytes, 0)
     }
 
-    /// Number of the last tick that is over.
+    /// The number of the last completed tick.
     #[must_use]
     pub fn tick(&self) -> Ticks {
         self.target.tick()
     }
 
-    /// The present instant: the end of that tick.
+    /// The present time: the end of that tick.
     #[must_use]
     pub fn now(&self) -> Cycles {
         self.target.now()
@@ -250,7 +250,7 @@ impl<T: Target> Session<T> {
         self.target.thread(thread)
     }
 
-    /// Returns whether no thread is active and nothing is in progress that a program has begun.
+    /// Returns whether no thread is active and everything that programs began is complete.
     #[must_use]
     pub fn has_ended(&self) -> bool {
         self.target.has_ended()
@@ -262,7 +262,7 @@ impl<T: Target> Session<T> {
         self.target.bit(bit)
     }
 
-    /// An element of `persist.UserData`; `None` beyond the last.
+    /// An element of `persist.UserData`; `None` if there is no such element.
     #[must_use]
     pub fn user_data(&self, index: usize) -> Option<i32> {
         let data = PERSIST.field(Persist::USER_DATA);
@@ -285,20 +285,20 @@ impl<T: Target> Session<T> {
         self.offered.iter().map(row).collect()
     }
 
-    /// The source of a code address, in whatever thread's program it lies.
+    /// The source position of a code address, in the program of any thread.
     #[must_use]
     pub fn source(&self, address: CodeAddr) -> Option<SourcePlace<'_>> {
         ThreadId::all().find_map(|thread| self.target.debug(thread)?.place(address))
     }
 
-    /// The statement inside which the servo interrupt has stopped a thread.
+    /// The statement within which the servo interrupt stopped a thread.
     #[must_use]
     pub fn split_statement(&self, thread: ThreadId) -> Option<SourcePlace<'_>> {
         let at = self.target.interrupted_at(thread)?;
         self.target.debug(thread)?.statement_around(at)
     }
 
-    /// Sets how programs and expressions are compiled from now on.
+    /// Sets the options with which programs and expressions are compiled from now on.
     pub fn set_options(&mut self, options: Options) {
         self.options = options;
     }
@@ -309,10 +309,11 @@ impl<T: Target> Session<T> {
         &self.options
     }
 
-    /// Loads a program into its thread, which is stopped first, and starts it if it [is to](UserProgram::started).
+    /// Loads a program into its thread, which is stopped first, and starts it if it is marked as
+    /// [started](UserProgram::started).
     ///
     /// # Errors
-    /// Why it is refused; the program in the thread stays and continues.
+    /// The program is rejected; the program in the thread stays and continues.
     pub fn load(&mut self, program: UserProgram) -> Result<(), HostError> {
         self.target.load(&program)?;
         let (thread, starts) = (program.thread, program.starts);
@@ -331,7 +332,7 @@ impl<T: Target> Session<T> {
     }
 }
 
-/// Ticks in some seconds.
+/// The number of ticks in a time in seconds.
 pub(crate) fn ticks(seconds: f64) -> u64 {
     (seconds / kmotiondef::limits::TIMEBASE).round() as u64
 }
@@ -345,7 +346,7 @@ impl<T: Connected + 'static> Session<T> {
 }
 
 impl Session<BootedTarget> {
-    /// Samples from now on what the processor does; the [target](Self::target) has the samples.
+    /// From now on samples the states of the processor; the [target](Self::target) has the samples.
     pub fn sample_processor(&mut self) {
         self.target.sample_processor();
     }

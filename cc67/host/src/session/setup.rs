@@ -1,4 +1,4 @@
-//! From a setup to a session: on the model, on a firmware file.
+//! Creation of a session from a setup: on the model, or on a firmware file.
 
 use compiler::Options;
 use runtime::Board;
@@ -13,7 +13,7 @@ use crate::target::{AnyTarget, BootedFirmware, BootedTarget};
 use crate::{HostError, UserProgram};
 
 impl Setup {
-    /// The board at power-up with its programs loaded and started, on the interpreter.
+    /// Creates the board at power-up with its programs loaded and started, on the interpreter.
     ///
     /// # Errors
     /// A program is refused, or an address is outside the board's memory.
@@ -21,7 +21,7 @@ impl Setup {
         self.session_on(BytecodeEngine::default())
     }
 
-    /// The same on an engine of the caller's choice; what happens is the same on all.
+    /// Creates the session on an engine chosen by the caller; the events are the same on all engines.
     ///
     /// # Errors
     /// A program is refused, or an address is outside the board's memory.
@@ -38,7 +38,7 @@ impl Setup {
             uart_input,
             hears_uart,
         } = self;
-        // What compiles the programs says for whom the time of all is counted.
+        // The options of the compiler determine for which threads time is counted.
         config.timing = options.timing;
         let mut board = Board::with_engine(config, engine);
         for program in &programs {
@@ -71,10 +71,11 @@ impl Setup {
         Ok(Session::new(board, options, programs, offered))
     }
 
-    /// A firmware file with the programs loaded and started, which are compiled [for it](BootedFirmware::options).
+    /// Creates a session on a firmware file with the programs loaded and started; they are compiled [for
+    /// it](BootedFirmware::options).
     ///
     /// # Errors
-    /// A program is refused, the flash is of another firmware, or this firmware cannot be connected to anything.
+    /// A program is rejected, the flash belongs to another firmware, or this firmware cannot be connected to hardware.
     pub fn session_on_firmware(
         mut self,
         firmware: &BootedFirmware,
@@ -86,7 +87,7 @@ impl Setup {
         Ok(Session::on_target(target, options, programs, offered))
     }
 
-    /// The modelled board, or a firmware file if one is named.
+    /// Creates a session on the modelled board, or on a firmware file if one is given.
     ///
     /// # Errors
     /// As [`session`](Self::session) and [`session_on_firmware`](Self::session_on_firmware).
@@ -99,7 +100,7 @@ impl Setup {
         })
     }
 
-    /// Finds what computes the expressions of the stimuli.
+    /// Compiles the expressions of the stimuli.
     fn resolve_stimuli(&mut self) -> Result<(), StimulusError> {
         let known = [&self.programs[..], &self.offered].concat();
         for stimulus in [&mut self.config.machine_file.stimulus, &mut self.stimulus] {
@@ -109,10 +110,10 @@ impl Setup {
     }
 }
 
-/// Finds what computes the expressions of a stimulus, in the words of the programs and of those that it may load.
+/// Compiles the expressions of a stimulus, with the names in the programs and in those that it may load.
 ///
 /// # Errors
-/// The first expression that is none.
+/// The first expression that is not valid.
 pub fn resolve(
     stimulus: &mut Stimulus,
     programs: &[UserProgram],
@@ -122,7 +123,7 @@ pub fn resolve(
     stimulus.resolve(axes, |text| expression::for_stimulus(text, programs, options))
 }
 
-/// Keeps a program that a stimulus may load; with what is known about it.
+/// Keeps a program that a stimulus may load, with its debug information.
 fn offer<E: Engine>(
     board: &mut Board<E>,
     program: UserProgram,

@@ -1,7 +1,7 @@
-//! Signals: values that are followed at a rate.
+//! Signals: values that are sampled at a rate.
 //!
-//! A subscription is sampled after every tick that is a multiple of its interval, whether its values have changed or
-//! not. Sampling changes nothing on the board.
+//! A subscription is sampled after every tick that is a multiple of its interval, even if its values have not changed.
+//! Sampling changes nothing on the board.
 
 use std::fmt;
 
@@ -29,11 +29,11 @@ struct Subscription {
 #[derive(Default)]
 pub(super) struct Signals {
     subscriptions: Vec<Subscription>,
-    /// The number of subscriptions so far.
+    /// The number of subscriptions created so far.
     count: u64,
-    /// The tick that was looked at last.
+    /// The tick up to which samples have been taken.
     last: Ticks,
-    /// The subscription that the target samples by itself.
+    /// The subscription that the target itself samples.
     on_target: Option<SubscriptionId>,
 }
 
@@ -58,8 +58,8 @@ impl Signals {
 }
 
 impl<T: Target> Session<T> {
-    /// Hands the values of expressions to a receiver every `every` ticks, from the next multiple on; the
-    /// receiver is called in whatever call lets time pass.
+    /// Passes the values of expressions to a receiver every `every` ticks, beginning with the next multiple; the
+    /// receiver is called during any call that lets time pass.
     ///
     /// ```
     /// use std::sync::mpsc;
@@ -91,12 +91,12 @@ impl<T: Target> Session<T> {
         id
     }
 
-    /// Has the target sample a subscription by itself, more often than values can be read
-    /// ([`Capability::FastSamples`](crate::Capability::FastSamples)); returns how many times a second. Values that it does
-    /// not know there are those of its last status record.
+    /// Makes the target itself sample a subscription, faster than values can be read
+    /// ([`Capability::FastSamples`](crate::Capability::FastSamples)); returns the number of samples per second. Values
+    /// that the target cannot sample are taken from its last status record.
     ///
     /// # Errors
-    /// The target cannot, or takes nothing of it now.
+    /// The target cannot sample, or cannot sample these values now.
     pub fn sample_on_target(&mut self, id: SubscriptionId) -> Result<f64, HostError> {
         let subscription = self.signals.subscriptions.iter().find(|subscription| subscription.id == id);
         let watched = subscription.map(|subscription| subscription.watched.clone()).unwrap_or_default();
@@ -106,10 +106,10 @@ impl<T: Target> Session<T> {
         Ok(rate)
     }
 
-    /// Ends what [`sample_on_target`](Self::sample_on_target) has begun: the session reads the values again.
+    /// Ends the sampling begun by [`sample_on_target`](Self::sample_on_target): the session reads the values again.
     pub fn end_sampling_on_target(&mut self) {
         if self.signals.on_target.take().is_some() {
-            // A target that is lost has nothing to end.
+            // A target that is lost needs no end of sampling.
             let _ = self.target.sample(Vec::new());
         }
     }
@@ -122,7 +122,7 @@ impl<T: Target> Session<T> {
         self.signals.subscriptions.retain(|subscription| subscription.id != id);
     }
 
-    /// Hands over what is due at the present tick.
+    /// Passes on the samples due at the present tick.
     pub(super) fn sample(&mut self) {
         let tick = self.tick();
         if self.signals.subscriptions.is_empty() || self.signals.last == tick {
@@ -134,7 +134,7 @@ impl<T: Target> Session<T> {
             if on_target == Some(subscription.id) {
                 continue;
             }
-            // A simulated board stops at each multiple; the time of a connected one may be past it.
+            // A simulated board stops at each multiple; the time of a connected one may have passed it.
             if last.get() / subscription.every < tick.get() / subscription.every {
                 let values: Vec<f64> =
                     subscription.watched.iter().map(|watch| watch.value(&self.target)).collect();
@@ -143,7 +143,7 @@ impl<T: Target> Session<T> {
         }
     }
 
-    /// Hands over what the target has sampled by itself; returns the subscription, or nothing once it has ended.
+    /// Passes on the samples that the target has taken; returns the subscription, or `None` once sampling has ended.
     fn take_from_target(&mut self) -> Option<SubscriptionId> {
         let id = self.signals.on_target?;
         let Some(rows) = self.target.take_samples() else {

@@ -1,4 +1,4 @@
-//! A session as it was at an instant, to continue from there as often as one likes.
+//! Snapshots: the state of a session at a time, from which it can be continued any number of times.
 
 use std::sync::Arc;
 
@@ -9,7 +9,8 @@ use super::{Recording, Session, UserProgram};
 use crate::error::SnapshotError;
 use crate::target::{Target, TargetSnapshot};
 
-/// The board of a session between two ticks or where a program [holds](Session::held) one, and what was done by hand until then.
+/// The board of a session between two ticks or while a program [holds](Session::held) one, with the manual actions
+/// until then.
 #[derive(Debug)]
 pub struct Snapshot<T: Target> {
     target: T::Snapshot,
@@ -19,7 +20,7 @@ pub struct Snapshot<T: Target> {
 }
 
 impl<T: Target> Snapshot<T> {
-    /// Number of the last tick that is over.
+    /// The number of the last completed tick.
     #[must_use]
     pub fn tick(&self) -> Ticks {
         self.target.tick()
@@ -31,7 +32,7 @@ impl<T: Target> Snapshot<T> {
         self.target.is_held()
     }
 
-    /// Bytes of guest memory that this snapshot has beside those that it shares with `other`.
+    /// The bytes of guest memory in this snapshot that it does not share with `other`.
     #[must_use]
     pub fn bytes_beyond(&self, other: &Self) -> usize {
         self.target.bytes_beyond(&other.target)
@@ -39,8 +40,8 @@ impl<T: Target> Snapshot<T> {
 }
 
 impl<T: Target> Session<T> {
-    /// The session as it is. What has changed in guest memory since the snapshot before is kept in pages of 4 KiB; all
-    /// that a board holds beside its memory is a few hundred KiB.
+    /// Takes a snapshot of the session. Guest memory that has changed since the previous snapshot is kept in pages of 4
+    /// KiB; the rest of a board's state is a few hundred KiB.
     ///
     /// ```
     /// use cc67_host::Setup;
@@ -59,7 +60,7 @@ impl<T: Target> Session<T> {
     /// ```
     ///
     /// # Errors
-    /// The target has no snapshots.
+    /// The target does not support snapshots.
     pub fn snapshot(&mut self) -> Result<Snapshot<T>, SnapshotError> {
         Ok(Snapshot {
             target: self.target.snapshot()?,
@@ -69,14 +70,14 @@ impl<T: Target> Session<T> {
         })
     }
 
-    /// Makes the session what it was when `snapshot` was taken; with the same calls it continues from there exactly as it
-    /// went on then. What was done by hand since is not in the [recording](Session::recording) any more.
+    /// Returns the session to the state in which `snapshot` was taken; with the same calls it continues exactly as it
+    /// did then. Manual actions since then are removed from the [recording](Session::recording).
     ///
-    /// Subscriptions stay, and are sampled from there on. So do the options of the compiler, and files that the PC
-    /// keeps in a directory. Snapshots may be restored in any order, each as often as one likes.
+    /// Subscriptions remain, and are sampled from there on. The options of the compiler and files that the PC keeps in
+    /// a directory remain, too. Snapshots may be restored in any order, any number of times.
     ///
     /// # Errors
-    /// [`SnapshotError`] for a snapshot of another session with native threads; nothing has changed then.
+    /// [`SnapshotError`] for a snapshot of another session with native threads; nothing has changed in that case.
     pub fn restore(&mut self, snapshot: &Snapshot<T>) -> Result<(), SnapshotError> {
         let Snapshot { target, programs, recording, journal } = snapshot;
         self.target.restore(target)?;

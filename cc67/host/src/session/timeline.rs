@@ -1,9 +1,9 @@
-//! A timeline: a session's past, to go back to any tick of it and forward again.
+//! A timeline: the past of a session, with access to any tick of it, backward and forward.
 //!
-//! Snapshots are kept every so much work of the computer; what is between two of them is executed again, with what
-//! was done by hand done again at its tick. Older snapshots are kept at larger distances, so that their number does not
-//! grow with the length of a session. Whoever does something else in the past than was done there begins a new line of
-//! history: what came later is forgotten, or kept as a [branch](Timeline::keep_branches) to be taken up again.
+//! Snapshots are taken at intervals measured in the computer's work; the time between two of them is executed again,
+//! with the manual actions repeated at their ticks. Older snapshots are kept at larger intervals, so that their number
+//! does not grow with the length of a session. A different action in the past begins a new line of history: the later
+//! events are forgotten, or kept as a [branch](Timeline::keep_branches) to which the session can return.
 
 use std::sync::Arc;
 
@@ -14,13 +14,13 @@ use super::{Input, Session, Snapshot};
 use crate::error::SnapshotError;
 use crate::target::Target;
 
-/// Work between two snapshots: some hundredths of a second of a usual computer.
+/// The work between two snapshots: some hundredths of a second on a typical computer.
 const INTERVAL: u64 = 60_000_000;
 
-/// Into how many parts the snapshots of a replay cut an interval.
+/// The number of parts into which the snapshots of a replay divide an interval.
 const PARTS: u64 = 8;
 
-/// Most snapshots; each has a few hundred KiB besides pages of memory that differ.
+/// The maximum number of snapshots; each takes a few hundred KiB besides the memory pages that differ.
 const MOST: usize = 256;
 
 /// The reason for which a session cannot be taken to a tick.
@@ -29,7 +29,7 @@ pub enum TimelineError {
     /// The timeline begins later.
     #[error("the timeline starts at tick {}", .0.get())]
     TooEarly(Ticks),
-    /// The target has no snapshots, or they are of another session.
+    /// The target does not support snapshots, or they belong to another session.
     #[error(transparent)]
     Snapshot(#[from] SnapshotError),
 }
@@ -38,18 +38,18 @@ pub enum TimelineError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum History {
-    /// It does.
+    /// The present follows the history.
     Same,
-    /// Something else was done than then: a new line begins, and what came after this tick is forgotten.
+    /// A different action was made: a new line begins, and the history after this tick is forgotten.
     New(Ticks),
 }
 
-/// A snapshot, and how much work it is from the beginning of the line.
+/// A snapshot, and its position: the work since the beginning of the line.
 #[derive(Debug)]
 struct Mark<T: Target> {
     snapshot: Arc<Snapshot<T>>,
     place: u64,
-    /// Nothing before it leads to it by the journal alone.
+    /// True if the journal alone does not lead to it from an earlier snapshot.
     is_needed: bool,
 }
 
@@ -59,17 +59,17 @@ impl<T: Target> Clone for Mark<T> {
     }
 }
 
-/// Names a branch of a timeline.
+/// Identifies a branch of a timeline.
 pub type BranchId = u64;
 
-/// A line of history that was left: it is kept whole, and shares snapshots with the others.
+/// A line of history that was left: it is kept complete, and shares snapshots with the others.
 #[derive(Debug)]
 pub struct Branch<T: Target> {
-    /// Its name.
+    /// The identifier.
     pub id: BranchId,
     /// The tick after which it was left.
     pub from: Ticks,
-    /// The last tick of it.
+    /// Its last tick.
     pub end: Ticks,
     marks: Vec<Mark<T>>,
     journal: Vec<(Ticks, Input)>,
@@ -93,29 +93,29 @@ pub struct Branch<T: Target> {
 /// ```
 #[derive(Debug)]
 pub struct Timeline<T: Target> {
-    /// In the order of time; there is one at least.
+    /// The snapshots in the order of time; there is at least one.
     marks: Vec<Mark<T>>,
     /// The inputs on this line.
     journal: Vec<(Ticks, Input)>,
-    /// The number of inputs of the journal that the session has had.
+    /// The number of journal entries that have been applied to the session.
     done: usize,
     end: Ticks,
-    /// The session's work, and its place on the line, when it was last put somewhere.
+    /// The session's work, and its position on the line, when the position was last set.
     base: (u64, u64),
     /// Work between two snapshots.
     interval: u64,
-    /// Lines that were left, the oldest first, and how many of them are kept.
+    /// Lines that were left, the oldest first, and the maximum number that is kept.
     branches: Vec<Branch<T>>,
     most_branches: usize,
-    /// The number of branches that there have been.
+    /// The number of branches created so far.
     branch_count: u64,
 }
 
 impl<T: Target> Timeline<T> {
-    /// A timeline that begins now.
+    /// Creates a timeline that begins now.
     ///
     /// # Errors
-    /// The target has no snapshots.
+    /// The target does not support snapshots.
     pub fn new(session: &mut Session<T>) -> Result<Self, SnapshotError> {
         let journal = session.journal().to_vec();
         let (work, end) = (session.work(), session.tick());
@@ -125,18 +125,18 @@ impl<T: Target> Timeline<T> {
         Ok(Self { marks, done, journal, end, base, interval, branches, most_branches: 0, branch_count: 0 })
     }
 
-    /// Keeps this many of the lines that are left when something else is done in the past; 0 at first.
+    /// Keeps up to this many of the lines that are left when a different action is made in the past; initially 0.
     pub fn keep_branches(&mut self, most: usize) {
         self.most_branches = most;
         self.drop_oldest_branches();
     }
 
-    /// The lines that were left and are kept, the oldest first.
+    /// The branches that are kept, the oldest first.
     pub fn branches(&self) -> &[Branch<T>] {
         &self.branches
     }
 
-    /// Forgets a branch; returns whether there was one of this name.
+    /// Forgets a branch; returns whether it existed.
     pub fn forget_branch(&mut self, id: BranchId) -> bool {
         let count = self.branches.len();
         self.branches.retain(|branch| branch.id != id);
@@ -144,7 +144,7 @@ impl<T: Target> Timeline<T> {
     }
 
     /// Takes the session to the end of a branch. The line that it was on becomes a branch itself. Returns the last tick
-    /// that both have in common; `None` if there is no such branch.
+    /// that both lines have in common; `None` if there is no such branch.
     ///
     /// # Errors
     /// [`SnapshotError`].
@@ -163,7 +163,7 @@ impl<T: Target> Timeline<T> {
         }
         (self.marks, self.journal, self.end) = (taken.marks, taken.journal, taken.end);
         self.restore(session, before.unwrap_or_default())?;
-        // Something that no journal has was done where a snapshot is needed: the line continues from there.
+        // A change that is not in a journal was made at a needed snapshot: the line continues from there.
         let needed = self.marks.iter().filter(|mark| mark.is_needed && mark.snapshot.tick() > common);
         for place in needed.map(|mark| mark.place).collect::<Vec<_>>() {
             let tick = self.marks.iter().find(|mark| mark.place == place).map(|mark| mark.snapshot.tick());
@@ -176,7 +176,7 @@ impl<T: Target> Timeline<T> {
         Ok(Some(common))
     }
 
-    /// The last tick at which this line and a branch are the same; `None` if there is no such branch.
+    /// The last tick up to which this line and a branch are the same; `None` if there is no such branch.
     #[must_use]
     pub fn common_with(&self, id: BranchId) -> Option<Ticks> {
         self.branches.iter().find(|branch| branch.id == id).map(|branch| self.common(branch))
@@ -190,7 +190,7 @@ impl<T: Target> Timeline<T> {
         next.into_iter().flatten().fold(self.end.min(branch.end), Ticks::min)
     }
 
-    /// Keeps the present line as a branch that is left after a tick.
+    /// Keeps the present line as a branch that was left after a tick.
     fn leave(&mut self, from: Ticks) {
         if self.most_branches == 0 {
             return;
@@ -206,37 +206,37 @@ impl<T: Target> Timeline<T> {
         self.branches.drain(..surplus);
     }
 
-    /// Keeps a snapshot after so much work of the engine, about the number of its instructions, in place of the usual
-    /// amount: more of them take more memory, and make a way back shorter.
+    /// Sets the work of the engine between two snapshots, roughly a number of instructions. More snapshots take more
+    /// memory, and make going back faster.
     pub fn keep_every(&mut self, work: u64) {
         self.interval = work.max(1);
     }
 
-    /// The first tick that it can go to.
+    /// The first tick to which the timeline can go.
     #[must_use]
     pub fn begin(&self) -> Ticks {
         self.marks.first().map_or(self.end, |mark| mark.snapshot.tick())
     }
 
-    /// The last tick that the session has been at on this line.
+    /// The last tick of this line that the session has reached.
     #[must_use]
     pub const fn end(&self) -> Ticks {
         self.end
     }
 
-    /// The ticks of the snapshots, ascending: those that are reached without executing anything.
+    /// The ticks of the snapshots, ascending: they can be reached without execution.
     pub fn snapshots(&self) -> impl DoubleEndedIterator<Item = Ticks> + '_ {
         self.marks.iter().map(|mark| mark.snapshot.tick())
     }
 
-    /// Bytes of guest memory that the snapshots hold.
+    /// The bytes of guest memory held by the snapshots.
     #[must_use]
     pub fn bytes(&self) -> usize {
         let pairs = self.marks.iter().zip(self.marks.iter().skip(1));
         pairs.map(|(one, next)| next.snapshot.bytes_beyond(&one.snapshot)).sum()
     }
 
-    /// Lets time pass to the end of tick `limit`, also when everything has ended.
+    /// Lets time pass to the end of tick `limit`, even when everything has ended.
     pub fn advance(
         &mut self,
         session: &mut Session<T>,
@@ -253,8 +253,8 @@ impl<T: Target> Timeline<T> {
         history
     }
 
-    /// Takes up what has happened to the session since the last call: to be called after whatever lets time pass or does
-    /// something, at least every some hundredths of a second. Takes a snapshot if one is due.
+    /// Records the progress of the session since the last call: must be called after every call that lets time pass or
+    /// acts, at least every few hundredths of a second. Takes a snapshot if one is due.
     pub fn keep(&mut self, session: &mut Session<T>) -> History {
         let history = self.note(session);
         self.end = self.end.max(session.tick());
@@ -264,8 +264,8 @@ impl<T: Target> Timeline<T> {
         history
     }
 
-    /// The same after something that no journal has, such as another value of a register: a snapshot is taken in any
-    /// case, and what came later is forgotten.
+    /// Does the same after a change that is not in a journal, such as a new value of a register: always takes a
+    /// snapshot, and forgets later history.
     pub fn branch(&mut self, session: &mut Session<T>) -> History {
         let noted = self.note(session);
         let place = self.place(session);
@@ -276,17 +276,17 @@ impl<T: Target> Timeline<T> {
         self.forget(place);
         self.journal.truncate(self.done);
         self.end = tick;
-        // There was one at the beginning, so the target has them.
+        // There was a snapshot at the beginning, so the target supports them.
         if let Ok(snapshot) = session.snapshot() {
             self.marks.push(Mark { snapshot: Arc::new(snapshot), place, is_needed: true });
         }
         if is_past || noted != History::Same { History::New(tick) } else { History::Same }
     }
 
-    /// Takes the session to the end of a tick, back or forward, with what was done there.
+    /// Takes the session to the end of a tick, back or forward, repeating the recorded actions.
     ///
     /// # Errors
-    /// [`TimelineError::TooEarly`] before the first snapshot.
+    /// [`TimelineError::TooEarly`] for a tick before the first snapshot.
     pub fn go_to(&mut self, session: &mut Session<T>, tick: Ticks) -> Result<(), TimelineError> {
         let _ = self.keep(session);
         let index = self.marks.iter().rposition(|mark| mark.snapshot.tick() <= tick);
@@ -296,7 +296,7 @@ impl<T: Target> Timeline<T> {
         Ok(())
     }
 
-    /// Puts the session where a snapshot was taken.
+    /// Restores a snapshot.
     ///
     /// # Errors
     /// [`SnapshotError`].
@@ -308,8 +308,8 @@ impl<T: Target> Timeline<T> {
         Ok(())
     }
 
-    /// The last snapshot before another one, or of all, by its place: how much work it is from the beginning. Snapshots
-    /// come and go while the past is executed again; what is known by its place stays the same one.
+    /// The position of the last snapshot before a position, or of the last of all. Positions count the work since the
+    /// beginning; unlike indexes, they remain valid while the past is executed again and snapshots come and go.
     #[must_use]
     pub fn before(&self, place: Option<u64>) -> Option<u64> {
         let count =
@@ -317,7 +317,7 @@ impl<T: Target> Timeline<T> {
         self.marks.get(count.checked_sub(1)?).map(|mark| mark.place)
     }
 
-    /// Puts the session where the snapshot of a place was taken, or the last one before it if that is gone.
+    /// Restores the snapshot at a position, or the last one before it if that was dropped.
     ///
     /// # Errors
     /// [`SnapshotError`].
@@ -326,7 +326,7 @@ impl<T: Target> Timeline<T> {
         self.restore(session, count.saturating_sub(1))
     }
 
-    /// Lets the session go on to the end of a tick, and does on the way what was done there.
+    /// Runs the session to the end of a tick, repeating the recorded actions on the way.
     pub fn replay(&mut self, session: &mut Session<T>, tick: Ticks) {
         loop {
             self.redo(session);
@@ -341,13 +341,13 @@ impl<T: Target> Timeline<T> {
         }
     }
 
-    /// The tick after which something is done on the line ahead; a session that continues stops there to do it again.
+    /// The tick of the next recorded action; a session that continues stops there to repeat it.
     #[must_use]
     pub fn next_input(&self) -> Option<Ticks> {
         self.journal.get(self.done).map(|(tick, _)| *tick)
     }
 
-    /// Does what was done after the present tick; nothing while one is held.
+    /// Repeats the actions recorded after the present tick; does nothing while a tick is held.
     pub fn redo(&mut self, session: &mut Session<T>) {
         if session.held().is_some() {
             return;
@@ -365,13 +365,13 @@ impl<T: Target> Timeline<T> {
         self.marks.len()
     }
 
-    /// Never: there is one at least.
+    /// Returns false: there is always at least one snapshot.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.marks.is_empty()
     }
 
-    /// Compares what was done with what was done before.
+    /// Compares new actions with the recorded ones.
     fn note(&mut self, session: &Session<T>) -> History {
         let mut history = History::Same;
         for entry in session.journal().get(self.done..).unwrap_or_default() {
@@ -398,7 +398,7 @@ impl<T: Target> Timeline<T> {
         self.base.1 + (session.work() - self.base.0)
     }
 
-    /// Returns whether the line continues after a position.
+    /// Returns whether the line extends beyond a position.
     fn is_known(&self, place: u64) -> bool {
         self.marks.last().is_some_and(|mark| mark.place > place)
     }
@@ -407,7 +407,7 @@ impl<T: Target> Timeline<T> {
         self.marks.retain(|mark| mark.place <= place);
     }
 
-    /// Takes a snapshot if the one before is so much work away.
+    /// Takes a snapshot if the previous one is at least this distance away.
     fn mark_after(&mut self, session: &mut Session<T>, distance: u64) {
         let place = self.place(session);
         if !self.marks.last().is_some_and(|last| (last.place..last.place + distance).contains(&place)) {
@@ -415,8 +415,8 @@ impl<T: Target> Timeline<T> {
         }
     }
 
-    /// Takes a snapshot if no other is near. Apart from the question above, which is asked every tick: a snapshot on its
-    /// way is so large that to make room for it on the stack takes longer than to ask.
+    /// Takes a snapshot if no other is near. A function of its own, because the test above runs every tick: a snapshot
+    /// passed by value is so large that reserving its stack space takes longer than the test.
     #[inline(never)]
     fn mark_at(&mut self, session: &mut Session<T>, place: u64, distance: u64) {
         let next = self.marks.partition_point(|mark| mark.place <= place);
@@ -429,7 +429,7 @@ impl<T: Target> Timeline<T> {
         }
     }
 
-    /// Drops the snapshot that is missed least: the one that makes the smallest gap for its age.
+    /// Drops the least useful snapshot: the one that leaves the smallest gap relative to its age.
     fn thin(&mut self) {
         if self.marks.len() <= MOST {
             return;
@@ -452,7 +452,7 @@ mod tests {
     use super::*;
     use crate::Setup;
 
-    /// A board on which things are done by hand for a while.
+    /// A board on which manual actions are made for a while.
     fn played() -> (Session, Timeline<runtime::Board>, Vec<(u64, f64)>) {
         let mut session = Setup::default().session().expect("a board");
         let mut timeline = Timeline::new(&mut session).expect("it has snapshots");
@@ -512,7 +512,7 @@ mod tests {
         assert_eq!((left.from.get(), left.end.get()), (known[3].0, last));
         let first = left.id;
 
-        // There and back again, also after the present line was left at another place.
+        // There and back again, also after the present line was left at another tick.
         assert_eq!(timeline.take_branch(&mut session, first), Ok(Some(Ticks::new(known[3].0))));
         assert_eq!((session.tick().get(), session.read("chan[0].Dest")), (last, Ok(dest)));
         let [left] = timeline.branches() else { panic!("the other line was left") };

@@ -6,22 +6,22 @@ use runtime::{Event, EventKind};
 
 use super::{Session, Watch};
 
-/// Something that comes true on a board.
+/// A condition on a board.
 #[derive(Clone, Debug)]
 pub enum Until {
     /// An expression is not 0.
     True(Watch),
-    /// A thread is active, or is not any more.
+    /// A thread is active, or no longer active.
     Active(ThreadId, bool),
     /// A console line that contains the text is printed, from now on.
     Printed(String),
-    /// A thread or the call-back is stopped by a trap, from now on.
+    /// A trap stops a thread or the call-back, from now on.
     Trapped,
-    /// One of several.
+    /// One of several conditions is met.
     Any(Vec<Until>),
 }
 
-/// The events of a step that conditions are about.
+/// The events of a step that matter for conditions.
 #[derive(Debug, Default)]
 pub(super) struct Heard {
     lines: Vec<Vec<u8>>,
@@ -29,7 +29,7 @@ pub(super) struct Heard {
 }
 
 impl Until {
-    /// Returns whether a step of several ticks might miss the moment in which it is met.
+    /// Returns whether a step of several ticks might miss the time at which it is met.
     pub(super) fn needs_every_tick(&self) -> bool {
         match self {
             Self::True(_) => true,
@@ -38,7 +38,7 @@ impl Until {
         }
     }
 
-    /// Takes up an event.
+    /// Notes an event.
     pub(super) fn hear(&self, event: &Event, heard: &mut Heard) {
         match &event.kind {
             EventKind::ConsoleLine(line) if self.listens() => heard.lines.push(line.clone()),

@@ -1,8 +1,8 @@
 //! A firmware file as a target: programs for the real processor, executed with the firmware itself.
 //!
-//! Board time begins in the tick in which the programs start, when the firmware has booted and read everything that the
-//! PC has sent. A call to [`step`](Target::step) ends at the first packet of a tick, so what is done between two calls
-//! happens at an instant that is reached again.
+//! Board time begins in the tick in which the programs start, after the firmware has booted and read everything that
+//! the PC sent. A call to [`step`](Target::step) ends at the first packet of a tick, so actions between two calls
+//! happen at a time that can be reached again.
 //!
 //! ```text
 //! firmware   a firmware that is ready
@@ -49,28 +49,28 @@ use attached::Attached;
 use debug::Debugging;
 use observers::Observers;
 
-/// Cycles of a tick, and of a second.
+/// Cycles per tick, and per second.
 const TICK: u64 = Cycles::PER_TICK.get() as u64;
 const SECOND: u64 = Cycles::PER_SECOND.get() as u64;
-/// Ticks without a byte and without motion after which nothing more is to come.
+/// The number of ticks without a byte and without motion after which nothing more is expected.
 const QUIET: u32 = 22;
-/// Longest time for which the firmware is waited for.
+/// The longest time to wait for the firmware.
 const ANSWER: u64 = 2 * SECOND;
-/// Longest time that a command takes: `Flash` 6.4 s; one of many lines sends all the while.
+/// The longest duration of a command: `Flash` 6.4 s; one with many lines sends throughout.
 const COMMAND: u64 = 10 * SECOND;
-/// The work of the computer for a packet, relative to an instruction of bytecode.
+/// The work of the computer for a packet, relative to a bytecode instruction.
 const PACKET_WORK: u64 = 8;
 
-/// The time for which nothing has happened.
+/// A period without events.
 #[derive(Clone, Copy, Debug, Default)]
 struct Silence {
     ticks: u32,
-    /// The number of times the firmware had polled for the PC when it began.
+    /// The number of times the firmware had polled for the PC at the beginning of the period.
     looks: u64,
 }
 
 impl Silence {
-    /// One more tick.
+    /// Counts one more tick.
     const fn note(&mut self, is_busy: bool, looks: u64) {
         self.ticks += 1;
         if is_busy {
@@ -78,7 +78,8 @@ impl Silence {
         }
     }
 
-    /// Returns whether nothing more is to come: nothing came for long, and the firmware executes no command.
+    /// Returns whether nothing more is expected: there was no event for a long time, and the firmware executes no
+    /// command.
     const fn is_over(&self, looks: u64) -> bool {
         self.ticks >= QUIET && looks > self.looks
     }
@@ -88,7 +89,7 @@ impl Silence {
 #[derive(Clone, Debug)]
 struct LoadedProgram {
     debug: DebugInfo,
-    /// First and last addresses of its functions.
+    /// The first and last addresses of its functions.
     functions: BTreeMap<u32, u32>,
 }
 
@@ -101,17 +102,17 @@ struct State {
     turn: Turn,
     /// Lines that programs sent before time began.
     early: Vec<SentLine>,
-    /// Since when nothing moves and nothing is sent, and since when no command is answered.
+    /// The times without motion and output, and without an answer to a command.
     rest: Silence,
     answer: Silence,
-    /// The cycle until which an answer is waited for.
+    /// The cycle until which to wait for an answer.
     answer_until: u64,
     /// The commanded positions of the axes, as bits.
     commands: [u64; 8],
     /// Console lines are discarded.
     is_deaf: bool,
     has_told_loss: bool,
-    /// The tick that it has come to since the firmware ran away: nothing happens there any more.
+    /// The present tick since the firmware ran away: nothing happens any more.
     halted: Option<Ticks>,
     debugging: Debugging,
 }
@@ -120,7 +121,7 @@ struct State {
 #[derive(Debug)]
 pub struct BootedTarget {
     board: BootedBoard<Attached>,
-    /// The cycle, since power-up, at which board time is 0.
+    /// The cycle since power-up at which board time is 0.
     origin: u64,
     offered: Vec<UserProgram>,
     observers: Observers,
@@ -168,7 +169,7 @@ impl BootedTarget {
         Target::axes(self).iter().filter_map(|axis| self.board.axis(axis)).collect()
     }
 
-    /// Samples from now on what the processor does, for a profile.
+    /// From now on samples the states of the processor, for a profile.
     pub(crate) fn sample_processor(&mut self) {
         self.observers.sample(self.board.cycle());
     }
@@ -187,7 +188,7 @@ impl BootedTarget {
         attached.map(|attached| &mut attached.surroundings)
     }
 
-    /// Runs to the first packet of the next tick, or to where a program is held.
+    /// Runs to the first packet of the next tick, or until a program is held.
     fn run_tick(&mut self, events: EventSink<'_>) {
         let end = self.origin + (self.tick().get() + u64::from(self.state.debugging.held().is_none())) * TICK;
         self.state.debugging.go_on();
@@ -215,7 +216,7 @@ impl BootedTarget {
             let is_console = matches!(line.kind, Sent::Console | Sent::Request);
             match self.surroundings() {
                 _ if is_lost => self.report_loss(at, events),
-                // The PC around it takes what is for files, and shows the rest.
+                // The simulated PC takes lines for files, and shows the others.
                 Some(surroundings) if is_console => surroundings.hear(line.text, at),
                 Some(_) | None => events(Event { at, kind: event_of(line) }),
             }
@@ -227,8 +228,8 @@ impl BootedTarget {
         self.note_silence(has_sent);
     }
 
-    /// Says once that console lines are lost, as nobody takes them. A firmware that waited for the PC would take no
-    /// commands either, so that nobody could read what waits.
+    /// Reports once that console lines are lost because nobody reads them. A firmware that waited for the PC would not
+    /// take commands either, so nobody could read the waiting lines.
     fn report_loss(&mut self, at: Cycles, events: EventSink<'_>) {
         if !std::mem::replace(&mut self.state.has_told_loss, true) {
             let text = format!(
@@ -238,12 +239,12 @@ impl BootedTarget {
         }
     }
 
-    /// Hands over what has happened around the board.
+    /// Passes on the events around the board.
     fn deliver(&mut self, events: EventSink<'_>) {
         self.surroundings().map(Surroundings::take_events).unwrap_or_default().into_iter().for_each(events);
     }
 
-    /// Records the packets that programs have executed, where they are recorded.
+    /// Records the packets that programs have executed, if recording is on.
     fn note_packets(&mut self) {
         for ProgramPacket { cycle, cycles, at, thread, text } in self.board.take_packets() {
             let (start, cycles) = (self.since_begin(cycle), Cycles::new(cycles));
@@ -253,7 +254,7 @@ impl BootedTarget {
         }
     }
 
-    /// Does what the stimulus has requested.
+    /// Executes the requests of the stimulus.
     fn serve(&mut self, events: EventSink<'_>) {
         for one in self.surroundings().map(Surroundings::take_asked).unwrap_or_default() {
             match one {
@@ -272,7 +273,7 @@ impl BootedTarget {
         }
     }
 
-    /// Takes up which threads are active.
+    /// Updates the set of active threads.
     fn note_threads(&mut self) {
         for thread in ThreadId::all() {
             let is_active = self.board.is_active(thread).unwrap_or(false);
@@ -289,7 +290,7 @@ impl BootedTarget {
         self.state.turn = number.and_then(ThreadId::new).map_or(Turn::Primary, Turn::User);
     }
 
-    /// Takes up whether anything has happened in a tick.
+    /// Updates the periods without events after a tick.
     fn note_silence(&mut self, has_sent: bool) {
         let (looks, has_read) = (self.board.looks(), self.board.has_read_all());
         self.state.answer.note(has_sent || !has_read, looks);
@@ -304,7 +305,7 @@ impl BootedTarget {
         self.state.rest.note(is_busy, looks);
     }
 
-    /// Returns whether something is still to come from the surroundings of the board.
+    /// Returns whether something is still expected from the surroundings of the board.
     fn is_awaited(&self) -> bool {
         let memory = self.board.memory();
         self.board.external().is_some_and(|attached| attached.surroundings.is_busy(memory))
@@ -319,7 +320,7 @@ impl BootedTarget {
     }
 }
 
-/// A line of a firmware that nothing is around.
+/// A line of a firmware without surroundings.
 fn event_of(line: SentLine) -> EventKind {
     match line.kind {
         Sent::Console => EventKind::ConsoleLine(line.text),
@@ -420,7 +421,7 @@ impl Target for BootedTarget {
         self.frames(ContextId::of(thread)).into_iter().map(|frame| frame.at).collect()
     }
 
-    /// A thread whose instruction is one of its program is not in a call that waits.
+    /// A thread at an instruction of its own program is not in a call that waits.
     fn interrupted_at(&self, thread: ThreadId) -> Option<CodeAddr> {
         self.backtrace(thread).first().copied().filter(|at| calls::is_of_program(at.get()))
     }

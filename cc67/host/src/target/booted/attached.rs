@@ -7,9 +7,8 @@ use runtime::surroundings::{Instant, Surroundings};
 /// Surroundings whose time begins when the programs start.
 #[derive(Clone, Debug)]
 pub(super) struct Attached {
-    /// The surroundings of the board.
     pub(super) surroundings: Surroundings,
-    /// The cycle, since power-up, that is their instant 0.
+    /// The cycle since power-up at which the time of the surroundings is 0.
     pub(super) origin: u64,
 }
 

@@ -17,18 +17,18 @@ use super::{ANSWER, BootedFirmware, BootedTarget, LoadedProgram, Silence, State,
 use crate::setup::Setup;
 use crate::{HostError, UserProgram};
 
-/// A firmware that is ready, with the programs that are loaded.
+/// A firmware that is ready, with the loaded programs.
 struct Beginning {
     board: BootedBoard,
     loaded: [Option<Arc<LoadedProgram>>; ThreadId::MAX as usize],
 }
 
 impl BootedTarget {
-    /// Connects what the setup describes, loads its programs, and starts those that are to start, all in one slice:
-    /// board time begins there. The expressions of its stimuli are resolved already.
+    /// Connects the hardware of the setup, loads the programs, and starts those marked as started, all in one slice;
+    /// board time begins there. The expressions of the stimuli are already compiled.
     ///
     /// # Errors
-    /// A program is refused, the flash is of another firmware, or this firmware cannot be connected to anything.
+    /// A program is rejected, the flash belongs to another firmware, or this firmware cannot be connected to hardware.
     pub(crate) fn begin(firmware: &BootedFirmware, setup: Setup) -> Result<Self, HostError> {
         let Setup {
             mut config,
@@ -115,7 +115,7 @@ impl Beginning {
         Ok(())
     }
 
-    /// Stores start values of `persist.UserData`, wherever this firmware has it.
+    /// Stores initial values of `persist.UserData`, at this firmware's address for it.
     fn store(&mut self, values: &[(GuestAddr, Vec<u8>)]) -> Result<(), HostError> {
         if values.is_empty() {
             return Ok(());
@@ -131,7 +131,7 @@ impl Beginning {
         Ok(())
     }
 
-    /// Lets the firmware read what was sent, and start threads in the next tick; time is 0 a tick before.
+    /// Lets the firmware read the data sent, and start threads in the next tick; time 0 is one tick earlier.
     fn settle(&mut self, starting: &[ThreadId]) -> Result<(), Halted> {
         let end = self.board.cycle() + ANSWER;
         while !self.board.has_read_all() && self.board.cycle() < end {
@@ -141,7 +141,7 @@ impl Beginning {
     }
 }
 
-/// Stops a thread that is active: another program is to come into it.
+/// Stops a thread that is active, so that another program can be loaded into it.
 fn stop<A: boot::ExternalHardware>(board: &mut BootedBoard<A>, thread: ThreadId) -> Result<(), HostError> {
     let is_active = |board: &BootedBoard<A>| board.is_active(thread).unwrap_or(false);
     if is_active(board) {
@@ -170,7 +170,7 @@ fn surroundings(board: &BootedBoard, mut config: Config, machine: &MachineFile) 
     Surroundings::new(config, board.file().address("ThreadActive").unwrap_or_default())
 }
 
-/// The first variable that the surroundings need and this firmware does not have.
+/// The first variable that the surroundings need and this firmware lacks.
 fn missing_variable(board: &BootedBoard) -> Option<&'static str> {
     const NEEDED: [&str; 12] = [
         "ThreadActive",

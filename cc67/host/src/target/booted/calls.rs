@@ -1,7 +1,8 @@
 //! The calls in progress of the programs on a booted board.
 //!
-//! Code for the processor keeps no list of its callers. So whoever enters a function of a program is noted, with the call and the
-//! stack pointer there; and a function has been left once the stack is shorter, or as long but the code another function's.
+//! Code for the processor keeps no list of its callers. So each entry to a function of a program is noted, with the
+//! call and the stack pointer; a function has been left when the stack is shorter, or has the same depth but the code
+//! belongs to another function.
 
 use std::ops::Range;
 
@@ -15,7 +16,7 @@ use vm::engine::ContextId;
 pub(super) struct Entered {
     /// Its code.
     pub(super) code: Range<u32>,
-    /// The packet that has called it, or one near it; `None` where the firmware has.
+    /// The packet that called it, or a packet near the call; `None` if the firmware called it.
     pub(super) call: Option<u32>,
     /// The return address.
     pub(super) back: u32,
@@ -26,7 +27,7 @@ pub(super) struct Entered {
 /// The calls of a context.
 #[derive(Clone, Debug, Default)]
 struct ContextCalls {
-    /// Outermost first.
+    /// The functions entered, outermost first.
     entered: Vec<Entered>,
     /// The last known position of its program.
     last: Option<LastSeen>,
@@ -37,7 +38,7 @@ struct ContextCalls {
 pub(super) struct LastSeen {
     /// The packet.
     pub(super) at: u32,
-    /// The firmware function that it has called there, and where that returns to.
+    /// The firmware function that was called there, and its return address.
     pub(super) firmware: Option<(u32, u32)>,
     /// The stack pointer.
     pub(super) stack: u32,
@@ -62,15 +63,15 @@ impl OpenCalls {
         let is_left = |one: &mut Entered| stack > one.stack || stack == one.stack && !one.code.contains(&pc);
         while known.entered.pop_if(is_left).is_some() {}
         let Some(code) = begins else { return };
-        // A loop that goes back to the first packet is not a call.
+        // A loop that jumps back to the first packet is not a call.
         if known.entered.last().is_none_or(|one| one.code != code || one.stack != stack) {
-            // After an interrupt there the branch before is not the call.
+            // After an interrupt there, the previous branch is not the call.
             let call = call.or(Some(back.wrapping_sub(4))).filter(|at| is_of_program(*at));
             known.entered.push(Entered { code, call, back, stack });
         }
     }
 
-    /// The functions entered and not left, innermost first.
+    /// The functions entered and not yet left, innermost first.
     pub(super) fn entered(&self, context: ContextId) -> impl ExactSizeIterator<Item = &Entered> {
         self.0[context.index()].entered.iter().rev()
     }
@@ -86,7 +87,7 @@ impl OpenCalls {
     }
 }
 
-/// Whose code is executed: a thread's, the call-back's; `None` for the firmware's own and its interrupt.
+/// The context whose code is executed: a thread or the call-back; `None` for the firmware itself and its interrupt.
 pub(super) fn context(arrival: &Reached) -> Option<ContextId> {
     if !arrival.is_masked {
         return arrival.thread.map(ContextId::of);
@@ -95,7 +96,7 @@ pub(super) fn context(arrival: &Reached) -> Option<ContextId> {
     is_callback.then_some(ContextId::CALLBACK)
 }
 
-/// Returns whether an address is in the part of memory that programs are linked for.
+/// Returns whether an address is in the part of memory for which programs are linked.
 pub(super) fn is_of_program(at: u32) -> bool {
     (PROGRAM_BASE..PROGRAM_LIMIT).contains(&at)
 }
@@ -134,7 +135,7 @@ mod tests {
         assert_eq!(arrive(FIRMWARE, Some(INNER.start + 8), 850, None), 3);
         assert_eq!(arrive(INNER.start + 12, None, 900, None), 2);
         assert_eq!(arrive(MAIN.start + 16, None, 900, None), 1);
-        // The thread begins anew, wherever it was.
+        // The thread starts again, wherever it was.
         assert_eq!(arrive(MAIN.start, Some(FIRMWARE), 1000, Some(MAIN)), 1);
     }
 }

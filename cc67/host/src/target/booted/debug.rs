@@ -1,8 +1,8 @@
 //! Holding programs on a booted firmware: breakpoints, steps, watched memory, and the calls in progress.
 //!
-//! Where programs are held changes neither what they do nor when. Stops are set where functions begin and where the
-//! firmware is called, so that calls are known, and at breakpoints. While memory is watched or a context is stepped, the
-//! processor runs packet by packet.
+//! Holding programs changes neither their execution nor their timing. Stops are set where functions begin and where the
+//! firmware is called, so that the calls in progress are known, and at breakpoints. While memory is watched or a
+//! context is stepped, the processor runs packet by packet.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -16,7 +16,7 @@ use vm::memory::GuestMemory;
 use super::calls::{self, LastSeen, OpenCalls, is_of_program};
 use super::{BootedTarget, LoadedProgram};
 
-/// Bytes that are compared with what they were.
+/// Bytes that are compared with their previous values.
 #[derive(Clone, Debug)]
 struct WatchedBytes {
     address: GuestAddr,
@@ -32,7 +32,7 @@ impl WatchedBytes {
 /// The requests of a debugger, and the positions of programs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Debugging {
-    /// Calls are followed.
+    /// True if calls are tracked.
     is_on: bool,
     calls: OpenCalls,
     breakpoints: BTreeSet<u32>,
@@ -77,7 +77,7 @@ impl Debugging {
         self.watched = ranges.iter().map(watched).collect();
     }
 
-    /// The first of what is watched that is not what it was; from now on it is what it is.
+    /// The first watched byte that has changed; its new value is the previous value from now on.
     pub(super) fn take_change(&mut self, memory: &GuestMemory) -> Option<usize> {
         let is_changed = |watched: &WatchedBytes| !watched.present(memory).eq(watched.bytes.iter().copied());
         let index = self.watched.iter().position(is_changed)?;
@@ -90,7 +90,7 @@ impl Debugging {
         self.hold.take()
     }
 
-    /// The calls in progress of a context, innermost first; the innermost may be of the firmware.
+    /// The calls in progress of a context, innermost first; the innermost may be a firmware function.
     pub(super) fn frames(&self, context: ContextId) -> Vec<FrameView> {
         let Some(LastSeen { at, firmware, stack }) = self.calls.last(context) else { return Vec::new() };
         let view = |(at, continues_at, stack): (u32, u32, u32)| {
@@ -117,7 +117,7 @@ impl Debugging {
 }
 
 impl BootedTarget {
-    /// Sets the stops that breakpoints need, and those that record calls.
+    /// Sets the stops for breakpoints and for tracking calls.
     pub(super) fn arm_stops(&mut self) {
         if !self.state.debugging.is_on {
             return;
@@ -134,12 +134,12 @@ impl BootedTarget {
         self.state.loaded.iter().flatten().map(AsRef::as_ref)
     }
 
-    /// The code of the function of a program that begins at an address, if one does.
+    /// The code of the program function that begins at an address, if there is one.
     fn begins(&self, at: u32) -> Option<Range<u32>> {
         self.programs().find_map(|program| program.functions.get(&at).map(|end| at..*end))
     }
 
-    /// Runs to a cycle, or to where a program is held.
+    /// Runs to a cycle, or until a program is held.
     ///
     /// # Errors
     /// The firmware ran away.
@@ -168,7 +168,7 @@ impl BootedTarget {
         }
     }
 
-    /// Notes where the processor is; the context whose program it executes there.
+    /// Notes the position of the processor; returns the context whose program it executes there.
     fn arrive(&mut self) -> Option<ContextId> {
         let reached = self.board.reached();
         let begins = self.begins(reached.pc);
@@ -176,7 +176,7 @@ impl BootedTarget {
         calls::context(&reached).filter(|_| is_of_program(reached.pc))
     }
 
-    /// Holds the program that has just executed a packet, if it is stepped or has changed what is watched.
+    /// Holds the program that has just executed a packet, if it is stepped or has changed a watched byte.
     fn after_packet(&mut self, (pc, packets): (u32, u64)) -> Option<Ran> {
         if self.board.packets() == packets {
             return None;

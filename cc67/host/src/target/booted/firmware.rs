@@ -1,4 +1,5 @@
-//! A firmware file that has started: the state from which sessions begin, and what programs are linked against.
+//! A firmware file that has started: the state in which sessions begin, and the symbols against which programs are
+//! linked.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -26,7 +27,7 @@ pub enum FirmwareError {
     Halted(#[from] Halted),
 }
 
-/// A firmware file that has started; any number of sessions begin from there.
+/// A firmware file that has started; any number of sessions can begin from it.
 #[derive(Clone, Debug)]
 pub struct BootedFirmware {
     file: Arc<FirmwareFile>,
@@ -50,7 +51,7 @@ impl BootedFirmware {
     /// Boots the firmware of a named file.
     ///
     /// # Errors
-    /// It cannot be read, or as [`new`](Self::new).
+    /// The file cannot be read, or an error as for [`new`](Self::new).
     pub fn open(path: &Path) -> Result<Self, FirmwareError> {
         let bytes = compiler::files::read(path).map_err(|error| {
             FirmwareError::Read(format!(
@@ -62,18 +63,18 @@ impl BootedFirmware {
         Self::new(&bytes)
     }
 
-    /// Returns the options for programs of this firmware: for the processor, against its symbols, in the time that its
-    /// instructions take with memory that never waits.
+    /// Returns the options for programs of this firmware: for the processor, against its symbols, with the execution
+    /// time of its instructions when memory never stalls.
     #[must_use]
     pub fn options(&self, options: Options) -> Options {
         let timing = Timing::Vendor(WaitStates::NONE);
         Options { target: CodeTarget::C67x, firmware: self.symbols.clone(), timing, ..options }
     }
 
-    /// A board on which the firmware is ready, started from what its flash holds if that is given.
+    /// A board on which the firmware is ready, started from the contents of its flash if given.
     ///
     /// # Errors
-    /// The flash is of another firmware, or the firmware does not start from it.
+    /// The flash belongs to another firmware, or the firmware does not start from it.
     pub(super) fn board(&self, flash: Option<&[u8]>) -> Result<BootedBoard, FlashError> {
         match flash {
             Some(flash) => BootedBoard::booted_from(Arc::clone(&self.file), flash),

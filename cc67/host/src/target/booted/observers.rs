@@ -1,6 +1,6 @@
-//! Observers of the processor while it runs: a profile, an operator who must know what programs do, a debugger.
+//! Observers of the processor while it runs: a profile, an operator who must know the calls of programs, a debugger.
 //!
-//! What is executed, and when, is the same whoever observes it.
+//! Observers change neither execution nor timing.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,7 +11,7 @@ use runtime::surroundings::ProgramCall;
 
 use super::attached::Attached;
 
-/// Cycles between two samples: a prime, so that no loop and no tick keeps step with them.
+/// Cycles between two samples: a prime, so that the samples do not stay in phase with a loop or the tick.
 const PERIOD: u64 = 997;
 
 /// The number of samples of each state of the processor.
@@ -26,14 +26,14 @@ struct Samples {
 #[derive(Debug, Default)]
 pub(super) struct Observers {
     samples: Option<Samples>,
-    /// The functions of the firmware by address, where calls are reported to the surroundings.
+    /// The functions of the firmware by address, if calls are reported to the surroundings.
     functions: BTreeMap<u32, &'static str>,
     /// The addresses at which a debugger stops.
     stops: BTreeSet<u32>,
 }
 
 impl Observers {
-    /// Samples what the processor does, from this cycle on.
+    /// From this cycle on, samples the states of the processor.
     pub(super) fn sample(&mut self, now: u64) {
         self.samples = Some(Samples { next: now + PERIOD, seen: BTreeMap::new() });
     }
@@ -44,7 +44,7 @@ impl Observers {
         seen.map(|(state, count)| (state, Cycles::new(count * PERIOD as i64)))
     }
 
-    /// Reports every call of the firmware by a program to the surroundings, from now on.
+    /// From now on, reports every call of the firmware by a program to the surroundings.
     pub(super) fn follow_calls(&mut self, board: &mut BootedBoard<Attached>) {
         let address = |name| board.file().address(name).map(|at| (at.get(), name));
         self.functions = FIRMWARE_FUNCTIONS.iter().filter_map(|function| address(function.name)).collect();
@@ -57,7 +57,7 @@ impl Observers {
         self.arm(board);
     }
 
-    /// Gives the board its stops; one that has gone back to a snapshot has those of before.
+    /// Gives the board its stops; a board restored from a snapshot has the stops of that time.
     pub(super) fn arm(&self, board: &mut BootedBoard<Attached>) {
         board.set_stops(self.functions.keys().chain(&self.stops).copied());
     }
