@@ -1,4 +1,4 @@
-//! The border to C: pointers become references, and panics become results.
+//! The C boundary: pointers become references, and panics become results.
 
 use std::ffi::{CStr, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -50,7 +50,7 @@ impl From<HostError> for Outcome {
     }
 }
 
-/// Does the work of a call; a panic stops here.
+/// Runs the body of a call, and catches panics.
 pub(crate) fn guarded(work: impl FnOnce() -> Result<(), Outcome>) -> Outcome {
     match catch_unwind(AssertUnwindSafe(work)) {
         Ok(Ok(())) => Outcome::Ok,
@@ -64,10 +64,10 @@ pub(crate) fn guarded_or<R>(failure: R, work: impl FnOnce() -> R) -> R {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or(failure)
 }
 
-/// A text of the caller.
+/// A text passed by the caller.
 ///
 /// # Safety
-/// Null, or bytes that end with a 0 and stay as they are during the call.
+/// The pointer is null, or points to bytes that end with a 0 and do not change during the call.
 pub(crate) unsafe fn text<'a>(pointer: *const c_char) -> Result<&'a str, Outcome> {
     if pointer.is_null() {
         return Err(Outcome::Argument);
@@ -77,34 +77,34 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char) -> Result<&'a str, Outcome
     text.to_str().map_err(|_| Outcome::Argument)
 }
 
-/// A text that may be missing.
+/// An optional text.
 ///
 /// # Safety
-/// As of [`text`].
+/// As for [`text`].
 pub(crate) unsafe fn optional_text<'a>(pointer: *const c_char) -> Result<Option<&'a str>, Outcome> {
     if pointer.is_null() {
         return Ok(None);
     }
-    // SAFETY: the same is asked of the caller.
+    // SAFETY: this function has the same requirement.
     unsafe { text(pointer) }.map(Some)
 }
 
-/// A buffer of the caller; empty where there is none.
+/// A buffer of the caller; empty for a null pointer.
 ///
 /// # Safety
-/// Null, or this many bytes that nobody else uses during the call.
+/// The pointer is null, or points to this many bytes that nobody else uses during the call.
 pub(crate) unsafe fn buffer<'a>(pointer: *mut c_char, size: usize) -> &'a mut [u8] {
     if pointer.is_null() || isize::try_from(size).is_err() {
         return &mut [];
     }
-    // SAFETY: the caller vouches for so many bytes, null and an impossible size were ruled out, and any byte is a u8.
+    // SAFETY: the caller vouches for this many bytes, null and an impossible size were ruled out, and any byte is a u8.
     unsafe { slice::from_raw_parts_mut(pointer.cast::<u8>(), size) }
 }
 
-/// Stores a value where the caller wants it.
+/// Stores a value at the caller's address.
 ///
 /// # Safety
-/// Null, or a place for the value that nobody else uses during the call.
+/// The pointer is null, or points to a place for the value that nobody else uses during the call.
 pub(crate) unsafe fn store<T>(pointer: *mut T, value: T) -> Result<(), Outcome> {
     // SAFETY: the caller vouches for the place.
     let place = unsafe { pointer.as_mut() };
@@ -112,7 +112,7 @@ pub(crate) unsafe fn store<T>(pointer: *mut T, value: T) -> Result<(), Outcome> 
     Ok(())
 }
 
-/// Puts a text into a buffer; it needs room for the 0 at least.
+/// Copies a text into a buffer, which needs room for at least the terminating 0.
 pub(crate) fn put(buffer: &mut [u8], text: &str) -> Result<(), Outcome> {
     if buffer.is_empty() {
         return Err(Outcome::Argument);

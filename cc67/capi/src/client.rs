@@ -1,4 +1,4 @@
-//! Clients: making a board, sharing it, letting it go.
+//! Clients: creating a board, sharing it, closing it.
 
 use std::ffi::{c_char, c_int};
 use std::path::{Path, PathBuf};
@@ -107,7 +107,7 @@ pub unsafe extern "C" fn cc67_open_controller(
     })
 }
 
-/// A client as C receives it, or the reason in its buffer.
+/// A client as C receives it; on failure the reason is written to the buffer.
 fn opened(client: Result<Client, String>, message: &mut [u8]) -> *mut Client {
     match client {
         Ok(client) => {
@@ -195,7 +195,7 @@ pub unsafe extern "C" fn cc67_close(client: *mut Client) {
     guarded_or((), || {
         // SAFETY: the caller vouches for the client.
         if unsafe { check(client) }.is_ok() {
-            // SAFETY: it came from a box, as the caller vouches, and nobody uses it any more.
+            // SAFETY: the pointer came from a box, as the caller vouches, and nobody uses it any more.
             drop(unsafe { Box::from_raw(client) });
         }
     });

@@ -12,10 +12,11 @@ use crate::{Client, Outcome};
 /// `CC67_RESULT_IN_USE`, or as a failure. It must not leave by `longjmp` or an exception.
 pub type LineCallback = Option<unsafe extern "C" fn(line: *const c_char, user: *mut c_void)>;
 
-/// The pointer that a caller registered with its callback, handed back unchanged.
+/// The pointer that a caller registered with its call-back, passed back unchanged.
 struct User(*mut c_void);
 
-// SAFETY: the library only keeps the pointer and hands it back; the header says in which threads that may be.
+// SAFETY: the library only keeps the pointer and passes it back; the header documents the threads in which that can
+// happen.
 unsafe impl Send for User {}
 
 /// Has console lines handed to a function as they come, in whatever call of whatever client of the board that is, and so
@@ -42,7 +43,7 @@ pub unsafe extern "C" fn cc67_set_console_callback(
         let user = User(user);
         board.set_console_callback(move |line| {
             let user = &user;
-            // A 0 in a line would end it there; C has no other way to see it.
+            // A 0 within a line would end it there; C cannot represent it otherwise.
             let line = line.split('\0').next().unwrap_or_default();
             let line = CString::new(line).unwrap_or_default();
             // SAFETY: the caller vouches for the function, and the line ends with a 0.

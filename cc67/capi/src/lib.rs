@@ -2,8 +2,8 @@
 //!
 //! The calls are those of [`cc67_host::Board`] under the same names with `cc67_` in front. The result of a call reports
 //! success or failure; texts are copied into buffers of the caller, truncated to fit and always terminated with a 0. A
-//! client is a pointer to a box that holds one client of a shared board; each function checks its pointers, calls the
-//! method of the same name, and converts its result to a number.
+//! client is a pointer to a box with one client of a shared board; each function checks its pointers, calls the method
+//! of the same name, and converts its result to a number.
 //!
 //! ```text
 //! client, console, lines, programs, time, token   the functions, by subject
@@ -12,9 +12,9 @@
 //! ```
 //!
 //! Invariants:
-//! - Unsafe code exists only here and in the machine's native engine: only [`border`] and [`handle`] dereference
-//!   pointers of the caller. The rules for callers are the same for all calls and are in the header.
-//! - No panic leaves a call: it is returned as [`Outcome::Internal`].
+//! - Unsafe code exists only here and in the machine's native engine: only [`border`] and [`handle`] dereference a
+//!   caller's pointers. The rules for callers are the same for all calls and are in the header.
+//! - No panic leaves a call: it is caught and returned as [`Outcome::Internal`].
 //! - A null pointer, a text that is not UTF-8 or a buffer that is too small gives an error result, never undefined
 //!   behaviour.
 //! - The header is generated from these files; a test compares it.

@@ -99,7 +99,7 @@ pub unsafe extern "C" fn cc67_set_user_data(client: *mut Client, element: c_int,
     })
 }
 
-/// Returns an error for a controller that cannot be reached any more.
+/// Returns an error if the controller can no longer be reached.
 fn present(session: &Session<AnyTarget>) -> Result<(), Outcome> {
     if session.target().lost().is_some() { Err(Outcome::NotConnected) } else { Ok(()) }
 }

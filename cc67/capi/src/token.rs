@@ -9,7 +9,7 @@ use crate::border::guarded_or;
 use crate::handle::board;
 use crate::{Client, Outcome};
 
-/// The answer without a board.
+/// The result of a lock request when there is no board.
 fn refused(outcome: Outcome) -> Lock {
     if outcome == Outcome::InUse { Lock::InUse } else { Lock::NotConnected }
 }
@@ -77,6 +77,6 @@ pub unsafe extern "C" fn cc67_failed(client: *mut Client) {
 /// `client` is open, and no other call uses it meanwhile.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cc67_disconnect(client: *mut Client) {
-    // SAFETY: the same is asked of the caller.
+    // SAFETY: this function has the same requirement.
     unsafe { cc67_failed(client) }
 }

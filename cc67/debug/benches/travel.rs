@@ -1,7 +1,7 @@
-//! The cost of going back, and the cost of being able to.
+//! The cost of going back in time, and of keeping the past.
 //!
 //! `back/...`: one step back of a thread after a minute of board time. `run/...`: ten seconds of the same program in a
-//! session, and in a debugger without a breakpoint. The test `cost` measures the memory that the past takes.
+//! session, and in a debugger without a breakpoint. The test `cost` measures the memory used for the past.
 //!
 //! `cargo bench -p cc67-debug`
 
@@ -16,7 +16,7 @@ use cc67_host::Session;
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use kmotiondef::ThreadId;
 
-/// Moves to and fro and prints, as jobs do.
+/// Moves to and fro and prints, as production programs do.
 const MOVES: &str = r#"
     #include "KMotionDef.h"
     int rounds;

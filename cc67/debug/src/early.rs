@@ -1,14 +1,14 @@
-//! Lines that programs have printed and the board has not sent yet: a stop shows them, and they are not shown again when
-//! the board sends them.
+//! Lines that programs have printed and the board has not sent yet: a stop shows them, and they are not shown again
+//! when the board sends them.
 
 use std::collections::VecDeque;
 
-/// Lines that were shown early, and that the board still has to send.
+/// Lines that were shown early and that the board still has to send.
 #[derive(Debug, Default)]
 pub(crate) struct EarlyLines(VecDeque<Vec<u8>>);
 
 impl EarlyLines {
-    /// Returns whether a line that the board sends was shown before; it counts once.
+    /// Returns whether a line that the board sends was shown before; each shown line counts once.
     pub(crate) fn take(&mut self, line: &[u8]) -> bool {
         let was_shown = self.0.front().is_some_and(|front| front == line);
         if was_shown {
@@ -17,8 +17,8 @@ impl EarlyLines {
         was_shown
     }
 
-    /// Returns those of the unsent lines that were not shown yet: they are shown now. After a way back in time the lines
-    /// of the known past are no longer new; lines that are not those of the past belong to another history.
+    /// Returns the unsent lines that were not shown yet, and notes them as shown. After going back in time, the lines
+    /// of the known past are not new; lines that differ from the past belong to another history.
     pub(crate) fn show(&mut self, unsent: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
         if unsent.iter().zip(&self.0).any(|(one, other)| one != other) {
             self.0.clear();
@@ -28,7 +28,7 @@ impl EarlyLines {
         fresh
     }
 
-    /// Takes up a way back in time: what the board has not sent there was shown before.
+    /// Goes back in time: the lines that are unsent there were shown before.
     pub(crate) fn go_back(&mut self, unsent: Vec<Vec<u8>>) {
         let begins = |count: usize| unsent.iter().rev().take(count).rev().eq(self.0.iter().take(count));
         let common = (0..=unsent.len().min(self.0.len())).rev().find(|count| begins(*count)).unwrap_or(0);
@@ -47,12 +47,12 @@ mod tests {
         let mut early = EarlyLines::default();
         assert_eq!(early.show(lines(&["a"])), lines(&["a"]));
         assert_eq!(early.show(lines(&["a", "b"])), lines(&["b"]));
-        // Back to where only `a` was printed, and on.
+        // Back to the time when only `a` was printed, and forward.
         early.go_back(lines(&["a"]));
         assert_eq!(early.show(lines(&["a"])), lines(&[]));
         assert_eq!(early.show(lines(&[])), lines(&[]));
         assert!(early.take(b"a") && early.take(b"b") && !early.take(b"c"));
-        // Both were sent, then back to where they were not.
+        // Both lines are sent, then back to a time before that.
         early.go_back(lines(&["a", "b"]));
         assert!(early.take(b"a") && early.take(b"b") && !early.take(b"b"));
         assert_eq!(early.show(lines(&["d"])), lines(&["d"]));

@@ -1,10 +1,10 @@
-//! A debugger for programs on a simulated board: it stops anywhere, all threads and the servo together, and goes back
-//! in time.
+//! A debugger for programs on a simulated board: it can stop at any instruction, with all threads and the servo, and go
+//! back in time.
 //!
 //! A [`Debugger`] has a session and the debug information of its programs. It runs the session to breakpoints, changes
-//! of variables, traps and other events, steps lines of one thread while the others continue as on the board, and goes
-//! back in time: it finds the previous step by executing the past again. [`Shell`] provides gdb's commands, [`dap`] the
-//! protocol for editors.
+//! of variables, traps and other events, steps through lines of one thread while the others continue as on the board,
+//! and goes back in time: it finds the previous step by executing the past again. [`Shell`] provides gdb's commands,
+//! [`dap`] the protocol for editors.
 //!
 //! ```text
 //! dap        the Debug Adapter Protocol: requests in, responses and events out
@@ -19,7 +19,7 @@
 //! Invariants:
 //! - Debugging does not change what a program does, or when.
 //! - A state reached backwards equals the earlier state, byte for byte.
-//! - Only changes by a person start another history, and this is reported.
+//! - Only changes by the user begin another history, and this is reported.
 
 #![forbid(unsafe_code)]
 

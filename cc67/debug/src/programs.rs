@@ -11,38 +11,38 @@ use compiler::pp::Disk;
 use compiler::target::Target as CodeTarget;
 use kmotiondef::{Axes, ThreadId};
 
-/// The debug information of the programs in the threads, or why there is none.
+/// The debug information of the programs in the threads, or the reason why there is none.
 #[derive(Debug, Default)]
 pub struct Programs {
     known: BTreeMap<ThreadId, (UserProgram, Result<Arc<Model>, String>)>,
     axes: Axes,
 }
 
-/// A statement: the thread whose program it is of, its address and line.
+/// A statement: the thread of its program, its address and line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Statement {
     pub(crate) thread: ThreadId,
     pub(crate) address: u32,
     pub(crate) line: u32,
     pub(crate) function: String,
-    /// The inlined call that it is of, by its index.
+    /// The index of the inlined call that contains it.
     pub(crate) call: Option<usize>,
 }
 
-/// A function of the source that is being executed, by a call or inlined.
+/// A function of the source that is being executed, called or inlined.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Activation<'a> {
     pub(crate) thread: ThreadId,
     pub(crate) model: &'a Arc<Model>,
-    /// The function whose code it is in.
+    /// The function that contains its code.
     pub(crate) around: &'a FunctionModel,
-    /// The function itself, and the line in it.
+    /// The function itself, and the present line in it.
     pub(crate) scope: CodeScope<'a>,
     pub(crate) is_inlined: bool,
 }
 
 impl Programs {
-    /// Brings it up to what is loaded.
+    /// Updates the information to the loaded programs.
     pub fn update<T: Target>(&mut self, session: &Session<T>) {
         self.axes = session.target().axes();
         self.known.retain(|thread, _| session.programs().iter().any(|program| program.thread == *thread));
@@ -54,7 +54,7 @@ impl Programs {
         }
     }
 
-    /// Returns the axes of their board.
+    /// Returns the axes of the programs' board.
     pub(crate) const fn axes(&self) -> Axes {
         self.axes
     }
@@ -62,7 +62,7 @@ impl Programs {
     /// Returns the debug information of the program in a thread.
     ///
     /// # Errors
-    /// Why nothing is.
+    /// The reason why there is none.
     pub fn of(&self, thread: ThreadId) -> Result<&Arc<Model>, String> {
         match self.known.get(&thread) {
             Some((_, Ok(model))) => Ok(model),
@@ -71,14 +71,13 @@ impl Programs {
         }
     }
 
-    /// The program that has code at an address.
+    /// The program that contains an address in its code.
     #[must_use]
     pub fn at(&self, address: u32) -> Option<(ThreadId, &Arc<Model>, &FunctionModel)> {
         self.all().find_map(|(thread, model)| Some((thread, model, model.function_at(address)?)))
     }
 
-    /// The functions that an instruction is in: inlined ones, the innermost first, then the function
-    /// itself.
+    /// The functions at an instruction: the inlined ones, innermost first, then the function that contains them.
     pub(crate) fn activations(&self, address: u32) -> Vec<Activation<'_>> {
         let Some((thread, model, around)) = self.at(address) else { return Vec::new() };
         let Some(mut line) = model.line_at(address) else { return Vec::new() };
@@ -100,7 +99,7 @@ impl Programs {
         self.at(address).map_or(1, |(_, _, function)| 1 + function.calls_at(address).count())
     }
 
-    /// All that are known.
+    /// All programs with debug information.
     pub fn all(&self) -> impl Iterator<Item = (ThreadId, &Arc<Model>)> {
         self.known.iter().filter_map(|(thread, (_, model))| Some((*thread, model.as_ref().ok()?)))
     }
@@ -127,9 +126,9 @@ impl Programs {
             .collect()
     }
 
-    /// Returns the statements at which to stop for a line of a file: in each function that has the line, and in each
-    /// inlined call of it, the first statement; for a line without code, those of the next line that has some. The
-    /// second value is the line that was taken.
+    /// Returns the statements at which to stop for a line of a file: the first statement in each function, and in each
+    /// inlined call, that contains the line; for a line without code, the statements of the next line that has code.
+    /// The second value is the line that was used.
     pub(crate) fn at_line(
         &self,
         file: Option<&str>,
@@ -145,7 +144,7 @@ impl Programs {
             let functions: Vec<_> = model.functions.iter().filter(|function| is_meant(function)).collect();
             for function in functions {
                 all.extend(self.statements(number, Some(&function.name)));
-                // An inlined call begins where its code does: the first statement of the line may be after it.
+                // An inlined call begins with its code: the first statement of the line may be later.
                 all.extend(function.inlined.iter().filter_map(|call| {
                     let address = call.ranges.iter().map(|range| range.start).min()?;
                     let (line, name) = (call.line, function.name.clone());
@@ -174,7 +173,7 @@ impl Programs {
                 continue;
             }
             found.extend(self.statements(number, Some(name)).into_iter().next());
-            // And in each inlined call of it.
+            // Also in each inlined call.
             let is_its = |one: &Statement| {
                 let around = model.function_at(one.address);
                 let call = around.and_then(|around| around.inlined.get(one.call?));
@@ -189,7 +188,7 @@ impl Programs {
     }
 }
 
-/// Returns whether `wanted` names a file of a program: its path, or the end of it.
+/// Returns whether `wanted` names a file of a program: by its path, or by the end of its path.
 fn is_same_file(wanted: &str, file: &str, program: &Path) -> bool {
     let wanted = Path::new(wanted);
     let full = program.parent().unwrap_or(Path::new("")).join(file);

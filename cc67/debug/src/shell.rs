@@ -1,4 +1,4 @@
-//! The commands that people know from gdb, as text in and text out.
+//! The command language of gdb, as text in and text out.
 
 mod assignment;
 mod breakpoints;
@@ -33,7 +33,7 @@ use memory::MemoryForm;
 pub enum CommandOutput {
     /// A text to show; it may be empty.
     Text(String),
-    /// The end.
+    /// The user has quit.
     Quit,
 }
 
@@ -44,16 +44,16 @@ pub struct Shell<T: Target = Board> {
     lines: LineReader,
     listing: ListedLines,
     history: ShownValues,
-    /// The form in which `x` has shown memory last.
+    /// The form in which `x` last showed memory.
     memory_form: MemoryForm,
     /// Expressions that are shown at every stop: number, format, expression.
     displays: Vec<(u32, String, String)>,
     last_display: u32,
     /// The commands that are executed when a breakpoint stops, by its number.
     commands: BTreeMap<u32, Vec<String>>,
-    /// The breakpoint whose commands are being read.
+    /// The breakpoint for which commands are being read.
     reading: Option<u32>,
-    /// Lines that were shown before the board has sent them.
+    /// Lines that were shown before the board sent them.
     early: EarlyLines,
 }
 
@@ -84,17 +84,17 @@ impl<T: Target> Shell<T> {
         &self.debugger
     }
 
-    /// Ends a run whenever this is set.
+    /// Sets a flag that ends a run when it becomes true.
     pub fn interrupted_by(&mut self, flag: Arc<AtomicBool>) {
         self.debugger.interrupted_by(flag);
     }
 
-    /// The debugger, to use it.
+    /// The debugger, for changes.
     pub(crate) const fn debugger_mut(&mut self) -> &mut Debugger<T> {
         &mut self.debugger
     }
 
-    /// The names that the text at the end of a line may become: commands, then what programs name.
+    /// The completions of the text at the end of a line: commands, then names in the programs.
     #[must_use]
     pub fn complete(&self, line: &str) -> Vec<String> {
         let word =
@@ -118,7 +118,7 @@ impl<T: Target> Shell<T> {
     /// Executes a line; an empty one repeats the last.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The line is not valid.
     pub fn command(&mut self, line: &str, output: Output<'_>) -> Result<CommandOutput, DebugError> {
         if let Some(id) = self.reading {
             match line.trim() {
@@ -128,7 +128,7 @@ impl<T: Target> Shell<T> {
             return Ok(CommandOutput::Text(String::new()));
         }
         let mut said = self.one(line, output)?;
-        // What belongs to the breakpoint that has stopped the board, which may let it go on to another one.
+        // The commands of the breakpoint at which the board stopped; these may continue the run to another breakpoint.
         let mut next = if matches!(said, CommandOutput::Text(_)) {
             self.commands_of_stop(line)
         } else {
@@ -149,12 +149,12 @@ impl<T: Target> Shell<T> {
         Ok(said)
     }
 
-    /// Returns whether a line lets time pass.
+    /// Returns whether time passes in a command.
     fn is_move(&self, line: &str) -> bool {
         self.lines.clone().read(line).ok().flatten().is_some_and(|(name, _)| is_move(name))
     }
 
-    /// The commands of the breakpoints that have stopped what a line let go.
+    /// The commands of the breakpoints at which the movement of a line stopped.
     fn commands_of_stop(&self, line: &str) -> VecDeque<String> {
         if !self.is_move(line) {
             return VecDeque::new();
@@ -207,7 +207,7 @@ impl<T: Target> Shell<T> {
             "condition" | "ignore" | "enable" | "disable" | "delete" => self.change(name, rest),
             "print" | "call" | "output" | "echo" | "ptype" | "whatis" | "x" | "set" => {
                 let text = self.values(name, rest)?;
-                // A function that it has called may have printed.
+                // A function that was called may have printed.
                 self.show_early(true, output);
                 Ok(text)
             }
@@ -218,7 +218,7 @@ impl<T: Target> Shell<T> {
         }
     }
 
-    /// `commands [N]`: the next lines belong to a breakpoint, without a number to the last one.
+    /// `commands [N]`: the next lines belong to a breakpoint; without a number, to the last one.
     fn read_commands(&mut self, rest: &str) -> Result<String, DebugError> {
         let last = self.debugger.breakpoints().last().map(|breakpoint| breakpoint.id);
         let id = match rest {
@@ -233,7 +233,7 @@ impl<T: Target> Shell<T> {
         Ok(String::new())
     }
 
-    /// `kill|pause|resume [N]`: controls one thread, without a number the one that is looked at.
+    /// `kill|pause|resume [N]`: controls one thread; without a number, the selected one.
     fn control(&mut self, name: &str, rest: &str) -> Result<String, DebugError> {
         let thread = if rest.is_empty() { self.debugger.thread() } else { thread_of(rest)? };
         match name {
@@ -243,7 +243,8 @@ impl<T: Target> Shell<T> {
         Ok(String::new())
     }
 
-    /// `thread apply all|N… COMMAND`: a command with each of these threads, the highest number first as in gdb.
+    /// `thread apply all|N… COMMAND`: executes a command with each of these threads, the highest number first as in
+    /// gdb.
     fn apply(&mut self, rest: &str, output: Output<'_>) -> Result<String, DebugError> {
         let words: Vec<&str> = rest.split_whitespace().skip(1).collect();
         let is_number = |word: &&&str| **word == "all" || word.parse::<i32>().is_ok();
@@ -277,7 +278,7 @@ impl<T: Target> Shell<T> {
         Ok(text)
     }
 
-    /// Commands that let time pass, or go back in it.
+    /// Executes commands that let time pass, or go back in time.
     fn move_on(&mut self, name: &str, rest: &str, output: Output<'_>) -> Result<String, DebugError> {
         if matches!(name, "advance" | "goto") && rest.is_empty() {
             return Err(format!("{name} needs an argument.").into());
@@ -310,7 +311,7 @@ impl<T: Target> Shell<T> {
         Ok(text)
     }
 
-    /// Says what is about to happen, as gdb does.
+    /// Announces a movement, as gdb does.
     fn announce(&self, name: &str, count: f64, output: Output<'_>) {
         let frame = || show::frame_text(&self.debugger, self.debugger.frame());
         match name {
@@ -340,7 +341,7 @@ impl<T: Target> Shell<T> {
         })
     }
 
-    /// Moves once; what programs have printed until then is shown, also what the board has not sent yet.
+    /// Executes one movement and shows the output of programs until then, even if the board has not sent it yet.
     fn once(&mut self, name: &str, place: &str, output: Output<'_>) -> Result<Stop, DebugError> {
         let Self { debugger, early, .. } = self;
         let mut teller = EventPrinter::new(debugger, early, output);
@@ -351,7 +352,7 @@ impl<T: Target> Shell<T> {
         stop
     }
 
-    /// Shows the lines that the board has not sent yet; after a way back they were shown before.
+    /// Shows the lines that the board has not sent yet; after going back in time they have already been shown.
     fn show_early(&mut self, is_forward: bool, output: Output<'_>) {
         let unsent = self.debugger.session().target().unsent_lines();
         if !is_forward {
@@ -379,7 +380,7 @@ impl<T: Target> Shell<T> {
             .trim()
             .parse()
             .map_err(|_| format!("`{rest}` is not a time in seconds"))?;
-        // The last tick that is over at that time.
+        // The last tick completed at that time.
         let tick = Ticks::new(((seconds / TIMEBASE + 1e-6).floor() - 1.0).max(0.0) as u64);
         let Self { debugger, early, .. } = self;
         let is_forward = tick > debugger.session().tick();
@@ -491,7 +492,7 @@ impl<T: Target> Shell<T> {
     }
 }
 
-/// Moves a board.
+/// Executes a movement of the board.
 fn go<T: Target>(
     debugger: &mut Debugger<T>,
     name: &str,
@@ -537,13 +538,13 @@ fn back<T: Target>(debugger: &mut Debugger<T>, name: &str) -> Result<Stop, Debug
     })
 }
 
-/// The thread of a number.
+/// The thread with a number.
 fn thread_of(number: &str) -> Result<ThreadId, DebugError> {
     let thread = number.parse().ok().and_then(ThreadId::new);
     Ok(thread.ok_or_else(|| format!("`{number}` is not the number of a thread"))?)
 }
 
-/// The breakpoints that a stop is about.
+/// The breakpoints of a stop.
 fn ids_of(reason: &Reason) -> Vec<u32> {
     match reason {
         Reason::Breakpoint(ids) => ids.clone(),
@@ -552,12 +553,12 @@ fn ids_of(reason: &Reason) -> Vec<u32> {
     }
 }
 
-/// Hands events over as lines.
+/// Writes events as lines.
 struct EventPrinter<'a, 'b> {
     infos: Vec<runtime::debug::DebugInfo>,
-    /// Lines that were shown already.
+    /// Lines that have already been shown.
     early: &'a mut EarlyLines,
-    /// The words about a trap, which come after what was printed before it.
+    /// The report of a trap, which is shown after the output that preceded it.
     scene: String,
     output: &'a mut (dyn FnMut(&str) + 'b),
 }

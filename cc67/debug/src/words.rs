@@ -1,4 +1,4 @@
-//! The words of the debugger: its commands, and how their lines are read.
+//! The vocabulary of the debugger: its commands, and the parsing of their lines.
 
 use kmotiondef::ThreadId;
 
@@ -14,7 +14,7 @@ const fn row(name: &'static str, short: &'static [&'static str], help: &'static 
     Command { name, short, help }
 }
 
-/// Every command with its short forms, where it works, and what it does.
+/// Every command with its short forms, the boards for which it exists, and its description.
 const COMMANDS: &[Command] = &[
     row("break", &["b", "br"], "break [FILE:]LINE|FUNCTION|*ADDRESS [thread N] [if CONDITION]: stop there"),
     row("tbreak", &["tb"], "tbreak …: as break, but deleted when it stops"),
@@ -115,12 +115,11 @@ const MOVES: &[&str] = &[
     "reverse-finish",
 ];
 
-/// Returns whether a command lets time pass, or goes back in it.
 pub(crate) fn is_move(name: &str) -> bool {
     MOVES.contains(&name)
 }
 
-/// The command that a line begins with, by its full name: the line may be an expression if it does not.
+/// The full name of the command with which a line begins; a line that begins with none may be an expression.
 pub(crate) fn command_of(line: &str) -> Option<&'static str> {
     let end = line.find(|c: char| c.is_whitespace() || c == '/').unwrap_or(line.len());
     LineReader::names().find(|name| *name == &line[..end])
@@ -135,16 +134,16 @@ impl Command {
 /// Reads the lines of a debugger.
 #[derive(Clone, Debug, Default)]
 pub struct LineReader {
-    /// The last line, for an empty one.
+    /// The last line, which an empty line repeats.
     last: String,
 }
 
 impl LineReader {
-    /// The command of a line, by its full name, and the rest of the line; an empty line repeats the last. `None` for a
-    /// comment, and for an empty line at the beginning.
+    /// The command of a line, by its full name, and the rest of the line; an empty line repeats the last one. `None`
+    /// for a comment, and for an empty line at the beginning.
     ///
     /// # Errors
-    /// If the word is not a command, or starts several.
+    /// The word is not a command, or is the beginning of several.
     pub fn read(&mut self, line: &str) -> Result<Option<(&'static str, String)>, String> {
         let line = line.trim();
         let line = if line.is_empty() { self.last.clone() } else { line.to_owned() };
@@ -162,7 +161,7 @@ impl LineReader {
         COMMANDS.iter().map(|command| command.name)
     }
 
-    /// The list of them, a line each.
+    /// The list of commands, one per line.
     #[must_use]
     pub fn help() -> String {
         let lines = COMMANDS.iter().map(|Command { name, short, help }| {
@@ -172,7 +171,7 @@ impl LineReader {
         lines.collect()
     }
 
-    /// The command that a word means: its name, a short form, or the beginning of one name alone.
+    /// The full name of the command for a word: a name, a short form, or the unambiguous beginning of a name.
     fn command(word: &str) -> Result<&'static str, String> {
         if let Some(command) = COMMANDS.iter().find(|command| command.is_called(word)) {
             return Ok(command.name);
@@ -191,14 +190,14 @@ impl LineReader {
 pub struct BreakWords<'a> {
     /// The place; empty for the present one.
     pub place: &'a str,
-    /// The thread that it is for, if not for all.
+    /// The thread for which it is set; `None` for all.
     pub thread: Option<ThreadId>,
     /// The condition.
     pub condition: Option<&'a str>,
 }
 
 impl<'a> BreakWords<'a> {
-    /// The parts of a text.
+    /// Parses the arguments.
     #[must_use]
     pub fn of(text: &'a str) -> Self {
         let (place, condition) = split_if(text);

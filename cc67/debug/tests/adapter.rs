@@ -32,10 +32,10 @@ main()
 }
 ";
 
-/// The messages of the adapter; the editor disconnects when the last of its requests is answered.
+/// The messages sent by the adapter; the editor disconnects after the answer to its last request.
 struct Sent {
     bytes: Vec<u8>,
-    /// The editor's end, and the number of its last request.
+    /// The editor's end of the pipe, and the number of its last request.
     editor: Option<(PipeWriter, usize)>,
 }
 
@@ -57,7 +57,7 @@ impl Write for &mut Sent {
     }
 }
 
-/// Has an adapter answer requests, and returns all that it sends.
+/// Lets an adapter answer requests, and returns all its messages.
 fn serve(name: &str, requests: &[Value]) -> Vec<Value> {
     let path = std::env::temp_dir().join(format!("cc67-debug-adapter-{}-{name}.c", std::process::id()));
     fs::write(&path, PROGRAM).expect("a file");
@@ -155,7 +155,7 @@ fn the_console_has_the_commands_of_the_terminal() {
         "{:?}",
         answers[6]
     );
-    // The editor is told that the board has moved, and where it is.
+    // The editor is informed that the board has moved, and of its position.
     assert_eq!(events(&sent, "continued").len(), 2);
     let reasons: Vec<_> = events(&sent, "stopped").iter().map(|one| one["body"]["reason"].clone()).collect();
     assert_eq!(reasons, ["breakpoint", "step", "breakpoint"]);

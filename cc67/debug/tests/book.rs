@@ -1,6 +1,6 @@
-//! The sessions of the book's chapter on debugging have the output that it shows.
+//! The sessions in the book's chapter on debugging have the output shown there.
 //!
-//! `CC67_WRITE_BOOK=1` writes what the commands answer into the chapter.
+//! `CC67_WRITE_BOOK=1` writes the output of the commands into the chapter.
 
 use std::fmt::Write as _;
 use std::fs;

@@ -1,4 +1,4 @@
-//! Commands of the debugger as a person gives them, on small programs.
+//! Commands of the debugger as a user types them, on small programs.
 
 mod terminal;
 
@@ -313,7 +313,7 @@ fn an_expression_is_caught_at_the_tick_in_which_it_becomes_true() {
     let stop = answer("continue");
     assert!(stop.starts_with("\nCatchpoint 1 (when ch0->Dest > 20)\n"), "{stop}");
     assert!(answer("print ch0->Dest > 20").ends_with("= 1\n"));
-    // It becomes true once more only after it was false.
+    // It becomes true again only after it was false.
     let caught = first.debugger().session().tick();
     let mut answer = |line: &str| match first.command(line, &mut |_| ()) {
         Ok(CommandOutput::Text(text)) => text,
@@ -322,7 +322,7 @@ fn an_expression_is_caught_at_the_tick_in_which_it_becomes_true() {
     assert!(answer("continue").contains("All threads have ended"));
     assert!(answer("reverse-continue").starts_with("\nCatchpoint 1"));
     assert_eq!(first.debugger().session().tick(), caught);
-    // The tick before, it is not.
+    // In the previous tick, it is not.
     let folder = Folder::new();
     let mut second = shell(&folder, Level::Full, &[text]);
     let session = second.debugger().session();

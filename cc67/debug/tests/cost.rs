@@ -1,7 +1,7 @@
 //! The cost of going back: memory of a long run, and time of a run without a breakpoint.
 //!
-//! The board works meanwhile: a servo axis with a motor and two more axes move, two programs run, and each move is
-//! printed. `CC67_LONG=1` takes an hour of board time.
+//! The board is busy: a servo axis with a motor and two more axes move, two programs run, and each move is printed.
+//! `CC67_LONG=1` takes an hour of board time.
 
 #![cfg(target_os = "linux")]
 
@@ -14,7 +14,7 @@ use boards::{board, tick};
 use cc67_debug::Debugger;
 use cc67_host::Session;
 
-/// Moves three axes to and fro, the first with a controller.
+/// Moves three axes to and fro, the first one with a servo controller.
 const MOVES: &str = r#"
     #include "KMotionDef.h"
     int rounds;
@@ -41,7 +41,7 @@ const MOVES: &str = r#"
     }
 "#;
 
-/// Watches an input and keeps what it has seen.
+/// Watches an input and stores the values seen.
 const WATCHES: &str = r#"
     #include "KMotionDef.h"
     double history[5000];
@@ -58,7 +58,7 @@ const WATCHES: &str = r#"
     }
 "#;
 
-/// Returns the folder of the programs; a debugger reads them there.
+/// Returns the folder of the programs, where a debugger reads them.
 fn folder() -> PathBuf {
     std::env::temp_dir().join(format!("cc67-debug-cost-{}", std::process::id()))
 }
@@ -68,7 +68,7 @@ fn session() -> Session {
     board(&folder(), machine, &[("moves.c", MOVES), ("watches.c", WATCHES)])
 }
 
-/// Bytes of memory of this process.
+/// The memory of this process, in bytes.
 fn resident() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").expect("Linux has it");
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).expect("it is listed");
@@ -89,11 +89,11 @@ fn on_processor() -> Duration {
     Duration::from_nanos(nanoseconds.expect("a number"))
 }
 
-/// Never true, and looked at after every tick.
+/// An expression that is never true, and is evaluated after every tick.
 const ERROR: &str = "fabs(ch0->Dest - ch0->Position) > 1e9";
 
-/// Returns the ratio of run times with and without a debugger that has no breakpoint, or catches an expression: the
-/// shortest of some runs each, as other load only ever makes a run longer.
+/// Returns the ratio of run times with and without a debugger that has no breakpoint, or that catches an expression:
+/// the shortest of several runs each, as other load can only lengthen a run.
 fn ratio(pairs: usize, seconds: f64, caught: Option<&str>) -> f64 {
     let end = tick(seconds);
     let (mut plain, mut debugged) = (Duration::MAX, Duration::MAX);
@@ -109,7 +109,7 @@ fn ratio(pairs: usize, seconds: f64, caught: Option<&str>) -> f64 {
     debugged.as_secs_f64() / plain.as_secs_f64()
 }
 
-/// One test for all measurements, as other work in the process would be measured as well.
+/// A single test for all measurements, as other work in the process would be measured, too.
 #[test]
 fn hours_of_history_take_little_memory_and_time() {
     let is_long = std::env::var_os("CC67_LONG").is_some();
@@ -131,7 +131,7 @@ fn hours_of_history_take_little_memory_and_time() {
     assert!(all < 500_000_000, "{all} bytes");
     drop(debugger);
 
-    // An expression after every tick costs as much as half of this machine's servo.
+    // Evaluating an expression after every tick costs half as much as this machine's servo.
     let rows = [(None, "a run in a debugger", most), (Some(ERROR), "a run that catches an expression", 2.0)];
     for (caught, name, most) in rows {
         let ratio = ratio(pairs, seconds, caught);

@@ -1,8 +1,8 @@
-//! The past is what it was: a state reached backwards is the one reached forwards, byte for byte.
+//! The past is reproduced exactly: a state reached backwards equals the one reached forwards, byte for byte.
 //!
-//! One debugger only goes forward and keeps what the whole board was at random instants: memory, registers, threads,
-//! kernel, devices, plant, files. Another runs to the end and goes back from instant to instant. `CC67_LONG=1` takes
-//! more programs, more instants, and longer runs.
+//! One debugger only goes forward and records the state of the whole board at random instants: memory, registers,
+//! threads, kernel, devices, plant, files. Another runs to the end and goes back from instant to instant. `CC67_LONG=1`
+//! takes more programs, more instants, and longer runs.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use kmotiondef::{ThreadId, Ticks};
 use runtime::{Event, EventKind, MachineFile};
 use vm::engine::ContextId;
 
-/// Programs: the machine they run on, and the files for threads 1, 2, and so on. The first few are always tried.
+/// Programs: the machine on which they run, and the files for threads 1, 2, and so on. The first few are always tested.
 const PROGRAMS: &[(&str, &[&str])] = &[
     ("", &["threads/relay.c", "threads/relay.c"]),
     ("gather/step_response.toml", &["gather/step_response.c"]),
@@ -36,13 +36,13 @@ const PROGRAMS: &[(&str, &[&str])] = &[
     ("", &["host/variables.c"]),
 ];
 
-/// The extent of a trial.
+/// The extent of a test.
 struct Extent {
     programs: usize,
     instants: u64,
-    /// Ticks of a run.
+    /// The length of a run in ticks.
     ticks: u64,
-    /// Work between snapshots: so much that they are thinned out, some while one goes back.
+    /// The work between snapshots: enough of them that some are dropped, and some remain while going back.
     interval: u64,
 }
 
@@ -54,7 +54,7 @@ fn extent() -> Extent {
     }
 }
 
-/// Numbers that look random and are the same in every run.
+/// A pseudo-random number generator with the same numbers in every run.
 struct Numbers(u64);
 
 impl Numbers {
@@ -64,15 +64,15 @@ impl Numbers {
     }
 }
 
-/// An instant: instructions of a thread after the end of a tick.
+/// An instant: a number of instructions of a thread after the end of a tick.
 struct Instant {
     tick: Ticks,
     thread: ThreadId,
     steps: u64,
-    /// The board at the end of the tick, and after the steps if the thread had the processor so soon.
+    /// The board at the end of the tick, and after the steps if the thread had the processor soon enough.
     at_tick: String,
     at_step: Option<String>,
-    /// Console lines until then.
+    /// The number of console lines until then.
     lines: usize,
 }
 
@@ -93,12 +93,12 @@ fn debugger(machine: &str, files: &[&str], interval: u64) -> Debugger {
     debugger
 }
 
-/// All of the board, in words.
+/// The whole state of the board, as text.
 fn state(debugger: &mut Debugger) -> String {
     format!("{:?}", debugger.snapshot())
 }
 
-/// Executes instructions of a thread; whether it came to them within a few ticks.
+/// Executes instructions of a thread; returns whether it had executed them within a few ticks.
 fn step(debugger: &mut Debugger, thread: ThreadId, steps: u64, lines: &mut Vec<String>) -> bool {
     debugger.select(thread, 0).expect("there is such a thread");
     if !debugger.session().thread(thread).is_active() {
@@ -116,7 +116,7 @@ fn note(event: &Event, lines: &mut Vec<String>) {
     }
 }
 
-/// Goes forward only.
+/// Only goes forward.
 fn forwards(debugger: &mut Debugger, extent: &Extent, numbers: &mut Numbers) -> (Vec<Instant>, Vec<String>) {
     let mut ticks: Vec<_> = (0..extent.instants).map(|_| 1 + numbers.below(extent.ticks)).collect();
     ticks.sort_unstable();
@@ -140,7 +140,7 @@ fn forwards(debugger: &mut Debugger, extent: &Extent, numbers: &mut Numbers) -> 
     (instants, lines)
 }
 
-/// The two texts where they differ.
+/// Shows the differences of two texts.
 fn assert_same(expect: &str, found: &str, what: &str) {
     if expect != found {
         let at = expect.bytes().zip(found.bytes()).take_while(|(one, other)| one == other).count();
@@ -163,7 +163,7 @@ fn compare(machine: &str, files: &[&str], extent: &Extent, numbers: &mut Numbers
         back.go_to(instant.tick).expect("it is in the past");
         assert_same(&instant.at_tick, &state(&mut back), &what);
         let Some(at_step) = &instant.at_step else { continue };
-        // One instruction further, so that the last step is one back.
+        // One more instruction, so that the last step is one back.
         if step(&mut back, instant.thread, instant.steps + 1, &mut Vec::new()) {
             back.reverse_step_instruction();
             let what = format!("{what}, {} instructions of thread {}", instant.steps, instant.thread);
@@ -171,7 +171,7 @@ fn compare(machine: &str, files: &[&str], extent: &Extent, numbers: &mut Numbers
             compared += 1;
         }
     }
-    // From the earliest instant the rest is reported again.
+    // From the earliest instant, the rest is reported again.
     let first = &instants[0];
     back.go_to(first.tick).expect("it is in the past");
     let mut again = Vec::new();

@@ -1,7 +1,7 @@
-//! Commands of gdb, compared word for word with gdb's on the same program for this computer.
+//! Commands of gdb, whose output is compared word for word with gdb's own for the same program on this computer.
 //!
-//! These remain different: addresses; the words that a stop adds (thread and board time, who has written a watched value,
-//! and where a step has led within a function).
+//! These differences remain: addresses; the additions to a stop (thread and board time, the writer of a watched value,
+//! and the position of a step within a function).
 
 use std::fmt::Write as _;
 use std::fs;
@@ -219,7 +219,7 @@ foo
 info foo
 "#;
 
-/// Returns whether a program of the system can be started; says so if not.
+/// Returns whether a program of the operating system can be started; prints a note if not.
 fn is_there(name: &str) -> bool {
     let found = Command::new(name).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
     let found = found.is_ok_and(|status| status.success());
@@ -229,7 +229,7 @@ fn is_there(name: &str) -> bool {
     found
 }
 
-/// The answer of gdb to a call where the system does not let it write the registers of a process.
+/// The answer of gdb to a call if the operating system does not let it write the registers of a process.
 const CANNOT_CALL: &str = "Couldn't write extended state status";
 
 /// Returns the answers of gdb.
@@ -254,7 +254,7 @@ fn of_gdb(folder: &Path, source: &Path, commands: &[&str]) -> Vec<String> {
         .stderr(Stdio::piped())
         .spawn()
         .expect("gdb is there");
-    // Both kinds of text in the order in which they are written.
+    // Both output streams in the order in which they are written.
     let script = format!("python import os; os.dup2(1, 2)\n{}\nkill\n", commands.join("\n"));
     gdb.stdin.take().expect("it is piped").write_all(script.as_bytes()).expect("gdb reads");
     let output = gdb.wait_with_output().expect("gdb ends");
@@ -283,7 +283,8 @@ fn of_cc67(source: &Path, commands: &[&str]) -> Vec<String> {
     commands.iter().copied().map(answer).collect()
 }
 
-/// A text without what is known to be different: addresses of either program, blanks in a row, and what starts a process.
+/// A text without the known differences: addresses of either program, repeated blanks, and lines about starting a
+/// process.
 fn plain(text: &str) -> String {
     let is_address = |number: u64| {
         (0x40_0000..0x41_0000).contains(&number) || (0x8005_0000..0x8006_0000).contains(&number)
@@ -313,7 +314,7 @@ fn plain(text: &str) -> String {
     lines.filter(|line| !line.is_empty()).map(|line| line + "\n").collect()
 }
 
-/// A text of cc67 without what a stop adds: thread and time, and who has accessed a watched value.
+/// The output of cc67 without its additions to a stop: thread and time, and the accessor of a watched value.
 fn without_additions(text: &str) -> String {
     let lines =
         text.lines().filter(|line| !line.starts_with("Written by ") && !line.starts_with("Accessed by "));
@@ -344,7 +345,7 @@ fn commands_answer_as_those_of_gdb() {
     let mut different = String::new();
     for ((command, gdb), cc67) in commands.iter().copied().zip(&gdb).zip(&cc67) {
         let (expect, found) = (plain(gdb), plain(&without_additions(cc67)));
-        // Within a function, gdb shows the line alone.
+        // Within a function, gdb shows only the line.
         let is_step = ["until", "next", "step"].contains(&command);
         let step = found.split_once('\n').map_or("", |(_, rest)| rest);
         if found != expect && !(is_step && step == expect) {

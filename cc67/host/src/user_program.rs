@@ -102,7 +102,7 @@ impl UserProgram {
         prepared.map(|prepared| prepared.debug.with_details(self.details.clone())).unwrap_or_default()
     }
 
-    /// Returns the first and last addresses of its functions.
+    /// Returns the start and end addresses of its functions.
     pub(crate) fn functions(&self) -> BTreeMap<u32, u32> {
         let Ok(image) = Inspection::read(&self.image) else { return BTreeMap::new() };
         let functions = image.symbols.iter().filter(|entry| entry.kind == EntryKind::Function);

@@ -1,7 +1,8 @@
-//! A debugger for a board that other code runs: a server for PC programs, or a page.
+//! A debugger for a board run by other code: a server for PC programs, or a page.
 //!
-//! The owner of the session lets time pass through an [`AttachPoint`]. An editor that connects to its port has the board
-//! for as long as it stops it; then the owner's clock and clients wait. When it goes, its breakpoints go with it.
+//! The owner of the session lets time pass through an [`AttachPoint`]. An editor that connects to its port holds the
+//! board for as long as it stops it; meanwhile the owner's clock and clients wait. When the editor disconnects, its
+//! breakpoints are removed.
 
 use std::io::{self, BufReader};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
@@ -23,7 +24,7 @@ use crate::shell::Shell;
 /// The time for which a stopped board waits for the next request.
 const PATIENCE: Duration = Duration::from_millis(10);
 
-/// The port at which editors attach, one after another.
+/// The port to which editors attach, one after another.
 #[derive(Debug)]
 pub struct AttachPoint {
     address: SocketAddr,
@@ -32,10 +33,10 @@ pub struct AttachPoint {
 }
 
 impl AttachPoint {
-    /// Listens on a port of this computer; 0 is one that is free.
+    /// Listens on a port of this computer; 0 selects a free one.
     ///
     /// # Errors
-    /// The port is taken.
+    /// The port is in use.
     pub fn listen(port: u16) -> io::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         let address = listener.local_addr()?;
@@ -58,7 +59,7 @@ impl Attendant<AnyTarget> for AttachPoint {
         idle: Idle<'_, AnyTarget>,
     ) {
         if self.visitor.is_none() {
-            // One that is gone before it is taken was none.
+            // A connection that is lost before it is accepted is ignored.
             self.visitor =
                 self.clients.try_recv().ok().and_then(|editor| Visitor::new(editor.into_stream()).ok());
         }
@@ -70,13 +71,13 @@ impl Attendant<AnyTarget> for AttachPoint {
             return;
         }
         self.visitor = None;
-        // A tick that was held is finished first.
+        // A held tick is completed first.
         let limit = if session.held().is_some() { limit.max(session.tick().next()) } else { limit };
         session.advance(limit, events);
     }
 }
 
-/// An editor that is attached.
+/// An attached editor.
 struct Visitor {
     server: Server<'static, TcpStream, AnyTarget>,
     requests: Receiver<Value>,
@@ -97,14 +98,14 @@ impl Visitor {
         Ok(Self { server, requests })
     }
 
-    /// Takes the board, or gives it back.
+    /// Exchanges the debugger's board with the owner's: takes it, or gives it back.
     fn swap(&mut self, session: &mut Session<AnyTarget>) {
         if let Some(shell) = &mut self.server.shell {
             shell.debugger_mut().swap(session);
         }
     }
 
-    /// Serves the editor and runs the board; whether the editor stays.
+    /// Serves the editor and runs the board; returns whether the editor remains attached.
     fn advance(&mut self, limit: Ticks, events: &mut dyn FnMut(Event), idle: Idle<'_, AnyTarget>) -> bool {
         loop {
             match self.answer() {
@@ -149,7 +150,7 @@ impl Visitor {
         }
     }
 
-    /// Answers what has come; whether the editor stays.
+    /// Answers the received requests; returns whether the editor remains attached.
     fn answer(&mut self) -> io::Result<bool> {
         loop {
             if self.server.is_over {

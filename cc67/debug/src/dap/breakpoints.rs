@@ -1,4 +1,4 @@
-//! Breakpoints as clients set them: all of a set at once, which replace those that were in it.
+//! Breakpoints as clients set them: a request replaces all breakpoints of its set.
 
 use std::io::Write;
 
@@ -112,7 +112,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
     }
 }
 
-/// A breakpoint that is set, as clients see it.
+/// The description of a breakpoint for clients.
 fn verified<T: Target>(debugger: &Debugger<T>, id: u32, text: &str) -> Value {
     let mut shown = json!({ "id": id, "verified": true });
     let found = debugger.breakpoints().iter().find(|breakpoint| breakpoint.id == id);

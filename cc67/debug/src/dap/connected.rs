@@ -1,4 +1,4 @@
-//! A connected controller in an editor: its programs run whatever the editor shows.
+//! A connected controller in an editor: its programs run even while the editor shows them as stopped.
 
 use std::io::{self, Write};
 
@@ -19,7 +19,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         session.is_some_and(|session| !session.can(Capability::StopTime))
     }
 
-    /// The movement with which a launch begins: the programs of a controller are started first.
+    /// The movement that begins a launch: the programs of a controller are started first.
     pub(super) fn first_move(&mut self) -> io::Result<Move> {
         if self.is_connected() {
             self.wire.output("console", RUNS_ON)?;

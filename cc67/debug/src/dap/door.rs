@@ -1,6 +1,6 @@
-//! Editors that connect to a port: each is handed over when its first words have come.
+//! Editors that connect to a port: each is passed on when its first data have come.
 //!
-//! A connection that says nothing keeps nobody waiting: it is closed after a time, or for a new one.
+//! A silent connection delays nobody: it is closed after a time limit, or for a new one.
 
 use std::io;
 use std::net::{Shutdown, TcpListener, TcpStream};
@@ -9,10 +9,10 @@ use std::thread;
 
 use cc67_host::seats::{Closer, FIRST_WORDS, Seat, Seats};
 
-/// The most connections that wait to be served.
+/// The maximum number of connections that wait to be served.
 const WAITING: usize = 64;
 
-/// An editor that has begun to speak.
+/// An editor that has sent its first data.
 #[derive(Debug)]
 pub struct Editor {
     stream: TcpStream,
@@ -20,36 +20,36 @@ pub struct Editor {
 }
 
 impl Editor {
-    /// Takes its connection, which is not closed for a new one any more.
+    /// Takes its connection, which is no longer closed for a new one.
     #[must_use]
     pub fn into_stream(self) -> TcpStream {
         self.stream
     }
 }
 
-/// Takes connections in the background, and hands over those that speak.
+/// Accepts connections in the background, and passes on those that send data.
 ///
 /// # Errors
-/// The system starts no thread.
+/// The operating system cannot start a thread.
 pub fn editors(listener: TcpListener) -> io::Result<Receiver<Editor>> {
     let (sender, editors) = channel();
     let seats = Seats::new(WAITING);
     thread::Builder::new().spawn(move || {
         for stream in listener.incoming().filter_map(Result::ok) {
             let close = stream.try_clone().map(|stream| {
-                // One that is closed already needs no closing.
+                // A connection that is already closed needs no closing.
                 Box::new(move || drop(stream.shutdown(Shutdown::Both))) as Closer
             });
             let Some(admission) = seats.take(close.ok()) else { continue };
             let sender = sender.clone();
-            // Without a thread the connection is closed.
+            // If no thread can be started, the connection is closed.
             let _ = thread::Builder::new().spawn(move || hear(stream, admission.seat, &sender));
         }
     })?;
     Ok(editors)
 }
 
-/// Waits for the first words of a connection, and hands it over.
+/// Waits for the first data of a connection, and passes it on.
 fn hear(stream: TcpStream, seat: Seat, sender: &Sender<Editor>) {
     let has_spoken = stream
         .set_read_timeout(Some(FIRST_WORDS))
@@ -57,7 +57,7 @@ fn hear(stream: TcpStream, seat: Seat, sender: &Sender<Editor>) {
         .is_ok_and(|bytes| bytes > 0);
     if has_spoken && stream.set_read_timeout(None).is_ok() {
         seat.hear();
-        // Nobody serves editors any more.
+        // An error means that editors are no longer served.
         let _ = sender.send(Editor { stream, _seat: seat });
     }
 }

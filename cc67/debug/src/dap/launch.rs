@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::debugger::DebugError;
 
-/// Keys of a launch request that are not options: the editors' own, and those that are looked at elsewhere.
+/// Keys of a launch request that are not options: the editors' own keys, and those that are handled elsewhere.
 const KEYS: &[&str] = &[
     "programs",
     "program",
@@ -29,16 +29,17 @@ const KEYS: &[&str] = &[
     "trace",
 ];
 
-/// The arguments of a launch request: `"programs": ["1:/path/a.c", "2:/path/b.c"]`, or `"program"` alone, and the options of a
-/// board under their long names: `"machine": "mill.toml"`, `"assist": true`, `"set": ["persist.5=7"]`, `"O": 0`.
+/// The arguments of a launch request: `"programs": ["1:/path/a.c", "2:/path/b.c"]`, or `"program"` alone, and the
+/// options for a board by their long names: `"machine": "mill.toml"`, `"assist": true`, `"set": ["persist.5=7"]`, `"O":
+/// 0`.
 #[derive(Clone, Debug, Default)]
 pub struct Launch(pub(super) Value);
 
 impl Launch {
-    /// The same as arguments of `cc67 debug`.
+    /// Converts the request to arguments of `cc67 debug`.
     ///
     /// # Errors
-    /// There is no program, or an option has no text, number or truth value.
+    /// There is no program, or the value of an option is not a text, number or boolean.
     pub fn command_line(&self) -> Result<Vec<OsString>, DebugError> {
         let mut line = Vec::new();
         let empty = serde_json::Map::new();
@@ -91,7 +92,8 @@ fn push_option(key: &str, value: &Value, line: &mut Vec<OsString>) -> Result<(),
     Ok(())
 }
 
-/// Returns the capabilities of the server; `is_own` for a board that it launches, which can go back and begin again.
+/// Returns the capabilities of the server; `is_own` is true for a board that the server launches, which can go back in
+/// time and restart.
 pub(super) fn capabilities(is_own: bool) -> Value {
     json!({
         "supportsConfigurationDoneRequest": true,

@@ -11,12 +11,12 @@ use super::{CALLBACK, Reply, Server, number_of, wire};
 use crate::debugger::{DebugError, Debugger, Reason, ShownVariable};
 use crate::shell::{Assignment, format_of_letter, state};
 
-/// Frames of one thread; the number of a frame contains its thread.
+/// The number of frame numbers per thread; the number of a frame contains its thread.
 const FRAMES: i64 = 100_000;
 
-/// Bytes of an instruction where no code is.
+/// The size in bytes that is assumed for an instruction outside code.
 const INSTRUCTION: u32 = 8;
-/// Most parts that are listed at once.
+/// The maximum number of parts that are listed at once.
 const PARTS: u32 = 10_000;
 
 /// The meaning of a variable reference.
@@ -28,7 +28,7 @@ pub(super) enum Handle {
     Globals(i64),
     /// The items of the board.
     Board(i64),
-    /// `persist.UserData`, each element in its readings.
+    /// `persist.UserData`, each element as every type that it can hold.
     Persist(i64),
     /// The parts of an expression in the context of a call.
     Parts(i64, String),
@@ -46,15 +46,15 @@ impl Handle {
     }
 }
 
-/// Most letters of a value in the list of an editor, which opens it to show all.
+/// The maximum length of a value in an editor's list; the editor expands a longer one.
 const MOST_LETTERS: usize = 300;
 
-/// Reports whether a request is for numbers in hexadecimal.
+/// Reports whether a request wants numbers in hexadecimal.
 fn wants_hex(arguments: &Value) -> bool {
     arguments["format"]["hex"] == true
 }
 
-/// The text of a variable; an integer in hexadecimal where that is wanted.
+/// The text of a variable; integers are in hexadecimal if requested.
 fn text_of(variable: &ShownVariable, is_hex: bool) -> String {
     let digits = variable.text.split(' ').next().unwrap_or_default();
     match digits.parse::<i64>() {
@@ -67,7 +67,7 @@ fn text_of(variable: &ShownVariable, is_hex: bool) -> String {
     }
 }
 
-/// A file as clients see it.
+/// A source file in the protocol's form.
 pub(super) fn source(path: &str) -> Value {
     let full = std::path::Path::new(path)
         .canonicalize()
@@ -117,7 +117,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
             && debugger.session().thread(context.thread().unwrap_or(debugger.thread())).is_active()
             && !debugger.session().can(Capability::StopTime)
         {
-            // Editors show variables only below a frame.
+            // Editors show variables only within a frame.
             let frame = json!({ "id": number * FRAMES, "name": "(running)", "line": 0, "column": 0 });
             return Ok(json!({ "stackFrames": [frame], "totalFrames": 1 }));
         }
@@ -145,7 +145,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         Ok(json!({ "stackFrames": shown.collect::<Vec<_>>(), "totalFrames": frames.len() }))
     }
 
-    /// Looks at a call by its number.
+    /// Selects a call by its number.
     fn select(&mut self, frame: i64) -> Result<&mut Debugger<T>, DebugError> {
         let debugger = self.debugger()?;
         if let Some(thread) = context_of(frame / FRAMES).and_then(ContextId::thread) {
@@ -240,7 +240,8 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         let letter = format_of_letter(if format == "x" { "" } else { format })?;
         let variable = match assignment {
             Some(Assignment { place, value, .. }) => self.debugger()?.set(&place, &value)?,
-            // Only what a person types calls functions; what the editor looks at by itself reads.
+            // Only expressions that a person types may call functions; those that the editor evaluates by itself only
+            // read.
             None if arguments["context"] == "repl" => self.debugger()?.evaluate_with_calls(&text, letter)?,
             None => self.debugger()?.look_at(&text, letter)?,
         };
@@ -384,7 +385,8 @@ impl<W: Write, T: Target> Server<'_, W, T> {
     }
 }
 
-/// An element of `persist.UserData` as an integer, and as what programs store there: a float in one, a double in two.
+/// An element of `persist.UserData` as an integer, and as the other types that programs store there: a float in one
+/// element, a double in two.
 fn reading<T: Target>(debugger: &Debugger<T>, index: u32) -> Option<ShownVariable> {
     let expression = format!("persist.UserData[{index}]");
     let element = debugger.evaluate(&expression).ok()?;

@@ -1,8 +1,8 @@
 //! The Debug Adapter Protocol: a debugger for editors.
 //!
-//! A client sends requests, each of which has one response; the board's life comes as events. The protocol is served
-//! over any two streams. Requests are read by a thread of their own, so that one can interrupt a run; everything else
-//! happens in order.
+//! A client sends requests, each of which has one response; changes of the board's state are sent as events. The
+//! protocol is served over any two streams. A separate thread reads requests, so that one can interrupt a run;
+//! everything else happens in order.
 //!
 //! Source: <https://microsoft.github.io/debug-adapter-protocol/specification>.
 
@@ -37,19 +37,19 @@ use crate::words::{command_of, is_move};
 use look::Handle;
 use wire::ClientWire;
 
-/// The number by which clients know the call-back, after those of the threads.
+/// The number of the call-back in the protocol, after the numbers of the threads.
 const CALLBACK: i64 = 8;
 
-/// A response, or the message of one that failed.
+/// The body of a response, or the message of a failed one.
 type Reply = Result<Value, DebugError>;
 
 /// A function that creates a debugger from a client's launch request.
 pub type Launcher<'a, T> = &'a mut dyn FnMut(&Launch) -> Result<Debugger<T>, String>;
 
-/// Serves one client until it disconnects or vanishes.
+/// Serves one client until it disconnects or its connection is lost.
 ///
 /// # Errors
-/// The client cannot be written to.
+/// Writing to the client failed.
 pub fn serve<T: Target>(
     input: impl BufRead + Send + 'static,
     output: impl Write,
@@ -79,7 +79,7 @@ pub fn serve<T: Target>(
     Ok(())
 }
 
-/// Reads requests; one that is to stop a run interrupts it at once, as does the end of them.
+/// Reads requests; a request to stop a run interrupts it at once, as does the end of the stream.
 fn read(mut input: impl BufRead + Send + 'static, interrupt: Arc<AtomicBool>) -> Receiver<Value> {
     let (sender, receiver) = channel();
     thread::spawn(move || {
@@ -100,19 +100,19 @@ fn read(mut input: impl BufRead + Send + 'static, interrupt: Arc<AtomicBool>) ->
 /// The state of a conversation.
 struct Server<'a, W, T: Target> {
     wire: ClientWire<W>,
-    /// The function that creates a debugger; `None` on an existing board, which has its debugger from the beginning.
+    /// The function that creates a debugger; `None` for an existing board, which has a debugger from the beginning.
     launcher: Option<Launcher<'a, T>>,
     /// The goal of a run on an existing board; `None` while it is stopped.
     goal: Option<Goal>,
     interrupt: Arc<AtomicBool>,
     /// The debugger, with the commands of the terminal.
     shell: Option<Shell<T>>,
-    /// Lines that were reported before the board has sent them.
+    /// Lines that were reported before the board sent them.
     early: EarlyLines,
     asked: Launch,
-    /// The meanings of the variable references at the present stop.
+    /// The meanings of the variable references during the present stop.
     handles: Vec<Handle>,
-    /// The breakpoints that the client has set, by what it calls the set they are in.
+    /// The breakpoints that the client has set, each with the client's name for its set.
     set: Vec<(String, u32)>,
     has_trapped: bool,
     is_over: bool,
@@ -174,7 +174,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
             "setVariable" | "setExpression" | "writeMemory" | "evaluate" => self.tell_messages(),
             "pause" if self.launcher.is_none() => self.halt(Reason::Interrupted),
             "pause" => {
-                // A run was interrupted already; a board that stands stays.
+                // The run was already interrupted; a stopped board stays stopped.
                 self.interrupt.store(false, Ordering::Relaxed);
                 Ok(())
             }
@@ -198,7 +198,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         })
     }
 
-    /// The response to a request that lets no time pass.
+    /// The response to a request during which no time passes.
     fn reply(&mut self, command: &str, arguments: &Value) -> Reply {
         match command {
             "initialize" => Ok(launch::capabilities(self.launcher.is_some())),
@@ -251,7 +251,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         Ok(shell.debugger_mut())
     }
 
-    /// The client's configuration is complete: the board runs, or is at its beginning.
+    /// Handles the end of the client's configuration: the board runs, or reports a stop at its beginning.
     fn begin(&mut self) -> io::Result<()> {
         if self.asked.0["stopOnEntry"] == true {
             let stop = self.shell.as_ref().map(|shell| shell.debugger().stop().clone());
@@ -277,7 +277,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         stop.map_or(Ok(()), |stop| self.tell_stop(&stop))
     }
 
-    /// Lets an existing board make a movement while its owner lets time pass.
+    /// Begins a movement of an existing board; it continues while the owner lets time pass.
     fn let_go(&mut self, kind: Move) -> io::Result<()> {
         self.handles.clear();
         let goal = match kind {
@@ -331,7 +331,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         }
     }
 
-    /// Lets the board go; console lines are reported at once.
+    /// Runs the board; console lines are reported at once.
     fn run(&mut self, kind: Move) -> io::Result<Result<Stop, DebugError>> {
         self.handles.clear();
         let Some(shell) = &mut self.shell else { return Ok(Err("nothing is launched yet".into())) };
@@ -376,7 +376,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         Ok(())
     }
 
-    /// Executes a command of the terminal that an editor's console has, and lets it know that the board has moved.
+    /// Executes a terminal command typed in an editor's console, and informs the editor if the board has moved.
     fn command(&mut self, request: &Value, line: &str) -> io::Result<()> {
         let is_move = command_of(line).is_some_and(is_move);
         if is_move && self.launcher.is_none() {
@@ -413,13 +413,13 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         }
     }
 
-    /// The command of the terminal that an editor's console was given; `None` for an expression.
+    /// The terminal command typed in an editor's console; `None` for an expression.
     fn command_in(&mut self, arguments: &Value) -> Option<String> {
         let text = arguments["expression"].as_str().filter(|_| arguments["context"] == "repl")?.trim();
         if let Some(command) = text.strip_prefix("-exec ") {
             return Some(command.trim().to_owned());
         }
-        // A variable goes before a command of its name.
+        // A variable takes precedence over a command with the same name.
         command_of(text)?;
         let is_expression = self.debugger().is_ok_and(|debugger| debugger.evaluate(text).is_ok());
         (!is_expression).then(|| text.to_owned())
@@ -490,9 +490,9 @@ impl<W: Write, T: Target> Server<'_, W, T> {
 /// Reports the board's output to a client while it runs.
 struct Herald<'a, W> {
     wire: &'a mut ClientWire<W>,
-    /// Lines that were reported already.
+    /// Lines that have already been reported.
     early: &'a mut EarlyLines,
-    /// Traps: they come after what was printed before them.
+    /// The text of traps: it is reported after the output that preceded them.
     late: String,
     infos: Vec<runtime::debug::DebugInfo>,
     failed: Option<io::Error>,
@@ -533,7 +533,7 @@ impl<'a, W: Write> Herald<'a, W> {
     }
 }
 
-/// The number by which clients know a context.
+/// The number of a context in the protocol.
 fn number_of(context: ContextId) -> i64 {
     context.thread().map_or(CALLBACK, |thread| i64::from(thread.get()))
 }

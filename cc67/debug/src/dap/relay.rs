@@ -1,4 +1,4 @@
-//! An editor that starts a debugger of its own and attaches to a board elsewhere: messages go through.
+//! An editor that starts its own debugger and attaches to a board elsewhere: messages are passed on.
 
 use std::io::{self, BufReader, Write};
 use std::net::{Shutdown, TcpStream};
@@ -14,7 +14,7 @@ use crate::debugger::DebugError;
 /// The time limit for a board's greeting.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// A board that can be attached to, which has been greeted.
+/// A board to which a debugger can attach, after the exchange of greetings.
 pub(super) struct RemoteBoard {
     stream: TcpStream,
     input: BufReader<TcpStream>,
@@ -22,7 +22,7 @@ pub(super) struct RemoteBoard {
     capabilities: Value,
 }
 
-/// Connects to the board that an attach request names, and greets it as the client has greeted us.
+/// Connects to the board that an attach request names, and sends it the client's greeting.
 pub(super) fn connect(arguments: &Value, greeting: &Value) -> Result<RemoteBoard, DebugError> {
     let address = match (&arguments["address"], &arguments["port"]) {
         (Value::String(address), _) => address.clone(),
@@ -42,7 +42,7 @@ pub(super) fn connect(arguments: &Value, greeting: &Value) -> Result<RemoteBoard
     Ok(board)
 }
 
-/// Passes messages on until one side is gone; `request` is the first.
+/// Passes messages on until one side disconnects; `request` is the first.
 pub(super) fn relay<W: Write>(
     board: RemoteBoard,
     requests: Receiver<Value>,
@@ -58,7 +58,7 @@ pub(super) fn relay<W: Write>(
                 break;
             }
         }
-        // The other side sees that the client is gone; a stream that is closed already is as good.
+        // This tells the other side that the client has gone; an error means that the stream is already closed.
         let _ = stream.shutdown(Shutdown::Both);
     });
     while let Some(message) = wire::read(&mut input) {

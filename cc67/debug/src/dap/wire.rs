@@ -6,10 +6,10 @@ use serde_json::{Value, json};
 
 use crate::debugger::DebugError;
 
-/// Most bytes of a message; a client that announces more is refused.
+/// The maximum size of a message; a client that announces a larger one is rejected.
 const MOST: usize = 64 << 20;
 
-/// The next message; `None` at the end, and after what is not a message.
+/// The next message; `None` at the end, and after malformed input.
 pub(super) fn read(input: &mut impl BufRead) -> Option<Value> {
     let mut length = None;
     loop {
@@ -32,7 +32,7 @@ pub(super) fn read(input: &mut impl BufRead) -> Option<Value> {
     serde_json::from_slice(&body).ok()
 }
 
-/// The way to the client.
+/// The output stream to the client.
 pub(super) struct ClientWire<W> {
     output: W,
     sequence: u64,
@@ -55,7 +55,8 @@ impl<W: Write> ClientWire<W> {
             Err(error) => {
                 let text = error.to_string();
                 message["message"] = json!(text);
-                // What an editor evaluates by itself, such as what the mouse is over, interrupts nobody.
+                // Expressions that an editor evaluates by itself, such as the one under the mouse pointer, do not
+                // interrupt a run.
                 let is_shown = request["command"] != "evaluate";
                 message["body"] = json!({ "error": { "id": 1, "format": text, "showUser": is_shown } });
             }
@@ -71,7 +72,7 @@ impl<W: Write> ClientWire<W> {
         self.event("output", json!({ "category": category, "output": text }))
     }
 
-    /// Passes a message on, with a number of this way.
+    /// Passes a message on, with the next sequence number of this stream.
     pub(super) fn forward(&mut self, message: Value) -> io::Result<()> {
         self.send(message)
     }
@@ -83,7 +84,7 @@ impl<W: Write> ClientWire<W> {
     }
 }
 
-/// Writes a message as it is.
+/// Writes a message unchanged.
 pub(super) fn write(output: &mut impl Write, message: &Value) -> io::Result<()> {
     let text = message.to_string();
     write!(output, "Content-Length: {}\r\n\r\n{text}", text.len())?;
@@ -106,7 +107,7 @@ pub(super) fn encode(bytes: &[u8]) -> String {
     out
 }
 
-/// The bytes of a base64 text; `None` if it is none.
+/// The bytes of a base64 text; `None` if it is malformed.
 pub(super) fn decode(text: &str) -> Option<Vec<u8>> {
     let mut out = Vec::new();
     let (mut word, mut bits) = (0_u32, 0);

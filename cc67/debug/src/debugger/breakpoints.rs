@@ -1,4 +1,4 @@
-//! Breakpoints: code, watched expressions, expressions that become true; their conditions.
+//! Breakpoints: at code, at watched expressions, and at expressions that become true; their conditions.
 
 use cc67_host::{Capability, Target};
 use compiler::firmware::FirmwareSymbols as _;
@@ -8,20 +8,19 @@ use super::values::Prepared;
 use super::{DebugError, Debugger, HitCondition, file_name, place_of};
 use crate::programs::Statement;
 
-/// The kind of a breakpoint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum BreakpointKind {
-    /// Instructions: where to stop in words, and their addresses.
+    /// Instructions: the location as text, and their addresses.
     Code(String, Vec<u32>),
     /// A change of an expression's value.
     Watch(String),
-    /// An access of programs to the memory of an expression.
+    /// An access by programs to the memory of an expression.
     Access(String, WatchedAccess),
-    /// An expression that becomes true, looked at after every tick.
+    /// An expression that becomes true, evaluated after every tick.
     When(String),
 }
 
-/// The accesses that stop.
+/// The accesses that stop a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WatchedAccess {
     /// Reads.
@@ -31,7 +30,7 @@ pub enum WatchedAccess {
 }
 
 impl WatchedAccess {
-    /// The breakpoint in gdb's words.
+    /// The breakpoint type in gdb's terms.
     #[must_use]
     pub const fn title(self) -> &'static str {
         match self {
@@ -48,21 +47,20 @@ pub struct Breakpoint {
     pub id: u32,
     /// Its kind.
     pub kind: BreakpointKind,
-    /// Stops only where this is not 0, an expression of the program.
+    /// An expression of the program; the breakpoint stops only if it is not 0.
     pub condition: Option<String>,
-    /// The number of crossings that do not stop, counted down.
+    /// The number of further hits that do not stop.
     pub ignore: u64,
-    /// Prints this in place of stopping; `{expression}` is its value.
+    /// A message that is printed instead of stopping; `{expression}` is replaced by its value.
     pub log: Option<String>,
-    /// It is deleted when it stops.
+    /// True if it is deleted when it stops.
     pub is_temporary: bool,
-    /// It is in effect.
     pub is_enabled: bool,
-    /// The number of times that it was met.
+    /// The number of times that it was reached.
     pub hits: u64,
-    /// At which of these times it stops; `None` at each.
+    /// The hits at which it stops; `None` for all.
     pub stops_at: Option<HitCondition>,
-    /// The condition, compiled for each of its instructions; for a watched expression once.
+    /// The condition, compiled for each of its instructions; once for a watched expression.
     pub(super) conditions: Vec<(u32, Prepared)>,
     /// The line that was requested.
     pub(super) line: u32,
@@ -72,13 +70,13 @@ pub struct Breakpoint {
 /// The subject of a breakpoint.
 #[derive(Debug)]
 pub(super) enum Subject {
-    /// The positions of programs.
+    /// Instructions of programs.
     Instructions,
     /// A watched expression.
     Change(WatchedExpression),
     /// An expression whose memory is accessed, and its value at the last stop.
     Access(WatchedExpression),
-    /// An expression that becomes true, and whether it was at the last tick.
+    /// An expression that becomes true, and whether it was true at the last tick.
     Truth(Prepared, bool),
 }
 
@@ -87,12 +85,12 @@ impl Subject {
         if let Self::Change(watched) = self { Some(watched) } else { None }
     }
 
-    /// The expression whose memory is accessed.
+    /// The expression whose memory is watched for accesses.
     pub(super) const fn accessed(&self) -> Option<&WatchedExpression> {
         if let Self::Access(watched) = self { Some(watched) } else { None }
     }
 
-    /// The expression of a watchpoint of any kind, to be changed.
+    /// The expression of a watchpoint of any kind, for changes.
     pub(super) const fn expression_mut(&mut self) -> Option<&mut WatchedExpression> {
         if let Self::Change(watched) | Self::Access(watched) = self { Some(watched) } else { None }
     }
@@ -110,7 +108,7 @@ impl Subject {
         if let Self::Truth(_, was_true) = self { Some(was_true) } else { None }
     }
 
-    /// Reports whether it is looked at after every tick.
+    /// Reports whether it is evaluated after every tick.
     pub(super) const fn is_polled(&self) -> bool {
         match self {
             Self::Instructions | Self::Access(_) => false,
@@ -121,7 +119,7 @@ impl Subject {
 }
 
 impl Breakpoint {
-    /// Reports whether it is looked at after every tick.
+    /// Reports whether it is evaluated after every tick.
     pub(super) fn is_polled(&self) -> bool {
         self.is_enabled && self.subject.is_polled()
     }
@@ -131,24 +129,24 @@ impl Breakpoint {
 #[derive(Debug)]
 pub(super) struct WatchedExpression {
     pub(super) prepared: Prepared,
-    /// The memory that it is read from.
+    /// The memory from which it is read.
     pub(super) ranges: Vec<(GuestAddr, u32)>,
-    /// The memory that it is itself, if it is a place in memory.
+    /// Its own memory, if it is a place in memory.
     pub(super) own: Option<(GuestAddr, u32)>,
-    /// Registers are among what it is read from: it is looked at before every line.
+    /// True if it is also read from registers: then it is evaluated before every line.
     pub(super) has_registers: bool,
-    /// Items of the board are: it is looked at after every tick.
+    /// True if it contains items of the board: then it is evaluated after every tick.
     pub(super) is_polled: bool,
     pub(super) last: String,
 }
 
-/// Setting and finding them.
+/// Setting and finding breakpoints.
 impl<T: Target> Debugger<T> {
-    /// Sets a breakpoint at `FILE:LINE`, `LINE`, `FUNCTION` or `*ADDRESS`, of the program in one thread or of all that
-    /// have it; returns its number and a message.
+    /// Sets a breakpoint at `FILE:LINE`, `LINE`, `FUNCTION` or `*ADDRESS`, in the program of one thread or in all
+    /// programs that contain it; returns its number and a message.
     ///
     /// # Errors
-    /// There is no code, or the condition does not compile.
+    /// There is no code at the location, or the condition does not compile.
     pub fn break_at(
         &mut self,
         place: &str,
@@ -190,7 +188,7 @@ impl<T: Target> Debugger<T> {
         Ok((id, text))
     }
 
-    /// The note that other breakpoints are at an address, too.
+    /// A note that there are other breakpoints at an address.
     fn others_at(&self, id: u32, address: u32) -> String {
         let is_there = |one: &&Breakpoint| {
             one.id != id
@@ -206,10 +204,10 @@ impl<T: Target> Debugger<T> {
         }
     }
 
-    /// Stops when the value of an expression changes; its number, and what there is to say.
+    /// Stops when the value of an expression changes; returns its number and a message.
     ///
     /// # Errors
-    /// The expression is wrong.
+    /// The expression is not valid.
     pub fn watch(&mut self, expression: &str, condition: Option<&str>) -> Result<(u32, String), DebugError> {
         self.session.require(Capability::Watchpoints)?;
         let watched = self.watched(expression)?;
@@ -225,7 +223,7 @@ impl<T: Target> Debugger<T> {
     /// Stops after an instruction of a program accesses the memory of an expression; returns its number and a message.
     ///
     /// # Errors
-    /// The expression is wrong, or it is not a place in memory.
+    /// The expression is not valid, or is not a place in memory.
     pub fn watch_access(
         &mut self,
         expression: &str,
@@ -246,11 +244,10 @@ impl<T: Target> Debugger<T> {
         Ok((id, format!("{} {id}: {expression}", access.title())))
     }
 
-    /// Stops at the end of the tick in which an expression becomes true, that is, is not 0; returns its number and a
-    /// message.
+    /// Stops at the end of the tick in which an expression becomes true (not 0); returns its number and a message.
     ///
     /// # Errors
-    /// The expression is wrong.
+    /// The expression is not valid.
     pub fn catch_when(&mut self, expression: &str) -> Result<(u32, String), DebugError> {
         let prepared = self.prepare(expression)?;
         let id = self.add(BreakpointKind::When(expression.to_owned()), None, Vec::new());
@@ -260,19 +257,19 @@ impl<T: Target> Debugger<T> {
         Ok((id, format!("Catchpoint {id} (when {expression})")))
     }
 
-    /// Deletes a breakpoint; whether there was one of that number.
+    /// Deletes a breakpoint; returns whether it existed.
     pub fn delete(&mut self, id: u32) -> bool {
         let count = self.breakpoints.len();
         self.breakpoints.retain(|breakpoint| breakpoint.id != id);
         self.breakpoints.len() < count
     }
 
-    /// A breakpoint, to change it.
+    /// A breakpoint, for changes.
     pub fn breakpoint_mut(&mut self, id: u32) -> Option<&mut Breakpoint> {
         self.breakpoints.iter_mut().find(|breakpoint| breakpoint.id == id)
     }
 
-    /// Gives a breakpoint a condition, or takes it away.
+    /// Sets or removes the condition of a breakpoint.
     ///
     /// # Errors
     /// There is no such breakpoint, or the condition does not compile.
@@ -289,7 +286,7 @@ impl<T: Target> Debugger<T> {
         Ok(())
     }
 
-    /// A condition, compiled for where a breakpoint is.
+    /// A condition, compiled for each location of a breakpoint.
     fn conditions(
         &self,
         kind: &BreakpointKind,
@@ -306,7 +303,7 @@ impl<T: Target> Debugger<T> {
         }
     }
 
-    /// Other programs are loaded: what was compiled for them is compiled again.
+    /// Compiles the expressions again after other programs were loaded.
     pub(super) fn compile_conditions(&mut self) {
         for index in 0..self.breakpoints.len() {
             let Breakpoint { id, kind, condition, .. } = &self.breakpoints[index];
@@ -345,7 +342,7 @@ impl<T: Target> Debugger<T> {
         id
     }
 
-    /// Resolves a place as a person writes it; returns its statements and a note on them.
+    /// Resolves a location as a user writes it; returns its statements and a note on them.
     pub(crate) fn resolve(
         &self,
         place: &str,
@@ -402,14 +399,14 @@ impl<T: Target> Debugger<T> {
             let why = self.programs.unknown().next();
             return Err(why.unwrap_or_else(|| format!("Function \"{rest}\" not defined.")).into());
         }
-        // The line at which it stops, not that of the function's name.
+        // The line at which it stops, not the line of the function's name.
         for statement in &mut found {
             statement.line = self.place(statement.address).map_or(statement.line, |place| place.line);
         }
         Ok((found, String::new()))
     }
 
-    /// The instructions of the programs that call a function of the firmware.
+    /// The instructions in the programs that call a firmware function.
     fn calls_of(&self, name: &str, thread: Option<ThreadId>) -> Vec<Statement> {
         let Some(symbol) = self.session.options().firmware.find(name) else { return Vec::new() };
         let target = format!(", {:#010x}", symbol.address.get());

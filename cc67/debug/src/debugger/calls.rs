@@ -1,4 +1,4 @@
-//! Expressions that call functions, and other forms that gdb has: types, objects in a row, the result of a function.
+//! Expressions that call functions, and gdb's extensions: types, consecutive objects, the result of a function.
 
 use compiler::debug::{AllowedCalls, CallRequest, CallResults, DebugValue, Displayed, NumberFormat, Probe};
 use runtime::trace::Item;
@@ -18,8 +18,8 @@ pub(crate) enum TypeDetail {
 }
 
 impl<T: Target> Debugger<T> {
-    /// Does something with the value of an expression that may call functions of the program and of the firmware, which
-    /// the board executes while its time stands.
+    /// Uses the value of an expression that may call functions of the program and of the firmware; the board executes
+    /// them while its time is stopped.
     fn with_called_value<R>(
         &mut self,
         expression: &str,
@@ -46,7 +46,7 @@ impl<T: Target> Debugger<T> {
         shown
     }
 
-    /// The slot of the result of a function of the program or of the firmware.
+    /// Calls a function of the program or of the firmware; returns its result as a slot.
     fn call_function(&mut self, expression: &str, call: &CallRequest) -> Result<u64, DebugError> {
         let why = match self.session.call_function(self.context(), call.function, &call.arguments)? {
             CallEnd::Returned(slot) => return Ok(slot),
@@ -94,7 +94,7 @@ impl<T: Target> Debugger<T> {
         })
     }
 
-    /// The number that an expression is, which may call functions.
+    /// The numeric value of an expression that may call functions.
     ///
     /// # Errors
     /// As [`number`](Self::number), or a function does not return.
@@ -103,10 +103,10 @@ impl<T: Target> Debugger<T> {
         number.ok_or_else(|| format!("`{expression}` is not a number").into())
     }
 
-    /// The type of an expression, or of what a type's name stands for.
+    /// The type of an expression, or the type with a name.
     ///
     /// # Errors
-    /// It is neither.
+    /// The text is neither an expression nor a type.
     pub(crate) fn type_of(&self, text: &str, detail: TypeDetail) -> Result<String, DebugError> {
         let spelled = |(probe, items): (Probe, Vec<Item>)| {
             let at = At::new(self, None, &items);
@@ -122,7 +122,7 @@ impl<T: Target> Debugger<T> {
             .map(spelled)
     }
 
-    /// The C expression of `count` objects from a place in memory on: gdb's `PLACE@COUNT`.
+    /// The C expression for `count` consecutive objects, beginning with a place in memory: gdb's `PLACE@COUNT`.
     ///
     /// # Errors
     /// There is no such place.
@@ -138,7 +138,7 @@ impl<T: Target> Debugger<T> {
         Ok(found)
     }
 
-    /// The result of a function that has just returned to a context.
+    /// The result of a function that has just returned in a context.
     pub(crate) fn result_of(&self, place: &CodePlace, context: ContextId) -> Option<ShownVariable> {
         let slot = self.session.target().result(context)?;
         let model = self.programs.of(place.thread).ok()?;

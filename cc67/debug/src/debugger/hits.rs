@@ -1,24 +1,24 @@
-//! At which of its times a breakpoint stops.
+//! Conditions on the hit count of a breakpoint.
 
 use std::str::FromStr;
 
 use super::DebugError;
 
-/// A condition on how often a breakpoint was met.
+/// A condition on the number of times that a breakpoint was reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HitCondition {
-    /// Not before this time: `5`, `>= 5`, and `> 4`.
+    /// From this hit on: `5`, `>= 5`, and `> 4`.
     From(u64),
-    /// At this time alone: `== 5`.
+    /// Only at this hit: `== 5`.
     At(u64),
-    /// Up to this time: `<= 5`, and `< 6`.
+    /// Up to this hit: `<= 5`, and `< 6`.
     UpTo(u64),
-    /// At every time that is a multiple: `% 5`.
+    /// At every multiple: `% 5`.
     Multiple(u64),
 }
 
 impl HitCondition {
-    /// Reports whether a breakpoint stops that is met for the time of this number, counted from 1.
+    /// Reports whether a breakpoint stops at this hit, counted from 1.
     #[must_use]
     pub const fn stops(self, hits: u64) -> bool {
         match self {

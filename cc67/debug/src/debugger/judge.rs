@@ -1,4 +1,4 @@
-//! The decision to stop the board at a breakpoint, a change, an access, or an expression that has become true.
+//! The decision to stop the board for a breakpoint, a change, an access, or an expression that has become true.
 
 use cc67_host::Target;
 use kmotiondef::CodeAddr;
@@ -8,13 +8,14 @@ use super::breakpoints::WatchedExpression;
 use super::run::Goal;
 use super::{Breakpoint, BreakpointKind, Debugger, Reason, WatchedAccess, file_name};
 
-/// The writer of a value that is looked at only after every tick.
+/// The name for the unknown writer of a value that is checked only after every tick.
 const IN_TICK: &str = "a program or the board in the last tick";
-/// The writer of a value that no program writes.
+/// The name for the writer of a value that no program writes.
 const BY_SERVO: &str = "the servo or the firmware";
 
 impl<T: Target> Debugger<T> {
-    /// Returns whether breakpoints stop at the end of a tick: what they watch has changed in it, or has become true.
+    /// Returns the reason to stop at the end of a tick: a watched value that has changed in it, or a condition that has
+    /// become true.
     pub(super) fn judge_tick(&mut self, counts: bool) -> Option<Reason> {
         if let Some(index) = self.session.take_change()
             && let Some(reason) = self.judge_change(index, BY_SERVO.to_owned(), counts)
@@ -40,8 +41,8 @@ impl<T: Target> Debugger<T> {
         })
     }
 
-    /// Returns the reason for which a held context has to stop, if it has to; `counts` for a run that is not a search
-    /// of the past.
+    /// Returns the reason for which a held context must stop, if there is one; `counts` is true except in a search of
+    /// the past.
     pub(super) fn judge(&mut self, hold: Hold, goal: &Goal, counts: bool) -> Option<Reason> {
         match hold.reason {
             HoldReason::Step => (*goal == Goal::Instruction(hold.context)).then_some(Reason::Step),
@@ -71,7 +72,7 @@ impl<T: Target> Debugger<T> {
         }
     }
 
-    /// A watched range has changed.
+    /// Handles a change of a watched range.
     fn judge_change(&mut self, range: usize, by: String, counts: bool) -> Option<Reason> {
         let mut ranges = 0;
         let found =
@@ -115,7 +116,7 @@ impl<T: Target> Debugger<T> {
         Some(Reason::Changed { id, expression, old, new, by })
     }
 
-    /// The memory of an expression was accessed.
+    /// Handles an access to the memory of an expression.
     fn judge_access(&mut self, range: usize, by: String, counts: bool) -> Option<Reason> {
         let is_meant = |index: &usize| {
             let breakpoint = &self.breakpoints[*index];
@@ -154,8 +155,8 @@ impl<T: Target> Debugger<T> {
         (!ids.is_empty()).then_some(Reason::Breakpoint(ids))
     }
 
-    /// Returns whether a breakpoint that is met stops: its condition holds, it was passed as often as needed, it is not
-    /// a log point.
+    /// Returns whether a breakpoint that was reached stops: its condition holds, its ignore count is used up, and it is
+    /// not a log point.
     fn is_to_stop(&mut self, index: usize, context: ContextId, counts: bool) -> bool {
         if self.breakpoints[index].condition.is_some() {
             match self.holds(context, &self.breakpoints[index].conditions) {

@@ -1,4 +1,4 @@
-//! The debugger: a session, its programs, breakpoints, and where it is.
+//! The debugger: a session, its programs, breakpoints, and the present stop.
 
 mod breakpoints;
 mod calls;
@@ -30,7 +30,7 @@ use vm::engine::{ContextId, FrameView};
 
 use crate::programs::{Activation, Programs};
 
-/// The reason for which a request is refused.
+/// The error of a rejected request.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct DebugError(pub(crate) String);
@@ -62,27 +62,25 @@ impl From<&str> for DebugError {
 /// A position in a source.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CodePlace {
-    /// The thread whose program it is of.
+    /// The thread of the program.
     pub thread: ThreadId,
-    /// The function.
     pub function: String,
     /// The path of the file.
     pub file: String,
-    /// The line.
     pub line: u32,
-    /// The call is inlined.
+    /// True if it is in an inlined call.
     pub is_inlined: bool,
 }
 
 /// A call in progress.
 #[derive(Clone, Debug)]
 pub struct StackFrame {
-    /// The instruction that is executed next; in a caller, the call.
+    /// The next instruction to be executed; in a caller, the call.
     pub address: CodeAddr,
     /// Its position in the source, if known.
     pub place: Option<CodePlace>,
     pub(crate) view: FrameView,
-    /// The index of the machine call that it is part of, counted from the innermost.
+    /// The index of the machine call that contains it, counted from the innermost.
     pub(crate) real: usize,
     /// The index of its function in that call, counted from the innermost; all but the last are inlined.
     pub(crate) level: usize,
@@ -91,11 +89,11 @@ pub struct StackFrame {
 /// The reason for which the board is stopped.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reason {
-    /// It was not run yet.
+    /// It has not run yet.
     Begin,
-    /// At breakpoints, by their numbers.
+    /// It is at breakpoints with these numbers.
     Breakpoint(Vec<u32>),
-    /// A watched expression has another value.
+    /// The value of a watched expression changed.
     Changed {
         /// Number of the breakpoint.
         id: u32,
@@ -105,7 +103,7 @@ pub enum Reason {
         old: String,
         /// Its value now.
         new: String,
-        /// The context that did it.
+        /// The context that changed it.
         by: String,
     },
     /// The memory of an expression was accessed.
@@ -114,43 +112,43 @@ pub enum Reason {
         id: u32,
         /// The expression.
         expression: String,
-        /// The accesses that it stops at.
+        /// The accesses at which it stops.
         access: WatchedAccess,
         /// Its value before, if the access has changed it.
         old: Option<String>,
         /// Its value now.
         value: String,
-        /// The thread or part of the board that did it.
+        /// The thread or part of the board that accessed it.
         by: String,
     },
-    /// An expression has become true.
+    /// An expression became true.
     When {
         /// Number of the breakpoint.
         id: u32,
         /// The expression.
         expression: String,
     },
-    /// A step is over.
+    /// A step is complete.
     Step,
     /// A thread was stopped by a trap.
     Trap(String),
-    /// The board has made a remark.
+    /// The board made a remark.
     Remark(String),
-    /// A thread begins.
+    /// A thread started.
     Started(ThreadId),
-    /// A thread has ended.
+    /// A thread ended.
     Ended(ThreadId),
-    /// A console line contains the text that was waited for.
+    /// A console line contains an awaited text.
     Console(String),
-    /// An input or output has another level.
+    /// The level of an input or output changed.
     Bit(String),
-    /// The time that was requested.
+    /// The requested time was reached.
     Time,
     /// All threads have ended.
     AllEnded,
-    /// Somebody interrupted it.
+    /// The run was interrupted.
     Interrupted,
-    /// A connected target cannot be reached any more.
+    /// The connection to the target was lost.
     LinkLost(String),
     /// The beginning of the recorded past.
     BeginOfHistory,
@@ -161,15 +159,15 @@ pub enum Reason {
 pub struct Stop {
     /// The reason.
     pub reason: Reason,
-    /// Whose program is about to continue, if it is one's.
+    /// The context whose program is about to continue, if there is one.
     pub context: Option<ContextId>,
     /// Board time.
     pub at: Cycles,
-    /// The breakpoint at which the board stands was a temporary one, and is deleted.
+    /// True if the breakpoint at which the board is stopped was temporary, and has been deleted.
     pub is_temporary: bool,
 }
 
-/// An instant between two instructions, which no other has in common.
+/// A unique position in time, between two instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Position {
     pub(crate) tick: Ticks,
@@ -179,17 +177,17 @@ pub(crate) struct Position {
 /// The events that stop the board.
 #[derive(Clone, Debug, Default)]
 pub struct Catches {
-    /// Traps; they stop unless this is set.
+    /// True if traps do not stop.
     pub no_traps: bool,
-    /// Remarks.
+    /// True if remarks stop.
     pub remarks: bool,
-    /// Begins of threads.
+    /// True if starts of threads stop.
     pub starts: bool,
-    /// Ends of threads.
+    /// True if ends of threads stop.
     pub ends: bool,
-    /// Console lines that contain one of these.
+    /// Console lines that contain one of these texts stop.
     pub texts: Vec<String>,
-    /// Inputs and outputs, by number.
+    /// Changes of these inputs and outputs stop.
     pub bits: Vec<i32>,
 }
 
@@ -209,18 +207,18 @@ pub struct Debugger<T: Target = Board> {
     thread: ThreadId,
     frame: usize,
     stop: Stop,
-    /// Messages of log points and the like that nobody has taken yet.
+    /// Messages of log points and the like that have not been taken yet.
     messages: VecDeque<String>,
-    /// Ends a run from elsewhere.
+    /// A flag that ends a run from elsewhere.
     interrupt: Arc<AtomicBool>,
 }
 
 impl<T: Target> Debugger<T> {
-    /// A debugger of a board in its present state.
+    /// A debugger for a board in its present state.
     #[must_use]
     pub fn new(mut session: Session<T>, limit: Ticks) -> Self {
         session.prepare_to_hold();
-        // A target without snapshots does not go back.
+        // A target without snapshots cannot go back.
         let timeline = Timeline::new(&mut session).ok();
         Self::with(session, timeline, limit)
     }
@@ -247,12 +245,12 @@ impl<T: Target> Debugger<T> {
         }
     }
 
-    /// Returns whether the board is run elsewhere, which keeps its past.
+    /// Returns whether the board is run elsewhere, without a past.
     pub(crate) fn is_lent(&self) -> bool {
         self.timeline.is_none() && self.session.can(Capability::Snapshots)
     }
 
-    /// Returns nothing where programs of this target can be held, and otherwise the sentence that they cannot.
+    /// Returns an error if programs of this target cannot be held.
     pub(crate) fn must_hold(&self) -> Result<(), DebugError> {
         self.session.require(Capability::Breakpoints)?;
         if self.session.options().target == CodeTarget::C67x {
@@ -264,14 +262,14 @@ impl<T: Target> Debugger<T> {
     /// Starts a thread at the beginning of its program.
     ///
     /// # Errors
-    /// It has none, or the target does not answer.
+    /// The thread has no program, or the target does not answer.
     pub fn start(&mut self, thread: ThreadId) -> Result<(), DebugError> {
         self.session.start(thread)?;
         self.changed();
         Ok(())
     }
 
-    /// Starts the programs that should start when they are loaded.
+    /// Starts the programs that are marked as started.
     ///
     /// # Errors
     /// The target does not answer.
@@ -281,10 +279,10 @@ impl<T: Target> Debugger<T> {
         threads.into_iter().try_for_each(|thread| self.start(thread))
     }
 
-    /// Starts the programs again: a simulated board from its beginning, a controller as it is.
+    /// Starts the programs again: on a simulated board from its beginning, on a controller in its present state.
     ///
     /// # Errors
-    /// The board has no beginning to go back to, or the target does not answer.
+    /// The beginning of the board cannot be restored, or the target does not answer.
     pub fn start_again(&mut self) -> Result<(), DebugError> {
         if self.session.can(Capability::StopTime) { self.restart().map(drop) } else { self.start_all() }
     }
@@ -295,39 +293,39 @@ impl<T: Target> Debugger<T> {
         self.changed();
     }
 
-    /// Pauses a thread while the others run, or lets it continue.
+    /// Pauses a thread while the others run, or resumes it.
     ///
     /// # Errors
-    /// The target cannot, or does not answer.
+    /// The target cannot pause threads, or does not answer.
     pub fn pause(&mut self, thread: ThreadId, is_paused: bool) -> Result<(), DebugError> {
         let done = if is_paused { self.session.pause(thread) } else { self.session.resume(thread) };
         Ok(done?)
     }
 
-    /// Takes up what a target whose time passes by itself has done since the last look.
+    /// Processes the events since the last call, for a target whose time passes by itself.
     pub(crate) fn catch_up(&mut self, events: Events<'_>) {
         self.session.refresh();
         let tick = self.session.tick();
         self.session.step(tick, &mut |event| events(&event));
     }
 
-    /// The board under control, to look at.
+    /// The board under control, for reading.
     #[must_use]
     pub const fn session(&self) -> &Session<T> {
         &self.session
     }
 
-    /// Lends it a board, or takes it back: what it had until then is in `session` afterwards.
+    /// Exchanges its board with `session`: lends it a board, or takes the board back.
     pub fn swap(&mut self, session: &mut Session<T>) {
         std::mem::swap(&mut self.session, session);
     }
 
-    /// The board under control, for its owner.
+    /// The board under control, for changes.
     pub(crate) const fn session_mut(&mut self) -> &mut Session<T> {
         &mut self.session
     }
 
-    /// Looks at what is loaded now, and at a thread that has a program.
+    /// Updates the information about the loaded programs, and selects a thread that has a program.
     pub(crate) fn look_around(&mut self) {
         self.programs.update(&self.session);
         if self.programs.of(self.thread).is_err()
@@ -337,10 +335,10 @@ impl<T: Target> Debugger<T> {
         }
     }
 
-    /// The board as it is at this instant, to compare it with another instant.
+    /// A snapshot of the board, for comparison with another one.
     ///
     /// # Errors
-    /// The target has no snapshots.
+    /// The target does not support snapshots.
     pub fn snapshot(&mut self) -> Result<Snapshot<T>, SnapshotError> {
         self.session.snapshot()
     }
@@ -375,30 +373,30 @@ impl<T: Target> Debugger<T> {
         &self.breakpoints
     }
 
-    /// Ends a run whenever this is set.
+    /// Sets a flag that ends a run when it becomes true.
     pub fn interrupted_by(&mut self, flag: Arc<AtomicBool>) {
         self.interrupt = flag;
     }
 
-    /// A message that nobody has taken yet.
+    /// Takes the oldest message.
     pub fn take_message(&mut self) -> Option<String> {
         self.messages.pop_front()
     }
 
-    /// Bytes of memory that the recorded past takes beside the board, and how many snapshots it has.
+    /// The bytes of memory that the recorded past takes in addition to the board, and the number of snapshots.
     #[must_use]
     pub fn history(&self) -> (usize, usize) {
         self.timeline.as_ref().map_or((0, 0), |timeline| (timeline.bytes(), timeline.len()))
     }
 
-    /// Records the past with a snapshot after so much work; see [`Timeline::keep_every`].
+    /// Sets the work between two snapshots of the past; see [`Timeline::keep_every`].
     pub fn keep_every(&mut self, work: u64) {
         if let Some(timeline) = &mut self.timeline {
             timeline.keep_every(work);
         }
     }
 
-    /// Looks at a thread, or at another call.
+    /// Selects a thread and a call.
     ///
     /// # Errors
     /// There is no such call.
@@ -463,7 +461,7 @@ impl<T: Target> Debugger<T> {
         self.frames(self.context()).into_iter().nth(self.frame)?.place
     }
 
-    /// The selected context: the thread's, or the call-back's if the board is there.
+    /// The selected context: the selected thread, or the call-back if the board is stopped there.
     #[must_use]
     pub fn context(&self) -> ContextId {
         match self.stop.context {
@@ -502,7 +500,8 @@ impl<T: Target> Debugger<T> {
         self.stop.clone()
     }
 
-    /// The call that a breakpoint is about where an inlined function begins: the one with its line.
+    /// The frame of a breakpoint at the beginning of an inlined function: the one whose function contains the
+    /// breakpoint's line.
     fn frame_of_breakpoint(&self) -> usize {
         let Reason::Breakpoint(ids) = &self.stop.reason else { return 0 };
         let met = self.breakpoints.iter().find(|breakpoint| ids.contains(&breakpoint.id));
@@ -513,7 +512,7 @@ impl<T: Target> Debugger<T> {
         self.frames(self.context()).iter().position(has_line).unwrap_or(0)
     }
 
-    /// Tells the timeline about a change by hand; reports if that makes another history.
+    /// Informs the timeline about a change by the user; reports it if it begins another history.
     pub(crate) fn changed(&mut self) {
         if self.session.held().is_some() {
             return self.changed_beyond_journal();
@@ -522,7 +521,7 @@ impl<T: Target> Debugger<T> {
         self.tell_history(history.unwrap_or(History::Same));
     }
 
-    /// Does the same for what no journal has.
+    /// Does the same for a change that is not in the journal.
     pub(crate) fn changed_beyond_journal(&mut self) {
         let history = self.timeline.as_mut().map(|timeline| timeline.branch(&mut self.session));
         self.tell_history(history.unwrap_or(History::Same));
@@ -540,10 +539,10 @@ impl<T: Target> Debugger<T> {
 }
 
 impl Debugger<AnyTarget> {
-    /// A debugger of a board that is run elsewhere and [lent](Self::swap) to it; such a board does not go back.
+    /// A debugger for a board that is run elsewhere and [lent](Self::swap) to it; it cannot go back in time.
     ///
     /// # Errors
-    /// There is no board to keep the place of the other one.
+    /// The board that takes the place of the lent one cannot be created.
     pub fn of_lent() -> Result<Self, HostError> {
         Ok(Self::with(Setup::default().session_on_any(None)?, None, Ticks::new(u64::MAX)))
     }

@@ -1,8 +1,8 @@
-//! Backwards: the past is executed again from a snapshot, and the last stop before the present is the one.
+//! Running backwards: the past is executed again from a snapshot, and the last stop before the present is the result.
 //!
-//! Each search covers the interval from one snapshot to the next, the latest first. Stops are counted on a first pass;
-//! on a second one the session goes to the one that is needed. Steps have more stops than can be kept, so only the last ticks are
-//! searched at first, then more.
+//! Each search covers the interval from one snapshot to the next, the latest first. A first pass counts the stops; a
+//! second one takes the session to the right one. A search for a step has too many stops to keep, so it covers only the
+//! last ticks at first, then more.
 
 use std::sync::atomic::Ordering;
 
@@ -13,21 +13,21 @@ use vm::engine::ContextId;
 use super::run::{Goal, catch};
 use super::{DebugError, Debugger, Position, Reason, Stop};
 
-/// Ticks that are searched for a step at first, and how many times as many then.
+/// The number of ticks that a search for a step covers at first, and the factor by which it grows.
 const WINDOW: u64 = 2;
 const WIDER: u64 = 6;
 
-/// The reason for which a board without a past refuses to go back.
+/// The reason why a board without a past cannot go back.
 pub(crate) const ONLY_FORWARD: &str = "others use this board: it does not go back";
 
-/// The position that a search of the past looks for.
+/// The target of a search of the past.
 #[derive(Clone, Debug)]
 enum Wanted {
-    /// The last stop of a breakpoint or the like.
+    /// The last stop at a breakpoint or similar.
     Stop,
-    /// The beginning of the last line with at most this many calls around it.
+    /// The beginning of the last line with at most this many enclosing calls.
     Line { context: ContextId, depth: usize },
-    /// The call of a function, at this depth of the machine's calls.
+    /// The call of a function, at this depth of machine calls.
     Call { context: ContextId, depth: usize, at: u32 },
     /// The last instruction.
     Instruction(ContextId),
@@ -44,14 +44,14 @@ impl Wanted {
         }
     }
 
-    /// Returns whether user breakpoints count.
+    /// Returns whether the user's breakpoints count.
     const fn is_stop(&self) -> bool {
         matches!(self, Self::Stop)
     }
 }
 
-/// The result of the first pass: the number of the hold, counted from 1, and whether more of the past is needed to be
-/// sure.
+/// The result of the first pass: the number of the hold, counted from 1, and whether more of the past must be searched
+/// to be sure.
 #[derive(Clone, Copy, Debug, Default)]
 struct Found {
     number: u64,
@@ -64,16 +64,16 @@ impl<T: Target> Debugger<T> {
         self.back(&Wanted::Stop)
     }
 
-    /// Goes back to the beginning of the last line of the selected thread, into functions that it called.
+    /// Goes back to the beginning of the last line of the selected thread, stepping into called functions.
     ///
     /// # Errors
-    /// Nothing is known about the thread's program.
+    /// There is no debug information for the thread's program.
     pub fn reverse_step(&mut self) -> Result<Stop, DebugError> {
         self.programs.of(self.thread)?;
         Ok(self.back(&Wanted::Line { context: self.context(), depth: usize::MAX }))
     }
 
-    /// The same, over functions that it called.
+    /// Goes back to the beginning of the last line, stepping over called functions.
     ///
     /// # Errors
     /// As [`reverse_step`](Self::reverse_step).
@@ -87,14 +87,14 @@ impl<T: Target> Debugger<T> {
     /// Goes back to the call of the function.
     ///
     /// # Errors
-    /// It is the outermost.
+    /// The function is the outermost.
     pub fn reverse_finish(&mut self) -> Result<Stop, DebugError> {
         let context = self.context();
         let frames = self.frames(context);
         let caller = frames.get(self.frame + 1).ok_or("\"finish\" not meaningful in the outermost frame.")?;
         let is_inlined = frames.get(self.frame).is_some_and(|frame| frame.real == caller.real);
         let wanted = if is_inlined {
-            // The line of the call, from its beginning.
+            // The beginning of the line that contains the call.
             Wanted::Line { context, depth: frames.len() - self.frame - 1 }
         } else {
             let depth = frames.last().map_or(0, |last| last.real + 1) - caller.real;
@@ -111,7 +111,7 @@ impl<T: Target> Debugger<T> {
     /// Goes back, or forward in the known past, to the end of a tick.
     ///
     /// # Errors
-    /// It lies before the beginning.
+    /// The tick is before the beginning of the past.
     pub fn go_to(&mut self, tick: Ticks) -> Result<Stop, DebugError> {
         self.disarm();
         self.session.require(Capability::Snapshots)?;
@@ -120,10 +120,10 @@ impl<T: Target> Debugger<T> {
         Ok(self.stopped(Reason::Time, None))
     }
 
-    /// Begins again.
+    /// Restarts the board from its beginning.
     ///
     /// # Errors
-    /// The snapshots are of another board.
+    /// The snapshots belong to another board.
     pub fn restart(&mut self) -> Result<Stop, DebugError> {
         self.disarm();
         self.session.require(Capability::Snapshots)?;
@@ -132,13 +132,13 @@ impl<T: Target> Debugger<T> {
         Ok(self.stopped(Reason::Begin, None))
     }
 
-    /// Puts the board where the snapshot of a place was taken, or the last one before it; whether it can be.
+    /// Restores the snapshot at a position, or the last one before it; returns whether there is one.
     fn restore(&mut self, place: u64) -> bool {
         let timeline = self.timeline.as_mut();
         timeline.is_some_and(|timeline| timeline.restore_place(&mut self.session, place).is_ok())
     }
 
-    /// The place of the last snapshot before another one, or of all.
+    /// The position of the last snapshot before a position, or of the last of all.
     fn snapshot_before(&self, place: Option<u64>) -> Option<u64> {
         self.timeline.as_ref()?.before(place)
     }
@@ -179,8 +179,8 @@ impl<T: Target> Debugger<T> {
         self.stopped(Reason::BeginOfHistory, None)
     }
 
-    /// The reason to stop where a snapshot was taken in the middle of a tick: something was changed there by hand, so
-    /// the earlier history leads to the same place in another state.
+    /// The reason to stop at a snapshot that was taken within a tick: a user changed something there, so the earlier
+    /// history leads to the same position in another state.
     fn stop_at(&mut self, place: u64, wanted: &Wanted) -> Option<Reason> {
         self.disarm();
         if !self.restore(place) {
@@ -202,7 +202,7 @@ impl<T: Target> Debugger<T> {
         }
     }
 
-    /// Searches one interval of the past; the session is where it was found then.
+    /// Searches one interval of the past; if the target is found, the session is taken there.
     fn search(&mut self, place: u64, begin: &Position, bound: &Position, wanted: &Wanted) -> Option<Reason> {
         let mut window = if wanted.is_stop() { u64::MAX } else { WINDOW };
         loop {
@@ -219,7 +219,7 @@ impl<T: Target> Debugger<T> {
         }
     }
 
-    /// Executes an interval again, held from the end of tick `from` on; to the hold of a number, or else to its end.
+    /// Executes an interval again, held from the end of tick `from` on, up to the hold with a number, or to its end.
     fn way(
         &mut self,
         place: u64,
@@ -290,7 +290,7 @@ impl<T: Target> Debugger<T> {
                     is_it.then_some(Reason::Step)
                 }
                 (Some(_), _) => None,
-                // What happens in the very last tick is where one stands already.
+                // Events at the very last tick are at the present position already.
                 (None, Wanted::Stop) => {
                     let changed = self.judge_tick(false);
                     caught.map(|(reason, _)| reason).or(changed).filter(|_| !is_over)
@@ -308,7 +308,7 @@ impl<T: Target> Debugger<T> {
         }
     }
 
-    /// The line that begins where a context is, if one does, and how many calls are in progress.
+    /// The line that begins at a context's position, if one does, and the number of calls in progress.
     fn line_and_depth(&self, context: ContextId) -> Option<(u32, usize)> {
         let at = self.session.frames(context).first()?.at.get();
         let place = self.place(at).filter(|_| self.is_statement(at))?;
@@ -322,7 +322,7 @@ impl<T: Target> Debugger<T> {
         })
     }
 
-    /// Breakpoints are in effect or not; those that were.
+    /// Enables or disables all breakpoints; returns those that were enabled.
     fn set_enabled(&mut self, are: bool) -> Vec<u32> {
         let enabled: Vec<_> = self
             .breakpoints
@@ -343,7 +343,7 @@ impl<T: Target> Debugger<T> {
     }
 }
 
-/// Returns whether one position lies before another.
+/// Returns whether one position is before another.
 fn is_before(one: &Position, other: &Position) -> bool {
     match (one.held, other.held) {
         (None, None) => one.tick < other.tick,

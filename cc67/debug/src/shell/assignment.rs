@@ -1,4 +1,4 @@
-//! `place = value` and what C writes shorter: `n += 1`, `n++`.
+//! `place = value` and its short forms in C: `n += 1`, `n++`.
 
 /// An assignment.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -7,12 +7,12 @@ pub(crate) struct Assignment {
     pub(crate) place: String,
     /// Its new value, an expression.
     pub(crate) value: String,
-    /// Its result is the old value: `n++`.
+    /// True if its result is the old value: `n++`.
     pub(crate) is_postfix: bool,
 }
 
 impl Assignment {
-    /// The assignment that a text is; `None` for an expression that assigns nothing.
+    /// Parses a text as an assignment; `None` for an expression that is not one.
     pub(crate) fn of(text: &str) -> Option<Self> {
         let text = text.trim();
         for (sign, operator) in [("++", '+'), ("--", '-')] {

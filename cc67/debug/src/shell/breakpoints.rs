@@ -7,7 +7,7 @@ use cc67_host::Target;
 use super::Shell;
 use crate::debugger::{Breakpoint, BreakpointKind, Debugger, WatchedAccess, file_name};
 
-/// The width of the column with the types, unless one is longer.
+/// The minimum width of the column with the types.
 const TYPE_WIDTH: usize = 14;
 
 fn type_of(breakpoint: &Breakpoint) -> &'static str {
@@ -22,7 +22,7 @@ fn type_of(breakpoint: &Breakpoint) -> &'static str {
 }
 
 impl<T: Target> Shell<T> {
-    /// The breakpoints, or the watchpoints alone, as a table.
+    /// The breakpoints, or only the watchpoints, as a table.
     pub(super) fn table(&self, only_watchpoints: bool) -> String {
         let is_meant = |breakpoint: &&Breakpoint| {
             let is_watchpoint =
@@ -94,7 +94,7 @@ impl<T: Target> Shell<T> {
     }
 }
 
-/// The place of an instruction, as the table has it.
+/// The location of an instruction, in the form of the table.
 fn place_in_words<T: Target>(debugger: &Debugger<T>, address: u32) -> String {
     let place = debugger.place(address);
     place.map_or_else(String::new, |place| {

@@ -43,7 +43,7 @@ impl<T: Target> Shell<T> {
         Ok(format!("{number}: {slash}{expression} = {cast}{}\n", shown.text))
     }
 
-    /// The text of the expressions that are shown at every stop, as far as they have values there.
+    /// The text of the expressions that are shown at every stop, for those that have values there.
     pub(super) fn shown_all(&mut self) -> String {
         let rows = self.displays.clone();
         let shown = rows
@@ -52,7 +52,7 @@ impl<T: Target> Shell<T> {
         shown.collect()
     }
 
-    /// The expressions that are shown at every stop.
+    /// The list of the expressions that are shown at every stop.
     pub(super) fn displayed(&self) -> String {
         if self.displays.is_empty() {
             return "There are no auto-display expressions now.\n".to_owned();

@@ -1,4 +1,4 @@
-//! Values that were shown and variables of the debugger, as expressions name them: `$3`, `$`, `$$2`, `$count`.
+//! Values that were shown, and convenience variables, by their names in expressions: `$3`, `$`, `$$2`, `$count`.
 
 use std::collections::BTreeMap;
 
@@ -9,17 +9,17 @@ use crate::debugger::{DebugError, ShownVariable};
 pub(crate) struct KeptValue {
     /// Its text.
     pub(crate) text: String,
-    /// The C expression of it, if there is one.
+    /// Its C expression, if there is one.
     literal: Option<String>,
 }
 
 impl KeptValue {
-    /// The value of a variable that has none.
+    /// The value of a variable that was never set.
     fn void() -> Self {
         Self { text: "void".to_owned(), literal: None }
     }
 
-    /// A value as it is shown.
+    /// A value as it was shown.
     pub(crate) fn of(shown: &ShownVariable) -> Self {
         Self { text: format!("{}{}", shown.cast, shown.text), literal: shown.literal.clone() }
     }
@@ -33,7 +33,7 @@ pub(crate) struct ShownValues {
 }
 
 impl ShownValues {
-    /// Keeps a value; its number, counted from 1.
+    /// Keeps a value; returns its number, counted from 1.
     pub(crate) fn keep(&mut self, value: KeptValue) -> usize {
         self.values.push(value);
         self.values.len()
@@ -49,7 +49,7 @@ impl ShownValues {
         self.variables.insert(name.to_owned(), value);
     }
 
-    /// The value that an expression is if it is nothing but the name of one.
+    /// The value of an expression that consists only of such a name.
     ///
     /// # Errors
     /// There is no such value.
@@ -84,10 +84,10 @@ impl ShownValues {
         Ok(self.variables.get(word).cloned().unwrap_or_else(KeptValue::void))
     }
 
-    /// An expression with values in place of their names; `pc` is the address of the present instruction.
+    /// An expression with the names replaced by their values; `pc` is the address of the present instruction.
     ///
     /// # Errors
-    /// There is no such value, or C cannot write it.
+    /// There is no such value, or C has no notation for it.
     pub(crate) fn replaced(&self, expression: &str, pc: Option<u32>) -> Result<String, DebugError> {
         let mut out = String::new();
         let mut quote = None;

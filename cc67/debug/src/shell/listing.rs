@@ -5,22 +5,22 @@ use cc67_host::Target;
 use super::Shell;
 use crate::debugger::{DebugError, file_name};
 
-/// Lines that `list` shows.
+/// The number of lines that `list` shows.
 const LINES: u32 = 10;
-/// Lines that it shows before the one that it is about.
+/// The number of lines that it shows before the requested one.
 const BEFORE: u32 = 5;
 
 /// The lines that were shown last.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ListedLines {
-    /// The first of them; the line with which the next begins if none was shown.
+    /// The first of these lines; if none was shown, the line with which the next listing begins.
     first: u32,
-    /// The line after the last of them.
+    /// The line after the last of these lines.
     next: u32,
 }
 
 impl<T: Target> Shell<T> {
-    /// The next lines are those around the present one.
+    /// Makes the next listing show the lines around the present one.
     pub(super) fn list_around_present(&mut self) {
         if let Some(place) = self.debugger.present() {
             let first = place.line.saturating_sub(BEFORE).max(1);
@@ -64,7 +64,7 @@ impl<T: Target> Shell<T> {
         Ok(out)
     }
 
-    /// The line of a place.
+    /// The line of a location.
     fn line_of(&self, place: &str) -> Result<u32, DebugError> {
         let place = place.trim();
         let (file, name) = place.rsplit_once(':').map_or((None, place), |(file, name)| (Some(file), name));

@@ -9,14 +9,14 @@ use kmotiondef::GuestAddr;
 use super::Shell;
 use crate::debugger::{DebugError, Debugger};
 
-/// Bytes that a line shows, unless they are single ones.
+/// The number of bytes per line, except for single bytes.
 const LINE: u32 = 16;
-/// Most units that one command shows.
+/// The maximum number of units that one command shows.
 const MOST: u32 = 4096;
-/// Most characters of a string.
+/// The maximum number of characters of a string.
 const CHARACTERS: u32 = 200;
 
-/// The form in which memory is shown, and where the next begins.
+/// The form in which memory is shown, and the address at which the next command continues.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MemoryForm {
     letter: char,
@@ -30,7 +30,7 @@ impl Default for MemoryForm {
     }
 }
 
-/// The command's part after the slash: how many, of what size, in which form.
+/// The part of the command after the slash: count, size and format.
 struct MemoryRequest {
     count: u32,
     form: MemoryForm,
@@ -65,7 +65,7 @@ impl MemoryRequest {
 }
 
 impl<T: Target> Shell<T> {
-    /// `x/NFU EXPRESSION`, and without an expression the memory after that which was shown last.
+    /// `x/NFU EXPRESSION`; without an expression, the memory after the part that was shown last.
     pub(super) fn memory(&mut self, format: &str, expression: &str) -> Result<String, DebugError> {
         let MemoryRequest { count, mut form } = MemoryRequest::of(format, self.memory_form)?;
         let address = match expression {
@@ -92,7 +92,7 @@ impl<T: Target> Shell<T> {
         Ok(text)
     }
 
-    /// The address that an expression is: that of an array or a function, otherwise its value.
+    /// The address for an expression: the address of an array or a function, otherwise its value.
     fn address_of(&mut self, expression: &str) -> Result<u32, DebugError> {
         let replaced = self.replaced(expression)?;
         let value = self.debugger.evaluate(&replaced)?;
@@ -120,7 +120,7 @@ impl<T: Target> Shell<T> {
             bytes[..size as usize].copy_from_slice(&self.debugger.bytes(at, size));
             let bits = u64::from_le_bytes(bytes);
             let text = match number {
-                // Every unit of a column is as wide as the others.
+                // All units of a column have the same width.
                 NumberFormat::Hexadecimal => NumberFormat::Padded.text(bits, size, &symbol),
                 NumberFormat::Binary => format!("{bits:0width$b}", width = 8 * size as usize),
                 other => other.text(bits, size, &symbol),
@@ -156,7 +156,7 @@ impl<T: Target> Shell<T> {
         (self.instructions(address, count, u32::MAX), next)
     }
 
-    /// The instructions from an address on to another, at most `count` of them.
+    /// The instructions between two addresses, at most `count` of them.
     pub(super) fn instructions(&self, address: u32, count: u32, end: u32) -> String {
         let mut out = String::new();
         let here = self
@@ -172,7 +172,7 @@ impl<T: Target> Shell<T> {
     }
 }
 
-/// An address with the name of what is there.
+/// An address with the symbol at it.
 fn labelled<T: Target>(debugger: &Debugger<T>, address: u32) -> String {
     match symbol_at(debugger, address) {
         Some(name) => format!("{address:#x} <{name}>"),
@@ -184,7 +184,7 @@ fn symbol_at<T: Target>(debugger: &Debugger<T>, address: u32) -> Option<String> 
     debugger.programs().all().find_map(|(_, model)| model.symbol_at(address))
 }
 
-/// The instructions from an address on to another, each with its address.
+/// The instructions between two addresses, each with its address.
 fn disassembly<T: Target>(
     debugger: &Debugger<T>,
     address: u32,

@@ -1,4 +1,4 @@
-//! Looking: values, memory, calls, threads, source.
+//! Inspection: values, memory, calls, threads, source.
 
 use std::fmt::Write as _;
 
@@ -16,9 +16,9 @@ use crate::debugger::{
 };
 use crate::words::LineReader;
 
-/// Most registers in a line.
+/// The maximum number of registers per line.
 const COLUMNS: usize = 8;
-/// The message that there are none.
+/// The message that there are no locals.
 const NO_LOCALS: &str = "where locals are in code for the processor is not noted; `info registers` shows the \
                          registers, and variables outside functions have names";
 
@@ -50,7 +50,7 @@ impl<T: Target> Shell<T> {
         }
     }
 
-    /// An expression with values for `$1` and the like, and with `PLACE@COUNT` as C writes it.
+    /// An expression with `$1` and the like replaced by values, and `PLACE@COUNT` in C notation.
     pub(super) fn replaced(&mut self, expression: &str) -> Result<String, DebugError> {
         let frames = self.debugger.frames(self.debugger.context());
         let pc = frames.get(self.debugger.frame()).map(|frame| frame.address.get());
@@ -67,13 +67,13 @@ impl<T: Target> Shell<T> {
         self.debugger.extended(place, count)
     }
 
-    /// The number that an expression is.
+    /// The numeric value of an expression.
     pub(super) fn number_of(&mut self, expression: &str) -> Result<f64, DebugError> {
         let replaced = self.replaced(expression)?;
         self.debugger.number(&replaced)
     }
 
-    /// The value of an expression, of `$1` and the like, or of an assignment, which is made.
+    /// The value of an expression, of `$1` and the like, or of an assignment, which is executed.
     fn value_of(&mut self, expression: &str, format: Option<NumberFormat>) -> Result<KeptValue, DebugError> {
         if let Some(Assignment { place, value, is_postfix }) = Assignment::of(expression) {
             let old = self.value_of(&place, format);
@@ -99,7 +99,7 @@ impl<T: Target> Shell<T> {
         Ok(format!("${} = {text}\n", self.history.keep(value)))
     }
 
-    /// Gives a place of the program or a variable of the debugger a value.
+    /// Assigns a value to a place of the program or a convenience variable.
     fn assign(&mut self, place: &str, value: &str) -> Result<(), DebugError> {
         if let Some(name) = place.strip_prefix('$') {
             let value = self.value_of(value, None)?;
@@ -242,7 +242,7 @@ pub(super) fn format_of(rest: &str) -> (&str, &str) {
     (format, rest.trim())
 }
 
-/// The form of numbers that the letters after a slash mean; none without a letter.
+/// The number format for the letters after a slash; `None` without a letter.
 ///
 /// # Errors
 /// There is no such form.
@@ -320,7 +320,7 @@ pub(super) fn frame_text<T: Target>(debugger: &Debugger<T>, index: usize) -> Str
     }
 }
 
-/// A call as gdb writes it: `square (n=3) at a.c:5`; with its address where that is in the middle of a line.
+/// A call as gdb writes it: `square (n=3) at a.c:5`; with its address if that is in the middle of a line.
 fn located<T: Target>(debugger: &Debugger<T>, frame: &StackFrame, place: &CodePlace) -> String {
     let address = if frame.real == 0 { frame.address } else { frame.view.continues_at };
     let is_at_line =
@@ -336,7 +336,7 @@ fn frame_line<T: Target>(debugger: &Debugger<T>, index: usize) -> String {
     frame_text(debugger, index) + &source
 }
 
-/// The name of code that no program has: a function of the firmware, or its address.
+/// The name of code outside programs: a firmware function, or its address.
 fn name_of<T: Target>(debugger: &Debugger<T>, frame: &StackFrame) -> String {
     if let Some(name) = debugger.session().target().firmware_function(frame.address) {
         return format!("{name} () of the firmware");
@@ -381,7 +381,7 @@ fn threads<T: Target>(debugger: &Debugger<T>) -> String {
             waits.map_or(String::new(), |ending| format!(", waits for {}", ending.waits_for.join(", ")));
         let mark = if thread == debugger.thread() { '*' } else { ' ' };
         let frames = debugger.frames(context(thread));
-        // A function of the firmware, then the place in the program that has called it.
+        // A firmware function, then the position in the program that called it.
         let shown = frames.iter().position(|frame| frame.place.is_some()).map_or(1, |index| index + 1);
         let shown: Vec<_> = frames
             .iter()

@@ -1,4 +1,4 @@
-//! Boards that work, for what a debugger costs.
+//! Busy boards, to measure the cost of a debugger.
 
 use std::path::PathBuf;
 
@@ -7,13 +7,13 @@ use kmotiondef::limits::TIMEBASE;
 use kmotiondef::{ThreadId, Ticks};
 use runtime::MachineFile;
 
-/// The tick that ends after some seconds of board time.
+/// The tick that ends after a time in seconds.
 pub(crate) fn tick(seconds: f64) -> Ticks {
     Ticks::new((seconds / TIMEBASE).round() as u64)
 }
 
-/// A board in whose threads the programs run, from thread 1 on. Their sources are written to `folder`, where a debugger
-/// reads them.
+/// A board with the programs running in threads 1, 2, …. Their sources are written to `folder`, where a debugger reads
+/// them.
 pub(crate) fn board(folder: &PathBuf, machine: &str, programs: &[(&str, &str)]) -> Session {
     std::fs::create_dir_all(folder).expect("a folder");
     let mut setup = Setup::default();

@@ -10,7 +10,7 @@ use compiler::passes::Level;
 use kmotiondef::{ThreadId, Ticks};
 use runtime::Board;
 
-/// A folder for the sources of a test, which ends with it.
+/// A folder for the sources of a test, which is deleted at the end of the test.
 pub(crate) struct Folder(PathBuf);
 
 impl Folder {
@@ -25,7 +25,7 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // A folder that stays is the system's to clean up.
+        // The operating system cleans up a folder that remains.
         let _ = fs::remove_dir_all(&self.0);
     }
 }
@@ -46,7 +46,7 @@ pub(crate) fn shell(folder: &Folder, level: Level, programs: &[&str]) -> Shell<B
     Shell::new(debugger)
 }
 
-/// Returns the output of commands without board times; a refused command says why.
+/// Returns the output of commands without board times; a rejected command has its error message.
 pub(crate) fn session(level: Level, programs: &[&str], commands: &str) -> String {
     let folder = Folder::new();
     let mut shell = shell(&folder, level, programs);
@@ -68,7 +68,7 @@ pub(crate) fn session(level: Level, programs: &[&str], commands: &str) -> String
     lines.fold(String::new(), |text, line| text + &without_addresses(line) + "\n")
 }
 
-/// A line with a word in place of the addresses of programs, which depend on the code before them.
+/// A line with the addresses of programs replaced by a word, as they depend on the code before them.
 fn without_addresses(line: &str) -> String {
     let mut parts = line.split("0x800");
     let first = parts.next().unwrap_or_default().to_owned();
@@ -76,7 +76,7 @@ fn without_addresses(line: &str) -> String {
         .fold(first, |text, part| text + "ADDRESS" + part.trim_start_matches(|c: char| c.is_ascii_hexdigit()))
 }
 
-/// Checks the output of commands; blanks before its lines do not matter.
+/// Checks the output of commands; blanks at the beginning of lines are ignored.
 #[track_caller]
 pub(crate) fn check(level: Level, programs: &[&str], commands: &str, expect: &str) {
     let found = session(level, programs, commands);

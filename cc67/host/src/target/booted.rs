@@ -89,7 +89,7 @@ impl Silence {
 #[derive(Clone, Debug)]
 struct LoadedProgram {
     debug: DebugInfo,
-    /// The first and last addresses of its functions.
+    /// The start and end addresses of its functions.
     functions: BTreeMap<u32, u32>,
 }
 
