@@ -1,8 +1,8 @@
-//! A stimulus at a bench: the PC does its part itself, and a person is asked to do theirs.
+//! A stimulus at a bench: the PC's part is automatic, and a person is asked to do the rest.
 //!
-//! A controller has no model of a machine around it. Of a stimulus it takes the actions of the PC (commands, threads,
-//! answers, elements of `persist`), those of a person (`manual`), and expectations. Times count from the start of the
-//! programs. Conditions are looked at with each status record, so a level that lasts less than 50 ms may be missed.
+//! A controller has no model of a machine around it. From a stimulus it takes the actions of the PC (commands, threads,
+//! answers, elements of `persist`), manual actions (`manual`), and expectations. Times count from the start of the
+//! programs. Conditions are checked with each status record, so a level that lasts less than 50 ms may be missed.
 
 use std::collections::BTreeMap;
 use std::mem;
@@ -14,10 +14,10 @@ use runtime::stimulus::{
 
 /// The facts about a controller that conditions and expectations examine.
 pub(crate) trait BenchFacts {
-    /// Returns a value; `None` where it cannot be known.
+    /// Returns a value; `None` if it cannot be known.
     fn value(&self, subject: &Subject) -> Option<f64>;
 
-    /// Returns the level of a bit; `None` where it cannot be known.
+    /// Returns the level of a bit; `None` if it cannot be known.
     fn level(&self, bit: Bit) -> Option<bool>;
 
     /// Returns whether an axis is enabled.
@@ -27,14 +27,14 @@ pub(crate) trait BenchFacts {
     fn is_active(&self, thread: ThreadId) -> bool;
 }
 
-/// The facts about the board together with the lines that were printed.
+/// The facts about the board, together with the printed lines.
 struct BenchView<'a, F> {
     facts: &'a F,
     lines: &'a [String],
 }
 
 impl<F: BenchFacts> BenchView<'_, F> {
-    /// Returns the state that a condition is about; `None` where it cannot be known, and of anything else.
+    /// Returns the state that a condition tests; `None` if it cannot be known, and for other conditions.
     fn state(&self, condition: &Condition) -> Option<bool> {
         match condition {
             Condition::Bit(bit, _) => self.facts.level(*bit),
@@ -45,7 +45,7 @@ impl<F: BenchFacts> BenchView<'_, F> {
     }
 }
 
-/// Returns whether a change to this state is what a condition waits for.
+/// Returns whether a change to this state meets a condition.
 fn counts(condition: &Condition, state: bool) -> bool {
     match condition {
         Condition::Bit(_, edge) => edge.fits(state),
@@ -76,37 +76,37 @@ impl<F: BenchFacts> Facts for BenchView<'_, F> {
 /// The progress of a statement.
 #[derive(Debug, Default)]
 struct BenchProgress {
-    /// The state of its condition in the last look: a level, a thread's activity, the truth of a comparison.
+    /// The last observed state of its condition: a level, a thread's activity, the truth of a comparison.
     state: Option<bool>,
-    /// True once its condition has happened.
+    /// True once its condition has been met.
     has_happened: bool,
 }
 
-/// A stimulus under way at a bench.
+/// A stimulus in progress at a bench.
 #[derive(Debug, Default)]
 pub(crate) struct Bench {
     rules: Vec<Rule>,
     progress: Vec<BenchProgress>,
-    /// Statements that are due, by time and then in the order of planning.
+    /// Due statements, by time and then in the order in which they were scheduled.
     due: BTreeMap<(Cycles, u64), usize>,
     planned: u64,
-    /// All lines that were printed.
+    /// All printed lines.
     lines: Vec<String>,
-    /// The lines of `lines` that were compared with all conditions.
+    /// The number of `lines` that have been compared with all conditions.
     compared: usize,
 }
 
 /// An action that is due.
 #[derive(Debug, PartialEq)]
 pub(crate) enum BenchAct {
-    /// The PC or a person does something.
+    /// An action for the PC or a person.
     Act(Action),
     /// An expectation was not met.
     Unmet(String),
 }
 
 impl Bench {
-    /// Takes a stimulus.
+    /// Prepares a stimulus.
     ///
     /// # Errors
     /// The first statement that needs a model of the machine.
@@ -132,14 +132,14 @@ impl Bench {
         self.planned += 1;
     }
 
-    /// A console line has come.
+    /// Notes a console line.
     pub(crate) fn note_line(&mut self, line: &[u8]) {
         if !self.rules.is_empty() {
             self.lines.push(String::from_utf8_lossy(line).into_owned());
         }
     }
 
-    /// Looks at all conditions, and plans what has to follow.
+    /// Checks all conditions, and schedules the statements that follow.
     pub(crate) fn look(&mut self, now: Cycles, facts: &impl BenchFacts) {
         let fresh = mem::replace(&mut self.compared, self.lines.len());
         for index in 0..self.rules.len() {
@@ -158,18 +158,18 @@ impl Bench {
         }
     }
 
-    /// Returns whether the state of a statement's condition has changed to the one it waits for.
+    /// Returns whether the state of a statement's condition has changed to the awaited one.
     fn has_changed(&mut self, index: usize, facts: &impl BenchFacts) -> bool {
         let view = BenchView { facts, lines: &self.lines };
         let Trigger::When { condition, .. } = &self.rules[index].trigger else { return false };
         let state = view.state(condition);
-        // A comparison that is true from the beginning, and a thread that is active, count.
+        // A comparison that is true from the beginning counts, and so does a thread that is active.
         let first = matches!(condition, Condition::Becomes(_) | Condition::Starts(_)).then_some(false);
         let before = mem::replace(&mut self.progress[index].state, state).or(first);
         matches!((before, state), (Some(before), Some(state)) if before != state && counts(condition, state))
     }
 
-    /// Takes the next action that is due.
+    /// Takes the next due action.
     pub(crate) fn take_due(&mut self, now: Cycles, facts: &impl BenchFacts) -> Option<BenchAct> {
         loop {
             let entry = self.due.first_entry().filter(|entry| entry.key().0 <= now)?;
@@ -188,7 +188,7 @@ impl Bench {
         }
     }
 
-    /// Plans the next time of a statement that acts again and again; returns whether it acts now.
+    /// Schedules the next time of a repeated statement; returns whether it acts now.
     fn repeat(&mut self, index: usize, now: Cycles, facts: &impl BenchFacts) -> bool {
         let Trigger::Every { period, from, until, ref while_met } = self.rules[index].trigger else {
             return true;
@@ -202,7 +202,7 @@ impl Bench {
         is_so
     }
 
-    /// Examines an expectation; returns the message if it is not met.
+    /// Checks an expectation; returns the message if it is not met.
     fn unmet(&self, index: usize, now: Cycles, facts: &impl BenchFacts) -> Option<String> {
         let rule = &self.rules[index];
         let Action::Expect(expectation) = &rule.action else { return None };
@@ -214,7 +214,7 @@ impl Bench {
         (!seen.is_met).then(|| format!("{}: at {seconds:.3} s {}", rule.place, seen.text))
     }
 
-    /// Returns whether a person or the PC has still something to do at a certain time.
+    /// Returns whether actions of a person or the PC are still scheduled.
     pub(crate) fn has_plans(&self) -> bool {
         self.due.values().any(|index| {
             !matches!(self.rules[*index].trigger, Trigger::Every { .. })
@@ -222,7 +222,7 @@ impl Bench {
         })
     }
 
-    /// The run is over: returns the messages of expectations that are not met then.
+    /// Ends the run: returns the messages of expectations that are not met at its end.
     pub(crate) fn finish(&mut self, now: Cycles, facts: &impl BenchFacts) -> Vec<String> {
         let late = mem::take(&mut self.due).into_values();
         let at_end = (0..self.rules.len()).filter(|index| self.rules[*index].trigger == Trigger::End);
@@ -230,8 +230,8 @@ impl Bench {
         all.into_iter().filter_map(|index| self.unmet(index, now, facts)).collect()
     }
 
-    /// Returns the places of expectations that a controller does not check: those that hold over a time, and those of
-    /// values that no status record has.
+    /// Returns the positions of expectations that are not checked on a controller: expectations over a time, and those
+    /// for values that are not in the status record.
     pub(crate) fn unchecked(&self, facts: &impl BenchFacts) -> Vec<String> {
         let is_unchecked = |rule: &&Rule| match (&rule.trigger, &rule.action) {
             (Trigger::Always { .. } | Trigger::Within { .. }, _) => true,
@@ -242,7 +242,7 @@ impl Bench {
     }
 }
 
-/// Returns whether a controller shows what an expectation is about.
+/// Returns whether the values of an expectation are known on a controller.
 fn is_known(expectation: &Expectation, facts: &impl BenchFacts) -> bool {
     match &expectation.predicate {
         Predicate::Value { subject, .. } => facts.value(subject).is_some(),
@@ -250,7 +250,7 @@ fn is_known(expectation: &Expectation, facts: &impl BenchFacts) -> bool {
     }
 }
 
-/// The reason why a statement cannot be had at a bench; `None` if it can.
+/// The reason why a statement cannot be used at a bench; `None` if it can.
 fn refusal(rule: &Rule) -> Option<String> {
     if let Trigger::When { condition: Condition::UartSent(_), .. } = rule.trigger {
         return Some("the PC does not hear the serial port of a controller".to_owned());
@@ -310,7 +310,7 @@ mod tests {
         Cycles::new(seconds * Cycles::PER_SECOND.get())
     }
 
-    /// The texts of the requests to a person that are due.
+    /// The texts of the due requests to a person.
     fn asked(bench: &mut Bench, at: i64, facts: &Known) -> Vec<String> {
         bench.look(seconds(at), facts);
         std::iter::from_fn(|| bench.take_due(seconds(at), facts))

@@ -4,10 +4,10 @@ use std::time::{Duration, Instant};
 
 use kmotiondef::Ticks;
 
-/// Nanoseconds of a tick: 90 µs.
+/// The length of a tick in nanoseconds: 90 µs.
 const TICK_NANOSECONDS: u128 = 90_000;
 
-/// Returns the present moment.
+/// Returns the present time.
 #[expect(clippy::disallowed_methods, reason = "the time of a real board is that of the clock")]
 pub(crate) fn now() -> Instant {
     Instant::now()
@@ -16,13 +16,13 @@ pub(crate) fn now() -> Instant {
 /// Board time, which passes by itself.
 #[derive(Debug)]
 pub(crate) struct PassingTime {
-    /// The moment of tick 0.
+    /// The time of tick 0.
     pub(crate) origin: Instant,
-    /// The last tick that was over at the end of the last call.
+    /// The last tick that was complete at the end of the last call.
     pub(crate) tick: Ticks,
-    /// The moment at which the status record is due.
+    /// The time at which the status record is due.
     pub(crate) next_status: Instant,
-    /// The moment of the last console line.
+    /// The time of the last console line.
     pub(crate) heard: Instant,
 }
 
@@ -32,13 +32,13 @@ impl PassingTime {
         Self { origin: now, tick: Ticks::new(0), next_status: now, heard: now }
     }
 
-    /// The moment at which a tick is over.
+    /// The time at which a tick is complete.
     pub(crate) fn moment_of(&self, tick: Ticks) -> Option<Instant> {
         let nanoseconds = u128::from(tick.get()) * TICK_NANOSECONDS;
         self.origin.checked_add(Duration::from_nanos(u64::try_from(nanoseconds).ok()?))
     }
 
-    /// Time has passed by itself.
+    /// Updates the present tick.
     pub(crate) fn note(&mut self) {
         let ticks = now().duration_since(self.origin).as_nanos() / TICK_NANOSECONDS;
         self.tick = Ticks::new(u64::try_from(ticks).unwrap_or(u64::MAX));

@@ -1,9 +1,9 @@
-//! The acts of a PC for the requests of programs, as commands of a controller.
+//! The actions of the PC for requests of programs, as commands to a controller.
 
 use cc67_wire::{Client, WireError};
 use runtime::RemoteBoard;
 
-/// A controller for the PC that answers its requests.
+/// A controller, as seen by the PC that answers its requests.
 pub(crate) struct Commands<'a>(pub(crate) &'a mut Client);
 
 impl RemoteBoard for Commands<'_> {

@@ -1,4 +1,4 @@
-//! A controller that answers, before it is given programs.
+//! A connected controller, before programs are loaded.
 
 use cc67_host::{HostError, Session, Setup};
 use cc67_wire::{Address, Client, Progress, WireError};
@@ -11,7 +11,7 @@ use kmotiondef::boards::TargetBoard;
 use crate::controller::Controller;
 use crate::terms::LoadTerms;
 
-/// A controller that answers, before it is given programs.
+/// A connected controller, before programs are loaded.
 #[derive(Debug)]
 pub struct ControllerLink(pub(crate) Client);
 
@@ -19,24 +19,24 @@ impl ControllerLink {
     /// Connects to the controller at an address.
     ///
     /// # Errors
-    /// There is none, it may not be opened, or it does not answer.
+    /// There is no controller at the address, access is denied, or it does not answer.
     pub fn open(address: &Address) -> Result<Self, WireError> {
         Client::connect(address).map(Self)
     }
 
-    /// Returns the controller's own words for its firmware.
+    /// Returns the version text of the controller's firmware.
     #[must_use]
     pub fn version(&self) -> &str {
         self.0.version()
     }
 
-    /// Returns the place of the controller, for messages.
+    /// Returns the location of the controller, for messages.
     #[must_use]
     pub fn place(&self) -> &str {
         self.0.place()
     }
 
-    /// Returns the board whose firmware this is; `None` for a version that is not known.
+    /// Returns the board of this firmware; `None` for an unknown version.
     #[must_use]
     pub fn board(&self) -> Option<&'static TargetBoard> {
         TargetBoard::of_version(self.version().trim_end())
@@ -50,15 +50,14 @@ impl ControllerLink {
         Options { firmware, target: CodeTarget::C67x, ..Options::default() }
     }
 
-    /// Loads the programs of a setup and starts those that should be started.
+    /// Loads the programs of a setup, and starts those marked as started.
     ///
-    /// Of the setup the controller takes the programs, the values of `persist.UserData`, the PC's files, and of the stimulus
-    /// what a person and the PC do. `progress` is
-    /// called after each piece of a download.
+    /// From the setup, the controller takes the programs, the values of `persist.UserData`, the PC's files, and the
+    /// stimulus's actions of a person and the PC. `progress` is called after each block of a download.
     ///
     /// # Errors
-    /// A program is refused, a value is not in `persist.UserData`, the stimulus needs a model of the machine, or the link
-    /// fails.
+    /// A program is rejected, a value is not in `persist.UserData`, the stimulus needs a model of the machine, or the
+    /// link fails.
     pub fn session(
         self,
         setup: Setup,

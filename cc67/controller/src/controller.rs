@@ -35,19 +35,19 @@ use crate::seen::SeenMemory;
 use crate::terms::{LoadTerms, ProgramStart};
 use crate::threads::BoardThreads;
 
-/// The longest time that a call waits for the console before it looks at something else.
+/// The longest time that a call waits for the console before it does other work.
 const LONGEST_WAIT: Duration = Duration::from_millis(10);
-/// Console lines that a program has printed before its end come within this time.
+/// The time within which the last console lines of a program come after its end.
 const SILENCE: Duration = Duration::from_millis(200);
-/// The longest time that the last lines are waited for.
+/// The longest time to wait for the last lines.
 const LAST_LINES: Duration = Duration::from_secs(5);
 
-/// A receiver of the progress after each piece of a download.
+/// A receiver of the progress after each block of a download.
 type ProgressSink = Box<dyn FnMut(ThreadId, Progress) + Send>;
 
 /// The terms of a load.
 struct Loading {
-    /// The version of the firmware that sources are linked for.
+    /// The version of the firmware for which sources are linked.
     linked_for: String,
     terms: LoadTerms,
     progress: ProgressSink,
@@ -61,20 +61,20 @@ pub struct Controller {
     time: PassingTime,
     /// The last status record.
     status: Option<Status>,
-    /// Memory as far as it is known.
+    /// The known contents of memory.
     seen: SeenMemory,
     threads: BoardThreads,
     requests: RequestServer,
-    /// Events that wait for the next step.
+    /// Events for the next step.
     pending: Vec<EventKind>,
     remarks: FileRemarks,
     recording: Option<BoardRecording>,
     sampling: Option<Sampling>,
-    /// The stimulus, of which a person and the PC do their parts.
+    /// The stimulus, performed by a person and the PC.
     bench: Bench,
-    /// The status record has been read since the bench looked at it.
+    /// True if the status record has been read since the bench last checked it.
     is_fresh: bool,
-    /// The reason why the controller cannot be reached any more.
+    /// The reason why the controller can no longer be reached.
     lost: Option<String>,
 }
 
@@ -117,7 +117,7 @@ impl Controller {
         }
     }
 
-    /// Gives programs on the board the files and the answers of a PC; boxes without an answer stay open.
+    /// Provides the files and answers of a PC for programs on the board; boxes without an answer stay open.
     pub(crate) fn serve(&mut self, files: Box<dyn HostFiles>, answers: Option<Answers>) {
         let files = Files::new(files, self.remarks.clone());
         self.client.get_mut().serve_files(Box::new(files));
@@ -125,7 +125,7 @@ impl Controller {
         self.requests.leave_boxes_open();
     }
 
-    /// Lets a person and the PC do what a stimulus says.
+    /// Starts a stimulus, whose actions are performed by a person and the PC.
     ///
     /// # Errors
     /// A statement needs a model of the machine.
@@ -140,16 +140,16 @@ impl Controller {
         self.status.as_ref()
     }
 
-    /// Returns the board's own words for its firmware.
+    /// Returns the version text of the board's firmware.
     #[must_use]
     pub fn version(&self) -> String {
         self.client.borrow().version().to_owned()
     }
 
-    /// Notes what runs already, stores the values, loads the programs, and starts those that should be started.
+    /// Notes the threads that already run, stores the values, loads the programs, and starts those marked as started.
     ///
     /// # Errors
-    /// A program is refused, a value is not in `persist.UserData`, or the link fails.
+    /// A program is rejected, a value is not in `persist.UserData`, or the link fails.
     pub(crate) fn begin(
         &mut self,
         programs: &[UserProgram],
@@ -175,7 +175,7 @@ impl Controller {
         Ok(())
     }
 
-    /// Takes up a failure: of the link for good, of anything else as an event.
+    /// Records a failure: a lost link permanently, any other as an event.
     fn note_error(&mut self, error: &WireError) {
         let text = error.to_string();
         if error.is_disconnected() || matches!(error, WireError::Silent { .. }) {
@@ -187,7 +187,7 @@ impl Controller {
         }
     }
 
-    /// Answers the request to the PC in these elements of `persist.UserData`, if there is one.
+    /// Answers a request to the PC in these elements of `persist.UserData`, if there is one.
     fn answer(&mut self, words: [u32; 8]) {
         match self.requests.serve(&mut Commands(self.client.get_mut()), words) {
             Ok(said) => self.pending.extend(said.into_iter().map(EventKind::Host)),
@@ -195,7 +195,7 @@ impl Controller {
         }
     }
 
-    /// Waits for the console until a moment.
+    /// Waits for the console until a given time.
     fn wait(&mut self, until: Instant) {
         let pause = until.saturating_duration_since(now());
         if self.lost.is_some() {
@@ -205,7 +205,7 @@ impl Controller {
         }
     }
 
-    /// Hands over what has come.
+    /// Passes on the received events.
     fn deliver(&mut self, events: EventSink<'_>) {
         let at = self.now();
         let lines = self.client.get_mut().take_console();
@@ -231,7 +231,7 @@ impl Controller {
             Ok(lines) => {
                 self.pending.extend(lines.into_iter().map(|line| EventKind::Reply(line.into_bytes())));
             }
-            // The board's own words come as a line of its console.
+            // The board's message arrives as a console line.
             Err(WireError::Refused { message, .. }) => {
                 self.pending.push(EventKind::ConsoleLine(message.into_bytes()));
             }
@@ -484,7 +484,7 @@ impl Target for Controller {
 
     fn receive(&mut self, bytes: &[u8]) {
         let bytes = match bytes {
-            // The beginning of a line that is not echoed.
+            // The prefix of a line that is not echoed.
             [0x1b, 1, line @ ..] => line,
             line => line,
         };
@@ -506,7 +506,7 @@ impl Target for Controller {
     }
 
     fn is_in_command(&self) -> bool {
-        // Commands of several lines are refused by the client.
+        // The client rejects commands of several lines.
         false
     }
 
@@ -515,7 +515,7 @@ impl Target for Controller {
     }
 
     fn tap_wire(&mut self) {
-        // The link is that of this connection: nothing is there for another.
+        // The link belongs to this connection: there is none for another PC.
     }
 
     fn take_wire(&mut self) -> Vec<u8> {

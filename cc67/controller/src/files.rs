@@ -11,11 +11,11 @@ pub(crate) struct FileRemarks(Arc<Mutex<Vec<String>>>);
 
 impl FileRemarks {
     fn all(&self) -> MutexGuard<'_, Vec<String>> {
-        // A list of texts is whole at any time.
+        // A list of texts is consistent at all times.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns those that have come since the last call.
+    /// Takes the remarks since the last call.
     pub(crate) fn take(&self) -> Vec<String> {
         std::mem::take(&mut *self.all())
     }
@@ -29,7 +29,7 @@ pub(crate) struct Files {
 }
 
 impl Files {
-    /// Serves files, and reports through `remarks` what cannot be done.
+    /// Serves files, and reports failures through `remarks`.
     pub(crate) fn new(files: Box<dyn HostFiles>, remarks: FileRemarks) -> Self {
         Self { server: FileServer::new(files), remarks }
     }

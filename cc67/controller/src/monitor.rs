@@ -1,8 +1,8 @@
 //! A small program of cc67 in a free thread of the board, for requests for which its firmware has no command: reading
 //! memory, and pausing a thread.
 //!
-//! It runs for the time of a request alone. The request is stored in its memory, as a download is; its answer comes in
-//! the last 258 words of the gather buffer, which a recording reaches when it is nearly full.
+//! It runs only for the duration of a request. The request is stored in its memory in the manner of a download; its
+//! answer comes in the last 258 words of the gather buffer, which a recording reaches only when it is nearly full.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
@@ -19,18 +19,18 @@ use crate::resident::ResidentProgram;
 
 const PROGRAM: ResidentProgram =
     ResidentProgram { name: "cc67-monitor.c", source: include_str!("monitor.c"), title: "cc67's monitor" };
-/// Words of memory for which one answer has room.
+/// The maximum number of memory words in an answer.
 const ROOM: u32 = 256;
 /// The answer in the gather buffer: the number of the request, a sum, the words.
 pub(crate) const REPLY: u32 = 2 * MAX_GATHER_DATA as u32 - ROOM - 2;
-/// Bytes of memory that are read at once, and their alignment.
+/// The number of bytes that are read at once, and their alignment.
 const BLOCK: u32 = 256;
-/// The age up to which bytes that were read are shown again.
+/// The age up to which bytes are reused without reading them again.
 const FRESH: Duration = Duration::from_millis(50);
-/// The longest time of a request.
+/// The time limit of a request.
 const WITHIN: Duration = Duration::from_secs(3);
 
-/// The request of a task, with the number by which `monitor.c` knows it.
+/// A request, with its number in `monitor.c`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Task {
     /// Reads words of memory.
@@ -39,12 +39,12 @@ enum Task {
     Sum(GuestAddr, u32),
     /// Pauses a thread.
     Pause(ThreadId),
-    /// Lets it continue.
+    /// Resumes a thread.
     Resume(ThreadId),
 }
 
 impl Task {
-    /// The request as the monitor reads it: kind, address or thread, count.
+    /// The request in the monitor's format: kind, address or thread, count.
     const fn words(self) -> [u32; 3] {
         match self {
             Self::Read(address, words) => [0, address.get(), words],
@@ -54,7 +54,7 @@ impl Task {
         }
     }
 
-    /// Words of memory in the answer.
+    /// The number of memory words in the answer.
     const fn room(self) -> u32 {
         if let Self::Read(_, words) = self { words } else { 0 }
     }
@@ -70,55 +70,55 @@ struct Resident {
     serial: u32,
 }
 
-/// The monitor of a board, which is loaded for its first request.
+/// The monitor of a board; it is loaded for its first request.
 #[derive(Debug)]
 pub(crate) struct Monitor {
-    /// The options of its compilation.
+    /// The options with which it is compiled.
     options: Options,
-    /// The version of the firmware that it is linked for.
+    /// The version of the firmware for which it is linked.
     linked_for: String,
-    /// A view has allowed it.
+    /// True if a view has allowed it.
     is_allowed: bool,
     resident: Option<Resident>,
-    /// The thread that it was loaded into last, once for a message.
+    /// The thread into which it was last loaded, until that has been reported.
     announced: Option<ThreadId>,
-    /// Memory that was read a moment ago, in blocks.
+    /// Recently read memory, in blocks.
     recent: BTreeMap<u32, (Instant, Vec<u8>)>,
 }
 
 impl Monitor {
-    /// A monitor that is not allowed yet, compiled with `options`.
+    /// Creates a monitor that is not allowed yet and will be compiled with `options`.
     pub(crate) fn new(options: Options, linked_for: String) -> Self {
         let (resident, announced) = (None, None);
         Self { options, linked_for, is_allowed: false, resident, announced, recent: BTreeMap::new() }
     }
 
-    /// Allows it to be loaded.
+    /// Allows the monitor to be loaded.
     pub(crate) const fn allow(&mut self) {
         self.is_allowed = true;
     }
 
-    /// The options of programs for this board, and the version of the firmware that they are linked for.
+    /// The options for programs for this board, and the version of the firmware for which they are linked.
     pub(crate) fn options(&self) -> (&Options, &str) {
         (&self.options, &self.linked_for)
     }
 
-    /// Returns whether it may be used.
+    /// Returns whether the monitor may be used.
     pub(crate) const fn is_allowed(&self) -> bool {
         self.is_allowed
     }
 
-    /// Its thread gets another program.
+    /// Notes that another program is loaded into its thread.
     pub(crate) fn forget(&mut self, thread: ThreadId) {
         self.resident = self.resident.filter(|resident| resident.thread != thread);
     }
 
-    /// Returns the thread into which it was just loaded, once.
+    /// Returns once the thread into which it was loaded.
     pub(crate) const fn take_announced(&mut self) -> Option<ThreadId> {
         self.announced.take()
     }
 
-    /// Reads memory; `free` are the threads that it may use.
+    /// Reads memory; `free` are the threads that the monitor may use.
     pub(crate) fn read(
         &mut self,
         board: &mut Client,
@@ -141,7 +141,7 @@ impl Monitor {
         Ok(())
     }
 
-    /// Forgets what was read: the memory has changed.
+    /// Forgets the recently read memory, because it has changed.
     pub(crate) fn note_change(&mut self) {
         self.recent.clear();
     }
@@ -158,7 +158,7 @@ impl Monitor {
         Ok(self.execute(board, free, request)?.sum == sum_of(bytes))
     }
 
-    /// Pauses a thread, or lets it continue.
+    /// Pauses or resumes a thread.
     pub(crate) fn pause(
         &mut self,
         board: &mut Client,
@@ -190,12 +190,12 @@ impl Monitor {
         if answer.serial == serial {
             return Ok(answer);
         }
-        // Somebody has stopped it, or has loaded another program there.
+        // The monitor was stopped, or another program was loaded into its thread.
         self.resident = None;
         Err(HostError::Link(format!("cc67's monitor in thread {} does not answer", resident.thread)))
     }
 
-    /// Compiles and loads it.
+    /// Compiles and loads the monitor.
     fn load(&mut self, board: &mut Client, free: &[ThreadId]) -> Result<Resident, HostError> {
         let Some(thread) = free.last().copied() else {
             return Err(HostError::Link(
@@ -243,7 +243,7 @@ fn sum_of(bytes: &[u8]) -> u32 {
     bytes.iter().fold(0, |sum, byte| sum.wrapping_mul(31).wrapping_add(u32::from(*byte)))
 }
 
-/// Returns whether the monitor may read an address: registers, whose reading may do something, and flash are left out.
+/// Returns whether the monitor may read an address: not registers, where a read may have side effects, and not flash.
 pub(crate) fn is_memory(address: GuestAddr) -> bool {
     [IRAM, SDRAM]
         .iter()

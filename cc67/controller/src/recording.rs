@@ -1,7 +1,8 @@
-//! Recordings by the board's own data recorder: variables, once in each servo tick, read when the run is over.
+//! Recordings by the board's own data recorder: variables in each servo tick, read after the run.
 //!
-//! The recorder stores doubles from an address on. Recordings use the gather buffer from its third megabyte on; what is before is left
-//! to programs, and before the answers of the [monitor](crate::monitor). Source: gather-persist-console.md section 1.
+//! The recorder stores doubles from a given address on. Recordings use the gather buffer from its third megabyte on;
+//! the part before is left to programs, and the end to the answers of the [monitor](crate::monitor). Source:
+//! gather-persist-console.md section 1.
 
 use cc67_wire::{Client, WireError};
 use kmotiondef::limits::{MAX_GATHER_DATA, MAX_GATHER_VALUES};
@@ -15,14 +16,14 @@ use crate::monitor;
 
 /// The first double of a recording in the gather buffer.
 const FIRST: u32 = MAX_GATHER_DATA as u32 / 4;
-/// The end of the doubles that a recording may take.
+/// The end of the range of doubles for a recording.
 const END: u32 = monitor::REPLY / 2;
-/// A pointer of the recorder at which it is idle, above the end of any recording.
+/// A pointer value with which the recorder is idle, above the end of any recording.
 const IDLE: u32 = 0xffff_fffc;
-/// Samples of a recording that are read at once.
+/// The number of samples of a recording that are read at once.
 const AT_ONCE: u32 = 64;
 
-/// The reason why something is not recorded.
+/// The reason why a quantity cannot be recorded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Unrecordable(pub(crate) String);
 
@@ -30,10 +31,10 @@ pub(crate) struct Unrecordable(pub(crate) String);
 #[derive(Debug)]
 pub(crate) struct BoardRecording {
     cells: Vec<RecordedCell>,
-    /// Cells that were requested; those after them are the enables of `axes`.
+    /// The number of requested cells; those after them are the enable flags of `axes`.
     requested: usize,
     axes: Vec<AxisId>,
-    /// Ticks from one sample to the next.
+    /// The number of ticks between samples.
     every: u64,
     /// The descriptor of the recorder.
     descriptor: GuestAddr,
@@ -41,29 +42,29 @@ pub(crate) struct BoardRecording {
     buffer: GuestAddr,
 }
 
-/// The variables at an instant.
+/// The variables at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct BoardSample {
     /// Servo ticks since the start.
     pub(crate) tick: u64,
-    /// The values that were requested.
+    /// The values of the requested quantities.
     pub(crate) values: Vec<f64>,
-    /// The axes that are enabled, a bit for each.
+    /// The enabled axes, one bit each.
     pub(crate) enabled: u16,
 }
 
 /// The end of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct RecordingEnd {
-    /// Samples that were taken.
+    /// The number of samples taken.
     pub(crate) samples: u32,
-    /// The buffer was full before the run was over.
+    /// True if the buffer was full before the end of the run.
     pub(crate) is_full: bool,
 }
 
 impl BoardRecording {
-    /// A recording of what is requested, on a board that has a variable of the tables at `place`, and its gather buffer at
-    /// `buffer`.
+    /// Creates a recording of the requested quantities on a board; `place` returns the board's address of a variable in
+    /// the tables, and `buffer` is the address of its gather buffer.
     ///
     /// # Errors
     /// A quantity is computed, or there are too many.
@@ -74,7 +75,7 @@ impl BoardRecording {
     ) -> Result<Self, Unrecordable> {
         let cell = |quantity: &Quantity| {
             let cell = quantity.cell().ok_or_else(|| Unrecordable(format!("`{quantity}`")))?;
-            // Expressions name variables where they are; items name them in the tables.
+            // Expressions name variables at their own addresses; items name them by their addresses in the tables.
             let address = if quantity.item().is_some() { place(cell.address) } else { cell.address };
             Ok(RecordedCell { address, ..cell })
         };
@@ -94,7 +95,7 @@ impl BoardRecording {
         Ok(Self { cells, requested, axes, every: request.every, descriptor: place(GATHER.address()), buffer })
     }
 
-    /// Samples for which there is room.
+    /// The maximum number of samples.
     pub(crate) fn capacity(&self) -> u32 {
         (END - FIRST) / self.cells.len().max(1) as u32
     }
@@ -107,7 +108,7 @@ impl BoardRecording {
         self.start().get() + self.capacity() * self.cells.len() as u32 * 8
     }
 
-    /// The descriptor of the recorder from its field `endptr` on, as a recording needs it.
+    /// The part of the recorder's descriptor that a recording needs, beginning with the field `endptr`.
     fn descriptor(&self) -> Vec<u8> {
         let mut bytes = self.end().to_le_bytes().to_vec();
         bytes.resize(Gather::LIST.offset() as usize - Gather::ENDPTR.offset() as usize, 0);
@@ -119,8 +120,8 @@ impl BoardRecording {
         bytes
     }
 
-    /// Begins to record with the next tick. A pointer is stored byte by byte from its lowest on; until its last byte is
-    /// there it is above the end, so the recorder is idle.
+    /// Begins to record with the next tick. A pointer is stored byte by byte, the lowest first; until its last byte is
+    /// stored it is above the end, so the recorder is idle.
     ///
     /// # Errors
     /// The board does not answer.
@@ -135,8 +136,8 @@ impl BoardRecording {
         board.store(self.descriptor.get(), &IDLE.to_le_bytes())
     }
 
-    /// Stops the recorder, and returns how far it has come; `head` is its descriptor as it is now. `None` if a program has
-    /// used it meanwhile.
+    /// Stops the recorder, and returns its progress; `head` is the present descriptor. `None` if a program has used the
+    /// recorder meanwhile.
     ///
     /// # Errors
     /// The board does not answer.
@@ -152,12 +153,12 @@ impl BoardRecording {
         Ok(Some(RecordingEnd { samples, is_full: samples == self.capacity() }))
     }
 
-    /// The descriptor's address, and how many bytes of it a recording uses.
+    /// The descriptor's address, and the number of its bytes that a recording uses.
     pub(crate) fn head(&self) -> (GuestAddr, usize) {
         (self.descriptor, Gather::ENDPTR.offset() as usize + self.descriptor().len())
     }
 
-    /// Reads samples, and hands over those that were requested.
+    /// Reads samples, and passes on those that were requested.
     ///
     /// # Errors
     /// The board does not answer.
@@ -173,7 +174,7 @@ impl BoardRecording {
             let count = AT_ONCE.min(samples - done);
             let read = board.gather(FIRST * 2 + done * words, count * words)?;
             for (index, sample) in (u64::from(done)..).zip(read.chunks(words as usize)) {
-                // The first sample is that of the first tick, whose number is 0.
+                // The first sample belongs to the first tick, whose number is 0.
                 if (index + 1).is_multiple_of(self.every) {
                     sink(self.sample(index, sample));
                 }
@@ -183,7 +184,7 @@ impl BoardRecording {
         Ok(())
     }
 
-    /// The sample of words of the gather buffer.
+    /// The sample in words of the gather buffer.
     fn sample(&self, tick: u64, words: &[u32]) -> BoardSample {
         let double = |words: &[u32; 2]| f64::from_bits(u64::from(words[1]) << 32 | u64::from(words[0]));
         let values: Vec<_> = words.as_chunks().0.iter().map(double).collect();
@@ -195,7 +196,7 @@ impl BoardRecording {
     }
 }
 
-/// The axis that a quantity belongs to.
+/// The axis of a quantity.
 fn axis_of(quantity: &Quantity) -> Option<AxisId> {
     AxisId::new(i32::try_from(quantity.item()?.axis()?).ok()?)
 }
@@ -220,7 +221,7 @@ mod tests {
         let sample = [words(2.5), words(2048.0), words(1.0)].concat();
         let expected = BoardSample { tick: 7, values: vec![2.5, 0.0], enabled: 0b10 };
         assert_eq!(recording.sample(7, &sample), expected);
-        // Three doubles a sample, in three quarters of a buffer of 1,000,000.
+        // Three doubles per sample, in three quarters of a buffer of 1,000,000.
         assert_eq!(recording.capacity(), 249_957);
     }
 

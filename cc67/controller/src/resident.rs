@@ -1,4 +1,5 @@
-//! Programs of cc67 in a free thread of the board: compiled for it, loaded, and given a request in their memory.
+//! Programs of cc67 in a free thread of the board: compiled for it, loaded, and controlled by a request in their
+//! memory.
 
 use std::path::Path;
 
@@ -10,15 +11,15 @@ use kmotiondef::ThreadId;
 
 use crate::image;
 
-/// The variable with the request in each of these programs.
+/// The variable for the request in each of these programs.
 const REQUEST: &str = "cc67_request";
 
 /// A program of cc67 for a board.
 #[derive(Clone, Debug)]
 pub(crate) struct ResidentProgram {
-    /// The name of its text.
+    /// The file name of its source.
     pub(crate) name: &'static str,
-    /// Its text.
+    /// Its source.
     pub(crate) source: &'static str,
     /// Its name in messages.
     pub(crate) title: &'static str,
@@ -26,7 +27,7 @@ pub(crate) struct ResidentProgram {
 
 impl ResidentProgram {
     /// Compiles it for a thread and loads it; returns the address of its request. `linked_for` is the version of the
-    /// firmware that the options have.
+    /// firmware in the options.
     ///
     /// # Errors
     /// The link fails, or the board has another firmware.

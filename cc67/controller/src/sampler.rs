@@ -1,8 +1,10 @@
-//! A small program of cc67 in a free thread of the board that samples variables, for a scope: about a thousand times a second.
+//! A small program of cc67 in a free thread of the board that samples variables for a scope, about a thousand times per
+//! second.
 //!
-//! The status record comes 20 times a second. The sampler copies variables to a ring of rows in the gather buffer, from its
-//! third megabyte on, where recordings are, too; the PC reads the rows with each status record. It ends by itself when
-//! the PC has not read for three seconds, so nothing of it is left on a board whose cable was pulled.
+//! The status record comes 20 times per second. The sampler copies variables to a ring of rows in the gather buffer, in
+//! the part from the third megabyte on that recordings also use; the PC reads the rows with each status record. The
+//! sampler ends by itself when the PC has not read for three seconds, so it does not keep running on a board whose
+//! cable was unplugged.
 
 use cc67_host::HostError;
 use cc67_wire::{Client, WireError};
@@ -17,26 +19,26 @@ use crate::resident::ResidentProgram;
 
 const PROGRAM: ResidentProgram =
     ResidentProgram { name: "cc67-sampler.c", source: include_str!("sampler.c"), title: "cc67's sampler" };
-/// The words in front of the ring in the gather buffer: rows that were written, and a count that the PC changes.
+/// The words before the ring in the gather buffer: the number of rows written, and a count that the PC changes.
 const HEAD: u32 = MAX_GATHER_DATA as u32 / 4 * 2;
 /// The first word of the ring.
 const RING: u32 = HEAD + 2;
-/// Doubles of the ring: rows of several seconds.
+/// The size of the ring in doubles: rows of several seconds.
 const ROOM: u32 = 1 << 16;
-/// Most variables.
+/// The maximum number of variables.
 const CELLS: usize = 32;
-/// The shortest interval in ticks: threads have the processor every second tick at best.
+/// The shortest interval in ticks: at best, threads have the processor every second tick.
 const SHORTEST: f64 = 10.0;
-/// Bytes a second that the rows may take on the link: a sixth of 300 KB/s.
+/// The limit for rows on the link, in bytes per second: a sixth of 300 KB/s.
 const BYTES_A_SECOND: f64 = 50_000.0;
-/// Bytes of a double as it is sent: two words of eight digits and a blank.
+/// The bytes of a double on the link: two words of eight digits and a blank.
 const BYTES: f64 = 18.0;
-/// Words that are read at once.
+/// The number of words that are read at once.
 const AT_ONCE: u32 = 2048;
 
 const _: () = assert!(RING + 2 * ROOM <= monitor::REPLY, "the ring ends before the answers of the monitor");
 
-/// The values at an instant; those that the sampler does not know are NaN.
+/// The values at one time; those that the sampler cannot read are NaN.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SampledRow {
     /// Seconds since power-up.
@@ -49,18 +51,18 @@ pub(crate) struct SampledRow {
 #[derive(Clone, Debug)]
 pub(crate) struct Sampler {
     thread: ThreadId,
-    /// The variables; `None` for quantities that are computed.
+    /// The variables; `None` for computed quantities.
     cells: Vec<Option<RecordedCell>>,
-    /// Seconds from one row to the next.
+    /// The interval between rows, in seconds.
     interval: f64,
-    /// Rows that were read or left out.
+    /// The number of rows that were read or skipped.
     done: u32,
     beat: u32,
 }
 
 impl Sampler {
-    /// A sampler of these quantities, on a board that has a variable of the tables at `place`; `None` if none of them is a
-    /// variable.
+    /// Creates a sampler of these quantities on a board; `place` returns the board's address of a variable in the
+    /// tables. `None` if none of the quantities is a variable.
     pub(crate) fn new(
         thread: ThreadId,
         quantities: &[Quantity],
@@ -83,17 +85,17 @@ impl Sampler {
         (count > 0).then_some(Self { thread, cells, interval, done: 0, beat: 0 })
     }
 
-    /// The thread that it is in.
+    /// The thread of the sampler.
     pub(crate) const fn thread(&self) -> ThreadId {
         self.thread
     }
 
-    /// Rows a second.
+    /// The number of rows per second.
     pub(crate) fn rate(&self) -> f64 {
         1.0 / self.interval
     }
 
-    /// Loads and starts it.
+    /// Loads and starts the sampler.
     ///
     /// # Errors
     /// The link fails.
@@ -113,7 +115,7 @@ impl Sampler {
         board.execute(&[self.thread])
     }
 
-    /// The request as `sampler.c` has it.
+    /// The request in the format of `sampler.c`.
     fn request(&self) -> Vec<u8> {
         let cells: Vec<_> = self.cells.iter().flatten().collect();
         let mut bytes = self.interval.to_le_bytes().to_vec();
@@ -127,17 +129,17 @@ impl Sampler {
         bytes
     }
 
-    /// Doubles of a row: the time, and the variables.
+    /// The number of doubles in a row: the time, and the variables.
     fn width(&self) -> u32 {
         self.cells.iter().flatten().count() as u32 + 1
     }
 
-    /// Rows of the ring.
+    /// The number of rows in the ring.
     fn rows(&self) -> u32 {
         ROOM / self.width()
     }
 
-    /// Reads the rows that were written since the last call, and keeps the sampler alive.
+    /// Reads the rows written since the last call, and keeps the sampler alive.
     ///
     /// # Errors
     /// The board does not answer.
@@ -145,7 +147,7 @@ impl Sampler {
         self.beat = self.beat.wrapping_add(1);
         board.set_gather(HEAD + 1, &[self.beat])?;
         let written = board.gather(HEAD, 1)?.first().copied().unwrap_or_default();
-        // What is overwritten soon is left out.
+        // Rows that will soon be overwritten are skipped.
         let oldest = written.saturating_sub(self.rows() * 3 / 4);
         self.done = self.done.max(oldest);
         let mut rows = Vec::new();
@@ -160,7 +162,7 @@ impl Sampler {
         Ok(rows)
     }
 
-    /// The row of words of the gather buffer.
+    /// The row in words of the gather buffer.
     fn row(&self, words: &[u32]) -> SampledRow {
         let double = |words: &[u32; 2]| f64::from_bits(u64::from(words[1]) << 32 | u64::from(words[0]));
         let mut doubles = words.as_chunks().0.iter().map(double);

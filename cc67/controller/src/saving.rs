@@ -1,4 +1,4 @@
-//! Saving to flash: what the controller starts with at its next power-up.
+//! Saving to flash: the state with which the controller starts at its next power-up.
 
 use cc67_host::{HostError, UserProgram};
 use cc67_wire::{Progress, Status, WireError};
@@ -8,12 +8,12 @@ use crate::connection::ControllerLink;
 use crate::controller::link;
 use crate::image;
 
-/// Whatever would be saved in a state that nobody wants at power-up.
+/// The state that should not be saved to flash for the next power-up.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Unsettled {
-    /// Threads that are active: their variables would be saved as they are in the middle of their work.
+    /// Active threads: their variables would be saved in the middle of their work.
     pub threads: Vec<ThreadId>,
-    /// Axes that are enabled: they are saved as enabled.
+    /// Enabled axes: they would be saved as enabled.
     pub axes: Vec<AxisId>,
 }
 
@@ -25,7 +25,7 @@ impl Unsettled {
         }
     }
 
-    /// Returns whether nothing is in the way.
+    /// Returns whether saving is safe.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.threads.is_empty() && self.axes.is_empty()
@@ -40,7 +40,7 @@ impl Unsettled {
 }
 
 impl ControllerLink {
-    /// Returns the threads and axes that have to rest before memory is saved.
+    /// Returns the threads and axes that must be at rest before memory is saved.
     ///
     /// # Errors
     /// The controller does not answer.
@@ -49,10 +49,10 @@ impl ControllerLink {
         Ok(Unsettled::of(&self.0.status()?, axes))
     }
 
-    /// Loads a program that was linked for the firmware `linked_for`, and does not start it.
+    /// Loads a program linked for the firmware `linked_for`, without starting it.
     ///
     /// # Errors
-    /// The program is refused, or the link fails.
+    /// The program is rejected, or the link fails.
     pub fn load(
         &mut self,
         program: &UserProgram,
@@ -64,11 +64,12 @@ impl ControllerLink {
         self.0.load(&image, is_forced, progress).map_err(link)
     }
 
-    /// Saves programs, `persist`, axes and coordinate system to the flash that the controller starts from. Of the threads
-    /// those of `startup` start by themselves then; `None` leaves that as it is. Takes about 7 s.
+    /// Saves programs, `persist`, axes and coordinate system to the flash from which the controller starts. The threads
+    /// in `startup` will start automatically at power-up, and no others; `None` leaves that setting unchanged. Takes
+    /// about 7 s.
     ///
     /// # Errors
-    /// The controller does not answer, or does not say that flash holds what memory holds.
+    /// The controller does not answer, or does not confirm that flash equals memory.
     pub fn save(&mut self, startup: Option<&[ThreadId]>) -> Result<(), WireError> {
         for thread in ThreadId::all().filter(|_| startup.is_some()) {
             self.0.set_startup(thread, startup.is_some_and(|threads| threads.contains(&thread)))?;

@@ -1,5 +1,5 @@
-//! Memory of the controller as far as it is known: what the status record shows of it, and elements of
-//! `persist.UserData` that were read.
+//! The known memory of the controller: the values in the status record, and the elements of `persist.UserData` that
+//! were read.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -15,9 +15,10 @@ use kmotiondef::variables::{
 use kmotiondef::{Axes, GuestAddr};
 use vm::memory::places::Places;
 
-/// Elements of `persist.UserData` that are read with each status record while a view needs them: all within a second.
+/// The number of elements of `persist.UserData` that are read with each status record while a view needs them: all
+/// within a second.
 const ELEMENTS_AT_ONCE: usize = 10;
-/// The converters' words at 0 V.
+/// The converters' value at 0 V.
 const ZERO: i32 = 2048;
 
 /// Known bytes by their addresses.
@@ -26,15 +27,15 @@ pub(crate) struct SeenMemory {
     bytes: BTreeMap<u32, u8>,
     /// True if memory was read since the last [call](Self::take_look).
     is_looked_at: Cell<bool>,
-    /// The element of `persist.UserData` that is read next for views.
+    /// The next element of `persist.UserData` to be read for views.
     next_element: usize,
-    /// The places of the board's firmware for the variables of the tables.
+    /// The addresses of the tables' variables in the board's firmware.
     places: Places,
     axes: Axes,
 }
 
 impl SeenMemory {
-    /// Knows nothing of a board yet; a firmware that is not known has its variables where the default one has them.
+    /// Creates an empty memory; the variables of an unknown firmware are assumed at the addresses of the default one.
     pub(crate) fn new(board: Option<&TargetBoard>) -> Self {
         let axes = board.map_or(Axes::default(), |board| board.axes);
         let board = board.filter(|board| !board.is_default());
@@ -43,7 +44,7 @@ impl SeenMemory {
         Self { bytes: BTreeMap::new(), is_looked_at: Cell::new(false), next_element: 0, places, axes }
     }
 
-    /// Returns the place of an address of the tables.
+    /// Returns the board's address for an address in the tables.
     pub(crate) fn place_of(&self, address: GuestAddr) -> GuestAddr {
         self.places.of(address)
     }
@@ -68,7 +69,7 @@ impl SeenMemory {
         self.note(self.place_of(object), bytes);
     }
 
-    /// Reads bytes from an address of the board on; `None` if one is unknown.
+    /// Reads bytes at an address of the board; `None` if one is unknown.
     pub(crate) fn read(&self, address: GuestAddr, bytes: &mut [u8]) -> Option<()> {
         for (at, byte) in (address.get()..).zip(bytes) {
             *byte = *self.bytes.get(&at)?;
@@ -87,7 +88,7 @@ impl SeenMemory {
         self.is_looked_at.take()
     }
 
-    /// Returns the next elements of `persist.UserData` to be read, the first and how many.
+    /// Returns the range of the next elements of `persist.UserData` to be read.
     pub(crate) fn next_elements(&mut self) -> Range<usize> {
         let first = self.next_element;
         let end = (first + ELEMENTS_AT_ONCE).min(N_USER_DATA_VARS);
@@ -95,7 +96,7 @@ impl SeenMemory {
         first..end
     }
 
-    /// Notes the objects that a status record shows.
+    /// Notes the objects in a status record.
     pub(crate) fn note_status(&mut self, status: &Status) {
         for axis in self.axes.iter() {
             let chan = chan(axis);
@@ -110,7 +111,7 @@ impl SeenMemory {
                 self.note_object(chan.field(field).address(), &value.to_le_bytes());
             }
         }
-        // A Kogna has inputs of two bytes next to each other.
+        // A Kogna has adjacent inputs of two bytes.
         let [first, second] = [0, 1].map(|index| self.place_of(ADC_BUFFER_IN.element(index).address()).get());
         let input_size = second.wrapping_sub(first).min(4) as usize;
         for index in 0..8 {

@@ -1,12 +1,12 @@
 //! The terms on which programs are loaded.
 
-/// The moment at which programs start.
+/// The time at which programs start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ProgramStart {
-    /// When all are loaded.
+    /// When all of them are loaded.
     #[default]
     AtOnce,
-    /// With the first call that lets time pass: a recording begins before.
+    /// With the first call that lets time pass: a recording can begin before.
     WithTime,
     /// With a later [`Session::start`](cc67_host::Session::start).
     ByCall,
@@ -15,11 +15,11 @@ pub enum ProgramStart {
 /// The terms on which programs are loaded into a controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LoadTerms {
-    /// Loads programs also where they were linked for another firmware.
+    /// Loads programs even if they were linked for another firmware.
     pub is_forced: bool,
-    /// The moment at which the programs that should start do so.
+    /// The time at which the programs marked as started begin.
     pub start: ProgramStart,
-    /// Compares the memory of the controller with the program after each load, by a program in a free thread.
+    /// Compares the memory of the controller with the program after each load, with a program in a free thread.
     pub verifies: bool,
     /// Allows [cc67's monitor](crate#the-monitor), which reads memory, in a free thread.
     pub has_monitor: bool,

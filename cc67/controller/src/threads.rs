@@ -1,4 +1,4 @@
-//! The threads of the board, as far as they are known: their programs, and their states at the last status record.
+//! The known state of the board's threads: their programs, and their activity in the last status record.
 
 use std::sync::Arc;
 
@@ -10,11 +10,11 @@ use vm::thread::{Progress, ThreadState};
 #[derive(Debug)]
 struct BoardThread {
     state: ThreadState,
-    /// Names and lines of the program that was loaded here.
+    /// Names and lines of the loaded program.
     program: Option<Arc<DebugInfo>>,
-    /// The thread was active before the connection, and has not ended since.
+    /// True if the thread was active before the connection, and has not ended since.
     is_foreign: bool,
-    /// It was paused here.
+    /// True if it was paused by this session.
     is_paused: bool,
 }
 
@@ -27,7 +27,7 @@ pub(crate) struct BoardThreads {
 }
 
 impl BoardThreads {
-    /// Knows nothing of any thread.
+    /// Creates the table; nothing is known about any thread.
     pub(crate) fn new() -> Self {
         let empty =
             |_| BoardThread { state: ThreadState::Empty, program: None, is_foreign: false, is_paused: false };
@@ -44,29 +44,29 @@ impl BoardThreads {
         self.all[thread.index()].program.as_deref()
     }
 
-    /// Keeps threads that are to start when time passes.
+    /// Keeps threads that start when time passes.
     pub(crate) fn keep_waiting(&mut self, threads: Vec<ThreadId>) {
         self.waiting = threads;
     }
 
-    /// Takes them.
+    /// Takes the threads that start when time passes.
     pub(crate) fn take_waiting(&mut self) -> Vec<ThreadId> {
         std::mem::take(&mut self.waiting)
     }
 
-    /// Returns whether a thread is active that was started here, or waits to be started.
+    /// Returns whether a thread is active or waits to start that was started by this session.
     pub(crate) fn has_own_active(&self) -> bool {
         !self.waiting.is_empty()
             || self.all.iter().any(|thread| thread.state.is_active() && !thread.is_foreign)
     }
 
-    /// The threads without a program of ours that are not active.
+    /// The inactive threads without a program of this session.
     pub(crate) fn free(&self) -> Vec<ThreadId> {
         let is_free = |thread: &ThreadId| self.program(*thread).is_none() && !self.state(*thread).is_active();
         ThreadId::all().filter(is_free).collect()
     }
 
-    /// Notes that the threads which are active now were not started by this session.
+    /// Notes that the presently active threads were not started by this session.
     pub(crate) fn note_foreign(&mut self) {
         for thread in &mut self.all {
             thread.is_foreign = thread.state.is_active();
@@ -91,14 +91,14 @@ impl BoardThreads {
         self.note_stopped(thread);
     }
 
-    /// Notes that a thread was started here.
+    /// Notes that a thread was started by this session.
     pub(crate) fn note_started(&mut self, thread: ThreadId) {
         let known = &mut self.all[thread.index()];
         (known.is_foreign, known.is_paused) = (false, false);
         self.note(thread, true);
     }
 
-    /// Notes that a thread runs a program of cc67 itself, which is not waited for.
+    /// Notes that a thread runs one of cc67's own programs, for whose end nobody waits.
     pub(crate) fn note_served(&mut self, thread: ThreadId) {
         self.note_started(thread);
         self.all[thread.index()].is_foreign = true;
@@ -110,7 +110,7 @@ impl BoardThreads {
         self.note(thread, false);
     }
 
-    /// Notes that a thread was paused, or continues.
+    /// Notes that a thread was paused or resumed.
     pub(crate) fn note_paused(&mut self, thread: ThreadId, is_paused: bool) {
         self.all[thread.index()].is_paused = is_paused;
         self.note(thread, !is_paused);

@@ -1,4 +1,4 @@
-//! Names of boards, as `--on` takes them.
+//! Addresses of boards, as given to `--on`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -10,27 +10,26 @@ const SERVER_SOCKET: &str = "/tmp/kmotionsocket";
 /// The TCP port at which a Kogna listens.
 pub(crate) const BOARD_PORT: u16 = 2000;
 
-/// The place of a board.
+/// The address of a board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Address {
     /// A USB device: the only one, or the one at a bus and port path (`1-2.3`) or with a serial number.
     Usb(Option<String>),
     /// A serial port, by its path or name.
     Serial(String),
-    /// A board that the vendor's server holds.
+    /// A board connected to the vendor's server.
     Server(ServerAddress),
     /// A Kogna in the networks of this computer: the only one, or the one with a serial number.
     Kogna(Option<u32>),
     /// Raw bytes over TCP.
     Tcp {
-        /// Name or number of the computer.
+        /// Name or address of the computer.
         host: String,
-        /// Its port.
         port: u16,
     },
 }
 
-/// The place of the vendor's server.
+/// The address of the vendor's server.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ServerAddress {
     /// A Unix socket.
@@ -80,7 +79,7 @@ impl FromStr for Address {
     }
 }
 
-/// Reads the place of a server; without one it is the usual place on this system.
+/// Parses the address of a server; the default is the usual one on this system.
 fn server(place: Option<&str>) -> Result<ServerAddress, &'static str> {
     match place {
         None if cfg!(windows) => Ok(ServerAddress::Pipe),

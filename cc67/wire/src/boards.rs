@@ -1,12 +1,12 @@
-//! Boards that are connected to this computer.
+//! The boards connected to this computer.
 
 use crate::error::WireError;
 use crate::found::FoundBoard;
 
-/// Lists the boards that are connected. Nothing is sent to any of them.
+/// Lists the connected boards. Nothing is sent to any of them.
 ///
 /// # Errors
-/// The system does not tell.
+/// The operating system cannot list its devices.
 pub fn boards() -> Result<Vec<FoundBoard>, WireError> {
     #[cfg(feature = "usb")]
     let mut found = if has_usb() { crate::transport::usb_boards()? } else { Vec::new() };
@@ -18,7 +18,7 @@ pub fn boards() -> Result<Vec<FoundBoard>, WireError> {
     Ok(found)
 }
 
-/// Returns whether the system has USB at all; containers have none.
+/// Returns whether the operating system has USB at all; containers have none.
 #[cfg(feature = "usb")]
 fn has_usb() -> bool {
     !cfg!(target_os = "linux") || std::path::Path::new("/sys/bus/usb/devices").exists()
@@ -42,7 +42,7 @@ fn serial_boards() -> Vec<FoundBoard> {
     ports.into_iter().filter_map(board).collect()
 }
 
-/// The vendor's server, if one runs at its usual place.
+/// The vendor's server, if one listens at its default address.
 fn server() -> Option<FoundBoard> {
     let place = served_at()?;
     Some(FoundBoard {
@@ -53,7 +53,7 @@ fn server() -> Option<FoundBoard> {
     })
 }
 
-/// The usual place of the vendor's server, if it listens there.
+/// The default address of the vendor's server, if it listens there.
 #[cfg(unix)]
 fn served_at() -> Option<&'static str> {
     let socket = "/tmp/kmotionsocket";

@@ -1,11 +1,11 @@
 //! File requests of programs on the board. Source: host-protocol.md section 6.
 
-/// Bytes of a line of a file in one line to the board.
+/// The number of file bytes per line to the board.
 const BYTES_PER_LINE: usize = 80;
 
 /// Serves the files of programs on the board.
 pub trait PcFiles: Send {
-    /// Executes a request with this code; returns its answer, if it has one.
+    /// Executes a request with this code; returns the answer, if there is one.
     fn request(&mut self, code: u8, text: &[u8]) -> Option<DiskAnswer>;
 }
 
@@ -21,7 +21,7 @@ pub enum DiskAnswer {
 }
 
 impl DiskAnswer {
-    /// The lines to the board: a command, and its data lines.
+    /// The lines for the board: a command and its data lines.
     pub(crate) fn lines(&self) -> Vec<Vec<u8>> {
         match self {
             Self::Line(line) => {
@@ -35,7 +35,7 @@ impl DiskAnswer {
     }
 }
 
-/// Bytes as two digits each, with spaces between.
+/// Bytes as two hexadecimal digits each, separated by spaces.
 pub(crate) fn hexadecimal(bytes: &[u8]) -> Vec<u8> {
     const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
     let digit = |value: u8| DIGITS.get(usize::from(value)).copied().unwrap_or(b'0');

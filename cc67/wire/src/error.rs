@@ -1,10 +1,10 @@
-//! Errors of the link, each with the place of the board and what can be done.
+//! Errors of the link, each with the location of the board and a remedy.
 
 use std::io;
 
 use kmotiondef::ThreadId;
 
-/// The rule that gives every user of a Linux system access to the board.
+/// The udev rule that gives all users of a Linux system access to the board.
 pub(crate) const UDEV_RULE: &str =
     r#"SUBSYSTEM=="usb", ATTRS{idVendor}=="0403", ATTRS{idProduct}=="f231", MODE="0666""#;
 
@@ -14,12 +14,12 @@ pub enum WireError {
     /// No board is connected to USB.
     #[error("no board on USB: looked for devices 0403:f231 and 0403:f230; is it plugged in and powered?")]
     NoBoard,
-    /// There is no board at that location.
+    /// There is no board at the requested location.
     #[error("no board at usb:{wanted}; connected: {present}")]
     NotThere {
         /// The location that was requested.
         wanted: String,
-        /// The boards that are connected.
+        /// The connected boards.
         present: String,
     },
     /// Several boards are connected.
@@ -30,9 +30,9 @@ pub enum WireError {
         "no Kogna{serial} answers in the networks of this computer; found: {present}; `--on tcp:HOST` needs no search"
     )]
     NoKogna {
-        /// The requested serial number in words; may be empty.
+        /// The requested serial number, as text; may be empty.
         serial: String,
-        /// The controllers that answer.
+        /// The controllers that answered.
         present: String,
     },
     /// The networks cannot be searched.
@@ -40,7 +40,7 @@ pub enum WireError {
         "the networks cannot be searched for a Kogna: {0} (answers come to UDP port 25001, which the vendor's server uses, too); `--on tcp:HOST` needs no search"
     )]
     KognaSearch(io::Error),
-    /// The user may not open the device.
+    /// The user has no permission to open the device.
     #[error(
         "{place}: no permission. On Linux, put this line into /etc/udev/rules.d/70-kflop.rules, then unplug and plug the board: {UDEV_RULE}"
     )]
@@ -48,7 +48,7 @@ pub enum WireError {
         /// The board.
         place: String,
     },
-    /// The user may not open the serial port.
+    /// The user has no permission to open the serial port.
     #[error(
         "{place}: no permission. On Linux, members of the group `dialout` may open serial ports: sudo usermod -aG dialout $USER, then log in again"
     )]
@@ -56,7 +56,7 @@ pub enum WireError {
         /// The board.
         place: String,
     },
-    /// Another program holds the board.
+    /// Another program uses the board.
     #[error(
         "{place}: in use by {holder}; end it, or share the board through the vendor's server with --on server"
     )]
@@ -74,15 +74,15 @@ pub enum WireError {
         /// The reason.
         error: io::Error,
     },
-    /// This build or system lacks a kind of link.
+    /// This kind of link is not available in this build or system.
     #[error("{place}: {reason}")]
     NotBuilt {
         /// The address of the board.
         place: String,
-        /// The missing part, and its substitute.
+        /// The missing part, and an alternative.
         reason: String,
     },
-    /// The link is lost: cable, power, or the program at the other end.
+    /// The link was lost: cable, power, or the program at the other end.
     #[error(
         "{place}: disconnected{during}; the board has lost every program that is not in its flash if its power was off"
     )]
@@ -97,7 +97,6 @@ pub enum WireError {
         "{place}: the board does not answer (5 attempts of 1 s); if it has just been switched on, wait 3 s, else unplug it and plug it in again"
     )]
     Silent {
-        /// The board.
         place: String,
     },
     /// A command was not answered in time.
@@ -110,15 +109,15 @@ pub enum WireError {
         /// The time limit.
         seconds: f64,
     },
-    /// The board refuses a command.
+    /// The board rejects a command.
     #[error("the board refuses `{command}`: {message}")]
     Refused {
         /// The command.
         command: String,
-        /// The board's words.
+        /// The board's message.
         message: String,
     },
-    /// A reply that is not what the command gives.
+    /// A reply in an unexpected form.
     #[error("{place}: unexpected answer to `{command}`: {answer}")]
     Unexpected {
         /// The board.
@@ -128,14 +127,14 @@ pub enum WireError {
         /// The reply.
         answer: String,
     },
-    /// The firmware is not the one that the program was linked with.
+    /// The program was linked for another firmware.
     #[error(
         "the board runs another firmware than the program is linked for\n  board:   {board}\n  program: {program}\nlink with the firmware file of the board (--firmware FILE); --force loads it all the same, and its calls may then jump anywhere"
     )]
     WrongFirmware {
         /// The version of the board.
         board: String,
-        /// The version that the program was linked for.
+        /// The version for which the program was linked.
         program: String,
     },
     /// The image was linked for the space of another thread.
@@ -145,7 +144,7 @@ pub enum WireError {
     WrongSpace {
         /// The thread.
         thread: ThreadId,
-        /// An address outside its space.
+        /// An address of the image outside the space.
         address: u32,
         /// The beginning of its space.
         start: u32,
@@ -180,7 +179,7 @@ pub enum WireError {
     InUse {
         /// The board.
         place: String,
-        /// Seconds of waiting.
+        /// The waiting time in seconds.
         seconds: f64,
     },
     /// The board is busy with the request of another view.
@@ -189,7 +188,7 @@ pub enum WireError {
 }
 
 impl WireError {
-    /// Returns whether the link is lost, so that only a new connection helps.
+    /// Returns whether the link is lost, so that only reconnecting helps.
     #[must_use]
     pub const fn is_disconnected(&self) -> bool {
         matches!(self, Self::Disconnected { .. } | Self::Restarted { .. })

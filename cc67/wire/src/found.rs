@@ -1,14 +1,14 @@
-//! A board that is connected.
+//! A board that was found.
 
 /// A board that was found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FoundBoard {
     /// Its address, for `--on`.
     pub address: String,
-    /// Its name, as it calls itself.
+    /// Its name, as reported by the board.
     pub name: String,
-    /// Its serial number at USB.
+    /// Its USB serial number.
     pub serial: Option<String>,
-    /// The driver or program that holds it.
+    /// The driver or program that uses it.
     pub holder: Option<String>,
 }

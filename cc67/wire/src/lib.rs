@@ -14,10 +14,10 @@
 //!
 //! Invariants:
 //!
-//! - **Nothing blocks forever**: each call has a time limit, and received bytes are read while others are sent.
-//! - Unsafe code is in `transport/d2xx.rs` alone, which exists on Windows.
-//! - **Nothing is started by itself**: only [`Client::command`] with `Execute` starts a program.
-//! - **Flash is written by [`Client::save_to_flash`] alone.**
+//! - **Nothing blocks forever**: each call has a time limit, and bytes are received while others are sent.
+//! - Unsafe code exists only in `transport/d2xx.rs`, which is compiled on Windows.
+//! - **No program is started automatically**: only [`Client::command`] with `Execute` starts a program.
+//! - **Only [`Client::save_to_flash`] writes flash.**
 //! - **A program that was not loaded completely cannot be started** ([`Client::load`]).
 //!
 //! Source of the protocol: host-protocol.md, wire.md.

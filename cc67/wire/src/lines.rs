@@ -2,14 +2,14 @@
 
 use std::collections::VecDeque;
 
-/// Before console lines.
+/// The byte before a console line.
 const ESCAPE: u8 = 0x1B;
 /// Codes of disk requests.
 const DISK: std::ops::RangeInclusive<u8> = 1..=7;
-/// Longest line that is kept; the board's own limit is 2560 characters.
+/// The longest line that is kept; the board's own limit is 2560 characters.
 const LINE_LIMIT: usize = 4096;
 
-/// Something the board has sent.
+/// An item sent by the board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Incoming {
     /// A line of a reply, without its end.
@@ -28,13 +28,13 @@ pub struct Decoder {
     line: Vec<u8>,
     /// True if the line began with an escape.
     is_console: bool,
-    /// True if `ESC C CR` has come, and its next byte has not: LF makes it a console line.
+    /// True after `ESC C CR`, until the next byte: LF makes it a console line.
     is_undecided: bool,
     ready: VecDeque<Incoming>,
 }
 
 impl Decoder {
-    /// Takes received bytes.
+    /// Adds received bytes.
     pub fn push(&mut self, bytes: &[u8]) {
         bytes.iter().for_each(|byte| self.byte(*byte));
     }
@@ -50,7 +50,7 @@ impl Decoder {
         self.is_undecided
     }
 
-    /// Nothing more has come: what may be the answer to an abort is one.
+    /// Notes that nothing more has come: a possible answer to an abort is one.
     pub fn settle(&mut self) {
         if std::mem::take(&mut self.is_undecided) {
             self.ready.push_back(Incoming::Aborted);
@@ -63,7 +63,7 @@ impl Decoder {
         !self.ready.is_empty()
     }
 
-    /// Drops everything that has come.
+    /// Drops everything received.
     pub fn clear(&mut self) {
         *self = Self::default();
     }
@@ -77,7 +77,7 @@ impl Decoder {
             self.ready.push_back(Incoming::Aborted);
         }
         match byte {
-            // A line that another one interrupts was cut before it reached us.
+            // A line that another one interrupts was truncated before it arrived.
             ESCAPE => {
                 self.line.clear();
                 self.is_console = true;
@@ -109,7 +109,7 @@ impl Decoder {
 mod tests {
     use super::*;
 
-    /// All items of a stream that arrives in pieces of one size.
+    /// All items of a stream that arrives in chunks of one size.
     fn items(bytes: &[u8], size: usize) -> Vec<Incoming> {
         let mut decoder = Decoder::default();
         bytes.chunks(size).for_each(|piece| decoder.push(piece));

@@ -1,7 +1,7 @@
 //! A stream of bytes in both directions that never blocks its user.
 //!
-//! One thread reads and one writes, so that what the board sends is taken while it holds up its input: a client that
-//! only wrote could block together with it (wire.md section 2.4). Readers and writers have short time-outs of their own.
+//! One thread reads and one writes, so that data from the board are taken even while it blocks its input: a client that
+//! only wrote could deadlock with it (wire.md section 2.4). Readers and writers have short time-outs of their own.
 
 use std::io::{ErrorKind, Read, Write};
 use std::sync::Arc;
@@ -13,29 +13,29 @@ use std::time::{Duration, Instant};
 use crate::clock::now;
 use crate::error::WireError;
 
-/// Bytes that a reader takes at once.
+/// The number of bytes per read.
 const READ_SIZE: usize = 4096;
-/// Bytes that a writer gives at once, so that it can be ended between.
+/// The number of bytes per write, small enough to check for the end in between.
 const WRITE_SIZE: usize = 4096;
-/// The interval at which a thread without work checks whether it should end.
+/// The interval at which an idle thread checks whether it should end.
 const IDLE: Duration = Duration::from_millis(100);
 /// The longest time that a link waits for its threads when it is closed.
 const CLOSED_WITHIN: Duration = Duration::from_millis(300);
-/// The interval at which a user of the link checks whether its bytes were written.
+/// The interval at which a user of the link checks whether its bytes have been written.
 const DRAIN: Duration = Duration::from_millis(1);
 
-/// A request to the thread that writes.
+/// A request to the writing thread.
 #[derive(Debug)]
 pub(crate) enum Outgoing {
     /// Bytes for the board.
     Bytes(Vec<u8>),
-    /// Takes the token of a shared board until the given moment.
+    /// Takes the token of a shared board, with attempts until the given time.
     Claim(Instant, Sender<Claimed>),
-    /// Gives it back.
+    /// Releases the token.
     Release,
 }
 
-/// The outcome of taking the token of a shared board.
+/// The result of taking the token of a shared board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Claimed {
     Taken,
@@ -49,13 +49,13 @@ pub struct BoardLink {
     place: String,
     incoming: Receiver<Vec<u8>>,
     outgoing: Sender<Outgoing>,
-    /// Bytes that were given to the writer and not to the board.
+    /// The number of bytes passed to the writer and not yet to the board.
     unwritten: Arc<AtomicUsize>,
     is_closed: Arc<AtomicBool>,
     is_shared: bool,
 }
 
-/// The threads' ends of a link.
+/// The ends of a link that its threads use.
 pub(crate) struct Ends {
     pub(crate) received: Sender<Vec<u8>>,
     pub(crate) requests: Receiver<Outgoing>,
@@ -64,7 +64,7 @@ pub(crate) struct Ends {
 }
 
 impl BoardLink {
-    /// Makes a link over a reader and a writer, both with time-outs.
+    /// Creates a link over a reader and a writer, both with time-outs.
     #[must_use]
     pub fn new(
         place: impl Into<String>,
@@ -79,7 +79,7 @@ impl BoardLink {
         link
     }
 
-    /// Makes a link whose other ends a transport serves.
+    /// Creates a link whose other ends are served by a transport.
     pub(crate) fn with_ends(place: String, is_shared: bool) -> (Self, Ends) {
         let (received, incoming) = channel();
         let (outgoing, requests) = channel();
@@ -89,7 +89,7 @@ impl BoardLink {
         (Self { place, incoming, outgoing, unwritten, is_closed, is_shared }, ends)
     }
 
-    /// The place of the board, for messages.
+    /// The location of the board, for messages.
     #[must_use]
     pub fn place(&self) -> &str {
         &self.place
@@ -104,13 +104,13 @@ impl BoardLink {
         self.outgoing.send(Outgoing::Bytes(bytes)).map_err(|_| self.lost())
     }
 
-    /// Bytes that the board has not taken yet.
+    /// The number of bytes that the board has not taken yet.
     #[must_use]
     pub fn unwritten(&self) -> usize {
         self.unwritten.load(Ordering::Relaxed)
     }
 
-    /// Returns bytes that have come, or nothing if none come until a moment.
+    /// Returns received bytes; `None` if none come until a given time.
     ///
     /// # Errors
     /// The link is lost.
@@ -122,7 +122,7 @@ impl BoardLink {
         }
     }
 
-    /// Waits until all bytes are written; whether they are.
+    /// Waits until all bytes are written; returns whether they are.
     #[must_use]
     pub fn drain(&self, within: Duration) -> bool {
         let end = now() + within;
@@ -151,7 +151,7 @@ impl BoardLink {
         }
     }
 
-    /// Gives the token back.
+    /// Releases the token.
     pub(crate) fn release(&self) {
         if self.is_shared {
             // A lost link holds no token.
@@ -159,18 +159,18 @@ impl BoardLink {
         }
     }
 
-    /// The error of a link that is lost.
+    /// The error for a lost link.
     pub(crate) fn lost(&self) -> WireError {
         WireError::Disconnected { place: self.place.clone(), during: String::new() }
     }
 }
 
 impl BoardLink {
-    /// Ends its threads: the port is free for the next user when they have let go of it.
+    /// Ends its threads: the port is free for the next user when they have released it.
     pub(crate) fn close(&self) {
         self.is_closed.store(true, Ordering::Relaxed);
         let end = now() + CLOSED_WITHIN;
-        // Each thread has a reference of its own.
+        // Each thread has its own reference.
         while Arc::strong_count(&self.is_closed) > 1 && now() < end {
             thread::sleep(DRAIN);
         }
@@ -215,7 +215,7 @@ fn write_all(
         let bytes = match requests.recv_timeout(IDLE) {
             Ok(Outgoing::Bytes(bytes)) => bytes,
             Ok(Outgoing::Claim(_, answer)) => {
-                // Who asked may have gone.
+                // The requester may have given up.
                 let _ = answer.send(Claimed::Taken);
                 continue;
             }

@@ -1,4 +1,4 @@
-//! Several users of one board: their requests are done in turn.
+//! Several users of one board: their requests are executed in turn.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
@@ -7,21 +7,21 @@ use std::time::Duration;
 use crate::client::Client;
 use crate::error::WireError;
 
-/// The time for which the console is read at once while no request waits.
+/// The time for which the console is read at once while there is no request.
 const IDLE: Duration = Duration::from_millis(5);
 
 type QueuedRequest = Box<dyn FnOnce(&mut Client) + Send>;
 
-/// A board that several users share. Clones are further users.
+/// A board shared by several users. Each clone is a further user.
 #[derive(Clone, Debug)]
 pub struct Queue {
     requests: Sender<QueuedRequest>,
 }
 
 impl Queue {
-    /// Serves requests for a board in a thread of its own, until the last user is gone.
+    /// Serves requests for a board in a separate thread, until the last user is dropped.
     ///
-    /// Between requests `idle` is called with the client, to take its console lines, or with the error of a lost link.
+    /// Between requests, `idle` is called with the client, to take its console lines, or with the error of a lost link.
     #[must_use]
     pub fn new(
         client: Client,
@@ -32,10 +32,10 @@ impl Queue {
         Self { requests }
     }
 
-    /// Does a request in its turn, and returns its result.
+    /// Executes a request in its turn, and returns its result.
     ///
     /// # Errors
-    /// The requests before it, and it itself, have not ended within the time.
+    /// The previous requests and this one have not ended within the time limit.
     pub fn run<T: Send + 'static>(
         &self,
         within: Duration,
@@ -43,7 +43,7 @@ impl Queue {
     ) -> Result<T, WireError> {
         let (answer, inbox) = channel();
         let job = Box::new(move |client: &mut Client| {
-            // Who asked may have given up.
+            // The requester may have given up.
             let _ = answer.send(request(client));
         });
         let waited = || WireError::Waiting(within.as_secs_f64());

@@ -1,4 +1,4 @@
-//! Disturbances of a link: nothing is lost, the message is clear, and the next command works.
+//! Faults of a link: no data are lost, the message is clear, and the next command works.
 
 mod board;
 
@@ -21,7 +21,7 @@ fn load(client: &mut Client, image: &LoadImage) -> Result<(), WireError> {
     client.load(image, false, &mut |_| {})
 }
 
-/// Asserts that a board answers as it should.
+/// Asserts that a board works normally.
 fn is_in_order(client: &mut Client) {
     assert_eq!(client.ask("ReadBit46").expect("the board answers"), "1");
 }
@@ -131,7 +131,8 @@ fn a_load_arrives_whole_while_programs_print() {
     }
 }
 
-/// Loads onto a board with a fault; the message. The thread cannot be started, and the link is in order if it is there.
+/// Loads onto a board with a fault; returns the message. The thread cannot be started, and the link works unless it was
+/// cut.
 fn failed_load(fault: Fault) -> (String, Client) {
     let (link, state) = board(fault);
     let mut client = Client::over(link).expect("the board answers");

@@ -1,4 +1,4 @@
-//! Starting threads, and what needs the monitor or the board's data recorder.
+//! Starting threads, and actions that need the monitor or the board's data recorder.
 
 use cc67_host::target::Target as _;
 use cc67_host::{EventSink, HostError};
@@ -14,7 +14,7 @@ use crate::clock::now;
 use crate::recording::{BoardRecording, BoardSample, Unrecordable};
 
 impl Controller {
-    /// Starts the programs that wait for time to pass.
+    /// Starts the programs that wait until time passes.
     pub(super) fn start_waiting(&mut self) {
         let waiting = self.threads.take_waiting();
         if !waiting.is_empty() {
@@ -36,7 +36,7 @@ impl Controller {
         Ok(())
     }
 
-    /// Ends the recording, and hands over its samples.
+    /// Ends the recording, and passes on its samples.
     pub(super) fn end_recording(&mut self, events: EventSink<'_>) {
         let Some(recording) = self.recording.take().filter(|_| self.lost.is_none()) else { return };
         if let Err(error) = self.read_recording(&recording, events) {
@@ -81,7 +81,7 @@ impl Controller {
         Ok(())
     }
 
-    /// Pauses a thread or lets it continue.
+    /// Pauses or resumes a thread.
     pub(super) fn set_paused(&mut self, thread: ThreadId, is_paused: bool) -> Result<(), HostError> {
         let free = self.threads.free();
         let monitor = self.monitor.get_mut();
@@ -89,7 +89,7 @@ impl Controller {
         monitor.pause(self.client.get_mut(), &free, thread, is_paused)
     }
 
-    /// Compares the memory of the board with what was loaded.
+    /// Compares the memory of the board with a loaded program.
     pub(super) fn verify(&mut self, image: &LoadImage) -> Result<(), HostError> {
         let free = self.threads.free();
         for (address, bytes) in &image.parts {

@@ -1,4 +1,4 @@
-//! A person and the PC do what a stimulus says, see [`Bench`].
+//! The actions of a stimulus, performed by a person and the PC; see [`Bench`].
 
 use std::mem;
 
@@ -13,7 +13,7 @@ use super::Controller;
 use crate::bench::{BenchAct, BenchFacts};
 
 impl Controller {
-    /// Looks at the conditions of the stimulus, and does what is due.
+    /// Checks the conditions of the stimulus, and performs the due actions.
     pub(super) fn attend(&mut self) {
         let now = self.now();
         let mut bench = mem::take(&mut self.bench);
@@ -46,7 +46,7 @@ impl Controller {
             }
             Action::Persist(index, value) => self.write(self.element_address(index), &value.to_le_bytes()),
             Action::Answer(setting) => Target::answer(self, &setting),
-            // The bench has refused what is left.
+            // The bench has rejected all others.
             _ => Ok(()),
         };
         if let Err(error) = done {
@@ -54,7 +54,7 @@ impl Controller {
         }
     }
 
-    /// The run is over: reports the expectations that are not met, and those that are not checked.
+    /// Ends the stimulus: reports the expectations that are not met, and those that are not checked.
     pub(super) fn end_attending(&mut self) {
         if self.lost.is_some() {
             return;

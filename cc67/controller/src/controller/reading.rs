@@ -1,4 +1,4 @@
-//! The state of the board as it is read again and again: its status record, and elements of `persist.UserData`.
+//! The state of the board that is read periodically: its status record, and elements of `persist.UserData`.
 
 use std::ops::Range;
 use std::time::Duration;
@@ -14,11 +14,11 @@ use super::Controller;
 use crate::clock::now;
 use crate::commands::Commands;
 
-/// The pause between two readings of the status record: 20 a second.
+/// The interval at which the status record is read: 20 times per second.
 const STATUS_EVERY: Duration = Duration::from_millis(50);
 
 impl Controller {
-    /// Takes up a status record.
+    /// Processes a status record.
     pub(super) fn note_status(&mut self, status: Status) {
         for thread in ThreadId::all() {
             self.threads.note(thread, status.is_active(thread));
@@ -45,7 +45,7 @@ impl Controller {
             }
             Err(error) => self.note_error(&error),
         }
-        // As many a second, whatever an exchange takes.
+        // Keeps the rate, however long an exchange takes.
         self.time.next_status = (self.time.next_status + STATUS_EVERY).max(now());
     }
 
@@ -87,7 +87,7 @@ impl Controller {
         self.seen.place_of(PERSIST.field(Persist::USER_DATA).element(index).address())
     }
 
-    /// The elements of `persist.UserData` in the bytes from an address on; `None` where there are others.
+    /// The elements of `persist.UserData` in a range of bytes; `None` if the range contains anything else.
     pub(super) fn elements(&self, address: GuestAddr, length: usize) -> Option<Range<usize>> {
         let offset = address.get().checked_sub(self.element_address(0).get())? as usize;
         let (first, end) = (offset / 4, offset / 4 + length / 4);

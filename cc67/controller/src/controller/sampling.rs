@@ -12,11 +12,11 @@ use runtime::trace::Quantity;
 use super::Controller;
 use crate::sampler::{SampledRow, Sampler};
 
-/// The sampler of a board, and the rows that nobody has taken yet.
+/// The sampler of a board, and the rows that have not been taken yet.
 #[derive(Debug)]
 pub(super) struct Sampling {
     sampler: Sampler,
-    /// Seconds of this session at power-up.
+    /// The time of power-up, in seconds of this session.
     power_up: f64,
     rows: Vec<(Ticks, Vec<f64>)>,
 }
@@ -39,7 +39,8 @@ impl Sampling {
 }
 
 impl Controller {
-    /// Begins to sample, in a free thread; without quantities it ends. Returns the samples a second.
+    /// Begins to sample in a free thread; ends sampling if there are no quantities. Returns the number of samples per
+    /// second.
     pub(super) fn begin_sampling(&mut self, quantities: &[Quantity]) -> Result<f64, HostError> {
         self.end_sampling();
         if quantities.is_empty() {
@@ -65,7 +66,7 @@ impl Controller {
         Ok(rate)
     }
 
-    /// Reads what was sampled.
+    /// Reads the new samples.
     pub(super) fn read_samples(&mut self) {
         let Some(mut sampling) = self.sampling.take() else { return };
         if !self.thread(sampling.thread()).is_active() {

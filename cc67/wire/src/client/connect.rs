@@ -7,15 +7,15 @@ use crate::clock::now;
 use crate::error::WireError;
 use crate::lines::Incoming;
 
-/// Drops the line or the download in progress; running programs continue.
+/// Drops the line or download in progress; running programs continue.
 const ABORT: &[u8] = b"\x03";
-/// The number of attempts at a board that does not answer.
+/// The number of attempts to reach a board that does not answer.
 const ATTEMPTS: usize = 5;
-/// The answer of a Kogna, which is a whole line of its console; a KFLOP's is told apart by the decoder.
+/// The answer of a Kogna, a complete line of its console; the decoder recognises a KFLOP's answer.
 const KOGNA_ANSWER: &[u8] = b"C";
-/// The name of that board in its version.
+/// The name of the Kogna in its version text.
 const KOGNA: &str = "KOGNA";
-/// Within which time it is answered.
+/// The time limit for the answer to the abort byte.
 const ABORTED_WITHIN: Duration = Duration::from_secs(1);
 
 impl Client {
@@ -35,7 +35,7 @@ impl Client {
         result
     }
 
-    /// Sends the abort byte; whether it was answered. Lines before the answer were caused by others.
+    /// Sends the abort byte; returns whether it was answered. Lines before the answer belong to other clients.
     fn abort(&mut self) -> Result<bool, WireError> {
         self.link.send(ABORT.to_vec())?;
         let end = now() + ABORTED_WITHIN;
@@ -50,8 +50,8 @@ impl Client {
         Ok(false)
     }
 
-    /// Returns whether a Kogna has answered the abort byte. Before the version is known, any board may be one: a console
-    /// line of a KFLOP that looks like the answer does no harm, as the version is requested next.
+    /// Returns whether a Kogna has answered the abort byte. Before the version is known, any board may be one: a
+    /// console line of a KFLOP that looks like the answer does no harm, as the version is requested next.
     fn is_answer_of_kogna(&mut self, item: &Incoming) -> bool {
         let may_be_kogna = self.version.is_empty() || self.version.contains(KOGNA);
         let is_answer = may_be_kogna && matches!(item, Incoming::Console(line) if line == KOGNA_ANSWER);
@@ -67,7 +67,7 @@ impl Client {
         while let Some(item) = self.next(end)? {
             let Incoming::Reply(line) = item else { continue };
             let line = String::from_utf8_lossy(&line).into_owned();
-            // Something else is left of another user.
+            // Other lines are left over from another client.
             if line.contains(" Build ") {
                 if line.contains(KOGNA) {
                     self.console.retain(|line| line != KOGNA_ANSWER);
@@ -79,7 +79,7 @@ impl Client {
         Err(self.no_answer("Version", ANSWER_WITHIN))
     }
 
-    /// Brings the board back into order after an answer that did not come: what is under way is dropped.
+    /// Resynchronises with the board after a missing answer: pending input and output are dropped.
     pub(super) fn resynchronise(&mut self) -> Result<(), WireError> {
         if self.abort()? { Ok(()) } else { Err(WireError::Silent { place: self.place().to_owned() }) }
     }

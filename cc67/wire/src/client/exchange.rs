@@ -1,4 +1,4 @@
-//! Commands and their answers.
+//! Commands and their replies.
 
 use std::time::Duration;
 
@@ -8,22 +8,22 @@ use crate::clock::now;
 use crate::error::WireError;
 use crate::lines::Incoming;
 
-/// Ends each command line: its reply shows that everything before it was executed.
+/// The command at the end of each line: its reply shows that everything before it was executed.
 const FENCE: &str = "Version";
-/// Words of the gather buffer in a line.
+/// The number of words of the gather buffer per line.
 const WORDS_PER_LINE: u32 = 8;
-/// Commands that take more lines, which cannot be typed one by one.
+/// Commands with data lines, which cannot be typed one by one.
 const MULTI_LINE: [&str; 4] = ["LOADDATA", "LOADFLASH", "SETGATHERHEX", "READDISKDATA"];
-/// Part of the names of all commands that write flash.
+/// The part of a name that all commands have which write flash.
 const FLASH: &str = "FLASH";
 /// The command that restarts the board; the board drops the rest of the line.
 const RESTART: &str = "REBOOT!";
 
 impl Client {
-    /// Executes a command that gives no reply.
+    /// Executes a command without a reply.
     ///
     /// # Errors
-    /// The board refuses it, or does not answer.
+    /// The board rejects the command, or does not answer.
     pub fn command(&mut self, line: &str) -> Result<(), WireError> {
         self.send_line(line).map(drop)
     }
@@ -31,7 +31,7 @@ impl Client {
     /// Executes a command and returns its reply of one line.
     ///
     /// # Errors
-    /// The board refuses the command, or does not answer.
+    /// The board rejects the command, or does not answer.
     pub fn ask(&mut self, line: &str) -> Result<String, WireError> {
         let mut lines = self.ask_lines(line, 1)?;
         Ok(lines.pop().unwrap_or_default())
@@ -40,13 +40,13 @@ impl Client {
     /// Executes a command and returns its reply of `count` lines.
     ///
     /// # Errors
-    /// The board refuses the command, does not answer, or with fewer lines.
+    /// The board rejects the command, does not answer, or replies with fewer lines.
     pub fn ask_lines(&mut self, line: &str, count: usize) -> Result<Vec<String>, WireError> {
         let mut lines = self.send_line(line)?;
         let Some(foreign) = lines.len().checked_sub(count) else {
             return Err(self.unexpected(line, &lines.join(" / ")));
         };
-        // The reply is what came last: the board executes both commands of the line without a break.
+        // The reply is at the end: the board executes both commands of the line without interruption.
         self.foreign_lines += foreign as u64;
         Ok(lines.split_off(foreign))
     }
@@ -54,7 +54,7 @@ impl Client {
     /// Executes a command line and returns all lines of its reply.
     ///
     /// # Errors
-    /// The board refuses the line, or does not answer; the line writes flash, or needs more lines.
+    /// The board rejects the line, or does not answer; the line writes flash, or needs data lines.
     pub fn send_line(&mut self, line: &str) -> Result<Vec<String>, WireError> {
         let upper = line.to_ascii_uppercase();
         if let Some(command) = MULTI_LINE.iter().find(|command| upper.contains(**command)) {
@@ -96,7 +96,7 @@ impl Client {
     /// Reads words of the gather buffer.
     ///
     /// # Errors
-    /// The board does not answer, or with something else.
+    /// The board does not answer, or gives an unexpected answer.
     pub fn gather(&mut self, offset: u32, count: u32) -> Result<Vec<u32>, WireError> {
         let command = format!("GetGatherHex {offset} {count}");
         let lines = self.ask_lines(&command, count.div_ceil(WORDS_PER_LINE) as usize)?;
@@ -110,7 +110,7 @@ impl Client {
     /// Stores words in the gather buffer.
     ///
     /// # Errors
-    /// The board refuses them or does not answer.
+    /// The board rejects them, or does not answer.
     pub fn set_gather(&mut self, offset: u32, words: &[u32]) -> Result<(), WireError> {
         let command = format!("SetGatherHex {offset} {}", words.len());
         let line =
@@ -124,7 +124,7 @@ impl Client {
         result.map(drop)
     }
 
-    /// Sends lines, the last of which asks for the version, and returns the lines of replies before that.
+    /// Sends lines, the last of which requests the version, and returns the lines of the replies before the version.
     pub(super) fn exchange(
         &mut self,
         lines: &[Vec<u8>],
@@ -137,7 +137,7 @@ impl Client {
         self.errors.unwatch().into_iter().for_each(|line| self.keep(line));
         match result {
             Err(error @ WireError::NoAnswer { .. }) => {
-                // The next command finds the board at the beginning of a line, or the board is silent.
+                // The next command finds the board at the beginning of a line, unless the board is silent.
                 self.resynchronise()?;
                 Err(error)
             }
@@ -145,10 +145,10 @@ impl Client {
         }
     }
 
-    /// Lines of replies until that to the fence, or the board's refusal of our command.
+    /// The lines of the replies before that of the fence, or the board's rejection of our command.
     fn replies(&mut self, command: &str, within: Duration) -> Result<Vec<String>, WireError> {
         let mut lines = Vec::new();
-        // The command may ask for the version itself.
+        // The command itself may request the version.
         let mut fences = command.split(';').filter(|part| part.trim().eq_ignore_ascii_case(FENCE)).count();
         let mut end = now() + within;
         let mut unwritten = self.link.unwritten();
@@ -170,7 +170,7 @@ impl Client {
                 None if now() >= end => return Err(self.no_answer(command, within)),
                 None => {}
             }
-            // A board that still takes what was sent is not silent.
+            // A board that is still receiving data is not silent.
             let left = self.link.unwritten();
             if left < unwritten {
                 unwritten = left;
@@ -179,7 +179,7 @@ impl Client {
         }
     }
 
-    /// The error of a command of one line that the board refuses: the rest of the line, with the fence, is dropped.
+    /// The error for a command of one line that the board rejects: it drops the rest of the line, including the fence.
     fn own_refusal(&self, command: &str) -> Option<WireError> {
         let upper = command.to_ascii_uppercase();
         let is_own = |refusal: &&Refusal| {
@@ -189,7 +189,7 @@ impl Client {
         Some(WireError::Refused { command: command.to_owned(), message: refusal.message.clone() })
     }
 
-    /// The messages of the board since the last command was sent.
+    /// The board's messages since the last command.
     pub(super) fn refusals(&self) -> &[Refusal] {
         self.errors.found()
     }

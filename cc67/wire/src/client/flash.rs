@@ -10,17 +10,17 @@ use crate::error::WireError;
 
 /// The command that saves memory to flash.
 const SAVE: &str = "Flash";
-/// The reply when it is done, and the console line when the board has compared flash with memory.
+/// The reply after saving, and the console line after the board has compared flash with memory.
 const SAVED: &str = "Program Flash Image Complete";
 const VERIFIED: &[u8] = b"Verify Complete";
-/// The board takes about 7 s; only its servo continues meanwhile.
+/// The time limit: the board takes about 7 s, during which only its servo continues.
 const SAVED_WITHIN: Duration = Duration::from_secs(60);
 const VERIFIED_WITHIN: Duration = Duration::from_secs(20);
-/// Pause between two looks at the console.
+/// The interval at which the console is checked.
 const POLL: Duration = Duration::from_millis(200);
 
 impl Client {
-    /// Sets whether a thread starts by itself at power-up; it counts from the next [`save_to_flash`](Self::save_to_flash) on.
+    /// Sets whether a thread starts automatically at power-up, after the next [`save_to_flash`](Self::save_to_flash).
     ///
     /// # Errors
     /// The board does not answer.
@@ -28,11 +28,11 @@ impl Client {
         self.command(&format!("SetStartupThread{thread} {}", u8::from(starts)))
     }
 
-    /// Saves programs, `persist`, axes and coordinate system to the flash that the board starts from, and waits until the
-    /// board has compared it. The gather buffer is lost.
+    /// Saves programs, `persist`, axes and coordinate system to the flash from which the board starts, and waits until
+    /// the board has verified it. The contents of the gather buffer are lost.
     ///
     /// # Errors
-    /// The board does not answer, or does not say that both are done.
+    /// The board does not answer, or does not confirm both steps.
     pub fn save_to_flash(&mut self) -> Result<(), WireError> {
         self.link.claim(SAVED_WITHIN)?;
         let replies = self.exchange(&[format!("{SAVE};Version").into_bytes()], SAVE, SAVED_WITHIN);
@@ -46,7 +46,7 @@ impl Client {
         Err(self.unexpected(SAVE, &said.join(" / ")))
     }
 
-    /// Waits for a console line and takes it; returns whether it has come.
+    /// Waits for a console line and takes it; returns whether it came.
     fn hears(&mut self, wanted: &[u8]) -> Result<bool, WireError> {
         let end = now() + VERIFIED_WITHIN;
         loop {

@@ -1,8 +1,8 @@
 //! Loading programs. Source: wire.md section 3; coff.md section 9.
 //!
-//! The board answers nothing to a download, so each piece ends with a fence, and messages of the board between are
-//! mistakes of the load. The first word of the thread's space is 0 from the first byte that is sent to the last: a
-//! thread with such a space cannot be started, so that a load which was interrupted leaves nothing that could run.
+//! The board does not answer a download, so each block ends with a fence, and any message before its reply is an error
+//! of the load. The first word of the thread's space is 0 from the first byte sent to the last: such a thread cannot be
+//! started, so an interrupted load leaves nothing that could run.
 
 use kmotiondef::ThreadId;
 use kmotiondef::boards::TargetBoard;
@@ -12,11 +12,11 @@ use super::{ANSWER_WITHIN, Client};
 use crate::disk::hexadecimal;
 use crate::error::WireError;
 
-/// Bytes of a piece, between which other programs may use a shared board.
+/// The size of a block in bytes; other programs may use a shared board between blocks.
 const PIECE: usize = 0x4000;
-/// Bytes of a data line; the board takes no other number.
+/// The number of bytes in a data line; the board takes no other number.
 const BYTES_PER_LINE: usize = 64;
-/// The word that keeps a thread from being started.
+/// The size of the word that prevents a thread from being started.
 const GUARD: usize = 4;
 
 /// A program for a thread, as bytes at addresses.
@@ -28,24 +28,24 @@ pub struct LoadImage {
     pub entry: u32,
     /// The bytes, each part with its address.
     pub parts: Vec<(u32, Vec<u8>)>,
-    /// The version text of the firmware that it was linked with, if that is known.
+    /// The version text of the firmware for which it was linked, if known.
     pub firmware: Option<String>,
 }
 
 /// The progress of a load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// Bytes that have arrived.
+    /// The number of bytes that have arrived.
     pub done: usize,
-    /// Bytes in all.
+    /// The total number of bytes.
     pub total: usize,
 }
 
 impl LoadImage {
-    /// Checks that the image is for a board's firmware and for the space of its thread.
+    /// Checks that the image matches the board's firmware and the space of its thread.
     ///
     /// # Errors
-    /// It is for another firmware or space.
+    /// It was made for another firmware or space.
     pub fn check(&self, version: &str) -> Result<(), WireError> {
         if let Some(firmware) = &self.firmware
             && firmware.trim_end() != version.trim_end()
@@ -58,10 +58,10 @@ impl LoadImage {
         self.check_space(&spaces(version))
     }
 
-    /// Checks that the image begins in the space of its thread and ends among the spaces of programs.
+    /// Checks that the image begins in the space of its thread and ends within the spaces of programs.
     ///
     /// # Errors
-    /// It has bytes elsewhere.
+    /// It has bytes outside these spaces.
     fn check_space(&self, spaces: &ProgramSpaces) -> Result<(), WireError> {
         let start = spaces.start(self.thread).get();
         let end = start + spaces.size - 1;
@@ -82,13 +82,13 @@ impl LoadImage {
         Ok(())
     }
 
-    /// Number of bytes.
+    /// The number of bytes.
     #[must_use]
     pub fn size(&self) -> usize {
         self.parts.iter().map(|(_, bytes)| bytes.len()).sum()
     }
 
-    /// The parts as they are sent, the first word of the space last.
+    /// The parts in the order in which they are sent, the first word of the space last.
     fn ordered(&self, spaces: &ProgramSpaces) -> Vec<(u32, Vec<u8>)> {
         let start = spaces.start(self.thread).get();
         let mut parts = vec![];
@@ -108,7 +108,7 @@ impl LoadImage {
     }
 }
 
-/// The spaces of programs of the board with a version; of one that is not known, those of a KFLOP.
+/// The program spaces of a board by its version; for an unknown version, those of a KFLOP.
 fn spaces(version: &str) -> ProgramSpaces {
     TargetBoard::of_version(version.trim_end()).unwrap_or_else(TargetBoard::default_board).programs()
 }
@@ -117,7 +117,7 @@ impl Client {
     /// Loads a program into its thread, which is stopped first. Nothing is started.
     ///
     /// # Errors
-    /// The image is refused before anything is sent, or the load went wrong; the thread cannot be started then.
+    /// The image is rejected before anything is sent, or the load failed; the thread cannot be started then.
     pub fn load(
         &mut self,
         image: &LoadImage,
@@ -146,10 +146,11 @@ impl Client {
         Ok(())
     }
 
-    /// Stores bytes in the memory of the board, byte by byte: a program that reads a word meanwhile may find half of it.
+    /// Stores bytes in the memory of the board, one by one: a program that reads a word meanwhile may see a mixture of
+    /// old and new bytes.
     ///
     /// # Errors
-    /// The board refuses it or does not answer.
+    /// The board rejects it, or does not answer.
     pub fn store(&mut self, address: u32, bytes: &[u8]) -> Result<(), WireError> {
         for (piece, at) in bytes.chunks(PIECE).zip((address..).step_by(PIECE)) {
             self.send_piece(at, piece)?;
@@ -169,14 +170,14 @@ impl Client {
         self.judge(address, result)
     }
 
-    /// Judges a block by what came before its fence.
+    /// Judges the success of a block by the lines before the reply of its fence.
     fn judge(&mut self, address: u32, result: Result<Vec<String>, WireError>) -> Result<(), WireError> {
         let foreign = result?.len();
         self.foreign_lines += foreign as u64;
         if self.refusals().is_empty() {
             return Ok(());
         }
-        // A data line that is refused came to a command loop that knew nothing of the block any more.
+        // A rejected data line means that the command loop had already dropped the block.
         let is_data =
             |line: &str| line.len() >= 2 && line.bytes().all(|byte| byte.is_ascii_hexdigit() || byte == b' ');
         let foreign = self.refusals().iter().find(|refusal| !is_data(&refusal.command));

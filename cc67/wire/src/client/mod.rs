@@ -1,7 +1,7 @@
 //! The client of the board's protocol.
 //!
-//! Every command line ends with `;Version`, which the board executes without a break after the command: its reply says
-//! that the command was executed, and tells the command's own answer from a line that somebody else has caused.
+//! Every command line ends with `;Version`, which the board executes directly after the command: its reply shows that
+//! the command was executed, and separates the command's own reply from lines caused by others.
 
 mod connect;
 mod exchange;
@@ -27,27 +27,28 @@ use crate::lines::{Decoder, Incoming};
 use crate::link::BoardLink;
 use refusals::Errors;
 
-/// Within which time a command is answered.
+/// The time limit for the reply to a command.
 const ANSWER_WITHIN: Duration = Duration::from_secs(3);
-/// Within which time a board that disconnects at once is tried again, and the pause before that. Source: wire.md section 2.
+/// The time during which connecting is retried if a board disconnects at once, and the pause between attempts. Source:
+/// wire.md section 2.
 const OPEN_WITHIN: Duration = Duration::from_secs(3);
 const OPEN_AGAIN: Duration = Duration::from_millis(100);
-/// The pause after which no line feed follows the answer to an abort.
+/// The time after which a line feed can no longer follow the answer to an abort.
 const SETTLED_AFTER: Duration = Duration::from_millis(20);
-/// Console lines that wait for the client's user; further ones are counted and dropped.
+/// The maximum number of console lines waiting to be taken; further ones are counted and dropped.
 const MOST_CONSOLE_LINES: usize = 100_000;
 
 /// A connection to a board.
 pub struct Client {
     link: BoardLink,
-    /// The address to connect to again.
+    /// The address for reconnecting.
     address: Option<Address>,
     decoder: Decoder,
-    /// The board's own words for its firmware.
+    /// The version text of the board's firmware.
     version: String,
     console: VecDeque<Vec<u8>>,
     lost_console_lines: u64,
-    /// Lines of replies to commands of other clients.
+    /// The number of lines in replies to commands of other clients.
     foreign_lines: u64,
     files: Box<dyn PcFiles>,
     errors: Errors,
@@ -66,13 +67,13 @@ impl Client {
     /// Connects to the board at an address.
     ///
     /// # Errors
-    /// There is no board there, it may not be opened, or it does not answer.
+    /// There is no board at the address, access is denied, or it does not answer.
     pub fn connect(address: &Address) -> Result<Self, WireError> {
         let end = now() + OPEN_WITHIN;
         loop {
             match Self::over(crate::transport::open(address)?) {
                 Ok(client) => return Ok(Self { address: Some(address.clone()), ..client }),
-                // A board that starts, or that another client is just leaving, comes and goes.
+                // A board that is starting, or that another client is just leaving, appears and disappears.
                 Err(error) if error.is_disconnected() && now() < end => std::thread::sleep(OPEN_AGAIN),
                 Err(error) => return Err(error),
             }
@@ -114,7 +115,7 @@ impl Client {
         self.handshake()
     }
 
-    /// Returns the place of the board, for messages.
+    /// Returns the location of the board, for messages.
     #[must_use]
     pub fn place(&self) -> &str {
         self.link.place()
@@ -131,23 +132,23 @@ impl Client {
         self.files = files;
     }
 
-    /// Returns the console lines that have come, each without its end.
+    /// Returns the received console lines, each without its line end.
     pub fn take_console(&mut self) -> Vec<Vec<u8>> {
         self.console.drain(..).collect()
     }
 
-    /// Puts a line back that is for another client, after those that have arrived.
+    /// Puts back a line for another client, after the lines that have arrived.
     pub fn return_console(&mut self, line: Vec<u8>) {
         self.keep(line);
     }
 
-    /// Console lines that were dropped as nobody took them.
+    /// The number of console lines that were dropped because nobody took them.
     #[must_use]
     pub const fn lost_console_lines(&self) -> u64 {
         self.lost_console_lines
     }
 
-    /// Lines of replies to commands of other clients.
+    /// The number of lines in replies to commands of other clients.
     #[must_use]
     pub const fn foreign_lines(&self) -> u64 {
         self.foreign_lines
@@ -171,7 +172,7 @@ impl Client {
         }
     }
 
-    /// Reads the console until nothing has come for this long, at most for `limit`.
+    /// Reads the console until nothing has come for the time `silence`, but at most for `limit`.
     ///
     /// # Errors
     /// The link is lost.
@@ -213,7 +214,7 @@ impl Client {
         Ok(())
     }
 
-    /// Starts the programs of threads by one line, which the board executes without a break.
+    /// Starts the programs of threads with one line, which the board executes without interruption.
     ///
     /// # Errors
     /// The board does not answer.
@@ -225,7 +226,7 @@ impl Client {
     /// Returns the present status of the board.
     ///
     /// # Errors
-    /// The board does not answer, or with something else.
+    /// The board does not answer, or gives an unexpected answer.
     pub fn status(&mut self) -> Result<Status, WireError> {
         let lines = self.send_line("GetStatus")?;
         let Some((status, foreign)) = Status::read(&lines) else {
@@ -235,7 +236,7 @@ impl Client {
         Ok(status)
     }
 
-    /// The error of an answer that makes no sense.
+    /// The error for an answer in an unexpected form.
     #[must_use]
     pub fn unexpected(&self, command: &str, answer: &str) -> WireError {
         WireError::Unexpected {
@@ -245,7 +246,8 @@ impl Client {
         }
     }
 
-    /// The next item from the board, until a moment. Console lines are kept and files served on the way, and reported.
+    /// The next item from the board, until a given time. Console lines and file requests are handled, and returned,
+    /// too.
     fn next(&mut self, until: Instant) -> Result<Option<Incoming>, WireError> {
         loop {
             if let Some(item) = self.decoder.take() {
@@ -262,7 +264,7 @@ impl Client {
         }
     }
 
-    /// Returns whether more has come already.
+    /// Returns whether more data have already come.
     fn has_more(&mut self) -> bool {
         self.decoder.has_item()
     }
@@ -291,7 +293,7 @@ impl Client {
         }
     }
 
-    /// Sends lines without echo, in one piece: nothing of ours comes between them.
+    /// Sends lines without echo in one piece, so that no other line of ours comes between them.
     fn write(&self, lines: &[Vec<u8>]) -> Result<(), WireError> {
         let bytes = lines.iter().flat_map(|line| [b"\x1b\x01", &line[..], b"\r"].concat()).collect();
         self.link.send(bytes)

@@ -4,11 +4,11 @@ use std::collections::VecDeque;
 
 /// The board's messages about a command.
 const MESSAGES: [&str; 3] = ["error, invalid command", "Error:Expecting", "error, expecting value"];
-/// The message that comes before the line and the caret, in place of after them.
+/// The message that comes before the line and the caret instead of after them.
 const EXPECTS_EQUALS: &[u8] = b"Error:Expecting \"=\"";
-/// A message of one line.
+/// A message that consists of one line.
 const INVALID_ADDRESS: &[u8] = b"invalid address";
-/// Messages that are kept; each refused line of a download makes one.
+/// The maximum number of messages kept; each rejected line of a download causes one.
 const MOST_MESSAGES: usize = 16;
 
 /// A message of the board about a command.
@@ -16,13 +16,12 @@ const MOST_MESSAGES: usize = 16;
 pub(super) struct Refusal {
     /// The command, in upper case.
     pub(super) command: String,
-    /// The message.
     pub(super) message: String,
 }
 
-/// Finds the messages about commands among the console lines while a command is under way.
+/// Finds the messages about commands among the console lines while a command is in progress.
 ///
-/// A message is three console lines: the command, a caret under its mistake, the text.
+/// A message consists of three console lines: the command, a caret under the error, the text.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Errors {
     is_watching: bool,
@@ -32,13 +31,13 @@ pub(super) struct Errors {
 }
 
 impl Errors {
-    /// A command is sent.
+    /// Notes that a command is sent.
     pub(super) fn watch(&mut self) {
         self.is_watching = true;
         self.found.clear();
     }
 
-    /// The command has been answered; returns the lines that are not part of a message.
+    /// Notes that the command was answered; returns the lines that are not part of a message.
     pub(super) fn unwatch(&mut self) -> Vec<Vec<u8>> {
         self.is_watching = false;
         self.held.drain(..).collect()
@@ -53,7 +52,7 @@ impl Errors {
         *self = Self::default();
     }
 
-    /// Takes a console line; the lines that are not part of a message.
+    /// Takes a console line; returns the lines that are not part of a message.
     pub(super) fn filter(&mut self, line: Vec<u8>) -> Vec<Vec<u8>> {
         if !self.is_watching {
             return vec![line];
@@ -91,7 +90,7 @@ fn is_message(line: &[u8]) -> bool {
     MESSAGES.iter().any(|message| line.starts_with(message.as_bytes()))
 }
 
-/// The command and the text of three lines that are a message.
+/// The command and the text in three lines that form a message.
 fn message_in(lines: &[Vec<u8>]) -> Option<(&Vec<u8>, &Vec<u8>)> {
     match lines {
         [command, caret, message] if is_caret(caret) && is_message(message) => Some((command, message)),

@@ -7,11 +7,11 @@ use kmotiondef::boards::{StructureLayout, boards};
 use kmotiondef::structs::MainStatus;
 use kmotiondef::{AxisId, Bit, ThreadId};
 
-/// Words of a line.
+/// The number of words per line.
 const WORDS_PER_LINE: usize = 16;
-/// Bits of `BitsState`.
+/// The number of bits in `BitsState`.
 const PINS: usize = 64;
-/// The first input and the first output of a Kanalog, and the bits of each.
+/// The first input and the first output of a Kanalog, and the number of each.
 const KANALOG: [(u16, u16, Word); 2] = [(128, 16, Word::KanalogInputs), (144, 24, Word::KanalogOutputs)];
 /// The first of the extended virtual bits in the record.
 const VIRTUAL_EX: u16 = 1024;
@@ -51,7 +51,7 @@ fields! {
     VirtualBitsEx0 = "VirtualBitsEx0",
 }
 
-/// The places of the fields in the record of one firmware, in words.
+/// The positions of the fields in the record of one firmware, in words.
 #[derive(Debug, PartialEq, Eq)]
 struct RecordLayout {
     words: usize,
@@ -72,7 +72,7 @@ impl RecordLayout {
     }
 }
 
-/// The records of all boards, each once.
+/// The records of all boards, without duplicates.
 static LAYOUTS: LazyLock<Vec<RecordLayout>> = LazyLock::new(|| {
     let mut layouts: Vec<RecordLayout> = Vec::new();
     for board in boards() {
@@ -87,7 +87,7 @@ static LAYOUTS: LazyLock<Vec<RecordLayout>> = LazyLock::new(|| {
     layouts
 });
 
-/// The state of the board at an instant.
+/// The state of the board at one time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Status {
     words: Vec<u32>,
@@ -95,8 +95,8 @@ pub struct Status {
 }
 
 impl Status {
-    /// Reads the last lines of a reply, in the layout whose length the record states; returns the number of lines before
-    /// it as well.
+    /// Parses the last lines of a reply, in the layout with the length stated in the record; also returns the number of
+    /// lines before it.
     pub(super) fn read(lines: &[String]) -> Option<(Self, usize)> {
         LAYOUTS.iter().find_map(|layout| {
             let before = lines.len().checked_sub(layout.lines())?;
@@ -162,7 +162,7 @@ impl Status {
         (word >> (4 * (axis.index() % 8)) & 0xF) as u8
     }
 
-    /// The level of a bit, if the record has it: 0 to 63, those of a Kanalog, 1024 to 1055.
+    /// The level of a bit, if it is in the record: 0 to 63, those of a Kanalog, 1024 to 1055.
     #[must_use]
     pub fn bit(&self, bit: Bit) -> Option<bool> {
         let level = |word: u32, index: usize| word >> index & 1 == 1;
@@ -177,31 +177,31 @@ impl Status {
         Some(level(self.get(word, 0), usize::from(bit.get() - first)))
     }
 
-    /// The directions of the bits 0 to 63, 32 in a word; 1 is an output.
+    /// The directions of the bits 0 to 63, 32 per word; 1 is an output.
     #[must_use]
     pub fn directions(&self) -> [u32; 2] {
         [0, 1].map(|index| self.get(Word::BitsDirection, index))
     }
 
-    /// `VirtualBits`: the bits 48 to 63 begin at its bit 0.
+    /// `VirtualBits`, whose bit 0 is the board's bit 48, and so on to 63.
     #[must_use]
     pub fn virtual_bits(&self) -> u32 {
         self.get(Word::VirtualBits, 0)
     }
 
-    /// An analog input, from 0 to 23; those from 0 to 7 are 0 at 0 V.
+    /// An analog input, 0 to 23; inputs 0 to 7 are 0 at 0 V.
     #[must_use]
     pub fn adc(&self, channel: usize) -> i32 {
         if channel < 24 { self.get(Word::Adc, channel).cast_signed() } else { 0 }
     }
 
-    /// An analog output, from 0 to 7, 0 at 0 V.
+    /// An analog output, 0 to 7; 0 at 0 V.
     #[must_use]
     pub fn dac(&self, channel: usize) -> i32 {
         if channel < 8 { self.get(Word::Dac, channel).cast_signed() } else { 0 }
     }
 
-    /// The threads that start when the board is switched on, one bit each.
+    /// The threads that start at power-up, one bit each.
     #[must_use]
     pub fn run_on_start_up(&self) -> u32 {
         self.get(Word::RunOnStartUp, 0)
@@ -213,13 +213,13 @@ impl Status {
         self.get(Word::ThreadActive, 0) >> thread.get() & 1 == 1
     }
 
-    /// Seconds since the board was switched on.
+    /// The time since power-up, in seconds.
     #[must_use]
     pub fn time(&self) -> f64 {
         self.double(Word::TimeStamp, 0)
     }
 
-    /// The state of a feedhold: 0 when none.
+    /// The state of a feedhold; 0 for none.
     #[must_use]
     pub fn stop_state(&self) -> u32 {
         self.get(Word::StopImmediateState, 0)
@@ -243,8 +243,8 @@ mod tests {
         words.chunks(WORDS_PER_LINE).map(text).collect()
     }
 
-    /// A record of a firmware: its first word, and the places of Position 1, Enables, BitsState, ThreadActive, TimeStamp,
-    /// PC_comm.
+    /// Checks a record of a firmware: its first word, and the positions of Position 1, Enables, BitsState,
+    /// ThreadActive, TimeStamp, PC_comm.
     fn check(head: u32, words: usize, places: [usize; 6]) {
         let mut record = vec![0_u32; words];
         let [position, enables, bits, threads, time, pc] = places;

@@ -1,4 +1,4 @@
-//! The choice of a board among those at USB, whatever lists them.
+//! The selection of one board from those connected to USB, independent of the driver.
 
 use std::time::Duration;
 
@@ -6,21 +6,22 @@ use crate::clock::now;
 use crate::error::WireError;
 use crate::link::BoardLink;
 
-/// One of these words is in the name of a board at USB.
+/// Words of which one is in the USB name of a board.
 pub(super) const BOARD_NAMES: [&str; 3] = ["KFLOP", "KMotion", "Dynomotion"];
-/// The time that a board needs to start, in which it comes and goes, and the interval of attempts.
+/// The time for retries while a board starts, during which it appears and disappears, and the interval between
+/// attempts.
 const OPEN_WITHIN: Duration = Duration::from_secs(3);
 const OPEN_EACH: Duration = Duration::from_millis(100);
 
-/// A device that may be chosen.
+/// A device that may be selected.
 pub(super) trait Candidate {
-    /// Its location, as the system tells devices apart.
+    /// Its location, which distinguishes it from other devices.
     fn location(&self) -> String;
-    /// Returns whether a person means it by a location or a serial number.
+    /// Returns whether a user's location or serial number refers to it.
     fn is_meant(&self, wanted: &str) -> bool;
 }
 
-/// Returns the device that is wanted, or else the only one.
+/// Returns the requested device, or the only one if none was requested.
 pub(super) fn choose<D: Candidate>(mut devices: Vec<D>, wanted: Option<&str>) -> Result<D, WireError> {
     let present = devices.iter().map(D::location).collect::<Vec<_>>().join(", ");
     if let Some(wanted) = wanted {
@@ -37,7 +38,7 @@ pub(super) fn choose<D: Candidate>(mut devices: Vec<D>, wanted: Option<&str>) ->
     }
 }
 
-/// Opens a link, again and again while the board may be starting.
+/// Opens a link, with repeated attempts while the board may be starting.
 pub(super) fn open_patiently(
     open: impl Fn() -> Result<BoardLink, WireError>,
 ) -> Result<BoardLink, WireError> {

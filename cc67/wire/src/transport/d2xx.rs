@@ -1,10 +1,11 @@
 //! The library of the chip's Windows driver, loaded at run time. Source: wire.md sections 2.2 and 2.3.
 //!
-//! On Windows the vendor's driver holds the chip, and its library, `ftd2xx.dll`, is the way to it. Nothing of the library is
-//! linked: without it, or with another one, there is an error, and the COM port and the vendor's server remain.
+//! On Windows the vendor's driver controls the chip, and is accessible through its library, `ftd2xx.dll`. The library
+//! is not linked: without it, or with an incompatible one, there is an error, and the COM port and the vendor's server
+//! can be used instead.
 //!
-//! This file has all unsafe code of this crate: functions of a library that was loaded at run time have the types that their
-//! documentation gives (FTDI, *D2XX Programmer's Guide*), which nothing checks.
+//! This file contains all unsafe code of this crate: functions of a library loaded at run time have the types given in
+//! their documentation (FTDI, *D2XX Programmer's Guide*), which nothing checks.
 
 #![expect(
     unsafe_code,
@@ -24,44 +25,44 @@ use crate::error::WireError;
 use crate::found::FoundBoard;
 use crate::link::BoardLink;
 
-/// The library.
+/// The file name of the library.
 #[cfg(windows)]
 const LIBRARY: &str = "ftd2xx.dll";
-/// Results of the library.
+/// Result codes of the library.
 const OK: u32 = 0;
 const DEVICE_NOT_FOUND: u32 = 2;
 const DEVICE_NOT_OPENED: u32 = 3;
 /// Opens the device at a location.
 const BY_LOCATION: u32 = 4;
-/// In the flags of a device: a program has opened it.
+/// The flag of a device that a program has opened.
 const OPENED: u32 = 1;
 /// Purges both directions.
 const BOTH: u32 = 3;
-/// Bytes of a serial number and of a description, with the 0 at their ends.
+/// The sizes of a serial number and of a description in bytes, with their terminating 0.
 const SERIAL: usize = 16;
 const DESCRIPTION: usize = 64;
-/// Time limit of a single write, in milliseconds; reads take only what is there.
+/// Time limit of a single write, in milliseconds; reads take only the bytes that are already there.
 const STEP: u32 = 50;
 /// The pause after a read that found nothing.
 const PAUSE: Duration = Duration::from_millis(1);
 
 type Handle = *mut c_void;
 
-/// Declares the functions that are used, each with its name in the library.
+/// Declares the required functions, each with its name in the library.
 macro_rules! functions {
     ($($name:ident = $symbol:literal ($($argument:ty),*);)*) => {
         /// The functions of the library.
         #[derive(Debug)]
         struct Functions {
             $($name: unsafe extern "system" fn($($argument),*) -> u32,)*
-            /// The functions are of it.
+            /// Keeps the library loaded for the functions.
             _library: Library,
         }
 
         impl Functions {
             fn find(library: Library) -> Result<Self, libloading::Error> {
                 $(
-                    // SAFETY: the type is that of the library's documentation, and the function lives as long as the
+                    // SAFETY: the type is given in the library's documentation, and the function lives as long as the
                     // library, which is kept beside it.
                     let $name = *unsafe { library.get(concat!($symbol, "\0").as_bytes()) }?;
                 )*
@@ -85,12 +86,12 @@ functions! {
     close = "FT_Close" (Handle);
 }
 
-/// The result of a function as an error, if it is one.
+/// Converts the result of a function to an error, unless it is success.
 fn check(result: u32) -> Result<(), DriverError> {
     if result == OK { Ok(()) } else { Err(DriverError(result)) }
 }
 
-/// A result of the library that is not success.
+/// A result of the library other than success.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct DriverError(u32);
 
@@ -104,7 +105,7 @@ impl From<DriverError> for io::Error {
     }
 }
 
-/// A device that the driver lists.
+/// A device listed by the driver.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Device {
     location: u32,
@@ -136,7 +137,7 @@ pub(super) fn open(location: Option<&str>) -> Result<BoardLink, WireError> {
     Driver::of_system()?.open(location)
 }
 
-/// Boards at USB; none where the driver is not installed.
+/// The boards at USB; none if the driver is not installed.
 #[cfg(windows)]
 pub(crate) fn boards() -> Result<Vec<FoundBoard>, WireError> {
     Driver::of_system().map_or_else(|_| Ok(Vec::new()), |driver| driver.boards())
@@ -147,7 +148,7 @@ pub(crate) fn boards() -> Result<Vec<FoundBoard>, WireError> {
 struct Driver(Arc<Functions>);
 
 impl Driver {
-    /// Loads the library of the system.
+    /// Loads the library installed on the system.
     #[cfg(windows)]
     fn of_system() -> Result<Self, WireError> {
         Self::load(LIBRARY.as_ref()).map_err(|error| WireError::NotBuilt {
@@ -167,10 +168,10 @@ impl Driver {
         Functions::find(library).map(|functions| Self(Arc::new(functions)))
     }
 
-    /// The boards among the devices of the driver.
+    /// The boards among the driver's devices.
     fn devices(&self) -> Result<Vec<Device>, DriverError> {
         let mut count = 0;
-        // SAFETY: the pointer is to a number of that type.
+        // SAFETY: the pointer refers to a number of that type.
         check(unsafe { (self.0.create_list)(&raw mut count) })?;
         let devices = (0..count).map(|index| self.device(index)).collect::<Result<Vec<_>, _>>()?;
         let is_board = |device: &Device| BOARD_NAMES.iter().any(|name| device.description.contains(name));
@@ -181,7 +182,8 @@ impl Driver {
         let (mut flags, mut kind, mut id, mut location) = (0, 0, 0, 0);
         let (mut serial, mut description) = ([0_u8; SERIAL], [0_u8; DESCRIPTION]);
         let mut handle: Handle = std::ptr::null_mut();
-        // SAFETY: all pointers are to variables of those types, and the texts have the room that the library asks for.
+        // SAFETY: all pointers refer to variables of those types, and the buffers have the size that the library
+        // requires.
         check(unsafe {
             (self.0.detail)(
                 index,
@@ -214,7 +216,7 @@ impl Driver {
         Ok(devices.into_iter().map(row).collect())
     }
 
-    /// Opens the link to a board; one that is just starting is waited for.
+    /// Opens the link to a board; waits for one that is just starting.
     fn open(&self, wanted: Option<&str>) -> Result<BoardLink, WireError> {
         open_patiently(|| self.find(wanted).and_then(|device| self.claim(&device)))
     }
@@ -226,9 +228,10 @@ impl Driver {
     fn claim(&self, device: &Device) -> Result<BoardLink, WireError> {
         let place = device.address();
         let mut handle: Handle = std::ptr::null_mut();
-        // The library takes the number itself in place of a pointer.
+        // The library takes the number itself instead of a pointer.
         let location = device.location as usize as *mut c_void;
-        // SAFETY: opened by location, the first argument is not followed; the handle is a variable of that type.
+        // SAFETY: when opening by location, the first argument is not dereferenced; the handle is a variable of that
+        // type.
         let opened = check(unsafe { (self.0.open)(location, BY_LOCATION, &raw mut handle) });
         opened.map_err(|error| match error {
             DriverError(DEVICE_NOT_OPENED) => {
@@ -247,11 +250,11 @@ fn open_error(place: &str, error: DriverError) -> WireError {
     WireError::Open { place: place.to_owned(), error: error.into() }
 }
 
-/// A chip that is open; it is closed when its last user is gone.
+/// An open chip; it is closed when its last user is dropped.
 #[derive(Debug)]
 struct OpenChip {
     driver: Driver,
-    /// The library's pointer, which nothing here follows; functions of the library may be called in any thread.
+    /// The library's pointer, which is never dereferenced here; functions of the library may be called in any thread.
     handle: usize,
 }
 
@@ -260,7 +263,7 @@ impl OpenChip {
         self.handle as Handle
     }
 
-    /// Sets latency timer, event character and time limits as the vendor's library does.
+    /// Sets latency timer, event character and time limits, as the vendor's library does.
     fn prepare(&self) -> Result<(), DriverError> {
         let Functions { set_latency, set_characters, set_timeouts, purge, .. } = &*self.driver.0;
         // SAFETY: the handle is open.
@@ -273,10 +276,10 @@ impl OpenChip {
         check(unsafe { purge(self.handle(), BOTH) })
     }
 
-    /// Bytes that can be read at once.
+    /// The number of bytes that can be read at once.
     fn waiting(&self) -> Result<u32, DriverError> {
         let (mut received, mut sent, mut event) = (0, 0, 0);
-        // SAFETY: the handle is open, and the pointers are to numbers of that type.
+        // SAFETY: the handle is open, and the pointers refer to numbers of that type.
         let result = unsafe {
             (self.driver.0.status)(self.handle(), &raw mut received, &raw mut sent, &raw mut event)
         };
@@ -286,12 +289,12 @@ impl OpenChip {
 
 impl Drop for OpenChip {
     fn drop(&mut self) {
-        // SAFETY: the handle is open, and nobody has it any more. A device that is gone needs no closing.
+        // SAFETY: the handle is open, and nobody uses it any more. A disconnected device needs no closing.
         let _ = unsafe { (self.driver.0.close)(self.handle()) };
     }
 }
 
-/// The bytes to and from a chip; the library has taken off the status bytes of packets.
+/// The data of a chip; the library has removed the status bytes of packets.
 #[derive(Clone, Debug)]
 struct Chip(Arc<OpenChip>);
 
@@ -317,12 +320,12 @@ impl Write for Chip {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let mut count = 0;
         let length = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
-        // SAFETY: the handle is open; the library reads that many bytes and changes none.
+        // SAFETY: the handle is open; the library reads that many bytes and modifies none.
         let result = unsafe {
             (self.0.driver.0.write)(self.0.handle(), bytes.as_ptr().cast_mut().cast(), length, &raw mut count)
         };
         check(result)?;
-        // The caller comes again with the same bytes.
+        // The caller tries again with the same bytes.
         if count == 0 { Err(io::ErrorKind::TimedOut.into()) } else { Ok(count as usize) }
     }
 
@@ -342,7 +345,7 @@ mod tests {
     use super::*;
     use crate::client::Client;
 
-    /// A driver whose one chip is a connection to a port, built from `ftd2xx.c`.
+    /// A driver with one chip that is a connection to a port, built from `ftd2xx.c`.
     fn driver() -> Driver {
         let folder = env::temp_dir().join(format!("cc67-d2xx-{}", std::process::id()));
         fs::create_dir_all(&folder).expect("a folder");

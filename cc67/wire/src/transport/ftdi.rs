@@ -1,6 +1,6 @@
 //! The framing of the board's USB chip. Source: wire.md sections 2.3 and 2.4.
 
-/// Status bytes at the beginning of each packet.
+/// The number of status bytes at the beginning of each packet.
 const STATUS: usize = 2;
 
 /// A request to the chip: number and value.
@@ -12,17 +12,17 @@ pub struct ChipRequest {
     pub value: u16,
 }
 
-/// The time for which packets that are not full wait, in milliseconds.
+/// The time after which an incomplete packet is sent, in milliseconds.
 pub const LATENCY: u8 = 2;
 
-/// The requests that prepare the chip, in their order.
+/// The requests that prepare the chip, in this order.
 pub const PREPARATION: [ChipRequest; 5] = [
     // Reset.
     ChipRequest { request: 0, value: 0 },
     ChipRequest { request: 9, value: LATENCY as u16 },
-    // A packet with a line feed goes at once.
+    // A packet with a line feed is sent at once.
     ChipRequest { request: 6, value: 0x010A },
-    // Drop what was received, and what is to be sent.
+    // Drop received and unsent data.
     ChipRequest { request: 0, value: 1 },
     ChipRequest { request: 0, value: 2 },
 ];
@@ -44,14 +44,14 @@ mod tests {
         data
     }
 
-    /// A transfer that carries `data`, as the chip makes it.
+    /// A transfer with `data`, in the chip's format.
     fn transfer(data: &[u8]) -> Vec<u8> {
         data.chunks(62).flat_map(|part| [&[0x01, 0x60], part].concat()).collect()
     }
 
     #[test]
     fn recorded_packets_give_their_data() {
-        // The answer to the abort byte, and a packet of a chip with nothing to say (wire.md section 2.3).
+        // The answer to the abort byte, and a packet of a chip that has no data (wire.md section 2.3).
         assert_eq!(stripped(&[0x01, 0x60, 0x1B, 0x43, 0x0D]), b"\x1bC\r");
         assert_eq!(stripped(&[0x01, 0x60]), b"");
         assert_eq!(stripped(&[]), b"");

@@ -1,7 +1,7 @@
-//! Kogna controllers in the networks of this computer.
+//! Kogna controllers on the networks of this computer.
 //!
-//! A question goes as a datagram to a multicast group on each local network; each controller answers to a fixed port of
-//! the asking address. The link itself is TCP. Source: kogna.md, Link and loading.
+//! A query is sent as a datagram to a multicast group on each local network; each controller answers to a fixed port of
+//! the sender. The link itself is TCP. Source: kogna.md, Link and loading.
 
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
@@ -14,19 +14,19 @@ use crate::found::FoundBoard;
 use crate::link::BoardLink;
 use crate::transport::tcp;
 
-/// The group that is asked, and its port.
+/// The multicast group of the query, and its port.
 const GROUP: SocketAddrV4 = SocketAddrV4::new(Ipv4Addr::new(239, 81, 92, 240), 25000);
 /// The port to which controllers answer.
 const ANSWER_PORT: u16 = 25001;
-/// Number of routers that a question passes.
+/// The maximum number of routers on the way of a query.
 const HOPS: u32 = 8;
-/// Bytes of a question and of an answer.
+/// The size of a query and of an answer in bytes.
 const DATAGRAM: usize = 64;
 const QUESTION: &[u8] = b"Kogna?";
 const ANSWER: &[u8] = b"I am Kogna SN";
-/// The time for answers.
+/// The time limit for answers.
 const ANSWER_WITHIN: Duration = Duration::from_millis(500);
-/// Networks that are asked: the private ones, by the first number of the local address.
+/// The networks that are searched: private ones, by the first number of the local address.
 const FIRST_NUMBERS: [u8; 3] = [10, 172, 192];
 
 /// A controller that has answered.
@@ -36,10 +36,10 @@ struct Kogna {
     serial: u32,
 }
 
-/// Asks the networks of this computer for Kogna controllers and lists those that answer within half a second.
+/// Searches the networks of this computer for Kogna controllers, and lists those that answer within half a second.
 ///
 /// # Errors
-/// The system does not say which networks there are, or another program waits for the answers.
+/// The operating system cannot list the networks, or another program waits for the answers.
 pub fn kognas() -> Result<Vec<FoundBoard>, WireError> {
     let board = |kogna: Kogna| FoundBoard {
         address: format!("tcp:{}:{BOARD_PORT}", kogna.address),
@@ -66,7 +66,7 @@ fn choose(found: &[Kogna], wanted: Option<u32>) -> Option<Kogna> {
     }
 }
 
-/// The error that no controller was chosen.
+/// The error when no controller could be selected.
 fn absent(found: &[Kogna], wanted: Option<u32>) -> WireError {
     let name = |kogna: &Kogna| format!("kogna:{} at {}", kogna.serial, kogna.address);
     let present = found.iter().map(name).collect::<Vec<_>>().join(", ");
@@ -86,13 +86,13 @@ fn search() -> io::Result<Vec<Kogna>> {
     ask(&local, GROUP, ANSWER_PORT)
 }
 
-/// A local address whose network is asked.
+/// A local address whose network is searched.
 fn private(address: IpAddr) -> Option<Ipv4Addr> {
     let IpAddr::V4(address) = address else { return None };
     FIRST_NUMBERS.contains(&address.octets()[0]).then_some(address)
 }
 
-/// Asks from each local address, and collects the answers to a port.
+/// Sends the query from each local address, and collects the answers to a port.
 fn ask(local: &[Ipv4Addr], group: SocketAddrV4, port: u16) -> io::Result<Vec<Kogna>> {
     let mut question = [0; DATAGRAM];
     question[..QUESTION.len()].copy_from_slice(QUESTION);
@@ -100,14 +100,14 @@ fn ask(local: &[Ipv4Addr], group: SocketAddrV4, port: u16) -> io::Result<Vec<Kog
     for address in local {
         let socket = UdpSocket::bind((*address, port))?;
         socket.set_multicast_ttl_v4(HOPS)?;
-        // A network without a route to the group has no controller that could be reached.
+        // A network without a route to the group has no reachable controller.
         if socket.send_to(&question, group).is_ok() {
             sockets.push(socket);
         }
     }
     let end = now() + ANSWER_WITHIN;
     let mut found = Vec::new();
-    // One socket after the other: what has arrived at the others meanwhile is kept by the system.
+    // One socket after another: the operating system keeps the data that arrive at the others meanwhile.
     for socket in &sockets {
         while let Some((sender, bytes)) = receive(socket, end)? {
             found.extend(answer(sender, &bytes).filter(|kogna| !found.contains(kogna)));
@@ -117,7 +117,7 @@ fn ask(local: &[Ipv4Addr], group: SocketAddrV4, port: u16) -> io::Result<Vec<Kog
     Ok(found)
 }
 
-/// The next datagram that has come or comes until a moment.
+/// The next datagram, if one comes before a given time.
 fn receive(socket: &UdpSocket, end: std::time::Instant) -> io::Result<Option<(SocketAddr, Vec<u8>)>> {
     let left = end.saturating_duration_since(now()).max(Duration::from_millis(1));
     socket.set_read_timeout(Some(left))?;
@@ -129,7 +129,7 @@ fn receive(socket: &UdpSocket, end: std::time::Instant) -> io::Result<Option<(So
     }
 }
 
-/// The controller that has sent an answer; anything else at this port is ignored.
+/// The controller that sent an answer; other data at this port are ignored.
 fn answer(sender: SocketAddr, bytes: &[u8]) -> Option<Kogna> {
     let SocketAddr::V4(sender) = sender else { return None };
     let text = bytes.strip_prefix(ANSWER)?;

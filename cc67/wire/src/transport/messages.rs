@@ -4,7 +4,7 @@ use std::io::{self, Read, Write};
 
 /// Acknowledges a message that is not a reply.
 const ACKNOWLEDGE: &[u8] = &[0xAA];
-/// Bytes of the longest message to the server, and of the longest from it.
+/// The maximum size of a message to the server, and of a message from it, in bytes.
 const LONGEST_REQUEST: usize = 4096;
 const LONGEST_REPLY: usize = 2561;
 
@@ -18,7 +18,7 @@ pub(super) trait Messages: Send {
     fn acknowledge(&mut self) -> io::Result<()>;
 }
 
-/// A stream on which the length of each message comes before it.
+/// A stream on which each message is preceded by its length.
 #[derive(Debug)]
 pub(super) struct Framed<S>(pub(super) S);
 
@@ -41,8 +41,8 @@ impl<S: Read + Write + Send> Messages for Framed<S> {
     }
 }
 
-/// A pipe of Windows, on which each write is a message: the server sends the next one after an answer alone, so that a
-/// read takes all of one.
+/// A Windows pipe on which each write is a message: the server sends the next message only after an answer, so that a
+/// read takes exactly one.
 #[derive(Debug)]
 pub(super) struct Unframed<S>(pub(super) S);
 
@@ -67,7 +67,7 @@ impl<S: Read + Write + Send> Messages for Unframed<S> {
     }
 }
 
-/// A message, if it is not too long for the server.
+/// Returns a message, unless it is too long for the server.
 fn limited(message: &[u8]) -> io::Result<&[u8]> {
     if message.len() <= LONGEST_REQUEST { Ok(message) } else { Err(io::ErrorKind::InvalidInput.into()) }
 }

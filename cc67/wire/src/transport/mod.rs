@@ -30,7 +30,7 @@ use crate::link::BoardLink;
 /// Opens the link to the board at an address. Nothing is sent to the board yet.
 ///
 /// # Errors
-/// There is nothing there, or it may not be opened.
+/// Nothing is connected at the address, or access is denied.
 pub fn open(address: &Address) -> Result<BoardLink, WireError> {
     let place = address.to_string();
     match address {

@@ -1,4 +1,4 @@
-//! The named pipe of Windows over which programs reach the vendor's server. Source: wire.md section 7.
+//! The named pipe of Windows through which programs reach the vendor's server. Source: wire.md section 7.
 
 use super::messages::Messages;
 use crate::error::WireError;
@@ -16,7 +16,7 @@ pub(super) fn open(place: &str) -> Result<impl Messages + use<>, WireError> {
     Ok(super::messages::Unframed(file))
 }
 
-/// Says that there are no such pipes here.
+/// Returns an error: this system has no such pipes.
 #[cfg(not(windows))]
 pub(super) fn open(place: &str) -> Result<impl Messages + use<>, WireError> {
     Err::<super::messages::Unframed<std::fs::File>, _>(WireError::NotBuilt {
@@ -33,11 +33,11 @@ mod windows {
 
     use crate::clock::now;
 
-    /// The pipe of the vendor's server.
+    /// The name of the vendor's pipe.
     const PIPE: &str = r"\\.\pipe\kmotionpipe";
-    /// The system's number for a pipe all instances of which have a client.
+    /// The system's error number if all instances of a pipe have a client.
     const BUSY: i32 = 231;
-    /// The time in which the server makes place for one more client, and the interval of attempts.
+    /// The time limit for the server to accept another client, and the interval between attempts.
     const FREE_WITHIN: Duration = Duration::from_secs(3);
     const TRY_EACH: Duration = Duration::from_millis(20);
 

@@ -10,19 +10,19 @@ use crate::link::BoardLink;
 
 /// Time-out of a single read or write.
 const STEP: Duration = Duration::from_millis(50);
-/// The board has no speed; drivers need one.
+/// The baud rate, which drivers need; the board has none.
 const BAUD: u32 = 9600;
 
 pub(super) fn open(path: &str, place: String) -> Result<BoardLink, WireError> {
     let port = serialport::new(path, BAUD).timeout(STEP).flow_control(FlowControl::None).open();
     let port = port.map_err(|error| refused(error, place.clone()))?;
-    // What an earlier user has left; the handshake finds its place without this as well.
+    // Data left over from an earlier user; the handshake copes with them in any case.
     let _ = port.clear(ClearBuffer::All);
     let writer = port.try_clone().map_err(|error| refused(error, place.clone()))?;
     Ok(BoardLink::new(place, Port(port), Port(writer)))
 }
 
-/// A port as a stream. A read of nothing is the end of the port.
+/// A port as a stream. An empty read is the end of the stream.
 struct Port(Box<dyn SerialPort>);
 
 impl io::Read for Port {
@@ -36,7 +36,7 @@ impl io::Write for Port {
         self.0.write(bytes)
     }
 
-    /// Written bytes are the driver's; waiting until they are sent could take forever.
+    /// Does nothing: written bytes are the driver's, and waiting until they are sent could take forever.
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
     }

@@ -1,9 +1,9 @@
-//! A board that the vendor's server holds, shared with the vendor's programs. Source: host-protocol.md section 8; wire.md
-//! sections 5 and 6.
+//! A board connected to the vendor's server, shared with the vendor's programs. Source: host-protocol.md section 8;
+//! wire.md sections 5 and 6.
 //!
-//! The server forwards lines, not bytes. What the client sends is split into lines and requested one by one; replies
-//! and console lines become bytes again, so that the client above is the same. Files that programs open are served by
-//! the server while it waits for a reply, in its own folder.
+//! The server forwards lines, not bytes. The client's data are split into lines and requested one by one; replies and
+//! console lines are converted back to bytes, so that the client above is the same as for other links. The server
+//! itself serves the files that programs open, in its own folder, while it waits for a reply.
 
 use std::io;
 use std::sync::atomic::Ordering;
@@ -24,22 +24,22 @@ const LOCK: i32 = 9;
 const RELEASE: i32 = 12;
 const SERVICE_CONSOLE: i32 = 13;
 const SET_CONSOLE: i32 = 14;
-/// The first board of the server.
+/// The number of the server's first board.
 const BOARD: i32 = 0;
 /// The name under which the token is taken.
 const NAME: &[u8] = b"cc67\0";
 /// Results of taking the token.
 const LOCKED: i32 = 0;
 const IN_USE: i32 = 1;
-/// Within which time the server answers: it may have to connect to the board, and to read a line.
+/// The time limit for the server's answer: it may have to connect to the board, and to read a line.
 const ANSWER_WITHIN: Duration = Duration::from_secs(10);
-/// The time of one wait for a reply, in milliseconds.
+/// The time of a single wait for a reply, in milliseconds.
 const READ_FOR: i32 = 10;
 /// The interval between requests for the console while nothing else happens.
 const CONSOLE_EACH: Duration = Duration::from_millis(20);
 /// The interval between attempts to take the token.
 const LOCK_EACH: Duration = Duration::from_millis(10);
-/// The abort byte, and its answer: the server connects by itself.
+/// The abort byte, and its answer, which is made up here because the server does the connecting.
 const ABORT: u8 = 0x03;
 const ABORTED: &[u8] = b"\x1bC\r";
 
@@ -78,11 +78,11 @@ fn socket(_: &str, place: &str) -> Result<Box<dyn Messages>, WireError> {
 /// A connection to the server.
 struct Connection {
     messages: Box<dyn Messages>,
-    /// The beginning of a line that was not ended yet.
+    /// The beginning of an incomplete line.
     line: Vec<u8>,
-    /// The bytes that the board has sent.
+    /// The bytes received from the board.
     received: Vec<u8>,
-    /// True if we have the token: replies are for us then.
+    /// True if this client holds the token; only then are replies meant for it.
     is_claimed: bool,
 }
 
@@ -93,7 +93,7 @@ struct Reply {
 }
 
 impl Connection {
-    /// Serves one end of a link until the other is dropped, or the server is gone.
+    /// Serves one end of a link until the other is dropped, or the server is disconnected.
     fn serve(mut self, ends: &Ends) {
         // A server that does not answer ends the link.
         let _ = self.run(ends);
@@ -113,7 +113,7 @@ impl Connection {
                 }
                 Ok(Outgoing::Claim(until, answer)) => {
                     let claimed = self.claim(until)?;
-                    // Who asked may have gone.
+                    // The requester may have given up.
                     let _ = answer.send(claimed);
                 }
                 Ok(Outgoing::Release) => {
@@ -134,7 +134,7 @@ impl Connection {
         Ok(())
     }
 
-    /// Takes the token, again and again until a moment.
+    /// Takes the token, with repeated attempts until a given time.
     fn claim(&mut self, until: std::time::Instant) -> io::Result<Claimed> {
         loop {
             match self.request(LOCK, NAME)?.result {
@@ -149,18 +149,18 @@ impl Connection {
         }
     }
 
-    /// Takes a byte for the board.
+    /// Processes a byte for the board.
     fn send(&mut self, byte: u8) -> io::Result<()> {
         match byte {
             ABORT => {
                 self.line.clear();
                 self.received.extend_from_slice(ABORTED);
-                // What is left of an earlier reply is not for us.
+                // The rest of an earlier reply is not meant for this client.
                 Ok(())
             }
             b'\r' => {
                 let line = std::mem::take(&mut self.line);
-                // The server puts the two bytes in front that switch the echo off.
+                // The server itself prepends the two bytes that switch the echo off.
                 let text = line.strip_prefix(b"\x1b\x01").unwrap_or(&line);
                 self.request(WRITE_LINE, &[text, b"\0"].concat()).map(drop)
             }
@@ -180,7 +180,7 @@ impl Connection {
         Ok(())
     }
 
-    /// Sends a request and returns its reply; console lines that come before it are received.
+    /// Sends a request and returns its reply; console lines that come before it are stored.
     fn request(&mut self, code: i32, arguments: &[u8]) -> io::Result<Reply> {
         let body = [&code.to_le_bytes()[..], &BOARD.to_le_bytes(), arguments].concat();
         self.messages.send(&body)?;
@@ -197,7 +197,7 @@ impl Connection {
                     self.received.extend([b"\x1b", text].concat());
                     self.messages.acknowledge()?;
                 }
-                // The text of an error, such as that of a link that was lost.
+                // The text of an error, such as a lost link.
                 _ => self.messages.acknowledge()?,
             }
         }

@@ -7,7 +7,7 @@ use std::time::Duration;
 use crate::error::WireError;
 use crate::link::BoardLink;
 
-/// Within which time a connection is made.
+/// The time limit for connecting.
 const CONNECT_WITHIN: Duration = Duration::from_secs(3);
 /// Time-out of a single read or write.
 const STEP: Duration = Duration::from_millis(50);

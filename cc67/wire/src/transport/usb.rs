@@ -1,4 +1,4 @@
-//! The board's USB chip, without a driver. Source: wire.md section 2.
+//! Direct access to the board's USB chip, without the vendor's driver. Source: wire.md section 2.
 
 use std::io::{self, Read, Write};
 use std::time::Duration;
@@ -12,7 +12,7 @@ use crate::error::WireError;
 use crate::found::FoundBoard;
 use crate::link::BoardLink;
 
-/// The vendor's identifier at USB, and those of its boards: KFLOP, KMotion.
+/// The vendor's USB identifier, and the product identifiers of its boards: KFLOP, KMotion.
 const VENDOR: u16 = 0x0403;
 const PRODUCTS: [u16; 2] = [0xF231, 0xF230];
 /// Endpoints for data.
@@ -22,7 +22,7 @@ const OUT: u8 = 0x02;
 const CONTROL: Duration = Duration::from_secs(1);
 /// Time-out of a single read or write.
 const STEP: Duration = Duration::from_millis(50);
-/// Bytes of a transfer, and transfers under way.
+/// The size of a transfer in bytes, and the number of transfers in progress.
 const TRANSFER: usize = 4096;
 const TRANSFERS: usize = 4;
 
@@ -49,11 +49,11 @@ fn devices() -> Result<Vec<DeviceInfo>, WireError> {
 
 fn is_board(device: &DeviceInfo) -> bool {
     let is_known = device.vendor_id() == VENDOR && PRODUCTS.contains(&device.product_id());
-    // Where the system does not tell the name, the identifier decides.
+    // If the operating system does not report the name, the identifier decides.
     is_known && device.product_string().is_none_or(|name| BOARD_NAMES.iter().any(|word| name.contains(word)))
 }
 
-/// Bus and ports of a device, as Linux writes them.
+/// Bus and ports of a device, in the notation of Linux.
 fn location_of(device: &DeviceInfo) -> String {
     let bus = device.bus_id();
     let bus = bus.trim_start_matches('0');
@@ -61,7 +61,7 @@ fn location_of(device: &DeviceInfo) -> String {
     format!("{}-{}", if bus.is_empty() { "0" } else { bus }, ports.join("."))
 }
 
-/// Takes the chip and prepares it.
+/// Opens the chip and prepares it.
 fn claim(device: &DeviceInfo) -> Result<BoardLink, WireError> {
     let location = location_of(device);
     let place = format!("usb:{location}");
@@ -93,7 +93,7 @@ fn prepare(interface: &Interface) -> Result<(), TransferError> {
     Ok(())
 }
 
-/// The program that holds a device, as far as Linux reports it: the driver of its interface.
+/// The program that uses a device, as far as Linux reports it: the driver of its interface.
 fn holder(location: &str) -> String {
     let driver = std::fs::read_link(format!("/sys/bus/usb/devices/{location}:1.0/driver"));
     let driver = driver.ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
@@ -104,7 +104,7 @@ fn holder(location: &str) -> String {
     }
 }
 
-/// Boards at USB.
+/// The boards at USB.
 pub(crate) fn boards() -> Result<Vec<FoundBoard>, WireError> {
     let row = |device: &DeviceInfo| {
         let location = location_of(device);
@@ -119,7 +119,7 @@ pub(crate) fn boards() -> Result<Vec<FoundBoard>, WireError> {
     Ok(devices()?.iter().map(row).collect())
 }
 
-/// The bytes from the chip. Several transfers are always under way; one without data is not the end.
+/// The data from the chip. Several transfers are always in progress; an empty one is not the end.
 struct ChipReader {
     input: Endpoint<Bulk, In>,
     fresh: Vec<u8>,
@@ -160,7 +160,7 @@ impl Read for ChipReader {
     }
 }
 
-/// The bytes to the chip: the transfer waits while the board does not read.
+/// The data to the chip: the transfer waits while the board does not read.
 struct ChipWriter {
     output: Endpoint<Bulk, Out>,
 }
@@ -171,7 +171,7 @@ impl Write for ChipWriter {
             self.output.submit(bytes.to_vec().into());
         }
         match self.output.wait_next_complete(STEP) {
-            // The caller comes again with the same bytes.
+            // The caller tries again with the same bytes.
             None => Err(io::ErrorKind::TimedOut.into()),
             Some(completion) => {
                 completion.status?;

@@ -16,12 +16,12 @@ pub(crate) const VERSION: &str = "KFLOP 4.34 Build 16:07:06 Aug 14 2018";
 /// The reply of a Kogna.
 pub(crate) const KOGNA_VERSION: &str = "KOGNA 5.3.2 Build 18:10:31 Jan 31 2024";
 
-/// A disturbance.
+/// A fault of the board or the link.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Fault {
     #[default]
     None,
-    /// Bytes that an earlier user has left.
+    /// Bytes left over from an earlier user.
     Garbage,
     /// Everything is sent byte by byte.
     SingleBytes,
@@ -29,35 +29,35 @@ pub(crate) enum Fault {
     Silent,
     /// The first abort byte is not answered.
     SilentOnce,
-    /// A program prints between any two lines that are read.
+    /// A program prints between any two lines received.
     Flood,
-    /// After some data lines the cable is out.
+    /// The cable is unplugged after this many data lines.
     Unplug(usize),
-    /// After some data lines the board restarts.
+    /// The board restarts after this many data lines.
     Reset(usize),
-    /// After some data lines a command of another client arrives.
+    /// A command of another client arrives after this many data lines.
     Foreign(usize),
-    /// Lines of replies to another client come before each of ours.
+    /// Lines of replies to another client come before each reply.
     Replies,
-    /// A command is not answered once, as if its line was lost.
+    /// One command is not answered, as if its line was lost.
     LosesLine,
-    /// A thread continues when it is killed.
+    /// A killed thread continues.
     Unstoppable,
-    /// It is a Kogna: its answer to the abort byte is a whole line.
+    /// The board is a Kogna: its answer to the abort byte is a complete line.
     Kogna,
 }
 
-/// The board's memory as far as it was written, and the commands that it executed.
+/// The written parts of the board's memory, and the commands that it executed.
 #[derive(Debug, Default)]
 pub(crate) struct State {
     pub(crate) memory: BTreeMap<u32, u8>,
     pub(crate) commands: Vec<String>,
-    /// Bytes that were received.
+    /// The number of received bytes.
     pub(crate) received: usize,
     pub(crate) fault: Fault,
 }
 
-/// A board, and a link to it.
+/// Creates a board, and a link to it.
 pub(crate) fn board(fault: Fault) -> (BoardLink, Arc<Mutex<State>>) {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
     let pc = TcpStream::connect(listener.local_addr().expect("its address")).expect("a connection");
@@ -76,9 +76,9 @@ pub(crate) fn board(fault: Fault) -> (BoardLink, Arc<Mutex<State>>) {
 struct Board {
     stream: TcpStream,
     state: Arc<Mutex<State>>,
-    /// Address and number of bytes that a download still expects.
+    /// The address and the number of bytes still expected in a download.
     block: Option<(u32, usize)>,
-    /// Data lines so far.
+    /// The number of data lines so far.
     lines: usize,
 }
 
@@ -98,7 +98,7 @@ impl Board {
                 thread::sleep(Duration::from_micros(200));
             }
         } else {
-            // A PC that is gone hears nothing.
+            // An error means that the PC has disconnected.
             let _ = self.stream.write_all(text.as_bytes());
         }
     }
@@ -148,7 +148,7 @@ impl Board {
         }
     }
 
-    /// Takes a line; whether the cable is still in.
+    /// Processes a line; returns whether the cable is still plugged in.
     fn line(&mut self, text: &str) -> bool {
         let text = text.to_ascii_uppercase();
         if let Some((address, left)) = self.block {
@@ -233,7 +233,7 @@ impl Board {
     }
 }
 
-/// A program of some bytes for thread 2.
+/// A program of a given size for thread 2.
 pub(crate) fn program(size: usize) -> LoadImage {
     LoadImage {
         thread: ThreadId::new(2).expect("there are 7"),
