@@ -1,7 +1,6 @@
 //! The meaning of a symbol's first auxiliary entry.
 //!
-//! The format does not say; it follows from the storage class, the type and the name of the
-//! symbol it belongs to.
+//! The entry itself does not state its meaning; it follows from the storage class, the type and the name of its symbol.
 
 use crate::image::Symbol;
 use crate::names::{Derivation, StorageClass};
@@ -25,7 +24,7 @@ pub enum Auxiliary {
 }
 
 impl Symbol {
-    /// Its first auxiliary entry; `None` if it has none.
+    /// The symbol's first auxiliary entry; `None` if it has none.
     #[must_use]
     pub fn auxiliary(&self) -> Option<Auxiliary> {
         let aux = self.aux.first()?;
@@ -41,7 +40,7 @@ impl Symbol {
         })
     }
 
-    /// The size in bytes that the entry states of what the symbol names, if it states one.
+    /// The size in bytes of the object or type that the symbol names, if an entry states it.
     #[must_use]
     pub fn size(&self) -> Option<u32> {
         match self.auxiliary()? {

@@ -1,15 +1,14 @@
-//! The work that reading an image may cause, bounded by the size of the file.
+//! The work of reading an image, bounded by the size of the file.
 //!
-//! The parts of a file may lie anywhere, and the same bytes could be claimed by many of
-//! them. What the image takes is therefore charged against the length of the file, so that
-//! a small file cannot make a large image.
+//! The parts of a file may lie anywhere, and many of them could claim the same bytes. The data copied to the image are
+//! therefore charged against the length of the file, so that a small file cannot result in a large image.
 
 use crate::error::{Error, ErrorKind, Part};
 
-/// Maximum number of names of an image, on average, that may share a byte of the string table.
+/// The maximum number of names, on average, that may share a byte of the string table.
 pub(crate) const NAME_SHARING: u64 = 4;
 
-/// Takes `amount` of what is left, or reports that `part` overlaps with what was taken before.
+/// Subtracts `amount` from the budget, or reports that `part` overlaps with earlier parts.
 pub(crate) fn spend(left: &mut u64, amount: u64, at: u64, part: Part) -> Result<(), Error> {
     *left = left.checked_sub(amount).ok_or(Error { at, kind: ErrorKind::Overlap(part) })?;
     Ok(())

@@ -1,7 +1,7 @@
-//! A listing of an image, for people and for golden tests.
+//! A listing of an image, for users and for golden tests.
 //!
-//! Nothing in it depends on where the parts lie in the file, so that two images with the same
-//! listing load the same.
+//! The listing does not depend on the positions of parts in the file, so two images with the same listing load
+//! identically.
 
 use std::fmt::{self, Write};
 
@@ -91,7 +91,7 @@ pub fn lines(image: &Image) -> String {
     })
 }
 
-/// The bytes of a section, sixteen a row.
+/// The bytes of a section, sixteen per row.
 #[must_use]
 pub fn data(section: &Section) -> String {
     listing(|out| {
@@ -108,7 +108,7 @@ pub fn data(section: &Section) -> String {
     })
 }
 
-/// Collects what `write` writes; a string takes everything.
+/// Collects the output of `write`; writing to a string cannot fail.
 fn listing(write: impl FnOnce(&mut String) -> fmt::Result) -> String {
     let mut out = String::new();
     let written = write(&mut out);

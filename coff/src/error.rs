@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// A fault in an image and the file offset of the bytes that show it.
+/// An error in an image, with the file offset of the bytes that show it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{kind} (at offset {at:#x})")]
 pub struct Error {
@@ -15,10 +15,10 @@ pub struct Error {
 /// A kind of error in an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ErrorKind {
-    /// The file begins with something else.
+    /// The file begins with an unknown magic number.
     #[error("not a COFF2 image: the magic number is {0:#06x}, not 0x00c2")]
     Magic(u16),
-    /// The file is an ELF file whose structure is wrong.
+    /// The file is an ELF file with an invalid structure.
     #[error("damaged ELF file: {0}")]
     Elf(object::read::Error),
     /// The file is an ELF file of another kind.
@@ -27,7 +27,7 @@ pub enum ErrorKind {
     /// The file is a COFF2 image of a big-endian processor.
     #[error("the image is big endian")]
     BigEndian,
-    /// A part lies outside the file, wholly or at its end.
+    /// A part lies partly or completely outside the file.
     #[error("{part} needs {size} bytes, which the file does not have")]
     Truncated {
         /// The part.
@@ -46,7 +46,7 @@ pub enum ErrorKind {
         /// Size of the table.
         size: u64,
     },
-    /// The auxiliary entries of a symbol go beyond the symbol table.
+    /// The auxiliary entries of a symbol extend beyond the symbol table.
     #[error("{count} auxiliary entries where {left} entries are left")]
     Auxiliary {
         /// Number of auxiliary entries that the symbol claims.
@@ -65,7 +65,7 @@ pub enum ErrorKind {
 /// A part of an image, for messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// The first 22 bytes.
+    /// The file header of 22 bytes.
     FileHeader,
     /// The optional header.
     OptionalHeader,
@@ -83,7 +83,7 @@ pub enum Part {
     Auxiliaries,
     /// The string table.
     Strings,
-    /// The names that the string table holds.
+    /// The names in the string table.
     Names,
     /// The file as a whole.
     File,

@@ -1,7 +1,7 @@
-//! Any bytes as a checked view: headers, sections and symbols, nothing copied.
+//! A checked view of a file's bytes: headers, sections and symbols, without copying.
 //!
-//! [`File::parse`] checks that every part the headers name lies inside the file. Names are
-//! checked as they are requested, because most readers need only a few of them.
+//! [`File::parse`] checks that every part named in the headers lies inside the file. Names are checked only when they
+//! are requested, because most readers need few of them.
 
 use std::num::NonZeroU16;
 
@@ -12,7 +12,7 @@ use crate::image::{Aux, Line, Program, Relocation};
 use crate::names::{FileFlags, SectionFlags, SectionNumber, StorageClass, SymbolType, Target};
 use crate::raw;
 
-/// The bytes of an image, checked.
+/// The checked bytes of an image.
 #[derive(Clone, Copy, Debug)]
 pub struct File<'a> {
     bytes: &'a [u8],
@@ -26,10 +26,10 @@ pub struct File<'a> {
 }
 
 impl<'a> File<'a> {
-    /// Checks the headers.
+    /// Parses and checks the headers.
     ///
     /// # Errors
-    /// If the bytes are not a complete little-endian COFF2 image.
+    /// The bytes are not a complete little-endian COFF2 image.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, Error> {
         let header: raw::FileHeader = structure(bytes, 0, Part::FileHeader)?;
         match header.magic.get() {
@@ -56,7 +56,7 @@ impl<'a> File<'a> {
         Ok(file)
     }
 
-    /// The processor it is for.
+    /// The processor for which it was made.
     #[must_use]
     pub fn target(&self) -> Target {
         Target(self.header.target.get())
@@ -68,7 +68,7 @@ impl<'a> File<'a> {
         self.header.timestamp.get()
     }
 
-    /// The flags: which parts have been stripped, and whether the image is complete.
+    /// The flags: parts that were stripped, and whether the image is complete.
     #[must_use]
     pub fn flags(&self) -> FileFlags {
         FileFlags(self.header.flags.get())
@@ -89,7 +89,7 @@ impl<'a> File<'a> {
         })
     }
 
-    /// The sections; an error where a name lies outside the string table.
+    /// The sections; an error for a name outside the string table.
     pub fn sections(&self) -> impl Iterator<Item = Result<SectionView<'a>, Error>> {
         let file = *self;
         (1..).zip(self.sections).zip(self.section_offsets()).map(move |((number, header), at)| {
@@ -103,7 +103,7 @@ impl<'a> File<'a> {
         self.sections().filter_map(Result::ok).find(|section| section.name == name.as_bytes())
     }
 
-    /// The symbols with their auxiliary entries; an error where one goes beyond its table.
+    /// The symbols with their auxiliary entries; an error for entries that extend beyond the table.
     pub fn symbols(&self) -> impl Iterator<Item = Result<SymbolView<'a>, Error>> {
         let file = *self;
         let mut index = 0;
@@ -138,8 +138,8 @@ impl<'a> File<'a> {
         (0..).map(move |index| start + index * size::<raw::SectionHeader>())
     }
 
-    /// A name of up to eight bytes, or four zeros and an offset into the string table. Offsets
-    /// count from the length word in either convention; offset 0 is the empty name.
+    /// A name of up to eight bytes, or four zeros and an offset into the string table. Offsets count from the length
+    /// word in both conventions; offset 0 is the empty name.
     fn name(&self, field: &'a raw::ShortName, at: u64) -> Result<&'a [u8], Error> {
         let [0, 0, 0, 0, offset @ ..] = *field else {
             return Ok(until_nul(field));
@@ -186,7 +186,7 @@ impl<'a> SectionView<'a> {
         SectionFlags(self.header.flags.get())
     }
 
-    /// Its bytes; `None` if the file has none of it.
+    /// Its bytes; `None` if they are not in the file.
     #[must_use]
     pub fn data(&self) -> Option<&'a [u8]> {
         self.checked_data().ok().flatten()
@@ -239,7 +239,7 @@ impl<'a> SectionView<'a> {
 /// A symbol in a file.
 #[derive(Clone, Copy, Debug)]
 pub struct SymbolView<'a> {
-    /// Its index as the format counts, auxiliary entries included.
+    /// Its index as counted by the format, including auxiliary entries.
     pub index: u32,
     /// The file offset of its entry.
     pub at: u64,
@@ -251,19 +251,19 @@ pub struct SymbolView<'a> {
 }
 
 impl SymbolView<'_> {
-    /// Its value, mostly an address.
+    /// Its value, usually an address.
     #[must_use]
     pub fn value(&self) -> u32 {
         self.entry.value.get()
     }
 
-    /// The section that the value lies in.
+    /// The section that contains the value.
     #[must_use]
     pub fn section(&self) -> SectionNumber {
         SectionNumber(self.entry.section.get())
     }
 
-    /// The type of what it names.
+    /// The type of the named object.
     #[must_use]
     pub fn ty(&self) -> SymbolType {
         SymbolType(self.entry.ty.get())
@@ -276,8 +276,8 @@ impl SymbolView<'_> {
     }
 }
 
-/// The string table is whatever follows the symbols. Its length word counts itself or not,
-/// depending on the tool, and is therefore only compared with the file.
+/// The string table extends from the end of the symbols to the end of the file. Whether its length word counts itself
+/// depends on the tool, so the length is only compared with the size of the file.
 fn strings<'a>(bytes: &'a [u8], header: &raw::FileHeader) -> Result<&'a [u8], Error> {
     let symbols_at = u64::from(header.symbols_at.get());
     let at = symbols_at + u64::from(header.symbols.get()) * size::<raw::Symbol>();
@@ -296,7 +296,7 @@ fn structure<T: FromBytes>(bytes: &[u8], at: u64, part: Part) -> Result<T, Error
         .map_err(|_| Error { at, kind: ErrorKind::Truncated { part, size: size::<T>() } })
 }
 
-/// `count` structures from `at` on; nothing is read for none.
+/// Reads `count` structures at `at`; reads nothing if `count` is 0.
 fn array<T>(bytes: &[u8], at: u64, count: u32, part: Part) -> Result<&[T], Error>
 where
     T: FromBytes + KnownLayout + Immutable + Unaligned,
@@ -308,7 +308,7 @@ where
     Ok(<[T]>::ref_from_bytes(table).unwrap_or_default())
 }
 
-/// `size` bytes of the file from `at` on.
+/// Returns `size` bytes of the file at `at`.
 fn slice(bytes: &[u8], at: u64, size: u64, part: Part) -> Result<&[u8], Error> {
     let end = at.checked_add(size).and_then(|end| usize::try_from(end).ok());
     let range = usize::try_from(at).ok().zip(end);

@@ -1,9 +1,8 @@
-//! The image as values, which reader and writer share.
+//! The image as values, shared by reader and writer.
 //!
-//! Names are bytes, for a file may hold any; counts and file offsets do not appear, the
-//! writer finds them. Auxiliary entries stay as they are in the file, because what they mean
-//! depends on the symbol ([`Auxiliary`](crate::Auxiliary)); [`Layout`](crate::Layout) gives the
-//! offsets that some of them hold.
+//! Names are bytes, because a file may contain any; there are no counts and file offsets, as the writer computes them.
+//! Auxiliary entries stay as they are in the file, because their meaning depends on the symbol
+//! ([`Auxiliary`](crate::Auxiliary)); [`Layout`](crate::Layout) provides the offsets that some of them contain.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -17,13 +16,13 @@ use crate::raw;
 /// An image: a linked program, or an object that a linker completes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
-    /// The kind of file that holds it.
+    /// The type of file.
     pub container: Container,
-    /// The processor it is for.
+    /// The processor for which it was made.
     pub target: Target,
-    /// The creation time, in Unix seconds; 0 in images of compilers.
+    /// The creation time, in Unix seconds; 0 in images written by compilers.
     pub timestamp: u32,
-    /// Flags: which parts have been stripped, and whether the image is complete.
+    /// Flags: parts that were stripped, and whether the image is complete.
     pub flags: FileFlags,
     /// Entry point and sizes; `None` if the file has no optional header of the usual size.
     pub program: Option<Program>,
@@ -33,7 +32,7 @@ pub struct Image {
     pub symbols: Vec<Symbol>,
 }
 
-/// A kind of file that holds an image.
+/// A type of file for an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Container {
     /// TI COFF2.
@@ -52,7 +51,7 @@ pub struct Program {
     pub text_size: u32,
     /// Size of initialised data.
     pub data_size: u32,
-    /// Size of uninitialised data; in an image of the vendor's compiler the only place that has it.
+    /// Size of uninitialised data; in an image of the vendor's compiler, only this field contains it.
     pub bss_size: u32,
     /// Address of the entry point.
     pub entry: u32,
@@ -69,7 +68,7 @@ pub struct Section {
     pub name: Name,
     /// Physical address.
     pub physical: u32,
-    /// Address at run time, where the loader puts it.
+    /// The run-time address, to which the loader copies it.
     pub address: u32,
     /// Its kind and alignment.
     pub flags: SectionFlags,
@@ -77,7 +76,7 @@ pub struct Section {
     pub page: u16,
     /// Its bytes.
     pub contents: Contents,
-    /// Its relocations, for a linker; none in a linked image.
+    /// Its relocations, for a linker; empty in a linked image.
     pub relocations: Vec<Relocation>,
     /// Its line numbers.
     pub lines: Vec<Line>,
@@ -88,13 +87,13 @@ impl Section {
     #[must_use]
     pub fn size(&self) -> u64 {
         match &self.contents {
-            // A usize has at most 64 bits, so that the other value is never taken.
+            // A usize has at most 64 bits, so the default is never used.
             Contents::Data(bytes) => u64::try_from(bytes.len()).unwrap_or(u64::MAX),
             Contents::Uninitialised(size) => u64::from(*size),
         }
     }
 
-    /// Its bytes, none if it is uninitialised.
+    /// Its bytes; empty if it is uninitialised.
     #[must_use]
     pub fn data(&self) -> &[u8] {
         match &self.contents {
@@ -118,9 +117,9 @@ pub enum Contents {
 pub struct Relocation {
     /// Address of the bytes.
     pub address: u32,
-    /// Index of the symbol as the format counts, auxiliary entries included.
+    /// Index of the symbol as counted by the format, including auxiliary entries.
     pub symbol: u32,
-    /// Further information that the kind needs.
+    /// Additional data for the kind.
     pub displacement: u16,
     /// The kind of relocation; its meaning depends on the target.
     pub kind: u16,
@@ -131,7 +130,7 @@ pub struct Relocation {
 pub enum Line {
     /// The following entries belong to the function with this symbol index.
     Function(u32),
-    /// Code at an address belongs to a line.
+    /// The code at an address belongs to a line.
     Statement {
         /// The address.
         address: u32,
@@ -145,11 +144,11 @@ pub enum Line {
 pub struct Symbol {
     /// Its name, possibly empty.
     pub name: Name,
-    /// Its value, mostly an address.
+    /// Its value, usually an address.
     pub value: u32,
-    /// The section that the value lies in.
+    /// The section that contains the value.
     pub section: SectionNumber,
-    /// The type of what it names.
+    /// The type of the named object.
     pub ty: SymbolType,
     /// Its storage class.
     pub class: StorageClass,
@@ -210,12 +209,12 @@ impl Aux {
     }
 }
 
-/// A name: bytes without NUL, mostly ASCII.
+/// A name: bytes without NUL, usually ASCII.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct Name(Vec<u8>);
 
 impl Name {
-    /// Makes a name of the bytes a file holds.
+    /// Creates a name from the bytes in a file.
     #[must_use]
     pub fn new(bytes: &[u8]) -> Self {
         Self(bytes.to_vec())
@@ -227,7 +226,7 @@ impl Name {
         &self.0
     }
 
-    /// The name as text; what is not UTF-8 becomes the replacement character.
+    /// The name as text, with the replacement character for invalid UTF-8.
     #[must_use]
     pub fn to_str(&self) -> Cow<'_, str> {
         String::from_utf8_lossy(&self.0)
@@ -271,7 +270,7 @@ impl Image {
         self.symbols.iter().find(|symbol| symbol.name == *name)
     }
 
-    /// The entries that the symbol table has, auxiliary ones included.
+    /// The number of entries in the symbol table, including auxiliary ones.
     #[must_use]
     pub fn symbol_entries(&self) -> usize {
         self.symbols.iter().map(|symbol| 1 + symbol.aux.len()).sum()

@@ -2,7 +2,7 @@
 //!
 //! [`Image::read`] accepts any bytes and either returns the whole image or reports the fault and its offset;
 //! [`Image::write`] gives the same bytes for the same image on every host. [`File::parse`] does the same checks without
-//! copying, for readers that need only a few symbols of a large file. [`dump`] lists an image for people and for golden
+//! copying, for readers that need only a few symbols of a large file. [`dump`] lists an image for users and for golden
 //! tests.
 //!
 //! The format is that of C6000 programs: the vendor compiler's images, the firmware file, and cc67's own images and
@@ -24,8 +24,8 @@
 //! compiler it does not. The reader accepts both; the writer uses TI's form. Section numbers in comments refer to
 //! `coff.md` of the specification.
 //!
-//! The firmware of the Kogna board and programs for it may be ELF files in place of that. [`Image::read`] and
-//! [`Image::write`] have them as the same values, see [`Container`].
+//! The firmware of the Kogna board and its programs may be ELF files instead. [`Image::read`] and [`Image::write`]
+//! represent them by the same values, see [`Container`].
 //!
 //! Invariants:
 //! - No input causes a panic or a large allocation: the sizes that an image claims are first compared with the length

@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-/// A type around a number with names for some values.
+/// A newtype of an integer, with names for some values.
 ///
-/// `flags` types print as the names of their bits, `values` types as the name of the whole;
-/// what has no name prints as a number.
+/// `flags` types print as the names of their bits, `values` types as the name of the whole value; unnamed bits or
+/// values print as a number.
 macro_rules! newtype_names {
     ($(#[$doc:meta])+ flags $name:ident($repr:ty) { $($rows:tt)* }) => {
         newtype_names!(@type [$(#[$doc])+] $name($repr) { $($rows)* });
@@ -54,12 +54,12 @@ macro_rules! newtype_names {
 }
 
 newtype_names! {
-    /// The processor an image is for.
+    /// The processor for which an image was made.
     values Target(u16) {
         /// TMS320C6000: machine code that a board executes.
         C6000 = 0x0099 "C6000";
-        /// cc67's bytecode. Not a number that TI gave to a processor, so that no loader takes
-        /// the bytecode for machine code.
+        /// cc67's bytecode. TI has not given this number to any processor, so no loader takes the bytecode for machine
+        /// code.
         CC67 = 0x6701 "cc67";
     }
 }
@@ -69,7 +69,7 @@ newtype_names! {
     flags FileFlags(u16) {
         /// Relocations have been stripped.
         RELOCATIONS_STRIPPED = 0x0001 "RELFLG";
-        /// Nothing is unresolved.
+        /// There are no unresolved references.
         EXECUTABLE = 0x0002 "EXEC";
         /// Line numbers have been stripped.
         LINES_STRIPPED = 0x0004 "LNNO";
@@ -91,7 +91,7 @@ newtype_names! {
         DSECT = 0x01 "DSECT";
         /// Not to be loaded.
         NOLOAD = 0x02 "NOLOAD";
-        /// Made of others.
+        /// Combined from other sections.
         GROUP = 0x04 "GROUP";
         /// Padding.
         PAD = 0x08 "PAD";
@@ -140,7 +140,7 @@ impl fmt::Display for FileFlags {
     }
 }
 
-/// Writes the names of the set bits, and what has no name as a number.
+/// Writes the names of the set bits, and the unnamed bits as a number.
 fn write_flags<'a>(
     f: &mut fmt::Formatter<'_>,
     bits: u32,
@@ -160,13 +160,13 @@ fn write_flags<'a>(
 }
 
 newtype_names! {
-    /// The section that the value of a symbol lies in: a number from 1, or one of these (section 6.1).
+    /// The section that contains the value of a symbol: a number from 1, or one of these (section 6.1).
     values SectionNumber(i16) {
-        /// Nowhere: the symbol is not defined.
+        /// None: the symbol is not defined.
         UNDEFINED = 0 "UNDEF";
-        /// In no section: the value is absolute.
+        /// None: the value is absolute.
         ABSOLUTE = -1 "ABS";
-        /// In no section: the symbol is for debuggers.
+        /// None: the symbol is for debuggers.
         DEBUG = -2 "DEBUG";
     }
 }
@@ -174,7 +174,7 @@ newtype_names! {
 newtype_names! {
     /// The storage class of a symbol (section 6.1).
     values StorageClass(u8) {
-        /// Nothing.
+        /// None.
         NULL = 0 "NULL";
         /// Automatic variable.
         AUTO = 1 "AUTO";
@@ -232,7 +232,7 @@ newtype_names! {
 }
 
 newtype_names! {
-    /// The type that others are derived from (section 6.1).
+    /// The type from which others are derived (section 6.1).
     values BaseType(u16) {
         /// None.
         NONE = 0 "none";
@@ -269,14 +269,14 @@ newtype_names! {
     }
 }
 
-/// One step of deriving a type from another.
+/// A step of deriving a type from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Derivation {
-    /// A pointer to it.
+    /// A pointer to the other type.
     Pointer,
-    /// A function returning it.
+    /// A function that returns the other type.
     Function,
-    /// An array of it.
+    /// An array of the other type.
     Array,
 }
 
@@ -302,13 +302,13 @@ impl SymbolType {
         Self((self.0 & !0xF) << 2 | code << 4 | self.0 & 0xF)
     }
 
-    /// The type that all derivations start from.
+    /// The base type of all derivations.
     #[must_use]
     pub const fn base(self) -> BaseType {
         BaseType(self.0 & 0xF)
     }
 
-    /// The outermost derivation: what the symbol is.
+    /// The outermost derivation: the kind of the symbol itself.
     #[must_use]
     pub const fn outermost(self) -> Option<Derivation> {
         match self.0 >> 4 & 3 {

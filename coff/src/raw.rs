@@ -1,7 +1,7 @@
-//! Headers, symbols, relocations and line numbers as the document lays them out.
+//! Headers, symbols, relocations and line numbers, in the layout of the document.
 //!
-//! Plain bytes in little-endian order without alignment or padding, so that a structure can
-//! be read from, and written to, any place of a file. Section numbers are those of `coff.md`.
+//! Plain bytes in little-endian order without alignment or padding, so that a structure can be read from, and written
+//! to, any position of a file. Section numbers refer to `coff.md`.
 
 use zerocopy::little_endian::{I16, U16, U32};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
@@ -12,7 +12,7 @@ pub const MAGIC: u16 = 0x00C2;
 pub const MAGIC_BIG_ENDIAN: u16 = 0xC200;
 /// Magic number of the optional header.
 pub const OPTIONAL_MAGIC: i16 = 0x0108;
-/// Name of a symbol or section that fits without the string table.
+/// A name of a symbol or section that needs no string table.
 pub type ShortName = [u8; 8];
 
 macro_rules! structures {
@@ -39,7 +39,7 @@ structures! {
         timestamp: U32,
         /// File offset of the symbol table.
         symbols_at: U32,
-        /// Number of entries in it, auxiliary ones included.
+        /// Number of entries in it, including auxiliary ones.
         symbols: U32,
         /// Size of the optional header.
         optional_size: U16,
@@ -101,9 +101,9 @@ structures! {
     Relocation, 12 {
         /// Address of the bytes to complete.
         address: U32,
-        /// Index of the symbol whose address is put there.
+        /// Index of the symbol whose address is stored there.
         symbol: U32,
-        /// Further information that the kind needs.
+        /// Additional data for the kind.
         displacement: U16,
         /// The kind of relocation; its meaning depends on the target.
         kind: U16,
@@ -121,7 +121,7 @@ structures! {
     Symbol, 18 {
         /// Name, or zeros and an offset into the string table.
         name: ShortName,
-        /// Value, mostly an address.
+        /// Value, usually an address.
         value: U32,
         /// Section, from 1; see [`SectionNumber`](crate::SectionNumber).
         section: I16,

@@ -1,4 +1,4 @@
-//! Bytes to an image of its own: what [`File`] has checked, copied.
+//! Conversion of bytes to an image: a copy of the data that [`File`] has checked.
 
 use crate::budget::{NAME_SHARING, length, spend};
 use crate::elf;
@@ -11,7 +11,7 @@ impl Image {
     /// Reads an image: TI COFF2, or a linked ELF program.
     ///
     /// # Errors
-    /// If the bytes are neither, or incomplete.
+    /// The bytes are neither of them, or are incomplete.
     pub fn read(bytes: &[u8]) -> Result<Self, Error> {
         if bytes.starts_with(elf::MAGIC) {
             return elf::read(bytes);
@@ -33,7 +33,7 @@ impl Image {
     }
 }
 
-/// The work that reading an image may still cause, bounded by the size of the file.
+/// The remaining work for reading, bounded by the size of the file.
 struct Reader {
     data_left: u64,
     relocations_left: u64,
@@ -94,7 +94,7 @@ impl Reader {
     }
 
     fn name(&mut self, name: &[u8], at: u64) -> Result<Name, Error> {
-        // What fits the entry itself is no part of the string table.
+        // A name that fits in its field does not use the string table.
         if name.len() > size_of::<raw::ShortName>() {
             spend(&mut self.names_left, length(name.len()), at, Part::Names)?;
         }

@@ -1,8 +1,8 @@
-//! An image to bytes: reserve, then write.
+//! Conversion of an image to bytes: reserve, then write.
 //!
-//! [`Layout::of`] decides where everything goes, in the order of the vendor's tools: headers,
-//! raw data, relocations, line numbers, symbols, strings. Writing then only appends, and each part finds
-//! itself where it was reserved.
+//! [`Layout::of`] decides the position of each part, in the order of the vendor's tools: headers, raw data,
+//! relocations, line numbers, symbols, strings. Writing then only appends, and each part is written at its reserved
+//! position.
 
 use std::collections::BTreeMap;
 
@@ -15,10 +15,10 @@ use crate::image::{Container, Contents, Image, Line, Name, Program, Relocation, 
 use crate::raw;
 
 impl Image {
-    /// Writes the image in its container.
+    /// Writes the image in its file type.
     ///
     /// # Errors
-    /// If a name contains a NUL, or something exceeds what the format can count.
+    /// A name contains a NUL, or a number exceeds its field in the format.
     pub fn write(&self) -> Result<Vec<u8>, Error> {
         if self.container == Container::Elf {
             return elf::write(self);
@@ -92,10 +92,10 @@ struct SectionPlace {
 }
 
 impl Layout {
-    /// Lays an image out.
+    /// Computes the layout of an image.
     ///
     /// # Errors
-    /// If a name contains a NUL, or something exceeds what the format can count.
+    /// A name contains a NUL, or a number exceeds its field in the format.
     pub fn of(image: &Image) -> Result<Self, Error> {
         let optional = if image.program.is_some() { size_of::<raw::OptionalHeader>() } else { 0 };
         let headers = image.sections.len() * size_of::<raw::SectionHeader>();
@@ -139,13 +139,13 @@ impl Layout {
         self.sections.get(index)?.lines_at.checked_add(line.checked_mul(6)?)
     }
 
-    /// Bytes of the whole file.
+    /// The size of the whole file in bytes.
     #[must_use]
     pub fn size(&self) -> usize {
         self.size
     }
 
-    /// The field for a name: itself if it is short, else where it is in the string table.
+    /// The field for a name: the name itself if it is short, otherwise its offset in the string table.
     fn name_field(&self, name: &Name) -> raw::ShortName {
         if let Some(offset) = self.strings.offsets.get(name) {
             let [a, b, c, d] = offset.to_le_bytes();
@@ -159,7 +159,7 @@ impl Layout {
     }
 }
 
-/// The string table: the names that are too long for their fields, each once.
+/// The string table: the names that are too long for their fields, without duplicates.
 #[derive(Clone, Debug, Default)]
 struct Strings {
     /// The bytes after the length word.
@@ -169,7 +169,7 @@ struct Strings {
 }
 
 impl Strings {
-    /// Bytes of the length word.
+    /// The size of the length word in bytes.
     const LENGTH_WORD: usize = 4;
 
     fn of(image: &Image) -> Result<Self, Error> {
@@ -188,13 +188,13 @@ impl Strings {
         Ok(strings)
     }
 
-    /// Bytes of the table as in the length word: by TI's convention it counts itself.
+    /// The size of the table as stored in the length word: by TI's convention, including the length word itself.
     fn size(&self) -> Result<u32, Error> {
         offset(Self::LENGTH_WORD + self.bytes.len(), Part::Strings)
     }
 }
 
-/// A count or offset as the format holds it.
+/// A count or offset in the format's representation.
 fn offset(value: usize, part: Part) -> Result<u32, Error> {
     u32::try_from(value).map_err(|_| Error { at: u64::from(u32::MAX), kind: ErrorKind::TooLarge(part) })
 }

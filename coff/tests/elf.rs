@@ -1,4 +1,4 @@
-//! ELF programs: read back as written, and whatever bytes there are, refused or read without a panic.
+//! ELF programs: a written image is read back; any other bytes are rejected or read, without a panic.
 
 use coff::{
     Aux, BaseType, Container, Contents, Derivation, ErrorKind, FileFlags, Image, Name, Program, Section,
@@ -30,7 +30,7 @@ fn symbol(name: &str, value: u32, section: i16, ty: SymbolType, class: StorageCl
     }
 }
 
-/// A program as the reader gives it: local symbols first.
+/// A program as the reader returns it: local symbols first.
 fn program() -> Image {
     let int = SymbolType::new(BaseType::INT);
     let object = SymbolType::new(BaseType::STRUCT);

@@ -1,4 +1,4 @@
-//! The images that the vendor's compiler writes, byte by byte (`coff.md` section 11).
+//! The images written by the vendor's compiler, byte by byte (`coff.md` section 11).
 
 use std::num::NonZeroU16;
 
@@ -15,7 +15,7 @@ fn symbol(name: &str, value: u32, section: i16, ty: SymbolType, class: StorageCl
     Symbol { name: name.into(), value, section: SectionNumber(section), ty, class, aux: Vec::new() }
 }
 
-/// The example of the document without the firmware's symbols.
+/// The document's example without the firmware's symbols.
 fn tiny() -> Image {
     let int = SymbolType::new(BaseType::INT);
     let function = Aux::new(&raw::FunctionAux {
@@ -191,7 +191,7 @@ fn sections_that_share_bytes_are_refused() {
     image.sections[0].contents = data.clone();
     image.sections[1].contents = data;
     let mut bytes = image.write().expect("fits");
-    // The header of the second section becomes that of the first, and a third one as well.
+    // The header of the second section becomes a copy of the first, and a third one as well.
     bytes.truncate(1000 + 146);
     bytes[8..16].fill(0);
     bytes.copy_within(50..98, 98);

@@ -1,4 +1,4 @@
-//! Round trips: a written image is read back; a mutilated one is refused or read, without a panic.
+//! Round trips: a written image is read back; a mutilated one is rejected or read, without a panic.
 
 use std::num::NonZeroU16;
 
@@ -93,7 +93,7 @@ fn image() -> impl Strategy<Value = Image> {
     )
 }
 
-/// Reads and lists bytes that may be anything.
+/// Reads and lists arbitrary bytes.
 fn digest(bytes: &[u8]) -> Option<String> {
     let image = Image::read(bytes).ok()?;
     Some(dump::headers(&image) + &dump::symbols(&image) + &dump::lines(&image))

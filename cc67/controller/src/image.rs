@@ -1,14 +1,14 @@
-//! From a program to what is downloaded.
+//! The conversion of a program to the data of a download.
 
 use cc67_host::{HostError, UserProgram};
 use cc67_wire::LoadImage;
 use coff::{Image, Target};
 use kmotiondef::boards::{TargetBoard, stamp};
 
-/// Returns the bytes of a program at their addresses, with the firmware that it was linked for.
+/// Returns the bytes of a program at their addresses, with the firmware for which it was linked.
 ///
 /// # Errors
-/// It is not an image for the controller's processor.
+/// The program is not an image for the controller's processor.
 pub(crate) fn of_program(
     program: &UserProgram,
     linked_for: &str,

@@ -1,8 +1,8 @@
 //! A connected controller as the target of a [session](cc67_host::Session).
 //!
-//! [`Controller`] is a [`Target`](cc67_host::Target) whose time passes by itself: a call waits, and reads meanwhile what
-//! the board sends. Views that know a session show a controller like a simulated board, except for what it cannot do: it
-//! neither stops nor goes back, and no command of its firmware reads memory besides `persist.UserData`.
+//! [`Controller`] is a [`Target`](cc67_host::Target) whose time passes by itself: a call waits, and meanwhile reads the
+//! data that the board sends. Views of sessions show a controller like a simulated board, except for its limits: it can
+//! neither stop nor go back in time, and no command of its firmware reads memory other than `persist.UserData`.
 //!
 //! ```text
 //! connection  a controller that answers, before it is given programs
@@ -24,17 +24,17 @@
 //!
 //! # The monitor
 //!
-//! No command of the firmware reads memory. Where a view allows it ([`LoadTerms::has_monitor`]), a small program of cc67 is
-//! loaded into the highest thread that is free and runs for the time of a request: it copies memory to the end of the
-//! gather buffer, adds up the bytes of a program to verify a load, and pauses threads. So variables of programs have
-//! values by name. Words of a value may be of different moments, as the programs run on.
+//! No command of the firmware reads memory. If a view allows it ([`LoadTerms::has_monitor`]), a small program of cc67
+//! is loaded into the highest free thread and runs for the duration of a request: it copies memory to the end of the
+//! gather buffer, adds up the bytes of a program to verify a load, or pauses threads. So variables of programs can be
+//! read by name. The words of one value may have been read at different times, as the programs continue to run.
 //!
 //! Invariants:
 //!
 //! - **Nothing moves by itself**: connecting sends no command that starts or moves anything.
-//! - **Flash is written by [`ControllerLink::save`] alone, firmware never.**
-//! - **A lost link is reported once**, and nothing that was read before is shown as present after it.
-//! - Threads that were active before the connection are neither waited for nor stopped.
+//! - **Only [`ControllerLink::save`] writes flash, and nothing writes firmware.**
+//! - **A lost link is reported once**, and values read before are not shown as present values after it.
+//! - Threads that were active before the connection are not stopped, and the end of a run does not wait for them.
 //!
 //! Source: host-protocol.md, wire.md.
 

@@ -2,21 +2,21 @@
 
 use crate::request::PageRequest;
 
-/// The control that pages have over the time of a board.
+/// The control of pages over the time of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeControl {
-    /// Stop it, let it run at any speed, go back and begin again.
+    /// Pages can stop the board, let it run at any speed, go back and restart.
     Full,
-    /// Stop it and let it run at any speed. It does not go back, as others use the board.
+    /// Pages can stop the board and let it run at any speed, but not go back, as others use the board.
     Forward,
-    /// Nothing: it passes as others use the board.
+    /// Pages have no control: time passes as others use the board.
     Foreign,
-    /// Nothing: the board is a controller, whose time passes by itself.
+    /// Pages have no control: the board is a controller, whose time passes by itself.
     Real,
 }
 
 impl TimeControl {
-    /// Returns the word for pages.
+    /// Returns the name of this control for pages.
     pub(crate) const fn word(self) -> &'static str {
         match self {
             Self::Full => "full",
@@ -26,7 +26,7 @@ impl TimeControl {
         }
     }
 
-    /// Checks whether a page may ask for this; otherwise returns the reason.
+    /// Returns an error if a page may not make this request.
     pub(crate) fn allows(self, request: &PageRequest) -> Result<(), String> {
         let refused = match request {
             PageRequest::Run { .. }
@@ -72,7 +72,7 @@ impl TimeControl {
     }
 }
 
-/// Returns whether a request only looks at the board, or stops it: what pages may do that are read-only.
+/// Returns whether a request only inspects the board, or stops it: read-only pages may do that.
 pub(crate) const fn is_harmless(request: &PageRequest) -> bool {
     match request {
         PageRequest::Rate { .. }

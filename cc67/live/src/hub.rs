@@ -1,7 +1,8 @@
-//! The queues between connections and the board: requests on their way in, messages and frames on their way out.
+//! The queues between connections and the board: incoming requests, outgoing messages and frames.
 //!
-//! Requests wait in a queue of limited length; a page that asks faster than the board answers waits there itself. Each
-//! page has a [`Mailbox`]: messages wait until they are sent, of frames only one waits, so a slow page sees fewer.
+//! Requests wait in a queue of limited length; a page that sends requests faster than the board answers has to wait.
+//! Each page has a [`Mailbox`]: messages wait until they are sent, but only the latest frame, so a slow page receives
+//! fewer frames.
 
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::mpsc::{self, Receiver, SyncSender};
@@ -12,9 +13,9 @@ use cc67_host::{CompileMessage, UserProgram};
 use crate::Program;
 use crate::request::PageRequest;
 
-/// Requests that wait for the board.
+/// The maximum number of requests waiting for the board.
 const REQUESTS: usize = 256;
-/// Messages that wait for a page; one that falls behind further is disconnected.
+/// The maximum number of messages waiting for a page; a page that falls further behind is disconnected.
 const MESSAGES: usize = 4000;
 
 /// The number of a page.
@@ -25,22 +26,22 @@ pub(crate) type PageId = u64;
 pub(crate) enum Incoming {
     /// A page has connected.
     Join(PageId, Arc<Mailbox>),
-    /// It is gone.
+    /// A page has disconnected.
     Leave(PageId),
-    /// It asks for something.
+    /// A page has made a request.
     Ask(PageId, PageRequest),
     /// A file of a program was saved.
     Saved(Box<Compiled>),
-    /// The machine file was saved; the reason if it is wrong.
+    /// The machine file was saved; the error if it is not valid.
     Machine(Result<(), String>),
 }
 
-/// The result of compiling a program that was saved.
+/// The result of compiling a saved program.
 #[derive(Debug)]
 pub(crate) struct Compiled {
     /// The program.
     pub(crate) program: Program,
-    /// The image, or what is wrong.
+    /// The image, or the errors.
     pub(crate) result: Result<UserProgram, Vec<CompileMessage>>,
 }
 
@@ -53,25 +54,25 @@ pub(crate) struct Hub {
 }
 
 impl Hub {
-    /// A hub, and where its requests come out.
+    /// Creates a hub, and the receiver of its requests.
     pub(crate) fn new() -> (Arc<Self>, Receiver<Incoming>) {
         let (sender, receiver) = mpsc::sync_channel(REQUESTS);
         (Arc::new(Self { sender, pages: Mutex::default(), said: Mutex::default() }), receiver)
     }
 
-    /// A number for one more page.
+    /// A number for a new page.
     pub(crate) fn number(&self) -> PageId {
         let mut pages = locked(&self.pages);
         *pages += 1;
         *pages
     }
 
-    /// Hands something to the board, once there is room; whether there still is a board.
+    /// Sends an item to the board, once there is room; returns whether the board still exists.
     pub(crate) fn hand_in(&self, incoming: Incoming) -> bool {
         self.sender.send(incoming).is_ok()
     }
 
-    /// Says on standard error what is odd about a client, the first time for each kind.
+    /// Reports a problem with a client on standard error, the first time for each kind.
     pub(crate) fn log(&self, kind: &'static str, detail: &str) {
         if locked(&self.said).insert(kind) {
             let colon = if detail.is_empty() { "" } else { ": " };
@@ -101,7 +102,7 @@ pub(crate) enum Outgoing {
 }
 
 impl Mailbox {
-    /// Puts in a message.
+    /// Adds a message.
     pub(crate) fn post(&self, message: &Arc<str>) {
         let mut waiting = locked(&self.0);
         if waiting.messages.len() < MESSAGES {
@@ -116,19 +117,19 @@ impl Mailbox {
         locked(&self.0).frame.is_none()
     }
 
-    /// Puts in a frame.
+    /// Sets the frame to be sent.
     pub(crate) fn show(&self, frame: Vec<u8>) {
         locked(&self.0).frame = Some(frame);
     }
 
-    /// Takes out the next thing; messages go first, as a frame may be about them.
+    /// Takes the next item; messages go first, as a frame may depend on them.
     pub(crate) fn take(&self) -> Option<Outgoing> {
         let mut waiting = locked(&self.0);
         let message = waiting.messages.pop_front().map(Outgoing::Message);
         message.or_else(|| waiting.frame.take().map(Outgoing::Frame))
     }
 
-    /// No more should be sent.
+    /// Requests the end of the connection.
     pub(crate) fn close(&self) {
         locked(&self.0).is_closed = true;
     }
@@ -139,7 +140,8 @@ impl Mailbox {
     }
 }
 
-/// The value under a lock; one whose holder panicked is as good as before, each change being complete.
+/// The value under a lock; if the holder of the lock panicked, the value is still valid, as each change is a single
+/// step.
 pub(crate) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,9 +1,9 @@
-//! The programs' names and uses of bits, read from their sources.
+//! The programs' names for bits and uses of them, read from their sources.
 //!
-//! `#define ESTOP 136` with `ReadBit(ESTOP)` somewhere makes bit 136 the input `ESTOP`. A number without a macro is a
-//! bit, too, where it is an argument of such a function. In a sum the first macro names the bit: with
-//! `#define HOME_X 136`, `ReadBit(HOME_X + 1)` makes bit 137 `HOME_X + 1`. `ReadBit(HOME_X + axis)` makes bit 136 `HOME_X`,
-//! and names the bits after it, as far as something else uses them.
+//! `#define ESTOP 136` with `ReadBit(ESTOP)` somewhere makes bit 136 the input `ESTOP`. A number without a macro is
+//! also a bit if it is an argument of such a function. In a sum the first macro names the bit: with `#define HOME_X
+//! 136`, `ReadBit(HOME_X + 1)` makes bit 137 `HOME_X + 1`. `ReadBit(HOME_X + axis)` makes bit 136 `HOME_X`, and also
+//! names the following bits, if they are used elsewhere.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -13,11 +13,11 @@ use kmotiondef::Bit;
 use kmotiondef::firmware::FIRMWARE_FUNCTIONS;
 use kmotiondef::function::BitAccess;
 
-/// Terms and macros of one bit's number at most.
+/// The maximum number of terms and macros in the number of one bit.
 const TERMS: u32 = 100;
-/// Bits of a group at most: one for each axis.
+/// The maximum number of bits in a group: one for each axis.
 const GROUP: i32 = 8;
-/// Files that are read for a program at most.
+/// The maximum number of files read for a program.
 const FILES: usize = 100;
 
 /// A bit that the programs use.
@@ -29,11 +29,11 @@ pub(crate) struct Used {
     pub(crate) is_read: bool,
     /// True if a program writes it.
     pub(crate) is_written: bool,
-    /// It is the first of a group: a program adds a variable to its name.
+    /// True if it is the first of a group: a program adds a variable to its name.
     pub(crate) is_base: bool,
 }
 
-/// Names the bits after the first of a group that have no name, at most as many as there are axes.
+/// Names the unnamed bits after the first of a group, at most as many as there are axes.
 pub(crate) fn name_groups(bits: &mut BTreeMap<Bit, Used>) {
     let bases = bits.iter().filter(|(_, used)| used.is_base);
     let bases: Vec<_> = bases.filter_map(|(bit, used)| Some((*bit, used.name.clone()?))).collect();
@@ -49,7 +49,7 @@ pub(crate) fn name_groups(bits: &mut BTreeMap<Bit, Used>) {
     }
 }
 
-/// A source and the files it includes between quotation marks, as far as they are found.
+/// A source and the files that it includes in quotation marks, if they are found.
 pub(crate) fn files_of(source: &Path, include_dirs: &[PathBuf]) -> Vec<PathBuf> {
     let mut found = vec![source.to_owned()];
     let mut next = 0;
@@ -72,13 +72,13 @@ pub(crate) fn files_of(source: &Path, include_dirs: &[PathBuf]) -> Vec<PathBuf> 
     found
 }
 
-/// Returns the file that an `#include "…"` names.
+/// Returns the file named by an `#include "…"`.
 fn included(line: &str) -> Option<&str> {
     let rest = line.trim_start().strip_prefix('#')?.trim_start().strip_prefix("include")?;
     rest.trim_start().strip_prefix('"')?.split('"').next()
 }
 
-/// The text in some bytes: UTF-8, or else Latin-1.
+/// Decodes bytes: UTF-8, or otherwise Latin-1.
 pub(crate) fn decoded(bytes: &[u8]) -> String {
     match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),
@@ -86,20 +86,20 @@ pub(crate) fn decoded(bytes: &[u8]) -> String {
     }
 }
 
-/// The bits that some texts use.
+/// The bits used by some sources.
 pub(crate) fn bits_of(texts: &[String]) -> BTreeMap<Bit, Used> {
     let texts: Vec<String> = texts.iter().map(|text| without_comments(text)).collect();
     let macros: BTreeMap<&str, &str> =
         texts.iter().flat_map(|text| text.lines().filter_map(defined)).collect();
     let mut bits: BTreeMap<Bit, Used> = BTreeMap::new();
-    // A bit that is read and written has the name with which it is read.
+    // A bit that is both read and written has the name with which it is read.
     let accesses = [BitAccess::Read, BitAccess::Write].into_iter().flat_map(|access| {
         let rows = FIRMWARE_FUNCTIONS.iter().filter(move |row| row.attributes.bit_access == Some(access));
         rows.map(move |row| (row.name, access))
     });
     for (function, access) in accesses {
         for argument in texts.iter().flat_map(|text| arguments(text, function)) {
-            // Of a sum with a variable, the base is shown: it is where the bits begin.
+            // For a sum with a variable, the base is shown, which is the first of the bits.
             let whole = number(argument, &macros).map(|bit| (argument, bit));
             let is_base = whole.is_none();
             let Some((named, bit)) = whole.or_else(|| base(argument, &macros)) else { continue };
@@ -150,12 +150,12 @@ fn base<'a>(text: &'a str, macros: &BTreeMap<&'a str, &'a str>) -> Option<(&'a s
     Some((named, number(named, macros)?))
 }
 
-/// The value of a number, of a macro for one, or of a sum of such.
+/// The value of a number, of a macro for a number, or of a sum of these.
 fn number(text: &str, macros: &BTreeMap<&str, &str>) -> Option<i32> {
     sum(text, macros, &mut { TERMS })
 }
 
-/// The same; what is longer than `rest` terms, or names itself, has no value.
+/// Does the same with a limit: a macro with more than `rest` terms, or that refers to itself, has no value.
 fn sum(text: &str, macros: &BTreeMap<&str, &str>, rest: &mut u32) -> Option<i32> {
     *rest = rest.checked_sub(1)?;
     let text = text.trim();
@@ -165,7 +165,7 @@ fn sum(text: &str, macros: &BTreeMap<&str, &str>, rest: &mut u32) -> Option<i32>
     if let Some(inner) = text.strip_prefix('(').and_then(|inner| inner.strip_suffix(')')) {
         return sum(inner, macros, rest);
     }
-    // The last sign, since subtraction is from left to right.
+    // The last operator, since subtraction is left-associative.
     if let Some((left, right)) = text.rfind(['+', '-']).and_then(|at| text.split_at_checked(at)) {
         let left = sum(left, macros, rest)?;
         let value = sum(right.get(1..)?, macros, rest)?;
@@ -177,7 +177,7 @@ fn sum(text: &str, macros: &BTreeMap<&str, &str>, rest: &mut u32) -> Option<i32>
     }
 }
 
-/// A text with blanks in place of comments and of what is in quotation marks.
+/// A text with comments and quoted text replaced by blanks.
 fn without_comments(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut rest = text.chars().peekable();

@@ -1,30 +1,29 @@
-//! Requests of pages: one JSON object a message.
+//! Requests of pages: one JSON object per message.
 
 use serde::Deserialize;
 
-/// A request of a page.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
 pub(crate) enum PageRequest {
-    /// Send this many frames a second, at most 60; 0 for none.
+    /// Send this many frames per second, at most 60; 0 for none.
     Rate {
-        /// Frames a second.
+        /// Frames per second.
         frames: f64,
     },
-    /// Let the board run at this many seconds of board time a second.
+    /// Let the board run at this many seconds of board time per second.
     Run {
-        /// 0.01 to 100; as before if absent.
+        /// 0.01 to 100; unchanged if absent.
         speed: Option<f64>,
     },
     /// Stop the clock.
     Pause {},
-    /// One tick.
+    /// Run one tick.
     Tick {},
-    /// To the end of the next slice of a user thread.
+    /// Run to the end of the next slice of a user thread.
     Slice {},
-    /// Do what a statement of a stimulus says.
+    /// Execute a statement of a stimulus.
     Act {
-        /// The statement, without its moment.
+        /// The statement, without a time.
         text: String,
     },
     /// Send a line of script commands, as the PC does.
@@ -32,18 +31,18 @@ pub(crate) enum PageRequest {
         /// The line.
         line: String,
     },
-    /// Jog an axis, as long as this comes again within 0.4 s; a velocity of 0 ends it.
+    /// Jog an axis for as long as this request is repeated within 0.4 s; a velocity of 0 ends the jog.
     Jog {
         /// 0 to 7.
         axis: i32,
-        /// Counts or steps a second.
+        /// Counts or steps per second.
         velocity: f64,
     },
     /// Stop all threads and disable all axes.
     Halt {},
-    /// Let pages act on a connected controller, or only look.
+    /// Allow pages to control a connected controller, or only to watch it.
     Control {
-        /// True if they may act.
+        /// True to allow it.
         on: bool,
     },
     /// Start a thread.
@@ -61,19 +60,19 @@ pub(crate) enum PageRequest {
         /// A button or a number: `msgbox=ok`, `input=2.5`, `input=cancel`.
         setting: String,
     },
-    /// Compile what has changed, load and start it.
+    /// Compile the changed programs, load and start them.
     Reload {},
-    /// Follow these signals.
+    /// Sample these signals.
     Watch {
-        /// The list, commas in between.
+        /// The list, separated by commas.
         list: String,
     },
-    /// Show the board as it was at a tick; what is done then continues from there.
+    /// Show the board as it was at a tick; the next action continues from there.
     Goto {
         /// The tick.
         tick: u64,
     },
-    /// Take up a line of history that was left.
+    /// Return to a line of history that was left.
     Branch {
         /// Its number.
         id: u64,
@@ -83,16 +82,16 @@ pub(crate) enum PageRequest {
         /// Its number.
         id: u64,
     },
-    /// Begin again.
+    /// Restart the board.
     Restart {},
-    /// Save what was done by hand as a test.
+    /// Save the manual actions as a test.
     Save {
         /// Its name.
         name: String,
     },
     /// Show a part of the gather buffer.
     Gather {
-        /// The first number of it, counted in numbers of this kind.
+        /// The index of the first value, in units of this kind.
         from: u32,
         /// The number of values, at most 10,000.
         count: u32,
@@ -101,18 +100,18 @@ pub(crate) enum PageRequest {
     },
     /// Store a value in a variable.
     Write {
-        /// The variable, in the words of a program.
+        /// The variable, as an expression of a program.
         expression: String,
         /// The value.
         value: f64,
     },
 }
 
-/// Most characters of a request.
+/// The maximum length of a request.
 pub(crate) const LONGEST: usize = 16 << 10;
 
 impl PageRequest {
-    /// Reads one.
+    /// Parses a request.
     pub(crate) fn parse(text: &str) -> Result<Self, serde_json::Error> {
         serde_json::from_str(text)
     }

@@ -1,12 +1,13 @@
-//! ELF programs as the same values as COFF2 images.
+//! ELF programs, represented by the same values as COFF2 images.
 //!
-//! The firmware of the Kogna board is an ELF file, and its loader takes ELF programs beside COFF2 images.
-//! [`Image::read`](crate::Image::read) takes either;
-//! [`Image::write`](crate::Image::write) writes what the image's [`Container`](crate::Container) says.
+//! The firmware of the Kogna board is an ELF file, and its loader takes ELF programs as well as COFF2 images.
+//! [`Image::read`](crate::Image::read) takes either; [`Image::write`](crate::Image::write) writes the file type given
+//! by the image's [`Container`](crate::Container).
 //!
-//! Only linked programs are read, and of them the sections that occupy memory. Line numbers are neither read nor written:
-//! in ELF files they belong to the debug information. Version and time stamp of the firmware that a program
-//! is linked for, which COFF2 headers have fields for, are a note (section [`NOTE`]) of our own; loaders skip it.
+//! Only linked programs are read, and only their sections that occupy memory. Line numbers are neither read nor
+//! written: in ELF files they belong to the debug information. The version and time stamp of the firmware for which a
+//! program is linked, which have fields in COFF2 headers, are stored in a note of our own (section [`NOTE`]); loaders
+//! skip it.
 
 mod read;
 mod write;

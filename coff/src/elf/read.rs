@@ -1,4 +1,4 @@
-//! The bytes of an ELF program to an image.
+//! Conversion of an ELF program to an image.
 
 use object::elf;
 use object::endian::LittleEndian;
@@ -19,7 +19,7 @@ type Header = elf::FileHeader32<LittleEndian>;
 /// Reads a linked program of the C6000.
 ///
 /// # Errors
-/// If the bytes are something else, or incomplete.
+/// The bytes are something else, or incomplete.
 pub(crate) fn read(bytes: &[u8]) -> Result<Image, Error> {
     let file = File::parse(bytes).map_err(damaged)?;
     let header = file.elf_header();
@@ -58,7 +58,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Image, Error> {
 struct Reader<'a> {
     bytes: &'a [u8],
     file: &'a File<'a>,
-    /// The work that reading may still cause, bounded by the size of the file.
+    /// The remaining work for reading, bounded by the size of the file.
     data_left: u64,
     names_left: u64,
 }
@@ -68,7 +68,7 @@ impl<'a> Reader<'a> {
         self.file.elf_section_table()
     }
 
-    /// The sections that occupy memory, and the number that each section of the file has among them.
+    /// The sections that occupy memory, and for each section of the file its number among them.
     fn sections(&mut self) -> Result<(Vec<Section>, Vec<SectionNumber>), Error> {
         let mut sections = Vec::new();
         let mut numbers = Vec::new();
@@ -157,7 +157,7 @@ impl<'a> Reader<'a> {
         Ok(symbols)
     }
 
-    /// Version stamp and time stamp of the firmware that the program is linked for; 0 where there is no note.
+    /// Version stamp and time stamp of the firmware for which the program is linked; 0 without a note.
     fn firmware(&self) -> Result<(i16, u32), Error> {
         let Some((_, header)) = self.table().section_by_name(LittleEndian, NOTE.as_bytes()) else {
             return Ok((0, 0));
@@ -181,7 +181,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The error for a file whose structure is wrong.
+/// The error for a file with an invalid structure.
 const fn damaged(error: object::read::Error) -> Error {
     Error { at: 0, kind: ErrorKind::Elf(error) }
 }

@@ -1,4 +1,4 @@
-//! An image to the bytes of an ELF program.
+//! Conversion of an image to an ELF program.
 
 use object::build::elf::{Builder, SectionData, SectionId};
 use object::{Endianness, elf};
@@ -13,10 +13,10 @@ const ALIGN: u64 = 4;
 
 /// Writes a linked program.
 ///
-/// Nothing clears memory when a program is loaded: the zeros of uninitialised data are in the file.
+/// No loader clears memory: the zeros of uninitialised data are in the file.
 ///
 /// # Errors
-/// If a name contains a NUL, or something exceeds what the format can count.
+/// A name contains a NUL, or a number exceeds its field in the format.
 pub(crate) fn write(image: &Image) -> Result<Vec<u8>, Error> {
     let mut builder = Builder::new(Endianness::Little, false);
     builder.header.e_type = elf::ET_EXEC;
@@ -67,7 +67,7 @@ fn add_section<'a>(
     Ok(added.id())
 }
 
-/// The note about the firmware that the program is linked for.
+/// The note about the firmware for which the program is linked.
 fn add_note(builder: &mut Builder<'_>, image: &Image) {
     let stamp = image.program.map_or(0, |program| program.version_stamp);
     let size = |bytes: &[u8]| u32::try_from(bytes.len()).unwrap_or(u32::MAX);
@@ -97,7 +97,7 @@ fn add_symbol<'a>(
     let bind = match symbol.class {
         StorageClass::EXTERNAL => elf::STB_GLOBAL,
         StorageClass::STATIC | StorageClass::FILE => elf::STB_LOCAL,
-        // What only the line table of COFF2 needs.
+        // Symbols that only the line table of COFF2 needs.
         _ => return Ok(()),
     };
     let index = usize::try_from(symbol.section.0).ok().and_then(|number| number.checked_sub(1));
@@ -135,7 +135,7 @@ fn add_tables(builder: &mut Builder<'_>) {
     }
 }
 
-/// The bytes of a name, which must not contain the character that ends it in the file.
+/// The bytes of a name, which must not contain a NUL, its terminator in the file.
 fn checked(name: &Name) -> Result<&[u8], Error> {
     match name.as_bytes().contains(&0) {
         true => Err(Error { at: 0, kind: ErrorKind::NulInName }),

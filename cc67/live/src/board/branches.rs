@@ -1,11 +1,11 @@
-//! Lines of history that were left: what a page does in the past starts another one, and the one before is kept.
+//! Lines of history that were left: an action in the past on a page starts a new line, and the previous one is kept.
 
 use cc67_host::{Branch, BranchId, Session, Target, Timeline};
 use serde_json::{Value, json};
 
 use super::{ViewState, log_message};
 
-/// Lines that are kept; the oldest is dropped when another one is left.
+/// The maximum number of lines that are kept; beyond it, the oldest is dropped.
 pub(super) const MOST: usize = 8;
 
 impl<T: Target> ViewState<T> {
@@ -16,7 +16,7 @@ impl<T: Target> ViewState<T> {
         json!({ "kind": "branches", "branches": branches.iter().map(describe).collect::<Vec<_>>() })
     }
 
-    /// Keeps the messages of a line that was just left, and drops those of lines that are gone.
+    /// Keeps the log of a line that was just left, and drops the logs of lines that no longer exist.
     pub(super) fn note_branches(&mut self) {
         let branches = self.timeline.as_ref().map_or(&[][..], Timeline::branches);
         for branch in branches {
@@ -28,14 +28,14 @@ impl<T: Target> ViewState<T> {
         self.broadcast(&self.branches());
     }
 
-    /// Shows the end of a line that was left; the present one is left in its place.
+    /// Shows the end of a line that was left; the present line becomes a left one in turn.
     pub(super) fn take_branch(&mut self, session: &mut Session<T>, id: BranchId) -> Result<(), String> {
         let gone = || "this run is not kept any more".to_owned();
         let timeline = self.timeline.as_mut().ok_or_else(gone)?;
         let entries = self.log.left.get(&id).cloned().ok_or_else(gone)?;
         self.clock.pause();
         let common = timeline.common_with(id).ok_or_else(gone)?;
-        // The samples of what is executed again come as it is.
+        // The samples of re-executed ticks are added as they are executed.
         let rows = self.samples.cut(common);
         timeline.take_branch(session, id).map_err(|error| error.to_string())?;
         self.note_branches();

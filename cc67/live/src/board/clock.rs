@@ -1,18 +1,18 @@
-//! The clock of a board that is shown: how far it has to be, at a speed that can be changed.
+//! The clock of a shown board: the tick that is due, at an adjustable speed.
 
 use std::time::{Duration, Instant};
 
 use kmotiondef::Ticks;
 use kmotiondef::limits::TIMEBASE;
 
-/// The slowest and the fastest speed, in seconds of board time a second.
+/// The slowest and the fastest speed, in seconds of board time per second.
 pub(super) const SPEEDS: (f64, f64) = (0.01, 100.0);
-/// A board that is later than this does not catch up.
+/// The delay in seconds beyond which a board does not catch up.
 const PATIENCE: f64 = 0.25;
-/// Over how long the speed is measured.
+/// The time over which the speed is measured, in seconds.
 const MEASURE: f64 = 0.5;
 
-/// The present moment.
+/// The present time.
 #[expect(
     clippy::disallowed_methods,
     reason = "the clock paces the board; what happens on it does not depend on it"
@@ -21,26 +21,24 @@ pub(super) fn now() -> Instant {
     Instant::now()
 }
 
-/// A clock.
 #[derive(Debug)]
 pub(super) struct Clock {
     speed: f64,
     is_running: bool,
-    /// A moment, and the tick that was due then.
+    /// A reference time, and the tick that was due then.
     since: (Instant, Ticks),
-    /// When the speed was measured last, where the board was, and what it was.
+    /// The time of the last speed measurement, the tick then, and the result.
     measured: (Instant, Ticks, f64),
 }
 
 impl Clock {
-    /// A clock at a tick.
+    /// Creates a clock at a tick.
     pub(super) fn new(tick: Ticks, speed: f64, is_running: bool) -> Self {
         let moment = now();
         let speed = speed.clamp(SPEEDS.0, SPEEDS.1);
         Self { speed, is_running, since: (moment, tick), measured: (moment, tick, 0.0) }
     }
 
-    /// Returns its speed.
     pub(super) const fn speed(&self) -> f64 {
         self.speed
     }
@@ -50,7 +48,7 @@ impl Clock {
         self.is_running
     }
 
-    /// Lets it run from a tick on.
+    /// Starts the clock at a tick.
     pub(super) fn run(&mut self, tick: Ticks, speed: Option<f64>) {
         if let Some(speed) = speed.filter(|speed| speed.is_finite()) {
             self.speed = speed.clamp(SPEEDS.0, SPEEDS.1);
@@ -59,12 +57,12 @@ impl Clock {
         self.since = (now(), tick);
     }
 
-    /// Stops it.
     pub(super) fn pause(&mut self) {
         self.is_running = false;
     }
 
-    /// The tick that is due while the board is at `tick`. A board that cannot keep up is not chased.
+    /// The tick that is due while the board is at `tick`. If the board cannot keep up, the clock does not run ahead of
+    /// it.
     pub(super) fn due(&mut self, tick: Ticks) -> Ticks {
         if !self.is_running {
             return tick;
@@ -79,7 +77,7 @@ impl Clock {
         Ticks::new(due.max(tick.get()))
     }
 
-    /// The speed of the last while.
+    /// The speed over the last interval.
     pub(super) fn measured(&mut self, tick: Ticks) -> f64 {
         let elapsed = self.measured.0.elapsed();
         if elapsed >= Duration::from_secs_f64(MEASURE) {

@@ -1,4 +1,4 @@
-//! A connected controller: pages look until somebody switches control on; a link that is lost is told.
+//! A connected controller: pages can only watch until a user enables control; a lost link is reported.
 
 use cc67_host::{Session, Target};
 use kmotiondef::ThreadId;
@@ -10,19 +10,19 @@ use crate::TimeControl;
 use crate::control::is_harmless;
 use crate::request::PageRequest;
 
-/// The jogs of pages, their rights over a connected controller, and their knowledge of its link.
+/// The jogs of pages, their rights over a connected controller, and their information about its link.
 #[derive(Debug, Default)]
 pub(super) struct PageAccess {
     /// True if pages may act.
     is_controlled: bool,
-    /// The reason, once the link is lost.
+    /// The reason for the loss of the link, once it is lost.
     lost: Option<String>,
-    /// Axes that pages jog.
+    /// The axes that pages jog.
     pub(super) jogs: Jogs,
 }
 
 impl PageAccess {
-    /// As a message to pages.
+    /// The state as a message to pages.
     pub(super) fn message(&self) -> Value {
         json!({ "kind": "access", "control": self.is_controlled, "lost": self.lost })
     }
@@ -34,7 +34,7 @@ impl<T: Target> ViewState<T> {
         self.show.time == TimeControl::Real
     }
 
-    /// Returns whether a page may do this now; else why not.
+    /// Returns an error if a page may not do this now.
     pub(super) fn allows(&self, request: &PageRequest) -> Result<(), String> {
         self.show.time.allows(request)?;
         if !self.is_real() {
@@ -52,12 +52,12 @@ impl<T: Target> ViewState<T> {
         Err("this page only looks at the controller: switch Control on".to_owned())
     }
 
-    /// Returns whether a program that is saved may be loaded without a request.
+    /// Returns whether a saved program may be loaded without a request.
     pub(super) fn may_load(&self) -> bool {
         !self.is_real() || self.access.is_controlled
     }
 
-    /// Somebody switches control on or off.
+    /// Enables or disables control.
     pub(super) fn control(&mut self, session: &mut Session<T>, is_on: bool) {
         self.access.is_controlled = is_on;
         let said = if is_on { "control is on: pages can move the machine" } else { "control is off" };
@@ -66,7 +66,7 @@ impl<T: Target> ViewState<T> {
         self.sample_on_controller(session);
     }
 
-    /// Has the controller sample the scope's signals by itself while control is on: it takes a free thread.
+    /// Makes the controller sample the scope's signals while control is enabled: this takes a free thread.
     pub(super) fn sample_on_controller(&mut self, session: &mut Session<T>) {
         if !self.is_real() || self.access.lost.is_some() {
             return;
@@ -91,7 +91,7 @@ impl<T: Target> ViewState<T> {
         self.command(session, &line)
     }
 
-    /// Tells pages once that the link is lost.
+    /// Informs pages once that the link is lost.
     pub(super) fn tell_link(&mut self, session: &Session<T>) {
         let lost = session.target().lost();
         if lost.is_some() && self.access.lost.is_none() {

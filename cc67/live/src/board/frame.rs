@@ -1,6 +1,6 @@
-//! A frame: the visible state of the board at an instant, in few bytes.
+//! A frame: the visible state of the board at one time, in few bytes.
 //!
-//! Numbers are little endian. `page/frame.js` reads what is written here:
+//! Numbers are little endian. `page/frame.js` reads this layout:
 //!
 //! | from | what |
 //! |---|---|
@@ -29,20 +29,20 @@ const LATER_AXES: usize = 1728;
 /// Bits that have a direction.
 const PINS: u16 = 64;
 
-/// The state of a frame besides the board's.
+/// The part of a frame's data that is not the board's state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moment {
     /// True if the clock runs.
     pub(super) is_running: bool,
-    /// True if the board is shown at an earlier time, and continues from there.
+    /// True if the board is shown at an earlier time from which it would continue.
     pub(super) is_past: bool,
     /// The last tick of the run.
     pub(super) end: Ticks,
-    /// Speed requested, and measured.
+    /// The requested and the measured speed.
     pub(super) speed: [f64; 2],
 }
 
-/// A frame of a board, with the samples from a row on; and the row after them.
+/// Creates a frame of a board, with the samples from a row on; returns the frame and the row after these samples.
 pub(super) fn frame<T: Target>(
     session: &Session<T>,
     moment: Moment,
@@ -75,22 +75,22 @@ pub(super) fn frame<T: Target>(
     (out, next)
 }
 
-/// A field of an axis' structure.
+/// The address of a field of an axis.
 fn place<T>(axis: AxisId, field: Field<T>) -> GuestAddr {
     chan(axis).field(field).address()
 }
 
-/// A double, not a number where it is unknown.
+/// A double; NaN if it is unknown.
 fn double<T: Target>(session: &Session<T>, address: GuestAddr) -> f64 {
     session.glance_at_object(address).map_or(f64::NAN, f64::from_bits)
 }
 
-/// A float, not a number where it is unknown.
+/// A float; NaN if it is unknown.
 fn float<T: Target>(session: &Session<T>, address: GuestAddr) -> f64 {
     session.glance_at_object(address).map_or(f64::NAN, |bits| f64::from(f32::from_bits(bits)))
 }
 
-/// A word, 0 where it is unknown.
+/// A word; 0 if it is unknown.
 fn word<T: Target>(session: &Session<T>, address: GuestAddr) -> u32 {
     session.glance_at_object(address).unwrap_or_default()
 }
@@ -129,7 +129,7 @@ fn write_bits<T: Target>(session: &Session<T>, out: &mut Vec<u8>) {
 }
 
 fn write_analog<T: Target>(session: &Session<T>, out: &mut Vec<u8>) {
-    // Where an input has 16 bits, those above them do not count here either.
+    // If an input has 16 bits, the bits above them are ignored here, too.
     let inputs =
         (0..8).map(|index| word(session, ADC_BUFFER_IN.element(index).address()).cast_signed() - 2048);
     let output = |index| session.glance_at_object::<u16>(DAC_BUFFER.element(index).address());

@@ -1,11 +1,11 @@
-//! A part of the gather buffer, for a plot of it.
+//! A part of the gather buffer, for a plot.
 
 use cc67_host::{Session, Target};
 use kmotiondef::GuestAddr;
 use kmotiondef::variables::GATHER_BUFFER;
 use serde_json::{Value, json};
 
-/// Most numbers at a time.
+/// The maximum number of values at a time.
 const NUMBERS: u32 = 10_000;
 
 /// The type of the buffer's numbers.
@@ -16,7 +16,7 @@ enum Kind {
     Int,
 }
 
-/// The numbers of a kind from one on, as a message; those that are none are `null`.
+/// The values of a kind, beginning with a given one, as a message; NaN and infinity are `null`.
 pub(super) fn numbers<T: Target>(
     session: &Session<T>,
     from: u32,

@@ -1,4 +1,4 @@
-//! The data that a page needs before the first frame: axes, bits, programs, and their sources.
+//! The data that a page needs before the first frame: axes, bits, programs and their sources.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use crate::Show;
 use crate::names::{self, Used};
 
-/// The lamps of the board.
+/// The board's LEDs.
 const LAMPS: [i32; 2] = [46, 47];
 
 /// The files of all programs.
@@ -60,7 +60,7 @@ pub(super) fn hello(show: &Show, axes: Axes) -> Value {
     })
 }
 
-/// The switches that axes trip, where they are.
+/// The switches that axes trip, with their positions.
 fn switches(show: &Show) -> Vec<Value> {
     let switch = |bit: Bit, axis: AxisId, when: Condition| {
         let (from, to) = match when {
@@ -77,7 +77,7 @@ fn switches(show: &Show) -> Vec<Value> {
         .collect()
 }
 
-/// The bits that programs or machine use, with a name for each.
+/// The bits that programs or the machine use, each with a name.
 fn bits(show: &Show) -> Vec<Value> {
     let texts: Vec<String> =
         files(show).iter().filter_map(|path| Some(names::decoded(&fs::read(path).ok()?))).collect();

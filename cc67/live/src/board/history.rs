@@ -21,7 +21,7 @@ impl<T: Target> ViewState<T> {
         }
     }
 
-    /// Returns whether the board is shown at an earlier time, and continues from there.
+    /// Returns whether the board is shown at an earlier time from which it would continue.
     pub(super) fn is_past(&self, session: &Session<T>) -> bool {
         session.tick() < self.end(session)
     }
@@ -38,7 +38,7 @@ impl<T: Target> ViewState<T> {
         timeline.go_to(session, tick).map_err(|error| error.to_string())
     }
 
-    /// The run continues from the moment that is shown.
+    /// Continues the run from the time that is shown.
     pub(super) fn go_on(&mut self, session: &mut Session<T>) {
         if self.is_past(session)
             && let Some(timeline) = &mut self.timeline
@@ -48,7 +48,7 @@ impl<T: Target> ViewState<T> {
         }
     }
 
-    /// Discards everything later than the present moment.
+    /// Discards everything after the present time.
     fn cut(&mut self, session: &Session<T>) {
         self.note_branches();
         let tick = session.tick();
@@ -58,7 +58,7 @@ impl<T: Target> ViewState<T> {
         self.broadcast(&json!({ "kind": "cut", "tick": tick.get() }));
     }
 
-    /// Begins again, with the programs as they are now.
+    /// Restarts the board with the present programs.
     pub(super) fn restart(&mut self, session: &mut Session<T>) -> Result<(), String> {
         if self.wants_new_machine()? {
             return Ok(());
@@ -74,7 +74,7 @@ impl<T: Target> ViewState<T> {
         Ok(())
     }
 
-    /// Returns the reason for which a run with the actions by hand alone would not be the same; `None` if it would.
+    /// Returns the reason why a run with only the manual actions would differ; `None` if it would not.
     fn obstacle(&self, session: &Session<T>) -> Option<String> {
         let loads = session.journal().iter().filter_map(|(tick, input)| match input {
             Input::Load(program) => Some((tick.get(), program.name())),
@@ -89,7 +89,7 @@ impl<T: Target> ViewState<T> {
         (!is_whole).then(|| "a variable was written, which no stimulus does".to_owned())
     }
 
-    /// Saves what was done by hand as a test.
+    /// Saves the manual actions as a test.
     pub(super) fn save(&mut self, session: &Session<T>, id: PageId, name: &str) -> Result<(), String> {
         if let Some(obstacle) = self.obstacle(session) {
             return Err(obstacle);

@@ -1,4 +1,4 @@
-//! Axes that pages jog: each moves as long as somebody holds its button, and stops when the page is silent.
+//! Axes that pages jog: each moves as long as a user holds its button, and stops when the page is silent.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
@@ -10,7 +10,7 @@ use super::ViewState;
 use super::clock::now;
 use crate::hub::PageId;
 
-/// The longest time between two words of a page that holds a button; it sends one every 0.1 s.
+/// The longest time between two messages of a page while a button is held; it sends one every 0.1 s.
 const SILENCE: Duration = Duration::from_millis(400);
 
 /// A jog in progress.
@@ -18,7 +18,7 @@ const SILENCE: Duration = Duration::from_millis(400);
 struct Jog {
     page: PageId,
     velocity: f64,
-    /// The moment of the last word of the page.
+    /// The time of the page's last message.
     heard: Instant,
 }
 
@@ -27,14 +27,14 @@ struct Jog {
 pub(super) struct Jogs(BTreeMap<AxisId, Jog>);
 
 impl Jogs {
-    /// Forgets all: the axes were stopped by other means.
+    /// Forgets all jogs: the axes were stopped by other means.
     pub(super) fn clear(&mut self) {
         self.0.clear();
     }
 }
 
 impl<T: Target> ViewState<T> {
-    /// A page holds a button, or has released it.
+    /// Handles a button that is held or was released.
     pub(super) fn jog(
         &mut self,
         session: &mut Session<T>,
@@ -69,7 +69,7 @@ impl<T: Target> ViewState<T> {
         self.stop_jogs(session, |jog| jog.heard.elapsed() > SILENCE);
     }
 
-    /// Stops the axes of a page that is gone.
+    /// Stops the axes of a disconnected page.
     pub(super) fn stop_jogs_of(&mut self, session: &mut Session<T>, page: PageId) {
         self.stop_jogs(session, |jog| jog.page == page);
     }

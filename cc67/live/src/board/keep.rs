@@ -1,8 +1,8 @@
-//! "Save as test": what was done by hand becomes a stimulus, and the console what `cc67 test` expects.
+//! "Save as test": the manual actions become a stimulus, and the console becomes the output that `cc67 test` expects.
 //!
-//! A test `NAME` is a program `NAME.c` that includes the one that was shown, `NAME.stim` with what was done, and
-//! `NAME.expected`, which the command itself writes by running it. That the run prints what the page has shown, at the
-//! same board times, is checked then.
+//! A test `NAME` consists of a program `NAME.c` that includes the shown one, `NAME.stim` with the actions, and
+//! `NAME.expected`, which the command itself writes by running the test. The output of that run is then compared with
+//! the page's console, including the board times.
 
 use std::fs;
 use std::path::{Component, Path, PathBuf};
@@ -14,17 +14,16 @@ use serde_json::json;
 use crate::hub::Mailbox;
 use crate::{Show, TestOption};
 
-/// Most characters of a name.
+/// The maximum length of a name.
 const LONGEST: usize = 64;
 
 /// A test to be written.
 #[derive(Debug)]
 pub(super) struct Kept {
-    /// The path, without an extension.
     path: PathBuf,
     source: String,
     stimulus: String,
-    /// The console that the page has shown, with board times; `None` if it does not know all of it.
+    /// The page's console, with board times; `None` if some of it was dropped.
     console: Option<String>,
     command: PathBuf,
 }
@@ -32,7 +31,7 @@ pub(super) struct Kept {
 /// The parts of a test.
 #[derive(Debug)]
 pub(super) struct Run<'a> {
-    /// The actions by hand.
+    /// The manual actions.
     pub(super) stimulus: &'a str,
     /// The duration, in seconds of board time.
     pub(super) seconds: f64,
@@ -41,7 +40,7 @@ pub(super) struct Run<'a> {
 }
 
 impl Kept {
-    /// A test of this name beside the first program.
+    /// Creates a test with this name in the folder of the first program.
     pub(super) fn new(name: &str, show: &Show, run: Run<'_>) -> Result<Self, String> {
         let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         if name.is_empty() || name.len() > LONGEST || !name.chars().all(is_name) {
@@ -90,7 +89,7 @@ impl Kept {
         Ok(Self { path, source, stimulus, console: run.console, command })
     }
 
-    /// Writes and runs it on a thread of its own, and posts what becomes of it.
+    /// Writes and runs the test on a separate thread, and posts the result.
     pub(super) fn write(self, mailbox: std::sync::Arc<Mailbox>) {
         thread::spawn(move || {
             let message = match self.make() {
@@ -132,7 +131,7 @@ impl Kept {
     }
 }
 
-/// A file as one in `folder` calls it.
+/// The path of a file relative to `folder`.
 fn beside(folder: &Path, file: &Path) -> Result<String, String> {
     let absolute = |path: &Path| {
         let path = if path == Path::new("") { Path::new(".") } else { path };

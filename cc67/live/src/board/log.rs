@@ -1,4 +1,4 @@
-//! Messages of the board, about it, and to it. The last few thousand entries are kept for pages opened later.
+//! Messages from, about and to the board. The last few thousand entries are kept for pages opened later.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -9,71 +9,68 @@ use serde::Serialize;
 
 use crate::names::decoded;
 
-/// Entries that are kept.
+/// The number of entries kept.
 const KEPT: usize = 5000;
 
-/// The speaker of a line.
+/// The source of an entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Voice {
-    /// A program prints.
+    /// Console output of a program.
     Console,
-    /// The board answers.
+    /// A reply of the board.
     Reply,
-    /// A person at a page sends.
+    /// A command from a page's user.
     Command,
-    /// The simulation remarks on something.
+    /// A remark of the simulation.
     Remark,
-    /// A thread is stopped.
+    /// A trap that stops a thread.
     Trap,
 }
 
-/// An access of a thread to something that two of them use.
+/// An access by one of two threads to the same object.
 #[derive(Clone, Debug, Serialize)]
 struct RaceAccess {
-    /// Its number; `None` for the call-back.
+    /// The number of the thread; `None` for the call-back.
     thread: Option<u8>,
     file: String,
     line: u32,
 }
 
-/// An entry.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct LogEntry {
-    /// When, in ticks.
+    /// The time in ticks.
     tick: u64,
-    /// The moment in seconds, to a fraction of a tick.
+    /// The time in seconds, to a fraction of a tick.
     seconds: f64,
     voice: Voice,
     text: String,
-    /// The source file.
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     line: Option<u32>,
-    /// The accesses that a remark is about, if it is about two.
+    /// The accesses in a remark about two of them.
     #[serde(skip_serializing_if = "Option::is_none")]
     accesses: Option<[RaceAccess; 2]>,
 }
 
-/// The messages.
 #[derive(Debug, Default)]
 pub(super) struct Log {
     entries: VecDeque<LogEntry>,
-    /// The number of the latest ones that no page has.
+    /// The number of the latest entries that have not been sent to pages.
     fresh: usize,
-    /// The entries of each line of history that was left, as they were then.
+    /// The entries of each line of history that was left, as of that time.
     pub(super) left: BTreeMap<BranchId, Vec<LogEntry>>,
 }
 
 impl Log {
-    /// Adds what a person says.
+    /// Adds a user's message.
     pub(super) fn say(&mut self, tick: Ticks, voice: Voice, text: String) {
         let seconds = tick.get() as f64 * kmotiondef::limits::TIMEBASE;
         self.add(LogEntry { tick: tick.get(), seconds, voice, text, file: None, line: None, accesses: None });
     }
 
-    /// Adds an event that somebody may want to read.
+    /// Adds an event of interest to users.
     pub(super) fn note<T: Target>(&mut self, session: &Session<T>, event: &Event) {
         let tick = u64::try_from(event.at.get() / Cycles::PER_TICK.get()).unwrap_or_default();
         let (voice, text, place) = match &event.kind {
@@ -90,7 +87,7 @@ impl Log {
             | EventKind::Trace(_)
             | EventKind::UartSent(_) => return,
         };
-        // What is a mere detail has no words.
+        // Minor events have no text.
         if text.is_empty() && !matches!(voice, Voice::Console | Voice::Reply) {
             return;
         }
@@ -113,13 +110,13 @@ impl Log {
         self.fresh = (self.fresh + 1).min(self.entries.len());
     }
 
-    /// Drops what is later than a tick.
+    /// Drops the entries after a tick.
     pub(super) fn cut(&mut self, tick: Ticks) {
         self.entries.retain(|entry| entry.tick <= tick.get());
         self.fresh = self.fresh.min(self.entries.len());
     }
 
-    /// The entries in the order of time, to be kept: without those that were added for an earlier moment than the last.
+    /// The entries in the order of time, for keeping: without those that were added later for an earlier time.
     pub(super) fn in_order(&self) -> Vec<LogEntry> {
         let mut last = 0;
         let is_later = |entry: &&LogEntry| {
@@ -130,12 +127,12 @@ impl Log {
         self.entries.iter().filter(is_later).cloned().collect()
     }
 
-    /// Puts other entries in place of those that there are; pages receive them elsewhere.
+    /// Replaces the entries; pages receive the new ones separately.
     pub(super) fn put(&mut self, entries: Vec<LogEntry>) {
         (self.entries, self.fresh) = (entries.into(), 0);
     }
 
-    /// The entries later than a tick.
+    /// The entries after a tick.
     pub(super) fn later(&self, tick: Ticks) -> Vec<&LogEntry> {
         self.entries.iter().filter(|entry| entry.tick > tick.get()).collect()
     }
@@ -148,7 +145,7 @@ impl Log {
         (self.entries.len() < KEPT).then_some(lines)
     }
 
-    /// Everything, for a page that has just come.
+    /// All entries, for a page that has just connected.
     pub(super) fn all(&self) -> Vec<&LogEntry> {
         self.entries.iter().collect()
     }
@@ -160,7 +157,7 @@ impl Log {
     }
 }
 
-/// The accesses of two threads that a remark is about.
+/// The accesses of two threads in a remark.
 fn accesses<T: Target>(session: &Session<T>, remark: &Remark) -> Option<[RaceAccess; 2]> {
     let access = |thread: Option<ThreadId>, at| {
         let place = session.source(at)?;

@@ -1,4 +1,4 @@
-//! The machine file while its board is shown: one that is saved is applied when the board begins again.
+//! The machine file of a shown board: after it is saved, it is applied when the board restarts.
 
 use std::fs;
 
@@ -9,22 +9,22 @@ use super::log::Voice;
 use super::{ViewState, saved};
 use crate::hub::Hub;
 
-/// The machine file since the board was made with it.
+/// The state of the machine file since the board was created from it.
 #[derive(Debug, Default)]
 pub(super) enum MachineState {
-    /// It is the same.
+    /// It is unchanged.
     #[default]
     Same,
     /// It was saved.
     Saved,
     /// It was saved with an error.
     Wrong(String),
-    /// It was saved, and a page has requested a board of it.
+    /// It was saved, and a page has requested a board made from it.
     Wanted,
 }
 
 impl<T: Target> ViewState<T> {
-    /// Looks at the machine file from now on.
+    /// Watches the machine file from now on.
     pub(super) fn watch_machine(&mut self, hub: &std::sync::Arc<Hub>) {
         if let Some(path) = &self.show.machine.path {
             self.programs.machine_text = fs::read(path).ok();
@@ -32,7 +32,7 @@ impl<T: Target> ViewState<T> {
         }
     }
 
-    /// Returns whether the machine file has the text that the board was made of: it was saved before, or as it was.
+    /// Returns whether the machine file still has the text from which the board was created.
     fn is_as_made(&self) -> bool {
         let text = self.show.machine.path.as_ref().and_then(|path| fs::read(path).ok());
         text.is_some() && text == self.programs.machine_text
@@ -51,7 +51,7 @@ impl<T: Target> ViewState<T> {
         self.broadcast(&self.machine());
     }
 
-    /// The machine file, as a message to pages.
+    /// The state of the machine file, as a message to pages.
     pub(super) fn machine(&self) -> Value {
         let is_wrong = matches!(self.programs.machine, MachineState::Wrong(_));
         json!({ "kind": "machine", "text": self.machine_text(), "wrong": is_wrong })
@@ -71,7 +71,8 @@ impl<T: Target> ViewState<T> {
         }
     }
 
-    /// Begins again with a machine file that was saved; returns whether that is what Restart means now.
+    /// Requests a restart with the saved machine file; returns false if the file is unchanged and a normal restart is
+    /// meant.
     pub(super) fn wants_new_machine(&mut self) -> Result<bool, String> {
         match &self.programs.machine {
             MachineState::Wrong(text) => Err(text.clone()),
@@ -83,12 +84,12 @@ impl<T: Target> ViewState<T> {
         }
     }
 
-    /// Returns whether a page has requested a board of the machine file that was saved.
+    /// Returns whether a page has requested a board made from the saved machine file.
     pub(super) const fn is_rebuild_wanted(&self) -> bool {
         matches!(self.programs.machine, MachineState::Wanted)
     }
 
-    /// There is no board of that machine file.
+    /// Reports that no board can be made from that machine file.
     pub(super) fn refuse_rebuild(&mut self, text: &str) {
         self.programs.machine = MachineState::Wrong(text.to_owned());
         self.broadcast(&self.machine());

@@ -1,8 +1,9 @@
-//! The session under the clock: it goes as far as the clock says, does what pages ask for, and shows itself to them.
+//! The session under the clock: runs as far as the clock requires, executes requests of pages, and sends its state to
+//! them.
 //!
-//! A beat is: take what has come, run to the tick that is due, report new messages, send a frame to each page that is
-//! due one. All of it happens on one thread, so what pages ask for falls between two ticks. A session that somebody
-//! else runs has the same beat without the second step: a [`LiveView`].
+//! Each beat handles the incoming requests, runs to the tick that is due, reports new messages, and sends a frame to
+//! each page for which one is due. All of it happens on one thread, so requests of pages take effect between two ticks.
+//! A session run by other code has the same beat without the run: a [`LiveView`].
 
 mod branches;
 mod clock;
@@ -48,35 +49,35 @@ use samples::Samples;
 use threads::ThreadRow;
 use turns::Turns;
 
-/// The interval at which the board is run up to the clock.
+/// The interval at which the board is run up to the clock's time.
 const BEAT: Duration = Duration::from_millis(8);
-/// The time for which it may run in one interval, so that it still responds when it cannot keep up.
+/// The maximum time for a run in one beat, so that the board still responds when it cannot keep up.
 const MAX_RUN: Duration = Duration::from_millis(25);
-/// Ticks between two looks at how long it has run.
+/// The number of ticks between checks of that time.
 const TICKS_AT_ONCE: u64 = 500;
-/// Requests in one beat.
+/// The maximum number of requests in one beat.
 const REQUESTS_AT_ONCE: usize = 256;
-/// Most frames a second.
+/// The maximum number of frames per second.
 const FRAMES: f64 = 60.0;
 /// The interval at which pages receive the state of the threads.
 const THREADS: Duration = Duration::from_millis(100);
-/// Signals that are followed where nobody asks for others.
+/// The default signals of the scope.
 const SIGNALS: &str = "dest0,dest1,dest2";
-/// Ticks within which a thread has a slice, if one is active: all seven, and the primary thread in between.
+/// The number of ticks within which every active thread has a slice: all seven, and the primary thread in between.
 const ROTATION: u64 = 30;
 
-/// The reason why a board is not shown any more.
+/// The reason why a board is no longer shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum ShowEnd {
-    /// Its time has passed.
+    /// Its time limit was reached.
     TimeOver,
-    /// A page has requested a board of the machine file that was saved.
+    /// A page requested a board made from the saved machine file.
     NewMachine,
 }
 
-/// Runs a session and shows it until its time has passed, or another machine is wanted; `check` says whether there is a
-/// board of that.
+/// Runs and shows a session until its time limit, or until another machine is requested; `check` reports whether a
+/// board can be made from it.
 pub(crate) fn run<T: Target>(
     session: &mut Session<T>,
     show: Show,
@@ -107,7 +108,7 @@ pub(crate) fn run<T: Target>(
     ShowEnd::TimeOver
 }
 
-/// A session that somebody else runs, to be shown.
+/// Creates a view of a session run by other code.
 pub(crate) fn view<T: Target>(
     session: &mut Session<T>,
     show: Show,
@@ -117,7 +118,7 @@ pub(crate) fn view<T: Target>(
     LiveView::new(ViewState::new(session, show, hub), requests)
 }
 
-/// Does what a page asks for in messages, and tells it what comes of that.
+/// Executes the requests in a page's messages, and reports the results to it.
 pub(crate) fn obey<T: Target>(
     session: &mut Session<T>,
     show: Show,
@@ -136,15 +137,15 @@ pub(crate) fn obey<T: Target>(
     obeyed.collect()
 }
 
-/// A page that looks.
+/// A connected page.
 #[derive(Debug)]
 struct Page {
     mailbox: Arc<Mailbox>,
-    /// The time from one frame to the next; `None` for no frames.
+    /// The interval between frames; `None` for no frames.
     every: Option<Duration>,
-    /// When the last frame was due.
+    /// The time at which the last frame was due.
     last: Instant,
-    /// The row of samples that it needs next, and of which list.
+    /// The next row of samples that it needs, and the list to which the row belongs.
     next_row: u64,
     generation: u32,
 }
@@ -152,7 +153,7 @@ struct Page {
 /// The last messages to pages.
 #[derive(Debug)]
 struct Told {
-    /// The threads, and the moment of the message.
+    /// The threads, and the time of the message.
     threads: Vec<ThreadRow>,
     at: Instant,
     /// The box that waits for an answer.
@@ -165,7 +166,7 @@ struct ViewState<T: Target> {
     show: Show,
     programs: Programs,
     clock: Clock,
-    /// The past, if one can go back to it.
+    /// The past, if going back is possible.
     timeline: Option<Timeline<T>>,
     samples: Samples,
     log: Log,
@@ -174,7 +175,7 @@ struct ViewState<T: Target> {
     told: Told,
     /// The thread that had the processor in each of the last ticks.
     turns: Turns,
-    /// For whoever else runs the session.
+    /// Requests to the owner of the session.
     owner_requests: OwnerRequests,
     /// The other users of the board.
     company: Company<T>,
@@ -185,7 +186,7 @@ struct ViewState<T: Target> {
 /// The users of a board besides its pages.
 #[derive(Debug)]
 pub struct Company<T: Target> {
-    /// A debugger or the like, which may stop the board.
+    /// A debugger or similar, which can stop the board.
     pub attendant: Option<Box<dyn Attendant<T>>>,
     /// The keeper of its flash, which sees events before pages do.
     pub keeper: Option<Box<dyn Keeper<T>>>,
@@ -203,11 +204,11 @@ impl<T: Target> ViewState<T> {
             log.say(session.tick(), Voice::Remark, format!("the scope: {}: {}", wrong.name, wrong.text));
         }
         if show.time == TimeControl::Full && session.can(Capability::Surroundings) {
-            // Boxes are answered here; the statement is recorded, so that a test waits as well.
+            // Boxes are answered by pages; the statement is recorded, so that a test waits as well.
             let waits = session.act("answer \"boxes=wait\"");
             debug_assert!(waits.is_ok(), "it is a statement: {waits:?}");
         }
-        // A target without snapshots is shown without a way back.
+        // A target without snapshots is shown without the ability to go back.
         let mut timeline = (show.time == TimeControl::Full).then(|| Timeline::new(session).ok()).flatten();
         if let Some(timeline) = &mut timeline {
             timeline.keep_branches(branches::MOST);
@@ -228,7 +229,7 @@ impl<T: Target> ViewState<T> {
         }
     }
 
-    /// Takes what comes within some time.
+    /// Handles incoming items for some time.
     fn take(&mut self, session: &mut Session<T>, requests: &Receiver<Incoming>, patience: Duration) {
         let begin = now();
         for _ in 0..REQUESTS_AT_ONCE {
@@ -266,7 +267,7 @@ impl<T: Target> ViewState<T> {
         }
     }
 
-    /// Connects a page, which receives everything.
+    /// Connects a page, which receives the complete state.
     fn join(&mut self, session: &mut Session<T>, id: PageId, mailbox: Arc<Mailbox>) {
         let page = Page { mailbox, every: None, last: now(), next_row: 0, generation: 0 };
         self.pages.insert(id, page);
@@ -290,7 +291,7 @@ impl<T: Target> ViewState<T> {
         json!({ "kind": "signals", "generation": generation, "names": names, "list": list, "wrong": wrong })
     }
 
-    /// Does what a page asks for.
+    /// Executes a request of a page.
     fn obey(&mut self, session: &mut Session<T>, id: PageId, request: PageRequest) -> Result<(), String> {
         self.allows(&request)?;
         match request {
@@ -309,7 +310,7 @@ impl<T: Target> ViewState<T> {
             PageRequest::Tick {} => {
                 self.clock.pause();
                 let next = session.tick().next();
-                // What has happened is shown again; nothing is dropped by looking.
+                // Past ticks are shown again; merely looking at them drops nothing.
                 if next <= self.end(session) {
                     self.go_to(session, next)?;
                 } else {
@@ -367,7 +368,7 @@ impl<T: Target> ViewState<T> {
         Ok(())
     }
 
-    /// Does what a statement of a stimulus says.
+    /// Executes a statement of a stimulus.
     fn act(&mut self, session: &mut Session<T>, text: &str) -> Result<(), String> {
         if text.contains(char::is_control) {
             return Err("a statement is one line".to_owned());
@@ -424,7 +425,7 @@ impl<T: Target> ViewState<T> {
         }
     }
 
-    /// Loads and starts programs, and says so.
+    /// Loads and starts programs, and reports it.
     fn load(&mut self, session: &mut Session<T>, programs: Vec<UserProgram>) {
         for program in programs {
             let (name, thread) = (program.name(), program.thread);
@@ -437,13 +438,13 @@ impl<T: Target> ViewState<T> {
         }
     }
 
-    /// Runs to the tick that is due, or as far as there is time for.
+    /// Runs to the tick that is due, or as far as time allows.
     fn advance(&mut self, session: &mut Session<T>, limit: Option<Ticks>) {
         if self.company.attendant.is_some() {
             self.run_to(session, session.tick());
         }
         if self.is_real() {
-            // Its time has passed meanwhile.
+            // Meanwhile that time has passed.
             return self.run_to(session, session.tick().next());
         }
         let begin = now();
@@ -454,7 +455,7 @@ impl<T: Target> ViewState<T> {
         }
     }
 
-    /// Runs to a tick and takes note of what happens.
+    /// Runs to a tick, and handles the events.
     fn run_to(&mut self, session: &mut Session<T>, tick: Ticks) {
         let mut events = Vec::new();
         let looks = !self.pages.is_empty() && self.told.at.elapsed() >= THREADS;
@@ -482,10 +483,10 @@ impl<T: Target> ViewState<T> {
                 return;
             }
         }
-        // That nobody has one is seen in the frame.
+        // If no thread has one, the frame shows it.
     }
 
-    /// Takes note of what happened while the board ran.
+    /// Handles the events of a run.
     fn note(&mut self, session: &mut Session<T>, events: Vec<Event>) {
         events.iter().for_each(|event| self.log.note(session, event));
         self.keep(session);
@@ -494,7 +495,7 @@ impl<T: Target> ViewState<T> {
         }
     }
 
-    /// Returns whether the session is run elsewhere.
+    /// Returns whether the session is run by other code.
     fn is_guest(&self) -> bool {
         match self.show.time {
             TimeControl::Full | TimeControl::Real => false,

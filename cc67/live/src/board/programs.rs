@@ -1,4 +1,4 @@
-//! The programs of the board: what the compiler says of them since they were saved, and which wait to be loaded.
+//! The programs of the board: the compiler's messages since they were saved, and the programs that wait to be loaded.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -17,24 +17,24 @@ use crate::{Program, Show};
 pub(super) struct Programs {
     programs: Vec<Program>,
     options: Options,
-    /// True if a program that is saved is loaded at once.
+    /// True if a saved program is loaded at once.
     reloads: bool,
     /// The programs that were saved without errors and are not loaded yet.
     waiting: BTreeMap<ThreadId, UserProgram>,
     /// The programs that were loaded in place of the first ones.
     loaded: BTreeMap<ThreadId, UserProgram>,
-    /// The errors of those that were saved with some.
+    /// The errors of programs that were saved with errors.
     wrong: BTreeMap<ThreadId, Vec<CompileMessage>>,
-    /// The machine file since the board was made.
+    /// The state of the machine file since the board was created.
     pub(super) machine: MachineState,
-    /// The text of the machine file that the board was made of.
+    /// The text of the machine file from which the board was created.
     pub(super) machine_text: Option<Vec<u8>>,
-    /// Their files are looked at as long as there are programs.
+    /// Keeps the watch on their files alive.
     pub(super) watch: Watch,
 }
 
 impl Programs {
-    /// The programs of a board, whose files are looked at from now on.
+    /// The programs of a board, whose files are watched from now on.
     pub(super) fn watched(show: &Show, options: &Options, hub: &Arc<Hub>) -> Self {
         let watch = Watch::default();
         saved::watch(show.programs.clone(), show.include_dirs.clone(), options.clone(), (&watch, hub));
@@ -51,13 +51,13 @@ impl Programs {
         }
     }
 
-    /// Notes that a program was saved; returns the programs to load now, if that is allowed.
+    /// Notes that a program was saved; returns the programs to be loaded now, if that is allowed.
     pub(super) fn saved(&mut self, compiled: Compiled, may_load: bool) -> Vec<UserProgram> {
         self.note(compiled);
         if self.reloads && may_load { self.take() } else { Vec::new() }
     }
 
-    /// Returns the programs to load: those that wait, or every program again if none does.
+    /// Returns the programs to be loaded: those that wait, or all programs again if none does.
     pub(super) fn reload(&mut self) -> Vec<UserProgram> {
         if self.waiting.is_empty() {
             for program in self.programs.clone() {
@@ -73,7 +73,7 @@ impl Programs {
         programs
     }
 
-    /// The programs that were loaded since the board was switched on, for the next time that it is.
+    /// The programs that were loaded since power-up, for the next power-up.
     pub(super) fn loaded(&self) -> Vec<UserProgram> {
         self.loaded.values().cloned().collect()
     }
@@ -87,7 +87,7 @@ impl Programs {
         }
     }
 
-    /// The programs that were not loaded because of errors, in words; `None` without any.
+    /// A message about the programs that were not loaded because of errors; `None` without any.
     pub(super) fn refusal(&self) -> Option<String> {
         let (thread, errors) = self.wrong.first_key_value()?;
         let named = self.programs.iter().find(|program| program.thread == *thread);
@@ -98,7 +98,7 @@ impl Programs {
         Some(format!("{name} is not loaded: {first}{more}; the errors are at their lines in Source"))
     }
 
-    /// Returns the message for pages: the programs that have changed, and the errors of each.
+    /// Returns the message for pages: the changed programs, and the errors of each.
     pub(super) fn message(&self) -> Value {
         let waiting: Vec<_> = self.waiting.keys().map(|thread| thread.get()).collect();
         let error = |thread: ThreadId, error: &CompileMessage| {
@@ -113,7 +113,7 @@ impl Programs {
     }
 }
 
-/// A program that is loaded when a page asks for it, with its thread.
+/// A program that is loaded only on request, with its thread.
 fn waiting(program: &Program) -> Option<(ThreadId, UserProgram)> {
     program.waiting.as_deref().map(|compiled| (program.thread, compiled.clone()))
 }

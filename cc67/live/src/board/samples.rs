@@ -1,4 +1,4 @@
-//! The signals of the scope: the values of the last minutes, a row a sample.
+//! The signals of the scope: the values of the last minutes, one row per sample.
 
 use std::sync::{Arc, Mutex};
 
@@ -9,23 +9,24 @@ use serde::Serialize;
 
 use crate::hub::locked;
 
-/// Numbers that are kept, over all signals: 32 MiB.
+/// The number of values kept, for all signals together: 32 MiB.
 const KEPT: usize = 4 << 20;
-/// Most signals.
+/// The maximum number of signals.
 const SIGNALS: usize = 128;
-/// Rows that go into one frame.
+/// The maximum number of rows in a frame.
 const ROWS_AT_ONCE: usize = 4096;
-/// Ticks from one sample to the next at the pace of the real board: 0.9 ms.
+/// The number of ticks between samples at real-time speed: 0.9 ms.
 const EVERY: u64 = 10;
-/// Ticks between samples of a connected controller: 50 ms, in which its status record is read.
+/// The number of ticks between samples of a connected controller: 50 ms, the interval at which its status record is
+/// read.
 const EVERY_STATUS: u64 = 555;
 
-/// Rows of samples, and how they are called.
+/// Rows of samples.
 #[derive(Debug, Default)]
 struct Rows {
-    /// A tick, then a value of each signal; row after row.
+    /// A tick, then the value of each signal; row after row.
     numbers: Vec<f64>,
-    /// Rows that were dropped before the first one.
+    /// The number of rows that were dropped before the first one.
     dropped: u64,
     /// The last tick.
     last: Option<Ticks>,
@@ -35,21 +36,21 @@ struct Rows {
 impl Rows {
     fn add(&mut self, tick: Ticks, values: &[f64]) {
         if self.last.is_some_and(|last| tick <= last) {
-            // The board has been here before, and it was the same.
+            // This tick was sampled before, with the same values.
             return;
         }
         self.last = Some(tick);
         self.numbers.push(tick.get() as f64);
         self.numbers.extend(values);
         if self.numbers.len() > KEPT {
-            // Half at a time, so that each number is moved once.
+            // Drops half at a time, so that each number is moved only once.
             let rows = self.count() / 2;
             self.numbers.drain(..rows * self.width);
             self.dropped += rows as u64;
         }
     }
 
-    /// Drops what is later than a tick.
+    /// Drops the samples after a tick.
     fn cut(&mut self, tick: Ticks) {
         let limit = tick.get() as f64;
         let is_later = |row: &[f64]| row.first().is_some_and(|at| *at > limit);
@@ -63,38 +64,38 @@ impl Rows {
     }
 }
 
-/// A signal that cannot be followed.
+/// A signal that cannot be sampled.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct WrongSignal {
-    /// As it is in the list.
+    /// Its name in the list.
     pub(super) name: String,
     /// The reason.
     pub(super) text: String,
 }
 
-/// The signals that are followed.
+/// The sampled signals.
 #[derive(Debug, Default)]
 pub(super) struct Samples {
     names: Vec<String>,
     /// The signals of the list that cannot be sampled.
     wrong: Vec<WrongSignal>,
     list: String,
-    /// Ticks from one sample to the next at the pace of the real board.
+    /// The number of ticks between samples at real-time speed.
     interval: u64,
     every: u64,
     subscription: Option<SubscriptionId>,
     rows: Arc<Mutex<Rows>>,
-    /// Counts the lists, so that rows of another one are not taken for this one's.
+    /// The number of the list, so that rows of another list are not mixed with these.
     pub(super) generation: u32,
 }
 
 impl Samples {
-    /// Follows nothing yet.
+    /// Samples nothing yet.
     pub(super) fn new(is_real: bool) -> Self {
         Self { interval: if is_real { EVERY_STATUS } else { EVERY }, ..Self::default() }
     }
 
-    /// Follows the signals of a list, apart from those that are [wrong](Self::wrong).
+    /// Samples the signals of a list, except for the [invalid](Self::wrong) ones.
     pub(super) fn follow<T: Target>(&mut self, session: &mut Session<T>, list: &str, speed: f64) {
         let (mut watched, mut wrong) = (Vec::new(), Vec::new());
         for name in expressions(unquoted(list)).into_iter().map(unquoted).flat_map(parts) {
@@ -117,12 +118,12 @@ impl Samples {
         self.subscribe(session, watched, speed);
     }
 
-    /// The signals of the list that cannot be followed.
+    /// The signals of the list that cannot be sampled.
     pub(super) fn wrong(&self) -> &[WrongSignal] {
         &self.wrong
     }
 
-    /// Samples less often when time goes faster, so that as many come in a second.
+    /// Samples less often when time passes faster, so that the number of samples per second stays the same.
     pub(super) fn at_speed<T: Target>(&mut self, session: &mut Session<T>, speed: f64) {
         if self.every_at(speed) != self.every {
             let watched = self.names.iter().filter_map(|name| session.watch(name).ok()).collect::<Vec<_>>();
@@ -132,7 +133,7 @@ impl Samples {
         }
     }
 
-    /// Has a controller sample the signals by itself, if it should and there are any; returns how many times a second.
+    /// Makes a controller sample the signals, if it should and there are any; returns the number of samples per second.
     pub(super) fn on_target<T: Target>(
         &mut self,
         session: &mut Session<T>,
@@ -160,12 +161,12 @@ impl Samples {
         self.subscription = Some(session.subscribe(watched, self.every, receive));
     }
 
-    /// Ticks from one sample to the next at a speed.
+    /// The number of ticks between samples at a speed.
     fn every_at(&self, speed: f64) -> u64 {
         (self.interval as f64 * speed.max(1.0)).round() as u64
     }
 
-    /// Drops what is later than a tick; the number of rows there have been then.
+    /// Drops the samples after a tick; returns the number of rows up to then.
     pub(super) fn cut(&self, tick: Ticks) -> u64 {
         let mut rows = locked(&self.rows);
         rows.cut(tick);
@@ -177,12 +178,13 @@ impl Samples {
         &self.names
     }
 
-    /// The list they are of.
+    /// The list of the signals.
     pub(super) fn list(&self) -> &str {
         &self.list
     }
 
-    /// Adds the rows from `next` on to a frame, as many as go into one; how many they are, and which comes next.
+    /// Appends the rows from `next` on to a frame, up to the maximum; returns their number, and the next row after
+    /// them.
     pub(super) fn write(&self, next: u64, out: &mut Vec<u8>) -> (u32, u64) {
         let rows = locked(&self.rows);
         let first = next.max(rows.dropped);
@@ -194,14 +196,14 @@ impl Samples {
     }
 }
 
-/// A name or list without the quotation marks of a shell, which people copy with it.
+/// A name or list without the quotation marks that users copy from a shell command.
 fn unquoted(text: &str) -> &str {
     let text = text.trim();
     let inner = text.strip_prefix('\'').and_then(|text| text.strip_suffix('\''));
     inner.filter(|inner| !inner.contains('\'')).unwrap_or(text).trim_matches('"').trim()
 }
 
-/// Returns the items of a name in a list: `axis0` is the commanded position, the position and the output of an axis.
+/// Returns the items for a name in a list: `axis0` is the commanded position, the position and the output of an axis.
 fn parts(name: &str) -> Vec<String> {
     match name.strip_prefix("axis").filter(|number| number.parse::<u8>().is_ok()) {
         Some(number) => ["dest", "pos", "out"].map(|kind| format!("{kind}{number}")).to_vec(),

@@ -1,4 +1,4 @@
-//! Programs that are saved: a file that changes is compiled at once, on a thread of its own.
+//! Saved programs: when a file changes, it is compiled at once on a separate thread.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -13,12 +13,12 @@ use runtime::MachineFile;
 use crate::hub::{Compiled, Hub, Incoming};
 use crate::{Program, names};
 
-/// The interval at which files are looked at.
+/// The interval at which files are checked.
 const LOOK: Duration = Duration::from_millis(200);
-/// The time for which a file may be away while an editor replaces it.
+/// The time for which a file may be missing while an editor replaces it.
 const AWAY: Duration = Duration::from_millis(100);
 
-/// Files are looked at as long as there is one of these.
+/// Files are watched as long as one of these exists.
 pub(super) type Watch = Arc<()>;
 
 /// Compiles a program.
@@ -34,7 +34,7 @@ pub(super) fn compile(program: &Program, options: &Options) -> Compiled {
     Compiled { program: program.clone(), result }
 }
 
-/// Looks at the files of some programs from now on, and hands in what becomes of those that are saved or deleted.
+/// Watches the files of some programs from now on, and sends the results for those that are saved or deleted.
 pub(super) fn watch(
     programs: Vec<Program>,
     include_dirs: Vec<PathBuf>,
@@ -64,7 +64,7 @@ pub(super) fn watch(
     });
 }
 
-/// Looks at the machine file from now on, and hands in whether it is right when it is saved.
+/// Watches the machine file from now on, and sends the result of checking it when it is saved.
 pub(super) fn watch_machine(path: PathBuf, watch: &Watch, hub: &Arc<Hub>) {
     let (hub, watch) = (Arc::clone(hub), Arc::downgrade(watch));
     thread::spawn(move || {
@@ -99,7 +99,7 @@ fn is_wanted(watch: &Weak<()>) -> bool {
     watch.strong_count() > 0
 }
 
-/// When the files of a program were written, and how long they are.
+/// The modification times and sizes of a program's files.
 fn stamps(path: &Path, include_dirs: &[PathBuf]) -> BTreeMap<PathBuf, (Option<SystemTime>, u64)> {
     let stamp = |path: PathBuf| {
         let data = fs::metadata(&path).ok()?;

@@ -12,7 +12,7 @@ use super::{BEAT, THREADS, ViewState, asks, log_message, threads};
 use crate::hub::PageId;
 
 impl<T: Target> ViewState<T> {
-    /// Tells pages what is new.
+    /// Sends new information to pages.
     pub(super) fn tell(&mut self, session: &Session<T>) {
         self.tell_link(session);
         let fresh = self.log.take_fresh();
@@ -23,7 +23,7 @@ impl<T: Target> ViewState<T> {
         if !self.pages.is_empty() && self.told.at.elapsed() >= THREADS {
             let rows = threads::rows(session);
             if rows != self.told.threads || self.clock.is_running() {
-                // Those of a moment ago do while the board runs.
+                // Slightly older slices are good enough while the board runs.
                 let turns = self.turns.until(session.tick());
                 let none = VecDeque::new();
                 let turns = if self.clock.is_running() { turns } else { Some(turns.unwrap_or(&none)) };
@@ -40,7 +40,7 @@ impl<T: Target> ViewState<T> {
         self.send_frames(session);
     }
 
-    /// Sends a frame to each page that is due one and has taken the last.
+    /// Sends a frame to each page for which one is due and that has taken the last one.
     pub(super) fn send_frames(&mut self, session: &Session<T>) {
         let tick = session.tick();
         let moment = Moment {
@@ -60,13 +60,13 @@ impl<T: Target> ViewState<T> {
             }
             let (bytes, next) = frame::frame(session, moment, &self.samples, page.next_row);
             page.next_row = next;
-            // A frame that is a beat late does not move those after it, so that as many come as a page asks for.
+            // A frame that is one beat late does not delay the following ones, so that the requested rate is kept.
             page.last = if since < 2 * every { page.last + every } else { now() };
             page.mailbox.show(bytes);
         }
     }
 
-    /// Tells pages that the board is no longer shown.
+    /// Informs pages that the board is no longer shown.
     pub(super) fn close(&self) {
         self.pages.values().for_each(|page| page.mailbox.close());
     }

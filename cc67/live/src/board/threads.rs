@@ -1,4 +1,4 @@
-//! The state of each thread, its line, and what it waits for.
+//! The state of each thread, its source line, and the event for which it waits.
 
 use cc67_host::{Session, Target};
 use kmotiondef::{Cycles, ThreadId};
@@ -7,18 +7,18 @@ use vm::machine::BOARD_STACK_USABLE;
 use vm::thread::{Progress, ThreadState};
 use vm::wake::Wake;
 
-/// A thread as a page shows it.
+/// A thread, as shown on a page.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct ThreadRow {
     thread: u8,
     /// Its state, in one word: `empty`, `ready`, `running`, `waiting`, `paused`, `trapped`.
     state: &'static str,
-    /// The reason for which it waits.
+    /// The event for which it waits.
     waits: String,
-    /// The most bytes of its stack in use so far, and those that the board has.
+    /// The maximum number of bytes of its stack used so far, and the size of the stack.
     stack_used: u32,
     stack_size: u32,
-    /// The calls it is in, the innermost first.
+    /// The calls in progress, innermost first.
     stack: Vec<CallRow>,
 }
 
@@ -30,7 +30,7 @@ struct CallRow {
     line: Option<u32>,
 }
 
-/// Calls that are shown of a thread.
+/// The maximum number of calls shown for a thread.
 const CALLS: usize = 16;
 
 /// All threads.
@@ -66,7 +66,7 @@ fn row<T: Target>(session: &Session<T>, thread: ThreadId) -> ThreadRow {
     ThreadRow { thread: thread.get(), state, waits, stack_used, stack_size: BOARD_STACK_USABLE, stack }
 }
 
-/// Describes a wake.
+/// Describes the event that ends a wait.
 fn wait(wake: Wake) -> String {
     match wake {
         Wake::At(at) => format!("{:.3} s", at.get() as f64 / Cycles::PER_SECOND.get() as f64),

@@ -1,5 +1,5 @@
-//! The thread that had the processor in each of the last ticks, and the statements that were split: some rotations of all
-//! threads.
+//! The thread that had the processor in each of the last ticks, and the statements interrupted by the servo: some
+//! rotations of all threads.
 
 use std::collections::VecDeque;
 
@@ -8,15 +8,15 @@ use kmotiondef::{ThreadId, Ticks};
 use runtime::Event;
 use serde::Serialize;
 
-/// Ticks that are shown.
+/// The number of ticks shown.
 const SHOWN: u64 = 56;
 
-/// A tick as the bar of slices shows it.
+/// A tick in the bar of slices.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct ShownSlice {
     /// The number of the thread, 0 for the primary one.
     thread: u8,
-    /// The file and line of the statement inside which the servo interrupt has stopped the thread.
+    /// The file and line of the statement within which the servo interrupt stopped the thread.
     #[serde(skip_serializing_if = "Option::is_none")]
     split: Option<String>,
 }
@@ -31,16 +31,17 @@ impl ShownSlice {
     }
 }
 
-/// The slices of the last ticks, one after another without a gap.
+/// The slices of the last ticks, without gaps.
 #[derive(Debug, Default)]
 pub(super) struct Turns {
     slices: VecDeque<ShownSlice>,
-    /// The tick of the last one.
+    /// The tick of the last slice.
     last: Ticks,
 }
 
 impl Turns {
-    /// Runs a session to a tick. If somebody looks, or it is not far, tick by tick at the end.
+    /// Runs a session to a tick. If a page is watching, or the distance is short, the end of the run is executed tick
+    /// by tick.
     pub(super) fn advance<T: Target>(
         &mut self,
         session: &mut Session<T>,
@@ -49,7 +50,7 @@ impl Turns {
         events: &mut dyn FnMut(Event),
     ) {
         let is_near = session.tick().get() + 1 >= tick.get();
-        // Which thread has had a tick is not known of a target whose time passes by itself.
+        // For a target whose time passes by itself, the thread of a tick is unknown.
         if !session.can(Capability::StopTime) || !looks && !is_near {
             return session.advance(tick, events);
         }

@@ -1,4 +1,4 @@
-//! Shows a session that other code runs, such as a server whose clients use the same board.
+//! A view of a session run by other code, such as a server whose clients use the same board.
 
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
@@ -9,7 +9,7 @@ use runtime::Event;
 use super::ViewState;
 use crate::hub::Incoming;
 
-/// The page of a session that somebody else runs.
+/// The page of a session run by other code.
 #[derive(Debug)]
 pub struct LiveView<T: Target> {
     state: ViewState<T>,
@@ -19,13 +19,13 @@ pub struct LiveView<T: Target> {
 /// The requests of pages to the owner of the session.
 #[derive(Debug, Default)]
 pub struct OwnerRequests {
-    /// The events of the ticks that a page has run.
+    /// The events of the ticks run by a page.
     pub events: Vec<Event>,
     /// Lines of script commands to be sent to the board.
     pub commands: Vec<String>,
-    /// Statements of a stimulus that pages have had done.
+    /// Statements of a stimulus that pages have executed.
     pub acts: Vec<String>,
-    /// Seconds of board time in a second; `None` while the clock is stopped.
+    /// The requested speed, in seconds of board time per second; `None` while the clock is stopped.
     pub speed: Option<f64>,
 }
 
@@ -34,13 +34,13 @@ impl<T: Target> LiveView<T> {
         Self { state, requests }
     }
 
-    /// Takes note of what has happened on the board.
+    /// Handles an event on the board.
     pub fn hear(&mut self, session: &Session<T>, event: &Event) {
         self.state.log.note(session, event);
     }
 
-    /// Executes the requests of pages since the last call, without waiting, and sends them what is new. To be called
-    /// about a hundred times in a second.
+    /// Executes the requests of pages since the last call, without waiting, and sends new information to the pages.
+    /// Must be called about a hundred times per second.
     pub fn beat(&mut self, session: &mut Session<T>) -> OwnerRequests {
         self.state.take(session, &self.requests, Duration::ZERO);
         self.state.stop_silent_jogs(session);
@@ -50,12 +50,12 @@ impl<T: Target> LiveView<T> {
         OwnerRequests { speed, ..std::mem::take(&mut self.state.owner_requests) }
     }
 
-    /// Sends pages what is new while nothing may be requested.
+    /// Sends new information to pages at a time when requests are not allowed.
     pub fn show(&mut self, session: &Session<T>) {
         self.state.tell(session);
     }
 
-    /// Tells pages that the session is over.
+    /// Informs pages that the session is over.
     pub fn close(&self) {
         self.state.close();
     }

@@ -1,6 +1,5 @@
-//! The files of the page, which are part of the binary.
+//! The files of the page, which are embedded in the binary.
 
-/// A file.
 #[derive(Debug)]
 pub(super) struct File {
     path: &'static str,
@@ -17,7 +16,7 @@ const SVG: &str = "image/svg+xml";
 
 macro_rules! files {
     ($($path:literal = $mime:ident $name:literal;)*) => {
-        /// All of them.
+        /// All files.
         const FILES: &[File] =
             &[$(File { path: $path, mime: $mime, text: include_str!(concat!("../../page/", $name)) }),*];
     };

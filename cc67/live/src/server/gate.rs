@@ -1,14 +1,15 @@
-//! Access control: the token must be right, and the request must not come from another site's page.
+//! Access control: the token must be correct, and the request must not come from another site's page.
 //!
-//! A browser sends any page's requests to any address, this one too. So a request is refused unless its `Host` is the
-//! address that the server listens on (which a site that renames itself cannot fake), and unless its `Origin`, if it has
-//! one, is the same. The files of the page are not secret; the page itself and the socket need the token.
+//! A browser sends requests of any page to any address, including this one. So a request is rejected unless its `Host`
+//! is the address on which the server listens (which a site cannot fake by changing its DNS records), and unless its
+//! `Origin`, if present, is the same. The files of the page are not secret; the page itself and the socket need the
+//! token.
 
 use std::net::{IpAddr, SocketAddr};
 
 use super::http::Head;
 
-/// Hexadecimal digits of a token.
+/// The number of hexadecimal digits of a token.
 const TOKEN: usize = 32;
 
 /// Returns whether a text can be a token.
@@ -23,19 +24,19 @@ pub(super) struct Gate {
     token: String,
 }
 
-/// The reason for which a client is refused.
+/// The reason for rejecting a client.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Refusal {
-    /// It asks for another host.
+    /// The request names another host.
     Host,
-    /// Its page is of another site.
+    /// The request comes from another site's page.
     Origin,
-    /// The token is wrong, or there is none.
+    /// The token is wrong or missing.
     Token,
 }
 
 impl Refusal {
-    /// In words.
+    /// The reason as text.
     pub(super) const fn why(self) -> &'static str {
         match self {
             Self::Host => "a request for another host was refused",
@@ -46,7 +47,7 @@ impl Refusal {
 }
 
 impl Gate {
-    /// A gate for the address that is listened on, with a token that was drawn before, or a new one.
+    /// Creates a gate for the address on which the server listens, with an earlier token or a new one.
     pub(super) fn new(address: SocketAddr, kept: Option<&str>) -> Result<Self, getrandom::Error> {
         let token = match kept.filter(|token| is_token(token)) {
             Some(token) => token.to_owned(),
@@ -59,16 +60,15 @@ impl Gate {
         Ok(Self { address, token })
     }
 
-    /// The token.
     pub(super) fn token(&self) -> &str {
         &self.token
     }
 
-    /// The address of the page.
+    /// The URL of the page.
     pub(super) fn url(&self) -> String {
         let mut address = self.address;
         if address.ip().is_unspecified() {
-            // All addresses of this computer: its own is one of them.
+            // The unspecified address: the loopback address is one of those it covers.
             address.set_ip(match address.ip() {
                 IpAddr::V4(_) => IpAddr::from([127, 0, 0, 1]),
                 IpAddr::V6(_) => std::net::Ipv6Addr::LOCALHOST.into(),
@@ -77,7 +77,7 @@ impl Gate {
         format!("http://{address}/?token={}", self.token)
     }
 
-    /// Checks whether a request is answered.
+    /// Checks whether a request is allowed.
     pub(super) fn check(&self, head: &Head) -> Result<(), Refusal> {
         let host = head.header("host").unwrap_or_default();
         if !self.is_ours(host) {
@@ -96,8 +96,8 @@ impl Gate {
         Ok(())
     }
 
-    /// Returns whether a host is this server. One that listens for other computers cannot know their name for it, but
-    /// requiring a number keeps renamed sites out.
+    /// Returns whether a host is this server. A server that listens for other computers cannot know the name by which
+    /// they call it, but requiring a numeric address excludes sites that change their DNS records.
     fn is_ours(&self, host: &str) -> bool {
         let port = self.address.port();
         let name = host.strip_suffix(&format!(":{port}")).unwrap_or(if port == 80 { host } else { "" });
@@ -110,7 +110,7 @@ impl Gate {
     }
 }
 
-/// Compares in a time that does not depend on where they differ.
+/// Compares in constant time.
 fn is_same(one: &[u8], other: &[u8]) -> bool {
     one.len() == other.len() && one.iter().zip(other).fold(0, |sum, (a, b)| sum | (a ^ b)) == 0
 }

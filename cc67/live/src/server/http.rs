@@ -1,31 +1,32 @@
-//! As much of HTTP as one page needs: the head of a GET request, and an answer after which the connection is closed.
+//! The part of HTTP that one page needs: the head of a GET request, and a response after which the connection is
+//! closed.
 
 use std::io::{self, Read, Write};
 use std::net::TcpStream;
 
 use super::files::File;
 
-/// Most bytes of a head.
+/// The maximum size of a head in bytes.
 const LONGEST: usize = 8 << 10;
 
 /// The head of a request.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Head {
     target: String,
-    /// Names in lower case.
+    /// The headers, with names in lower case.
     headers: Vec<(String, String)>,
 }
 
 impl Head {
-    /// Reads one from a client; `None` if that is not what it sends. What comes after it is left alone.
+    /// Reads the head of a request from a client; `None` if it is malformed. Data after the head are not read.
     ///
     /// # Errors
     ///
-    /// The connection failed, or ended before its first byte: browsers open some to spare.
+    /// The connection failed, or ended before its first byte: browsers open some in advance.
     pub(super) fn read(stream: &mut TcpStream) -> io::Result<Option<Self>> {
         let mut bytes = Vec::new();
         let mut byte = [0];
-        // A head is short, and what follows it belongs to the socket.
+        // A head is short, and the data after it belong to the socket.
         while !bytes.ends_with(b"\r\n\r\n") {
             let count = stream.read(&mut byte)?;
             if count == 0 && bytes.is_empty() {
@@ -39,7 +40,7 @@ impl Head {
         Ok(Self::parse(&bytes))
     }
 
-    /// The head in some bytes.
+    /// Parses a head.
     pub(super) fn parse(bytes: &[u8]) -> Option<Self> {
         let mut lines = std::str::from_utf8(bytes).ok()?.split("\r\n");
         let target = lines.next()?.strip_prefix("GET ")?.strip_suffix(" HTTP/1.1")?.to_owned();
@@ -56,20 +57,20 @@ impl Head {
         self.target.split('?').next().unwrap_or_default()
     }
 
-    /// A value after the question mark.
+    /// The value of a query parameter.
     pub(super) fn query(&self, name: &str) -> Option<&str> {
         let (_, query) = self.target.split_once('?')?;
         query.split('&').find_map(|pair| pair.strip_prefix(name)?.strip_prefix('='))
     }
 
-    /// A header, by its name in lower case; `None` also if there are several.
+    /// A header, by its name in lower case; `None` if there is none, or more than one.
     pub(super) fn header(&self, name: &str) -> Option<&str> {
         let mut found = self.headers.iter().filter(|(known, _)| known == name);
         let (_, value) = found.next()?;
         found.next().is_none().then_some(value)
     }
 
-    /// Returns the key of a client that asks for a socket, to be answered.
+    /// Returns the key of a client that requests a WebSocket, for the response.
     pub(super) fn websocket_key(&self) -> Option<&str> {
         let wants = self.header("upgrade")?.eq_ignore_ascii_case("websocket");
         let is_known = self.header("sec-websocket-version") == Some("13");
@@ -77,7 +78,7 @@ impl Head {
     }
 }
 
-/// An answer.
+/// A response.
 #[derive(Debug)]
 pub(super) struct HttpAnswer {
     status: &'static str,
@@ -91,7 +92,7 @@ impl HttpAnswer {
         Self { status: "200 OK", mime: file.mime, body: file.text.as_bytes().to_vec() }
     }
 
-    /// Creates an answer that reports an error.
+    /// Creates a response that reports an error.
     pub(super) fn problem(code: u16, why: &str) -> Self {
         let status = match code {
             400 => "400 Bad Request",
@@ -101,7 +102,7 @@ impl HttpAnswer {
         Self { status, mime: "text/plain; charset=utf-8", body: format!("{why}\n").into_bytes() }
     }
 
-    /// Sends it.
+    /// Sends the response.
     pub(super) fn send(&self, stream: &mut TcpStream) -> io::Result<()> {
         let head = format!(
             "HTTP/1.1 {}\r\nContent-Type: {}\r\nContent-Length: {}\r\nConnection: close\r\nCache-Control: no-store\r\n\

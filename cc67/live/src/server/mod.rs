@@ -21,30 +21,29 @@ use crate::hub::{Hub, Incoming};
 use gate::Gate;
 use http::{Head, HttpAnswer};
 
-/// Connections at a time.
+/// The maximum number of connections at a time.
 const CONNECTIONS: usize = 64;
-/// The time limit for a client's request, and for taking the answer.
+/// The time limit for receiving a client's request, and for sending the response.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// The pause after a connection that could not be taken.
+/// The pause after a connection that could not be accepted.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// The reason for which there is no server.
+/// The reason why there is no server.
 #[derive(Debug, thiserror::Error)]
 pub enum ListenError {
-    /// The address cannot be listened on.
+    /// The server cannot listen on the address.
     #[error("cannot listen on {address}: {error}")]
     Address {
-        /// The address.
         address: SocketAddr,
-        /// The error of the system.
+        /// The error of the operating system.
         error: io::Error,
     },
-    /// The computer has no random numbers for the token.
+    /// The operating system has no random numbers for the token.
     #[error("no random numbers for the token: {0}")]
     Random(getrandom::Error),
 }
 
-/// A server that waits for pages, and will show them a board.
+/// A server that accepts connections of pages, and will show a board to them.
 #[derive(Debug)]
 pub struct Server {
     url: String,
@@ -55,8 +54,8 @@ pub struct Server {
 }
 
 impl Server {
-    /// Listens on an address of this computer; port 0 is one that is free. `token` is that of an earlier server whose
-    /// pages should find this one; without it, or if it is not one, a new one is drawn.
+    /// Listens on an address of this computer; port 0 selects a free port. `token` is the token of an earlier server
+    /// whose pages should be able to reconnect; without it, or if it is malformed, a new one is generated.
     ///
     /// # Errors
     /// [`ListenError`].
@@ -73,13 +72,13 @@ impl Server {
         Ok(Self { url, port: bound.port(), token, hub, requests })
     }
 
-    /// The address of the page, with the token.
+    /// The URL of the page, with the token.
     #[must_use]
     pub fn url(&self) -> &str {
         &self.url
     }
 
-    /// The port that it listens on.
+    /// The port on which it listens.
     #[must_use]
     pub const fn port(&self) -> u16 {
         self.port
@@ -91,8 +90,8 @@ impl Server {
         &self.token
     }
 
-    /// Runs a board and shows it, until its time has passed or another machine is wanted, for which `check` says
-    /// whether there is a board.
+    /// Runs a board and shows it, until its time limit, or until another machine is requested; `check` reports whether
+    /// a board can be made from it.
     pub fn run<T: Target>(
         &self,
         session: &mut Session<T>,
@@ -103,23 +102,23 @@ impl Server {
         board::run(session, show, company, check, (&self.hub, &self.requests))
     }
 
-    /// Shows a board that somebody else runs.
+    /// Shows a board run by other code.
     pub fn view<T: Target>(self, session: &mut Session<T>, show: Show) -> LiveView<T> {
         board::view(session, show, &self.hub, self.requests)
     }
 }
 
-/// Takes connections forever, each on a thread of its own.
+/// Accepts connections forever, each on a separate thread.
 fn accept(listener: &TcpListener, gate: &Arc<Gate>, hub: &Arc<Hub>) {
     let seats = Seats::new(CONNECTIONS);
     for stream in listener.incoming() {
         let Ok(stream) = stream else {
-            // The client is gone, or the system has no descriptor for it.
+            // The client has disconnected, or the operating system has no file descriptor left.
             thread::sleep(PAUSE);
             continue;
         };
         let close = stream.try_clone().map(|stream| {
-            // One that is closed already needs no closing.
+            // A connection that is already closed needs no closing.
             Box::new(move || drop(stream.shutdown(Shutdown::Both))) as Closer
         });
         let Some(admission) = seats.take(close.ok()) else {
@@ -131,7 +130,7 @@ fn accept(listener: &TcpListener, gate: &Arc<Gate>, hub: &Arc<Hub>) {
         }
         let (gate, own) = (Arc::clone(gate), Arc::clone(hub));
         let spawned = thread::Builder::new().spawn(move || {
-            // What goes wrong is that client's loss.
+            // A failure affects only that client.
             let _ = serve(stream, &admission.seat, &gate, &own);
         });
         if spawned.is_err() {

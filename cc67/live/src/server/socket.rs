@@ -1,6 +1,6 @@
-//! A socket of a page: requests come in as text, messages go out as text and frames as bytes.
+//! The WebSocket of a page: requests come in as text; messages go out as text, and frames as bytes.
 //!
-//! One thread does both: it waits a few milliseconds for what comes, then sends what waits.
+//! One thread does both: it waits a few milliseconds for incoming messages, then sends the outgoing ones.
 
 use std::io::{self, Write};
 use std::net::TcpStream;
@@ -18,10 +18,10 @@ use crate::request::{LONGEST, PageRequest};
 
 /// The time for which it waits for incoming messages before it sends the outgoing ones.
 const TURN: Duration = Duration::from_millis(5);
-/// Messages that are read before something is sent.
+/// The maximum number of messages read before something is sent.
 const MESSAGES_AT_ONCE: usize = 32;
 
-/// Serves a page until it is gone.
+/// Serves a page until it disconnects.
 pub(super) fn serve(mut stream: TcpStream, key: &str, seat: &Seat, hub: &Arc<Hub>) -> io::Result<()> {
     let accept = derive_accept_key(key.as_bytes());
     let head = format!(
@@ -43,7 +43,7 @@ pub(super) fn serve(mut stream: TcpStream, key: &str, seat: &Seat, hub: &Arc<Hub
     Ok(())
 }
 
-/// A page that is connected.
+/// A connected page.
 struct Connection<'a> {
     socket: WebSocket<TcpStream>,
     seat: &'a Seat,
@@ -52,11 +52,11 @@ struct Connection<'a> {
     mailbox: &'a Mailbox,
 }
 
-/// The reason for which a connection ends.
+/// The reason why a connection ends.
 enum Gone {
-    /// It is closed, or lost.
+    /// It was closed or lost.
     Closed,
-    /// The client breaks the rules.
+    /// The client violated the protocol.
     Broken(String),
 }
 
@@ -85,7 +85,7 @@ impl Connection<'_> {
         Ok(())
     }
 
-    /// Takes what has come.
+    /// Handles incoming messages.
     fn receive(&mut self) -> Result<(), Gone> {
         for _ in 0..MESSAGES_AT_ONCE {
             let message = match self.socket.read() {
@@ -111,12 +111,12 @@ impl Connection<'_> {
         Ok(())
     }
 
-    /// Says good-bye to a client, and says what it has done.
+    /// Closes a connection, and reports a violation of the protocol.
     fn leave(&mut self, why: &Gone) {
         if let Gone::Broken(what) = why {
             self.hub.log("a page sent what is not a request and was disconnected", what);
         }
-        // It may be gone already.
+        // An error means that the connection is already closed.
         let _ = self.socket.close(None);
         let _ = self.socket.flush();
     }
