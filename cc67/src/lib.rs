@@ -2,8 +2,8 @@
 //!
 //! A command line names files and options. The files become programs (`cc67-compiler`), the options of a board become
 //! its configuration, and both together a session: a simulated board under control (`cc67-host`, above `cc67-runtime`).
-//! A subcommand decides how far its time goes, shows what happens, and returns an exit code. This crate handles
-//! arguments, files, terminals and reports; the board and the compiler are elsewhere.
+//! A subcommand lets its time pass, shows the events, and returns an exit code. This crate handles arguments, files,
+//! terminals and reports; the board and the compiler are in other crates.
 //!
 //! ```text
 //! main.rs           the process
@@ -17,7 +17,7 @@
 //! ```
 //!
 //! Invariants:
-//! - Only the Python package, which brings the command along, and tests depend on this crate.
+//! - Only tests and the Python package, which contains the command, depend on this crate.
 //! - Program output goes to stdout byte for byte, everything else to stderr.
 //! - An output file is written completely or not at all.
 //! - An option of a board is one field in `cli/args/board.rs` or a file flattened into it; every command with a board has it.

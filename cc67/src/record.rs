@@ -1,10 +1,10 @@
-//! The record of a run that `cc67 compare --random` and the recorded vectors share: a program leaves it in the gather
-//! buffer, and the scenario's own text writes it there.
+//! The record of a run, shared by `cc67 compare --random` and the recorded vectors: a program leaves it in the gather
+//! buffer, where the text of the scenario writes it.
 
-/// The first word of the variables of the path, a double each.
+/// The first word of the path variables, one double each.
 pub const PATH: u32 = 2784;
 
-/// The variables of the path in their order.
+/// The path variables in their order.
 pub const PATH_VARIABLES: [&str; 32] = [
     "CS0_t",
     "TimeExecuted",
@@ -40,11 +40,11 @@ pub const PATH_VARIABLES: [&str; 32] = [
     "VirtualBitsEx",
 ];
 
-/// The first word of the states of the axes: the index of the present coefficients and 1, or 0.
+/// The first word of the states of the axes: for each, 1 plus the index of its present coefficients, or 0 for none.
 pub const STATES: u32 = 2900;
 
-/// The first word of the samples, a double for each column.
+/// The first word of the samples, one double for each column.
 pub const SAMPLES: u32 = 2944;
 
-/// The tolerance of a double, relative to the larger of it and 1: quotients differ in the last bit.
+/// The tolerance of a double, relative to its size but at least absolute: quotients differ in the last bit.
 pub const PRECISION: f64 = 1e-9;

@@ -1,10 +1,10 @@
 //! The command line.
 //!
 //! Program output goes to stdout byte for byte, everything else to stderr. Messages about the request or its inputs are
-//! single lines that start with `cc67: `. In place of the vendor's compiler, `cc67` uses that compiler's arguments and
-//! messages.
+//! single lines that start with `cc67: `. When it replaces the vendor's compiler, `cc67` uses that compiler's arguments
+//! and messages.
 //!
-//! The rooms are layers, each of which knows those below it:
+//! The modules are layers, each of which uses only those below it:
 //!
 //! ```text
 //! commands   a file a subcommand: arguments in, work done, exit code out

@@ -1,4 +1,4 @@
-//! A debugger for a board that runs.
+//! A debugger for a running board.
 
 use anyhow::{Context, Result};
 use cc67_debug::dap::AttachPoint;
@@ -15,7 +15,7 @@ pub(crate) struct AttachArguments {
 }
 
 impl AttachArguments {
-    /// Opens the port at which editors attach, if they may, and prints it.
+    /// Opens the port to which editors can attach, if one is requested, and prints it.
     pub(crate) fn open(&self) -> Result<Option<AttachPoint>> {
         let Some(port) = self.debug else { return Ok(None) };
         let point =

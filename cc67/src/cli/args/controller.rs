@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::heading;
 
-/// The commands that take a controller, for messages of those that do not.
+/// The commands that work with a controller, for the messages of the others.
 pub(crate) const WORK_WITH_CONTROLLER: &str = "run, console, live, test, debug and compare";
 
 /// The controller that takes the place of the simulated board, and the risks that its user accepts.
@@ -35,7 +35,7 @@ impl ControllerArguments {
         LoadTerms { is_forced: self.force, verifies: self.verify, ..LoadTerms::default() }
     }
 
-    /// Refuses a controller in a command that has only simulated boards.
+    /// Rejects a controller in a command that has only simulated boards.
     pub(crate) fn refuse_in(&self, command: &str) -> Result<()> {
         ensure!(
             self.on.is_none(),

@@ -20,14 +20,14 @@ pub(crate) enum EngineName {
 }
 
 impl Default for EngineName {
-    /// The fastest that this command is built with.
+    /// The fastest engine in this build.
     fn default() -> Self {
         if cfg!(feature = "native") { Self::Native } else { Self::Bytecode }
     }
 }
 
 impl EngineName {
-    /// Returns the options with which sources are compiled for it.
+    /// Returns the options for compiling sources for this engine.
     pub(crate) fn options(self, compiler: &CompilerArguments) -> Result<Options> {
         let options = compiler.resolve()?;
         if self != Self::Dsp {
@@ -40,14 +40,14 @@ impl EngineName {
         Ok(Options { target: Target::C67x, ..options })
     }
 
-    /// Restricts the argument of an engine to those that a debugger can stop anywhere.
+    /// Restricts the argument to engines that a debugger can stop anywhere.
     pub(crate) fn debuggable(argument: Arg) -> Arg {
         let names = [Self::Bytecode, Self::Dsp].iter().filter_map(Self::to_possible_value);
         let parser = PossibleValuesParser::new(names).try_map(|name| Self::from_str(&name, true));
         argument.value_parser(parser)
     }
 
-    /// The engines that this command is built with and that take the same board time.
+    /// The engines in this build that take the same board time.
     pub(crate) fn available() -> Vec<Self> {
         let mut engines = vec![Self::Bytecode];
         if cfg!(feature = "native") {
@@ -56,7 +56,7 @@ impl EngineName {
         engines
     }
 
-    /// The name that `--engine` takes.
+    /// The name for `--engine`.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Bytecode => "bytecode",

@@ -1,6 +1,6 @@
-//! The headings under which help lists options.
+//! The headings of option lists in help.
 
-/// Programs beside those that the command line names.
+/// Programs in addition to those named on the command line.
 pub(crate) const PROGRAMS: &str = "Programs";
 /// The board and its surroundings.
 pub(crate) const BOARD: &str = "Board";

@@ -1,6 +1,6 @@
-//! The options shared by commands, one file for each subject, and the meaning of their values.
+//! The options shared by commands, one file for each subject, and the parsing of their values.
 //!
-//! An option of a board is one field in [`board`]; every command that has a board has the option.
+//! An option of a board is one field in [`board`]; all commands with a board then have the option.
 
 pub(crate) mod attach;
 pub(crate) mod board;

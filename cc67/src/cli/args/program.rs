@@ -1,4 +1,4 @@
-//! ProgramFile arguments: `[N:]FILE`, and which thread each file goes to.
+//! Program arguments: `[N:]FILE`, and the assignment of files to threads.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -6,10 +6,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, bail};
 use kmotiondef::ThreadId;
 
-/// A file and its thread.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct ProgramFile {
-    /// The thread.
     pub(crate) thread: ThreadId,
     /// The source or image.
     pub(crate) path: PathBuf,
@@ -27,7 +25,7 @@ impl ProgramFile {
     }
 }
 
-/// Gives each argument its thread: the one it names, else the lowest that is free.
+/// Assigns a thread to each argument: the one that it names, otherwise the lowest free one.
 pub(crate) fn assign(arguments: &[impl AsRef<OsStr>]) -> Result<Vec<ProgramFile>> {
     let split: Vec<_> = arguments.iter().map(|argument| split(argument.as_ref())).collect::<Result<_>>()?;
     let mut taken: Vec<(ThreadId, &Path)> = Vec::new();
@@ -50,12 +48,13 @@ pub(crate) fn assign(arguments: &[impl AsRef<OsStr>]) -> Result<Vec<ProgramFile>
         .collect()
 }
 
-/// Returns whether an argument names a thread.
+/// Returns whether an argument includes a thread number.
 pub(crate) fn names_thread(argument: &OsStr) -> Result<bool> {
     Ok(split(argument)?.0.is_some())
 }
 
-/// Splits `N:FILE`. A drive letter is not a number, so Windows paths need no care; a name that is not text is all FILE.
+/// Splits `N:FILE`. A drive letter is not a number, so Windows paths need no special case; a name that is not UTF-8 is
+/// all FILE.
 fn split(whole: &OsStr) -> Result<(Option<ThreadId>, PathBuf)> {
     let argument = whole.to_str().unwrap_or_default();
     if let Some((number, path)) = argument.split_once(':')

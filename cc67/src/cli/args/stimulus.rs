@@ -1,4 +1,4 @@
-//! `--stim FILE|TEXT`: what the world around the board does.
+//! `--stim FILE|TEXT`: the actions of the world around the board.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use runtime::stimulus::Stimulus;
 use super::program::ProgramFile;
 use crate::cli::io::input::read as read_file;
 
-/// The name of the command line's statements in messages.
+/// The name used in messages for statements of the command line.
 const OPTION: &str = "--stim";
 
 /// Reads all stimuli, one after another.
@@ -21,7 +21,7 @@ pub(crate) fn read(arguments: &[String]) -> Result<Stimulus> {
     Ok(all)
 }
 
-/// Programs that stimuli load while they are played, each once.
+/// The programs that stimuli may load, without duplicates.
 pub(crate) fn programs(stimuli: &[&Stimulus]) -> Vec<ProgramFile> {
     let named = stimuli.iter().flat_map(|stimulus| stimulus.programs());
     let mut programs: Vec<ProgramFile> = Vec::new();
@@ -33,7 +33,7 @@ pub(crate) fn programs(stimuli: &[&Stimulus]) -> Vec<ProgramFile> {
     programs
 }
 
-/// A file of that name, else statements: those have spaces or signs in them.
+/// Reads a file with that name, or otherwise parses statements: these contain spaces or special characters.
 fn one(argument: &str) -> Result<Stimulus> {
     let path = Path::new(argument);
     if path.exists() || !argument.contains([' ', '=']) {
@@ -44,11 +44,11 @@ fn one(argument: &str) -> Result<Stimulus> {
         }
         return Ok(Stimulus::parse(&text, argument)?);
     }
-    // The statements in full help where the line and column alone do not.
+    // The full text, as a line and column alone would be of little help.
     Stimulus::parse(argument, OPTION).map_err(|error| anyhow!("{error} in `{argument}`"))
 }
 
-/// Events and devices as a machine file has them; what else it says belongs to `--machine`.
+/// Takes events and devices from a machine file; its other tables belong to `--machine`.
 fn table(text: &str, name: &str) -> Result<Stimulus> {
     let machine = MachineFile::parse(text)
         .map_err(|error| anyhow!("{name}:{}:{}: {error}", error.line, error.column))?;

@@ -1,6 +1,6 @@
-//! Times as options take them.
+//! Times in options.
 
-/// Seconds of board time after which a run without `--for` ends.
+/// The board time after which a run without `--for` ends, in seconds.
 pub(crate) const DEFAULT_LIMIT: f64 = 60.0;
 
 /// Reads a number of seconds.

@@ -32,12 +32,11 @@ pub(crate) struct TraceArguments {
     pub(crate) trace_every: u64,
 }
 
-/// The file for packets, and the thread whose packets it gets.
+/// The file for packets, and the thread whose packets are recorded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct PacketFile {
-    /// The thread; all if there is none.
+    /// The thread; `None` for all.
     pub(crate) thread: Option<ThreadId>,
-    /// The file.
     pub(crate) path: PathBuf,
 }
 

@@ -23,7 +23,7 @@ pub(crate) struct UartArguments {
 }
 
 impl UartArguments {
-    /// Returns these options; where they are absent, the files of the machine file.
+    /// Returns these options; if they are absent, the files named in the machine file.
     pub(crate) fn or_those_of(&self, machine: &MachineFile) -> Self {
         let file = |name: &Option<String>| name.as_ref().map(PathBuf::from);
         let input = file(&machine.uart.input).filter(|_| self.uart.is_none());

@@ -1,4 +1,4 @@
-//! `cc67 boards`: the controllers that are connected to this computer.
+//! `cc67 boards`: the controllers connected to this computer.
 
 use anyhow::Result;
 use cc67_controller::{Address, ControllerLink, FoundBoard, boards as found_boards, kognas};
@@ -41,7 +41,7 @@ pub(super) fn boards(arguments: &BoardsArguments) -> Result<Exit> {
     Ok(Exit::Success)
 }
 
-/// The firmware of a controller, or the reason why it is not known.
+/// The firmware of a controller, or the reason why it is unknown.
 fn firmware(board: &FoundBoard, is_quiet: bool) -> Result<String, String> {
     if is_quiet {
         return Err("not asked".to_owned());

@@ -1,8 +1,8 @@
 //! `cc67 compare`: the modelled firmware and the user's own firmware file, or a connected controller, side by side.
 //!
-//! Each program runs on both boards from the same start, with the machine, the stimulus and the options that are beside
-//! it. Compared are console, replies and what the PC does line by line, expectations, the board time of each line within
-//! a tolerance, `persist.UserData`, where the axes end, and the pins that are outputs. Instead of programs, random
+//! Each program runs on both boards from the same initial state, with its machine file, stimulus and options. These are
+//! compared: console, replies and actions of the PC line by line, expectations, the board time of each line within a
+//! tolerance, `persist.UserData`, the final positions of the axes, and the output pins. Instead of programs, random
 //! scenarios can be compared, see [`random`].
 
 mod outcome;
@@ -63,10 +63,10 @@ pub(super) struct CompareArguments {
     pub(super) words: Vec<OsString>,
 }
 
-/// Ticks in which axes of the firmware come to rest after the model has ended.
+/// The number of ticks within which the firmware's axes come to rest after the end of the model's run.
 const REST: u64 = 22;
 
-/// The end of a run that the time limit cut off.
+/// The end of a run that the time limit stopped.
 const STILL_RUNNING: &str = "still running";
 
 /// The result of comparing a program.
@@ -74,7 +74,7 @@ const STILL_RUNNING: &str = "still running";
 enum Verdict {
     Equal,
     Unequal,
-    /// Both runs were cut off before anything could be compared.
+    /// The time limit stopped both runs before anything could be compared.
     CutOff,
     /// Its source has errors.
     Broken,
@@ -130,14 +130,14 @@ fn plural(count: usize) -> String {
     if count == 1 { "1 difference".to_owned() } else { format!("{count} differences") }
 }
 
-/// `1:A+2:B` as two programs.
+/// Splits `1:A+2:B` into two programs.
 fn together(program: &OsString) -> Result<Vec<OsString>> {
     let text = program.to_str().with_context(|| format!("{} is not text", program.display()))?;
     Ok(text.split('+').map(OsString::from).collect())
 }
 
 impl CompareArguments {
-    /// Refuses what one of the boards does not know, and a flash, which is of one of them.
+    /// Rejects options that one of the boards does not support, and a flash, which would belong to only one of them.
     fn refuse(&self) -> Result<()> {
         if self.board.pc.has_flash() {
             bail!("`--flash` does not work with `cc67 compare`: a flash file belongs to one board");
@@ -149,7 +149,7 @@ impl CompareArguments {
         Ticks::new((self.limit.min(DEFAULT_LIMIT * 1000.0) / TIMEBASE).round() as u64)
     }
 
-    /// The arguments with what is beside a program, and the programs of its run.
+    /// The arguments with the files next to a program, and the programs of its run.
     fn of(&self, program: &OsString) -> Result<(Box<Self>, Vec<OsString>)> {
         let mut programs = together(program)?;
         let at = self.words.iter().position(|word| word == "compare").map_or(0, |at| at + 1);
@@ -174,7 +174,7 @@ impl CompareArguments {
         }
     }
 
-    /// By how much printed numbers may differ.
+    /// The allowed difference of printed numbers.
     fn allowed(&self) -> Option<Tolerance> {
         (!self.exact).then_some(Tolerance { seconds: self.tolerance, number: self.numbers })
     }
@@ -197,7 +197,7 @@ impl CompareArguments {
             model.without_the_pc();
         }
         let (differences, near) = model.differences(&firmware, own.allowed());
-        // Lines of a controller bear the time at which they came.
+        // Lines of a controller carry the time of their arrival.
         let late = if booted.is_some() { model.latest(&firmware) } else { 0.0 };
         let is_late = self.strict_times && late > self.tolerance;
         let board = if booted.is_some() { "firmware:" } else { "board:   " };
@@ -253,7 +253,8 @@ impl CompareArguments {
 
     /// The run on the firmware; `None` if a source has errors.
     ///
-    /// Its axes are looked at in the tick in which the model ended: an axis that nobody stops continues.
+    /// Its axes are inspected in the tick in which the model's run ended, as an axis that nobody stops continues to
+    /// move.
     fn firmware(
         &self,
         programs: &[OsString],
@@ -271,7 +272,7 @@ impl CompareArguments {
             }
             outcome.note(event);
         };
-        // The model ends before the tick that the firmware has just begun.
+        // The model's run ended before the tick that the firmware has just begun.
         let until = Ticks::new(at.get() + 1).min(self.ticks());
         let axes = |rig: &BoardSession<BootedTarget>| rig.session.target().axes();
         let mut before = axes(&rig);
@@ -293,8 +294,8 @@ impl CompareArguments {
     }
 }
 
-/// Says how the programs of a run ended. An axis that still creeps towards its target keeps no program running: after
-/// `MoveExp` the boards do not agree on the tick in which it is there.
+/// Describes how the programs of a run ended. An axis that still creeps towards its target does not count as running:
+/// after `MoveExp` the boards reach the target in different ticks.
 fn ended<T: Target>(session: &Session<T>, end: End) -> &'static str {
     let is_active = |thread| session.target().thread(thread).is_active();
     match end {
@@ -303,7 +304,7 @@ fn ended<T: Target>(session: &Session<T>, end: End) -> &'static str {
     }
 }
 
-/// Runs the connected controller and notes what it came to.
+/// Runs the connected controller and records the outcome.
 struct OnController<'a> {
     limit: Ticks,
     outcome: &'a mut Outcome,
@@ -314,7 +315,7 @@ impl Work for OnController<'_> {
         let outcome = self.outcome;
         outcome.look_before(&rig.session);
         let mut sink = |event: Event| {
-            // What cc67 says of its own work is not of the program.
+            // Messages of cc67 about its own work do not belong to the program.
             if !matches!(event.kind, EventKind::Host(_)) {
                 outcome.note(&event);
             }
@@ -330,7 +331,7 @@ impl Work for OnController<'_> {
     }
 }
 
-/// Runs the modelled board and notes what it came to.
+/// Runs the modelled board and records the outcome.
 struct Model<'a> {
     limit: Ticks,
     outcome: &'a mut Outcome,

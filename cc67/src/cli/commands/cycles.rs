@@ -1,4 +1,4 @@
-//! `cc67 cycles`: what the processor's code costs.
+//! `cc67 cycles`: the cost of code on the processor.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -64,12 +64,12 @@ pub(super) fn cycles(arguments: &CyclesArguments) -> Result<Exit> {
 }
 
 impl CyclesArguments {
-    /// The first file that is named.
+    /// The first file on the command line.
     pub(super) fn first(&self) -> Option<&OsStr> {
         self.files.first().map(|path| path.as_os_str())
     }
 
-    /// The program of the sources; `None` after errors.
+    /// The program linked from the sources; `None` after errors.
     fn build(&self) -> Result<Option<Inspection>> {
         let options = self.compiler.resolve(Target::C67x, Timing::VENDOR)?;
         let mut units = units::compile(&self.files, &options)?;

@@ -1,6 +1,6 @@
-//! Arguments of a subcommand that are described only when that subcommand is requested.
+//! Arguments of a subcommand that are defined only when that subcommand is used.
 //!
-//! Twenty subcommands have some three hundred options; a start of the command needs those of one.
+//! Twenty subcommands have some three hundred options; each start of the command needs the options of only one.
 
 use clap::builder::Resettable;
 use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches};
@@ -49,7 +49,8 @@ impl<T: Args> Args for Deferred<T> {
     }
 }
 
-/// Returns the subcommand with its arguments under their headings; its row describes it, not their type.
+/// Returns the subcommand with its arguments under their headings; its description comes from its row, not from their
+/// type.
 fn described<T: Args>(command: Command) -> Command {
     let (about, long) = (command.get_about().cloned(), command.get_long_about().cloned());
     let own = T::augment_args(Command::default());
@@ -57,14 +58,14 @@ fn described<T: Args>(command: Command) -> Command {
     command.about(Resettable::from(about)).long_about(Resettable::from(long))
 }
 
-/// Returns `command` with the arguments of `own` in the order of their headings: help lists headings as they first occur,
-/// and structures that share arguments occur in any order.
+/// Returns `command` with the arguments of `own` in the order of their headings: help lists headings in the order of
+/// first occurrence, which depends on the order of shared structures.
 fn in_order(command: Command, own: &Command) -> Command {
     let place = |argument: &&Arg| {
         argument.get_help_heading().and_then(|at| heading::ORDER.iter().position(|known| *known == at))
     };
     let mut arguments: Vec<&Arg> = own.get_arguments().collect();
-    // Without a heading comes first, as `None` is less than any place.
+    // Arguments without a heading come first, as `None` is less than any position.
     arguments.sort_by_key(place);
     command
         .args(arguments.into_iter().cloned())

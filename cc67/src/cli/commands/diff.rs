@@ -1,4 +1,4 @@
-//! `cc67 diff`: how two images differ, or what a program meets that moves from one board to another.
+//! `cc67 diff`: the differences of two images, or of two boards for a program that is moved from one to the other.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -47,7 +47,7 @@ fn of_images(first: &Path, second: &Path) -> Result<String> {
     Ok(compare(&first, &second).into_iter().map(|line| line + "\n").collect())
 }
 
-/// A line for each name that is not the same on two boards; with sources, for each of these that they have.
+/// A line for each name that differs between two boards; with sources, only for names in them.
 fn of_boards(first: &TargetBoard, second: &TargetBoard, sources: &[PathBuf]) -> Result<String> {
     let mut words = BTreeSet::new();
     for path in sources {

@@ -1,6 +1,6 @@
-//! `cc67 doctor`: what is installed here, on one screen, for bug reports.
+//! `cc67 doctor`: the installed software on one screen, for bug reports.
 //!
-//! Each row is found as the command itself would find it. Nothing is changed, and no controller is spoken to.
+//! Each item is located in the way the command itself does it. Nothing is changed, and nothing is sent to a controller.
 
 use std::env;
 use std::fmt::Write as _;
@@ -41,7 +41,7 @@ pub(super) fn doctor(arguments: &DoctorArguments) -> Result<Exit> {
     Ok(Exit::Success)
 }
 
-/// Returns the text of `cc67 --version --verbose`: the version, and how this command was built.
+/// Returns the text of `cc67 --version --verbose`: the version, and the build options.
 pub(super) fn version() -> String {
     let mut text = format!("cc67 {VERSION}\n");
     let file = env::current_exe().map_or_else(|error| error.to_string(), |path| path.display().to_string());
@@ -59,13 +59,13 @@ fn row(text: &mut String, name: &str, value: &str) {
     let _ = writeln!(text, "{name:<12}{value}");
 }
 
-/// A firmware file with the version that it states.
+/// A firmware file with the version stated in it.
 fn firmware_file(path: &Path) -> Result<String> {
     let file = FirmwareFile::read(&input::read(path)?).with_context(|| path.display().to_string())?;
     Ok(format!("{} (`--boot {}`)", file.version().trim_end(), path.display()))
 }
 
-/// The file of a command in the path.
+/// The path of a command found in `PATH`.
 fn find(name: &str) -> Option<PathBuf> {
     let folders = env::var_os("PATH")?;
     let names = [name.to_owned(), format!("{name}.exe"), format!("{name}.cmd")];
@@ -74,7 +74,7 @@ fn find(name: &str) -> Option<PathBuf> {
         .find(|path| path.is_file())
 }
 
-/// The editors in the path; of VS Code also whether it has the extension.
+/// The editors in `PATH`; for VS Code also whether it has the extension.
 fn editors() -> String {
     const EDITORS: &[(&str, &str)] = &[
         ("VS Code", "code"),
@@ -90,7 +90,7 @@ fn editors() -> String {
     if found.is_empty() { "none found in PATH".to_owned() } else { found.join(", ") }
 }
 
-/// The extension of cc67 in the folders where VS Code and its relatives keep theirs.
+/// The extension of cc67 in the folders of VS Code and its derivatives.
 fn extension() -> Option<String> {
     let home = env::home_dir()?;
     let folders = [".vscode", ".vscode-server", ".vscode-oss"].map(|name| home.join(name).join("extensions"));
@@ -99,7 +99,7 @@ fn extension() -> Option<String> {
     names.filter_map(|name| Some(format!("extension {}", name.strip_prefix("cc67.cc67-")?))).max()
 }
 
-/// Python, and the package in it.
+/// Python, and the installed package.
 fn python() -> String {
     const PROGRAM: &str = "import sys\ntry:\n import cc67\n has = 'package cc67 ' + cc67.__version__\nexcept (ImportError, AttributeError):\n has = 'without \
                            the package cc67'\nprint('.'.join(map(str, sys.version_info[:3])) + ', ' + has)";
@@ -114,7 +114,7 @@ fn python() -> String {
     "not found".to_owned()
 }
 
-/// The controllers at the USB ports of a Linux system, each with whether this user may use it.
+/// The controllers at the USB ports of a Linux system, and whether this user has access to each.
 fn controllers(devices: &Path, nodes: &Path) -> Vec<String> {
     if !cfg!(target_os = "linux") {
         return vec!["USB ports are not looked at on this system".to_owned()];
@@ -128,7 +128,7 @@ fn controllers(devices: &Path, nodes: &Path) -> Vec<String> {
     found
 }
 
-/// A device, if it is a KFLOP (0403:f231) or its forerunner KMotion (0403:f230).
+/// A device, if it is a KFLOP (0403:f231) or its predecessor KMotion (0403:f230).
 fn controller(device: &Path, nodes: &Path) -> Option<String> {
     let value = |name: &str| Some(std::fs::read_to_string(device.join(name)).ok()?.trim().to_owned());
     let kind = match (value("idVendor")?.as_str(), value("idProduct")?.as_str()) {

@@ -1,6 +1,7 @@
-//! `cc67 examples`: the programs of `c-programs/`, which the command brings along, as programs that stand alone.
+//! `cc67 examples`: the programs of `c-programs/`, which are embedded in the command, as self-contained programs.
 //!
-//! A copy holds what the program includes, so that it needs no other file but its machine file and its stimulus.
+//! In a copy the included files are merged into the program, so that it needs no files other than its machine file and
+//! stimulus.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -13,7 +14,7 @@ use crate::cli::args::sidecars::Head;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::output;
 
-/// Names and contents of all files.
+/// The names and contents of all files.
 const FILES: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/examples.rs"));
 
 /// Arguments of `cc67 examples`.
@@ -30,7 +31,7 @@ pub(super) struct ExamplesArguments {
     print: bool,
 }
 
-/// A file of a copy: its name and its text.
+/// A file of a copy: its name and text.
 pub(super) type Copy = (String, Vec<u8>);
 
 /// Lists the examples, or copies one.
@@ -81,7 +82,7 @@ pub(super) fn count() -> usize {
     FILES.iter().filter(|(path, _)| is_program(path)).count()
 }
 
-/// Returns whether a file is a program with a golden.
+/// Returns whether a file is a program with an expected output.
 fn is_program(path: &str) -> bool {
     path.strip_suffix(".c").is_some_and(|stem| content(&format!("{stem}.expected")).is_some())
 }
@@ -95,7 +96,7 @@ fn content(path: &str) -> Option<&'static [u8]> {
     FILES.iter().find(|(known, _)| *known == path).map(|(_, bytes)| *bytes)
 }
 
-/// The program of a name: `homing/index`, or `index` alone.
+/// Finds a program by its name: `homing/index`, or just `index`.
 fn find(name: &str) -> Result<&'static str> {
     let wanted = name.trim_end_matches(".c").trim_start_matches("c-programs/");
     let mut programs = FILES.iter().map(|(path, _)| *path).filter(|path| is_program(path));
@@ -108,7 +109,7 @@ fn find(name: &str) -> Result<&'static str> {
     })
 }
 
-/// The files of a copy that is called `name`: the program, those beside it, and programs that run along.
+/// The files of a copy with the name `name`: the program, its associated files, and the programs for other threads.
 pub(super) fn copy(path: &str, name: &str) -> Vec<Copy> {
     let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
     let own = path.strip_suffix(".c").unwrap_or(path);
@@ -150,7 +151,7 @@ pub(super) fn call(function: &str) -> Option<(&'static str, &'static str)> {
         })
 }
 
-/// The example of a topic, as files of a project that are called after it.
+/// An example as files of a project, named after the topic.
 pub(super) fn topic(path: &str, name: &str) -> Result<Vec<Copy>> {
     let files = copy(path, name);
     if content(path).is_none() {
@@ -159,7 +160,7 @@ pub(super) fn topic(path: &str, name: &str) -> Result<Vec<Copy>> {
     Ok(files)
 }
 
-/// A source with all that it includes, each file once; the board's header stays a line.
+/// A source with the contents of its includes, each file once; the board's header remains an include.
 fn alone(path: &str, seen: &mut BTreeSet<String>) -> String {
     let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
     let source = String::from_utf8_lossy(content(path).unwrap_or_default()).into_owned();

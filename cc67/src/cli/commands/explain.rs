@@ -1,8 +1,9 @@
-//! `cc67 explain NAME`, and `--explain NAME`: the entries of the tables for a name, and the pages on subjects.
+//! `cc67 explain NAME`, and `--explain NAME`: table entries for a name, and pages on topics.
 //!
 //! A name may be a firmware function, a variable, a field, a constant, a bit, a script command, a warning, a remark, a
-//! limit or a topic; an answer has every one of these that it is. Nothing is listed here: each room turns the rows of a
-//! table into text. A word that is not a name finds the names whose texts have it, or the name that was probably meant.
+//! limit or a topic; an answer contains all of them that match. Nothing is listed here: each module converts the rows
+//! of a table to text. A word that is not a name finds the names whose texts contain it, or the name that was probably
+//! meant.
 
 mod bits;
 mod boards;
@@ -24,10 +25,10 @@ use super::limits;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::output;
 
-/// A name and what lists the names of its kind.
+/// A kind of name, and the function that lists the names of that kind.
 type List = (&'static str, fn() -> String);
 
-/// A name that can be explained, and the sentence that describes it.
+/// A name that can be explained, with a one-sentence description.
 struct Explained {
     name: &'static str,
     about: String,
@@ -41,7 +42,7 @@ pub(super) struct ExplainArguments {
     pub(super) name: String,
 }
 
-/// Explains a name from a message, a switch or the user's memory.
+/// Explains a name from a message, an option or the user's memory.
 pub(super) fn explain(name: &str) -> Result<Exit> {
     let name = name.trim();
     let text = match answer(name) {
@@ -55,7 +56,7 @@ pub(super) fn explain(name: &str) -> Result<Exit> {
     Ok(Exit::Success)
 }
 
-/// Everything that a name is: with its letter case, else in any.
+/// All explanations of a name: with exact case, otherwise in any case.
 fn answer(name: &str) -> Option<String> {
     let same: &dyn Fn(&str) -> bool = &|known| known == name;
     let similar: &dyn Fn(&str) -> bool = &|known| known.eq_ignore_ascii_case(name);
@@ -72,7 +73,7 @@ fn answer(name: &str) -> Option<String> {
         .into_iter()
         .flatten()
         .collect();
-        // A script command is named in any letter case, and shares its name with fields and functions.
+        // The name of a script command is not case-sensitive, and may be the same as a field's or function's.
         let command = commands::answer(&|known: &str| known.eq_ignore_ascii_case(name));
         let parts: Vec<_> = parts.into_iter().chain(command).chain(words::answer(name)).collect();
         (!parts.is_empty()).then(|| parts.join("\n"))
@@ -130,7 +131,7 @@ fn remark(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
     Some(format!("# {code}\n\n{}\n\n    {text}\n\n{off}\n", about.trim()))
 }
 
-/// Every remark of the board with what it is about.
+/// All remarks of the board with their subjects.
 fn remarks() -> String {
     REMARKS.iter().fold(String::new(), |mut rows, row| {
         let _ = writeln!(rows, "  {:<24}{}", row.code, row.about.trim());
@@ -138,7 +139,7 @@ fn remarks() -> String {
     })
 }
 
-/// Every warning with what it reports.
+/// All warnings with their descriptions.
 fn warnings() -> String {
     let mut text = String::new();
     for (preset, title) in [
@@ -158,7 +159,7 @@ fn warnings() -> String {
     text
 }
 
-/// Every name with its sentence.
+/// All names with their sentences.
 fn entries() -> Vec<Explained> {
     let lints =
         Lint::ALL.iter().map(|lint| Explained { name: lint.name(), about: lint.summary().to_owned() });
@@ -172,7 +173,7 @@ fn entries() -> Vec<Explained> {
     all
 }
 
-/// The names whose sentences have a word; without one, the name that was probably meant.
+/// The names whose sentences contain a word; without any, the name that was probably meant.
 fn found(word: &str) -> Result<String> {
     const MOST: usize = 20;
     const LEAST: usize = 4;
@@ -202,17 +203,17 @@ fn found(word: &str) -> Result<String> {
     Ok(text)
 }
 
-/// The name that was probably meant; for a word of the lists, that list.
+/// The name that was probably meant; for the name of a list, that list.
 fn near(word: &str, entries: &[Explained]) -> Option<&'static str> {
     const LISTS: &[&str] = &["warnings", "remarks", "limits", "functions", "variables", "commands", "topics"];
     let names = || entries.iter().map(|entry| entry.name).chain(LISTS.iter().copied());
     let near = suggest(word, names())?;
-    // A name that only begins like the word is no spelling of it.
+    // A name of which the word is only the beginning is not a correction of its spelling.
     let is_spelling = !word.to_lowercase().starts_with(&near.to_lowercase());
     names().find(|name| *name == near).filter(|_| is_spelling)
 }
 
-/// A text up to its first full stop, on one line.
+/// The text up to the first full stop, on one line.
 fn first_sentence(text: &str) -> String {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
     match line.split_once(". ") {

@@ -1,4 +1,4 @@
-//! `cc67 firmware`: the simulated firmware as a file to link against, and as a list.
+//! `cc67 firmware`: the simulated firmware as a file for linking, and as a list.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -52,7 +52,7 @@ enum FirmwareCommand {
     },
 }
 
-/// Does what is requested.
+/// Executes the request.
 pub(super) fn firmware(arguments: &FirmwareArguments) -> Result<Exit> {
     match &arguments.command {
         FirmwareCommand::Export { file, board } => output::write(file, &firmware::export(board)?)?,
@@ -63,7 +63,7 @@ pub(super) fn firmware(arguments: &FirmwareArguments) -> Result<Exit> {
     Ok(Exit::Success)
 }
 
-/// The facts of a firmware file.
+/// Describes a firmware file.
 fn facts(path: &Path, like: &TargetBoard) -> Result<String> {
     let file = FirmwareFile::read(&read(path)?).with_context(|| path.display().to_string())?;
     let version = file.version().with_context(|| format!("{} does not state its version", path.display()))?;

@@ -1,4 +1,4 @@
-//! `cc67 flash`: what a controller starts with at its next power-up.
+//! `cc67 flash`: the state with which a controller starts at its next power-up.
 
 use std::ffi::OsString;
 use std::fmt::Write as _;
@@ -43,7 +43,7 @@ pub(super) struct FlashArguments {
     compiler: CompilerArguments,
 }
 
-/// The threads that start by themselves.
+/// The threads that start automatically.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Startup(Vec<ThreadId>);
 
@@ -89,7 +89,7 @@ pub(super) fn flash(arguments: &FlashArguments) -> Result<Exit> {
     Ok(Exit::Success)
 }
 
-/// Refuses to save what is in motion.
+/// Refuses to save while something is in motion.
 fn require_rest(connection: &mut ControllerLink, address: &Address) -> Result<()> {
     let unsettled = connection.unsettled()?;
     let mut reasons = Vec::new();

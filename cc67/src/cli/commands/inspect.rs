@@ -78,7 +78,7 @@ impl From<OrderName> for Order {
     }
 }
 
-/// Prints what is requested.
+/// Prints the requested parts.
 pub(super) fn inspect(arguments: &InspectArguments) -> Result<Exit> {
     if arguments.debug {
         return debug(arguments);
@@ -144,7 +144,7 @@ fn debug(arguments: &InspectArguments) -> Result<Exit> {
     Ok(Exit::Success)
 }
 
-/// Reads an image; for another file the message names its kind.
+/// Reads an image; for another file, the message names its kind.
 pub(super) fn read_image(path: &Path) -> Result<Image> {
     let bytes = read(path)?;
     Image::read(&bytes).map_err(|error| match files::describe(&bytes) {
@@ -153,7 +153,7 @@ pub(super) fn read_image(path: &Path) -> Result<Image> {
     })
 }
 
-/// Source files in a folder.
+/// A folder with source files.
 pub(super) struct Folder(PathBuf);
 
 impl Folder {

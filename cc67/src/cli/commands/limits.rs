@@ -1,8 +1,8 @@
-//! Every limit of the tool with its number, for `--explain limits` and the book.
+//! All limits of the tool with their numbers, for `--explain limits` and the book.
 //!
-//! The numbers are where they are enforced; this is their one list. The limits of the compiler
-//! are far above what a program for the board needs: they keep hostile text from taking memory,
-//! time or the stack. The limits of the board are the board's own.
+//! The numbers are defined where they are enforced; this is the only list of them. The limits of the compiler are far
+//! above the needs of programs for the board: they prevent hostile text from exhausting memory, time or the stack. The
+//! limits of the board are those of the real board.
 
 use std::fmt::Write as _;
 
@@ -29,7 +29,7 @@ use runtime::stimulus::MOST_PLANNED as STIMULUS_PLANS;
 pub struct Limit {
     /// The counted items.
     pub what: &'static str,
-    /// The most that is accepted.
+    /// The maximum.
     pub number: u64,
     /// The behaviour beyond it.
     pub beyond: &'static str,
@@ -142,7 +142,7 @@ pub const FILES: &[Limit] = &[
     ),
 ];
 
-/// All of them, under their headings.
+/// All limits, under their headings.
 pub const ALL: [(&str, &[Limit]); 4] = [
     ("The compiler", COMPILER),
     ("A program on the board", BOARD),
@@ -150,7 +150,7 @@ pub const ALL: [(&str, &[Limit]); 4] = [
     ("Files, stimuli, remarks and pictures", FILES),
 ];
 
-/// A number with its thousands apart.
+/// A number with separated thousands.
 #[must_use]
 pub fn grouped(number: u64) -> String {
     let digits = number.to_string();

@@ -1,4 +1,4 @@
-//! `cc67 machine`: keys of a machine file from the data sheets of motor, amplifier and encoder.
+//! `cc67 machine`: computes keys of a machine file from the data sheets of motor, amplifier and encoder.
 
 use anyhow::{Result, bail};
 use clap::{Args, Subcommand};
@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 use crate::cli::io::exit::Exit;
 use crate::cli::io::output;
 
-/// Counts of an analog output at 10 V, and counts of a quadrature encoder for each of its lines.
+/// The counts of an analog output at 10 V, and the counts of a quadrature encoder per line.
 const FULL_SCALE: f64 = 2047.0;
 const FULL_VOLTS: f64 = 10.0;
 const PER_LINE: f64 = 4.0;
@@ -93,7 +93,7 @@ mod tests {
         let text = servo.table().expect("numbers above 0");
         let machine = runtime::MachineFile::parse(&text).expect("a machine file");
         let axis = &machine.axes[1];
-        // 50 revolutions a second with 10,000 counts each.
+        // 50 revolutions per second with 10,000 counts each.
         let ku = axis.motor.ku.expect("it is stated");
         assert!((ku * FULL_SCALE - 500_000.0).abs() < 2.0, "{ku}");
         assert_eq!((axis.motor.tau_s, axis.counts_per_unit), (0.015, 1.0));

@@ -1,6 +1,6 @@
-//! The subcommands: one file each, one row each, of which [`Command`] is made.
+//! The subcommands: one file each, and one row each in the table from which [`Command`] is made.
 //!
-//! A subcommand has arguments, does its work with what is below it, and says by an exit code how that went.
+//! A subcommand has arguments, works through the layers below it, and returns an exit code.
 
 mod boards;
 mod build;
@@ -57,7 +57,7 @@ struct Arguments {
     command: Option<Command>,
 }
 
-/// Our version and that of the firmware which the simulated board models.
+/// Our version, and the version of the modelled firmware.
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (models KFLOP firmware 4.34)");
 
 macro_rules! subcommands {
@@ -151,7 +151,7 @@ subcommands! {
     }
 }
 
-/// Returns the description of the whole command line: options and subcommands with theirs.
+/// Returns the definition of the whole command line: options, and subcommands with their options.
 #[must_use]
 pub fn description() -> clap::Command {
     let mut command = Arguments::command();
@@ -159,7 +159,7 @@ pub fn description() -> clap::Command {
     command
 }
 
-/// The help of the whole command: the subcommands by group.
+/// The help of the command: the subcommands by group.
 fn overview() -> StyledStr {
     let styles = Styles::styled();
     let (heading, word) = (styles.get_header(), styles.get_literal());
@@ -183,7 +183,7 @@ fn overview() -> StyledStr {
     text.into()
 }
 
-/// `-std=c99`, as other compilers take it, is `--std=c99` here.
+/// Converts `-std=c99`, the form of other compilers, to `--std=c99`.
 fn as_long_option(argument: OsString) -> OsString {
     match argument.to_str().and_then(|text| text.strip_prefix("-std=")) {
         Some(standard) => format!("--std={standard}").into(),
@@ -203,7 +203,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     })
 }
 
-/// Carries out the command.
+/// Executes the command.
 fn command(arguments: Vec<OsString>) -> ExitCode {
     if drop_in::is_invoked(&arguments) {
         return drop_in::main(&arguments);
@@ -233,7 +233,7 @@ fn command(arguments: Vec<OsString>) -> ExitCode {
                 terminal::note(&advice);
                 return Exit::WrongInput.into();
             }
-            // Help and version go to stdout with success, wrong usage to stderr with 2.
+            // Help and version go to stdout with exit code 0, usage errors to stderr with 2.
             None => error.exit(),
         },
     };
@@ -250,7 +250,7 @@ fn command(arguments: Vec<OsString>) -> ExitCode {
         .into()
 }
 
-/// Returns the words of a command that runs programs and names none, with those of the project file.
+/// Returns the words of a command that runs programs but names none, with the programs of the project file.
 fn with_programs_of_project(error: &clap::Error, words: &[OsString]) -> Option<Vec<OsString>> {
     let is_without = error.kind() == ErrorKind::MissingRequiredArgument
         && ["run", "live", "debug"].iter().any(|name| words.get(1).is_some_and(|word| word == name));
@@ -266,10 +266,11 @@ fn asks_for_version_in_full(words: &[OsString]) -> bool {
 }
 
 impl Arguments {
-    /// Adds the options of the project file and of the files beside the first program; one line names them.
+    /// Adds the options of the project file and of the files next to the first program, which are named in one line of
+    /// output.
     fn with_sidecars(mut self, words: &[OsString]) -> Result<Self> {
         if let Some(Command::Compare(arguments)) = &mut self.command {
-            // Each of its programs has its own.
+            // Each of its programs has its own files.
             arguments.words = words.to_vec();
         }
         if let Some(Command::Debug(arguments)) = &mut self.command {
@@ -317,7 +318,7 @@ impl Arguments {
     }
 }
 
-/// Returns the options of the project file with which a subcommand compiles sources.
+/// Returns the options of the project file for the sources of a subcommand.
 fn of_sources(subcommand: &str, first: Option<&OsStr>) -> Result<Sidecars> {
     Sidecars::of_sources(first, |option| knows(subcommand, option))
 }
@@ -340,8 +341,8 @@ fn has_option(subcommand: &clap::Command, option: &str) -> bool {
     })
 }
 
-/// Returns what to type instead of a word that is not a subcommand or an option of it: a program needs `run`, an option
-/// may belong to other subcommands, and another word may be misspelt.
+/// Returns the correction for a word that is not a subcommand, or not an option of the given one: a program needs
+/// `run`, an option may belong to other subcommands, and another word may be misspelled.
 fn advice(error: &clap::Error, words: &[OsString]) -> Option<String> {
     if let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg)
         && error.kind() == ErrorKind::UnknownArgument
@@ -359,7 +360,7 @@ fn advice(error: &clap::Error, words: &[OsString]) -> Option<String> {
     Some(format!("`{word}` is not a subcommand; did you mean `{similar}`?"))
 }
 
-/// Returns which subcommands have an option that the one among `words` lacks.
+/// Returns the subcommands that have an option which the one in `words` lacks.
 fn elsewhere(option: &str, words: &[OsString]) -> Option<String> {
     let command = description();
     let is_subcommand = |word: &&OsString| command.get_subcommands().any(|known| **word == *known.get_name());

@@ -1,6 +1,6 @@
-//! `cc67 sweep` and `cc67 study`: what the Python package does, by the names of this command.
+//! `cc67 sweep` and `cc67 study`: functions of the Python package under the names of this command.
 //!
-//! Who has the command from the package has both at once. Here Python is looked for, and the package in it.
+//! A command installed with the package has both together. This module looks for Python, and for the package in it.
 
 use std::env;
 use std::ffi::OsString;
@@ -19,13 +19,13 @@ pub(super) struct PackageArguments {
     arguments: Vec<OsString>,
 }
 
-/// The names under which Python is looked for.
+/// The names under which Python may be installed.
 pub(super) fn pythons() -> Vec<OsString> {
     let own = env::var_os("CC67_PYTHON");
     own.map_or_else(|| vec!["python3".into(), "python".into()], |own| vec![own])
 }
 
-/// Has the package do it.
+/// Runs a function of the package.
 pub(super) fn run(name: &str, arguments: &PackageArguments) -> Result<Exit> {
     for python in pythons() {
         let has_package = Command::new(&python).args(["-c", "import cc67"]).output();

@@ -127,7 +127,7 @@ impl Work for &RunArguments {
 }
 
 impl RunArguments {
-    /// The programs, if what is beside them should be used.
+    /// The programs, if the files next to them should be used.
     pub(super) fn with_sidecars(&self) -> Option<&[OsString]> {
         (!self.sidecars.no_sidecar && self.board.controller.on.is_none()).then_some(&self.programs)
     }
@@ -139,12 +139,12 @@ impl RunArguments {
 
     /// The limit of the run.
     fn ticks(&self) -> Ticks {
-        // A program on a controller runs as long as it wants, and a person ends it.
+        // On a controller, a program has no default limit; the user ends it.
         let usual = if self.board.controller.on.is_some() { f64::INFINITY } else { DEFAULT_LIMIT };
         Ticks::new((self.limit.unwrap_or(usual) / TIMEBASE).round() as u64)
     }
 
-    /// Runs the board and shows what happens.
+    /// Runs the board and shows the events.
     fn execute<T: Target>(&self, rig: &mut BoardSession<T>) -> Result<Exit> {
         let request = trace::request(&self.trace, &rig.session)?;
         let (programs, offered) = (rig.session.debug(), rig.session.offered());
@@ -178,7 +178,7 @@ impl RunArguments {
         let (session, ending) = (&rig.session, rig.session.ending());
         let (exit, why) = seen.exit(end, self.limit.is_some());
         let active = active(session);
-        // 2,000 bits are looked at only if somebody looks at the result.
+        // The 2,000 bits are read only if the result is shown.
         let state = if (self.json || self.state) && !is_connected {
             FinalState::of(session)
         } else {
@@ -206,7 +206,7 @@ impl RunArguments {
         Ok(exit)
     }
 
-    /// Says after a run of several threads in the fast form that their statements were not split.
+    /// Reports after a run of several threads in fast mode that their statements were not split.
     fn say_what_was_not_split<T: Target>(&self, session: &Session<T>) {
         if self.board.form() != RunForm::Fast || self.board.races {
             return;
@@ -216,32 +216,32 @@ impl RunArguments {
             Some((one, other, cell)) => {
                 format!("threads {one} and {other} both change {cell} by a load and a store")
             }
-            // Programs that share nothing are not split differently on the board.
+            // Programs that share nothing behave the same on the board.
             None if self.state && ran > 1 => format!("{ran} threads ran"),
             None => return,
         };
-        // It is about the run, not one of the board's remarks.
+        // The message concerns the run; it is not a remark of the board.
         terminal::aside(&format!(
             "note: {who}. Statements were not split; `--as board` splits them as the board does, `--races` names the \
              lines that can go wrong\n"
         ));
     }
 
-    /// Returns the style in which the run is shown.
+    /// Returns the style for showing the run.
     fn style(&self) -> Style {
-        // The console of a controller is shown as it comes.
+        // The console of a controller is shown without delay.
         let is_live = self.realtime || self.board.controller.on.is_some();
         Style { time: self.time, is_verbose: self.verbose, is_live, json: self.json }
     }
 }
 
-/// The numbers of the threads that are active.
+/// The numbers of the active threads.
 fn active<T: Target>(session: &Session<T>) -> Vec<u8> {
     let is_active = |thread: &ThreadId| session.thread(*thread).is_active();
     ThreadId::all().filter(is_active).map(ThreadId::get).collect()
 }
 
-/// Describes the end of a run that has left something undone: the threads that are still active and what they wait for.
+/// Describes the end of an incomplete run: the threads that are still active and the events for which they wait.
 fn how_it_ended<T: Target>(exit: Exit, session: &Session<T>, ending: &Ending) -> Option<String> {
     let moving = session.target().moving();
     let is_over = ending.has_all_ended() && moving.is_empty();
@@ -261,7 +261,7 @@ fn seconds_of<T: Target>(session: &Session<T>) -> f64 {
     session.tick().get() as f64 * TIMEBASE
 }
 
-/// Explains that a run has not ended by the default limit, and what can be done.
+/// Explains that a run has not ended by the default limit, and the remedies.
 fn still_running(active: &[u8], moving: &[AxisId]) -> String {
     let after = format!("after {DEFAULT_LIMIT} s of board time");
     let (Some(first), []) = (moving.first(), active) else {

@@ -1,6 +1,6 @@
-//! `cc67 completions` and `cc67 man`: what shells and the manual need to know of the command line.
+//! `cc67 completions` and `cc67 man`: information about the command line for shells and for the manual.
 //!
-//! Both are made from the definition of the command line itself, so they cannot lag behind it.
+//! Both are generated from the definition of the command line itself, so they are always up to date.
 
 use std::path::PathBuf;
 
@@ -27,7 +27,7 @@ pub(super) struct ManArguments {
     folder: Option<PathBuf>,
 }
 
-/// Prints a script that completes the commands and options of the whole command.
+/// Prints a script that completes the subcommands and options of the command.
 pub(super) fn completions(arguments: &CompletionArguments, mut command: Command) -> Result<Exit> {
     let Some(shell) = arguments.shell else { return Ok(Exit::WrongInput) };
     let mut script = Vec::new();
@@ -50,7 +50,7 @@ pub(super) fn man(arguments: &ManArguments, mut command: Command) -> Result<Exit
     Ok(Exit::Success)
 }
 
-/// The command and its subcommands, each under the name of its page.
+/// The command and its subcommands, each with the name of its page.
 fn pages(command: &Command) -> Vec<(String, Command)> {
     let name = command.get_name().to_owned();
     let mut pages = vec![(name.clone(), command.clone())];

@@ -1,4 +1,4 @@
-//! Programs for threads: an image each, of a source or as it is.
+//! Programs for threads: one image each, compiled from a source or read from a file.
 
 use anyhow::{Context, Result};
 use cc67_host::UserProgram;
@@ -13,8 +13,8 @@ use crate::cli::args::program::ProgramFile;
 use crate::cli::io::input::read;
 use crate::cli::report::diagnostics;
 
-/// The programs of files, for the target and the firmware of the options; `None` if a source has errors, after all have
-/// been compiled.
+/// The programs of files, for the target and the firmware of the options; `None` if a source has errors, after all of
+/// them have been compiled.
 pub(crate) fn programs(
     files: &[ProgramFile],
     compiler: &CompilerArguments,

@@ -1,4 +1,4 @@
-//! From files to programs: sources compiled, objects read, programs linked, with the compiler's messages.
+//! From files to programs: compiles sources, reads objects, links programs, and shows the compiler's messages.
 
 pub(crate) mod images;
 pub(crate) mod units;

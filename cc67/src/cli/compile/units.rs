@@ -1,4 +1,4 @@
-//! Sources and objects to units that can be linked.
+//! Sources and objects as units for linking.
 
 use std::path::{Path, PathBuf};
 
@@ -15,7 +15,7 @@ pub(crate) fn compile(paths: &[PathBuf], options: &Options) -> Result<Vec<Compil
     paths.iter().map(|path| unit(path, read(path)?, options)).collect()
 }
 
-/// The unit of one file; its content decides whether it is an object.
+/// The unit of one file; its contents determine whether it is an object.
 pub(crate) fn unit(path: &Path, bytes: Vec<u8>, options: &Options) -> Result<Compilation> {
     if !is_object_name(path) && !is_object(&bytes) {
         if is_image_name(path) {
@@ -31,7 +31,7 @@ pub(crate) fn unit(path: &Path, bytes: Vec<u8>, options: &Options) -> Result<Com
     })
 }
 
-/// Returns whether a file is an object by its name.
+/// Returns whether a file is an object, judged by its name.
 pub(crate) fn is_object_name(path: &Path) -> bool {
     let extension = path.extension().unwrap_or_default();
     extension.eq_ignore_ascii_case("o") || extension.eq_ignore_ascii_case("obj")

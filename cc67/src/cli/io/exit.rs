@@ -5,9 +5,9 @@ use std::process::ExitCode;
 /// The exit code of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
-    /// The programs ended, or the given time has passed.
+    /// The programs ended, or the requested time has passed.
     Success = 0,
-    /// The source has errors; images that are compared differ; a test is not as expected.
+    /// The source has errors; compared images differ; a test has failed.
     Failure = 1,
     /// Wrong usage or input.
     WrongInput = 2,
@@ -17,7 +17,7 @@ pub enum Exit {
     StillRunning = 4,
     /// An expectation of the stimulus was not met.
     Unmet = 5,
-    /// Ctrl-C ended the run, as shells count it.
+    /// Ctrl-C ended the run; the code is a convention of shells.
     Interrupted = 130,
 }
 

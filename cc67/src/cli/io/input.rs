@@ -7,7 +7,7 @@ use anyhow::{Context, Result, anyhow};
 
 use compiler::files::{self, reason};
 
-/// Reads a whole file; a message names it.
+/// Reads a whole file; the error message names it.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
     files::read(path).map_err(|error| cannot_read(path, &error))
 }
@@ -20,7 +20,7 @@ pub(crate) fn cannot_read(path: &Path, error: &io::Error) -> anyhow::Error {
     anyhow!("cannot read {}: {}", path.display(), reason(error))
 }
 
-/// Returns the files with a suffix in a folder and in those in it, in the order of names.
+/// Returns the files with a suffix in a folder and its subfolders, in the order of names.
 pub(crate) fn files_below(folder: &Path, suffix: &str) -> Result<Vec<PathBuf>> {
     let entries = fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
     let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
@@ -37,7 +37,7 @@ pub(crate) fn files_below(folder: &Path, suffix: &str) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// Returns whether a file is C, by its name.
+/// Returns whether a file is C, judged by its name.
 pub(crate) fn is_source(path: &Path) -> bool {
     has_suffix(path, "c")
 }

@@ -1,5 +1,5 @@
-//! Ctrl-C: the first ends the run after the tick in progress, so that it is reported like any other; the second ends the
-//! process.
+//! Ctrl-C: the first one ends the run after the tick in progress, so that it is reported like any other run; the second
+//! one ends the process.
 
 use std::process;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use cc67_host::Interrupter;
 
 use super::exit::Exit;
 
-/// Lets Ctrl-C set a flag, which the running command takes; again before it is taken, it ends the process.
+/// Makes Ctrl-C set a flag, which the running command takes; a second Ctrl-C before that ends the process.
 pub(crate) fn sets(flag: &Arc<AtomicBool>) -> Result<()> {
     let flag = Arc::clone(flag);
     set_handler(move || {
@@ -20,7 +20,7 @@ pub(crate) fn sets(flag: &Arc<AtomicBool>) -> Result<()> {
     })
 }
 
-/// Lets Ctrl-C, or a request to terminate, end a run.
+/// Makes Ctrl-C, or a request to terminate, end a run.
 pub(crate) fn ends(run: Interrupter) -> Result<()> {
     let was_pressed = AtomicBool::new(false);
     let end = move || match was_pressed.swap(true, Ordering::Relaxed) {
@@ -32,7 +32,7 @@ pub(crate) fn ends(run: Interrupter) -> Result<()> {
 
 fn set_handler(handler: impl FnMut() + Send + 'static) -> Result<()> {
     match ctrlc::set_handler(handler) {
-        // An earlier run of this process has set one.
+        // An earlier run of this process has installed a handler.
         Ok(()) | Err(ctrlc::Error::MultipleHandlers) => Ok(()),
         Err(error) => Err(error).context("cannot take Ctrl-C"),
     }

@@ -1,7 +1,7 @@
-//! Temporary files: their names, and those that killed processes have left.
+//! Temporary files: their names, and the removal of those left by killed processes.
 //!
-//! A process holds a lock on what it writes, and the system ends the lock with the process. So a temporary file whose
-//! lock is free belongs to nobody, and whoever writes the same file next removes it.
+//! A process holds a lock on each file that it writes, and the operating system releases the lock with the process. So
+//! a temporary file without a lock is no longer in use, and is removed when the same file is written again.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -9,14 +9,14 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// The end of all temporary names.
+/// The suffix of all temporary names.
 const SUFFIX: &str = ".tmp";
 
-/// The temporary files that were in each folder when the process first wrote there: most often none.
+/// The temporary files that were in each folder when the process first wrote there: usually none.
 static FOUND: Mutex<BTreeMap<PathBuf, Vec<OsString>>> = Mutex::new(BTreeMap::new());
 
-/// Returns a temporary name for a file, in the same folder, so that it can be renamed; removes what killed processes
-/// have left of the same file.
+/// Returns a temporary name for a file, in the same folder, so that it can be renamed; removes files left by killed
+/// processes that wrote the same file.
 pub(super) fn clean(path: &Path, suffix: &str) -> PathBuf {
     let file = path.file_name().unwrap_or_default();
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -31,9 +31,9 @@ pub(super) fn clean(path: &Path, suffix: &str) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// Shows other processes that a temporary file is in use.
+/// Locks a temporary file, which shows other processes that it is in use.
 pub(super) fn mark(file: &File) {
-    // Without locks, as on some network drives, nothing is removed there.
+    // Without locks, as on some network drives, nothing is removed.
     let _ = file.lock();
 }
 
@@ -59,7 +59,7 @@ fn remove(path: &Path) {
         && let Ok(file) = File::options().write(true).open(path)
         && file.try_lock().is_ok()
     {
-        // Another process may have removed it at the same moment.
+        // Another process may have removed it at the same time.
         let _ = fs::remove_file(path);
     }
 }

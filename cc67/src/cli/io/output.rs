@@ -1,8 +1,8 @@
-//! Files that commands write: under a temporary name first, so that there is never half a file.
+//! Files that commands write: under a temporary name first, so that there is never an incomplete file.
 //!
-//! A process that is killed leaves the old file or the new one, and perhaps a temporary one, which the next that writes
-//! the same file [removes](super::leftovers). The disk is not waited for, as by
-//! any compiler: it would take longer than the compilation. Only what a board says that it has kept is on the disk.
+//! A killed process leaves the old file or the new one, and perhaps a temporary one, which is
+//! [removed](super::leftovers) when the same file is written again. As in any compiler, writing does not wait for the
+//! disk: that would take longer than the compilation. Only data that a board has confirmed as stored are on the disk.
 
 use std::fs::{self, File};
 use std::io::{self, BufReader, BufWriter, Seek, Write};
@@ -14,20 +14,20 @@ use compiler::files::reason;
 
 use super::leftovers;
 
-/// Writes a file and replaces what was there.
+/// Writes a file, replacing an existing one.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     let mut draft = Draft::new(path)?;
     draft.write_all(bytes).map_err(|error| cannot_write(path, &error))?;
     draft.commit()
 }
 
-/// Writes a file, and returns only when it is on the disk.
+/// Writes a file, and returns only when it is stored on the disk.
 pub(crate) fn write_durably(path: &Path, bytes: &[u8]) -> Result<()> {
     let mut draft = Draft::new(path)?;
     let written = draft.write_all(bytes).and_then(|()| draft.writer.flush());
     written.and_then(|()| draft.writer.get_ref().sync_all()).map_err(|error| cannot_write(path, &error))?;
     draft.commit()?;
-    // A new name is the folder's; where a folder cannot be opened as a file, the system keeps it itself.
+    // A new name belongs to the folder; if a folder cannot be opened as a file, the operating system itself stores it.
     #[cfg(unix)]
     {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
@@ -47,13 +47,12 @@ pub(crate) fn cannot_write(path: &Path, error: &io::Error) -> anyhow::Error {
     anyhow!("cannot write {}: {}", path.display(), reason(error))
 }
 
-/// A file in the making. It takes its name when it is complete; one that is given up leaves nothing behind.
+/// A file being written. It gets its name when it is complete; a file that is abandoned leaves nothing.
 #[derive(Debug)]
 pub(crate) struct Draft {
     writer: BufWriter<File>,
     path: PathBuf,
-    /// Its name until then; devices such as /dev/null have their own from the beginning, as no file may take their
-    /// place.
+    /// Its temporary name; devices such as /dev/null are written directly, as no file may replace them.
     temporary: Option<Temporary>,
 }
 
@@ -70,7 +69,7 @@ impl Draft {
         Ok(Self { writer: BufWriter::new(file), path: path.to_owned(), temporary })
     }
 
-    /// The file is complete.
+    /// Completes the file.
     pub(crate) fn commit(mut self) -> Result<()> {
         let flushed = self.writer.flush();
         let placed = flushed.and_then(|()| match &self.temporary {
@@ -80,7 +79,7 @@ impl Draft {
         placed.map_err(|error| cannot_write(&self.path, &error))
     }
 
-    /// The name that it will have.
+    /// Its final name.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
@@ -96,7 +95,7 @@ impl Write for Draft {
     }
 }
 
-/// A temporary file that is written first and read once, for a file whose head is known last.
+/// A temporary file that is written first and read once, for a file whose head is known only at the end.
 #[derive(Debug)]
 pub(crate) struct Scratch {
     writer: BufWriter<File>,
@@ -104,7 +103,7 @@ pub(crate) struct Scratch {
 }
 
 impl Scratch {
-    /// Begins it, beside the file that it is for.
+    /// Creates it in the folder of the file for which it is needed.
     pub(crate) fn beside(path: &Path) -> Result<Self> {
         let name = Temporary(leftovers::clean(path, "body.tmp"));
         let file = File::options().read(true).write(true).create(true).truncate(true).open(&name.0);
@@ -113,7 +112,7 @@ impl Scratch {
         Ok(Self { writer: BufWriter::new(file), name })
     }
 
-    /// Hands it to `read` from its beginning; then it is gone.
+    /// Passes it to `read` from its beginning, and then removes it.
     pub(crate) fn read(self, read: impl FnOnce(BufReader<File>) -> io::Result<()>) -> io::Result<()> {
         let Self { writer, name } = self;
         let mut file = writer.into_inner().map_err(io::IntoInnerError::into_error)?;
@@ -134,21 +133,21 @@ impl Write for Scratch {
     }
 }
 
-/// A temporary name: what still has it in the end is removed.
+/// A temporary name, whose file is removed on drop.
 #[derive(Debug)]
 struct Temporary(PathBuf);
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        // What is left of it helps nobody.
+        // An incomplete file is of no use.
         let _ = fs::remove_file(&self.0);
     }
 }
 
-/// Prints what a command answers.
+/// Prints a command's output.
 pub(crate) fn print(text: &str) -> Result<()> {
     match io::stdout().write_all(text.as_bytes()) {
-        // A reader that has seen enough, as `head` has, is no failure.
+        // A reader that closes early, such as `head`, is not an error.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(lost_output(&error)),
         _ => Ok(()),
     }

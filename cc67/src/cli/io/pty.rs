@@ -1,4 +1,4 @@
-//! Pseudo-terminals: this end is ours, at the other end is whatever opens the name.
+//! Pseudo-terminals: one end is ours, and other programs open the other end by its name.
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -9,7 +9,7 @@ use anyhow::Result;
 #[derive(Debug)]
 pub(crate) struct Terminal {
     controller: File,
-    /// The other end is held open: the line would be broken whenever nobody else has it open.
+    /// The other end, kept open: otherwise the line would fail while no other program has it open.
     _line: File,
     name: String,
 }
@@ -33,18 +33,18 @@ impl Terminal {
         Ok(Self { controller: controller.into(), _line: line, name })
     }
 
-    /// Refuses where the system has none.
+    /// Returns an error: this system has no pseudo-terminals.
     #[cfg(not(unix))]
     pub(crate) fn open() -> Result<Self> {
         anyhow::bail!("this system has no pseudo-terminals; a TCP port works everywhere")
     }
 
-    /// The path that others open.
+    /// The path for other programs.
     pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
-    /// A second handle of our end.
+    /// A second handle for our end.
     pub(crate) fn controller(&self) -> io::Result<File> {
         self.controller.try_clone()
     }

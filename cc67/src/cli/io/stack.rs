@@ -1,14 +1,15 @@
-//! The stack of the command: that of the process, or an own one where the system gives little (`ulimit -s`).
+//! The stack of the command: that of the process, or a separate one if the operating system provides little (`ulimit
+//! -s`).
 
 use std::io;
 use std::panic::resume_unwind;
 use std::thread;
 
-/// Bytes of stack that the command may need.
+/// The stack that the command may need, in bytes.
 pub(in crate::cli) const NEEDED: usize = 8 << 20;
 
-/// Reports whether the stack of the process is limited to less than the command needs; systems without this information
-/// are assumed to give enough.
+/// Reports whether the stack of the process is smaller than the command needs; without this information, it is assumed
+/// to be large enough.
 pub(in crate::cli) fn is_small() -> bool {
     let limits = std::fs::read_to_string("/proc/self/limits").unwrap_or_default();
     limits_stack(&limits).is_some_and(|bytes| bytes < NEEDED)
@@ -20,10 +21,10 @@ fn limits_stack(limits: &str) -> Option<usize> {
     line.split_whitespace().next()?.parse().ok()
 }
 
-/// Runs on a stack that is large enough.
+/// Runs on a sufficiently large stack.
 ///
 /// # Errors
-/// The system starts no such thread.
+/// The operating system cannot start such a thread.
 pub(in crate::cli) fn on_own<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> io::Result<T> {
     let handle = thread::Builder::new().name("main".to_owned()).stack_size(NEEDED).spawn(work)?;
     Ok(handle.join().unwrap_or_else(|panic| resume_unwind(panic)))

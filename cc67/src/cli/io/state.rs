@@ -1,9 +1,9 @@
-//! The folder of the system in which cc67 keeps something between two runs.
+//! The folder in which cc67 stores data between runs.
 
 use std::env;
 use std::path::PathBuf;
 
-/// The folder; `None` where the system has none.
+/// The folder; `None` if the system has none.
 pub(crate) fn folder() -> Option<PathBuf> {
     let named = |name| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
     let state = if cfg!(windows) {

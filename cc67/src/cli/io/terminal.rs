@@ -1,4 +1,4 @@
-//! Writing to the person in front of the terminal.
+//! Messages to the user at the terminal.
 
 use std::cell::RefCell;
 use std::fs::File;
@@ -8,29 +8,29 @@ use std::sync::OnceLock;
 
 use compiler::render::human::Color;
 
-/// The file in place of stderr, for a process whose stderr nobody reads.
+/// The file that replaces stderr, for a process whose stderr nobody reads.
 static FILE: OnceLock<File> = OnceLock::new();
 
 thread_local! {
-    /// The name of what this thread alone is about, with a colon; empty in most.
+    /// The name of the subject of this thread, with a colon; empty in most threads.
     static SUBJECT: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Has all notes of this thread begin with the name of what it is about.
+/// Makes all messages of this thread begin with the name of its subject.
 pub(crate) fn name_subject(name: &str) {
     SUBJECT.with_borrow_mut(|subject| *subject = format!("{name}: "));
 }
 
-/// Has everything from now on written to a file instead of stderr.
+/// From now on writes all messages to a file instead of stderr.
 pub(crate) fn write_to(path: &Path) -> io::Result<()> {
     let file = File::create(path)?;
-    // One file is enough.
+    // A file that is already set is kept.
     let _ = FILE.set(file);
     Ok(())
 }
 
 fn write(text: &str) {
-    // Nobody is left to be told when stderr is gone, or the file's disk is full.
+    // If stderr is closed, or the file's disk is full, nobody can be informed.
     let _ = match FILE.get() {
         Some(mut file) => file.write_all(text.as_bytes()),
         None => io::stderr().write_all(text.as_bytes()),
@@ -42,12 +42,12 @@ pub(crate) fn error(error: &anyhow::Error) {
     note(&format!("{error:#}"));
 }
 
-/// Prints a line of our own to stderr.
+/// Prints a line of cc67's own to stderr.
 pub(crate) fn note(message: &str) {
     SUBJECT.with_borrow(|subject| write(&format!("cc67: {subject}{message}\n")));
 }
 
-/// Prints a text of our own to stderr, apart from the console.
+/// Prints a text of cc67's own to stderr, separated from the console.
 pub(crate) fn aside(text: &str) {
     write(text);
 }

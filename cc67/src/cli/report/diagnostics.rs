@@ -14,7 +14,7 @@ pub(crate) fn report_all(units: &[Compilation], levels: &Levels, format: Format)
     units.iter().filter(|unit| report(unit, levels, format)).count() > 0
 }
 
-/// Returns the number of a unit's warnings that are shown.
+/// Returns the number of a unit's warnings that are not suppressed.
 pub(crate) fn warnings(unit: &Compilation, levels: &Levels) -> usize {
     let shown = unit.diagnostics().into_iter().filter_map(|diagnostic| levels.apply(diagnostic));
     shown.filter(|diagnostic| diagnostic.severity == Severity::Warning).count()

@@ -1,11 +1,11 @@
-//! Two printed lines that differ in their numbers alone, and by how much: times, or anything else.
+//! Comparison of two printed lines that differ only in numbers, such as times, with the size of the difference.
 //!
-//! The number before a unit of time is a time. Digits that belong to a word (`axis1`, `0x1F`) are not numbers, and
-//! spaces before a number do not count: a field has its width.
+//! A number before a unit of time is a time. Digits that belong to a word (`axis1`, `0x1F`) are not numbers, and spaces
+//! before a number are ignored, because of fields with a fixed width.
 
 use std::fmt;
 
-/// Units of time as programs print them, and their seconds.
+/// Units of time as programs print them, and their values in seconds.
 const UNITS: [(&str, f64); 18] = [
     ("s", 1.0),
     ("sec", 1.0),
@@ -26,11 +26,11 @@ const UNITS: [(&str, f64); 18] = [
     ("cycle", 5e-9),
     ("cycles", 5e-9),
 ];
-/// Seconds of a servo tick.
+/// The length of a servo tick in seconds.
 const TICK: f64 = 90e-6;
-/// A last digit that is worth more than this many tolerances is not a matter of rounding.
+/// If the last digit is worth more than this many tolerances, rounding does not explain a difference.
 const ROUNDING: f64 = 10.0;
-/// Two decimal fractions are not as far apart as they are printed.
+/// A margin for the binary representation of decimal fractions.
 const NOT_QUITE: f64 = 0.999_999;
 
 /// The allowed difference of printed numbers.
@@ -42,7 +42,7 @@ pub(crate) struct Tolerance {
     pub(crate) number: f64,
 }
 
-/// By how much the numbers of a line differ at most.
+/// The largest differences between the numbers of two lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Deviation {
     /// Times, in seconds.
@@ -52,12 +52,12 @@ pub(crate) struct Deviation {
 }
 
 impl Deviation {
-    /// The larger of both, of each kind.
+    /// The larger one of each kind.
     pub(crate) const fn max(self, other: Self) -> Self {
         Self { seconds: self.seconds.max(other.seconds), number: self.number.max(other.number) }
     }
 
-    /// Returns whether nothing differs.
+    /// Returns whether there is no difference.
     pub(crate) fn is_none(self) -> bool {
         self == Self::default()
     }
@@ -71,7 +71,7 @@ impl fmt::Display for Deviation {
                 seconds if seconds < 1.0 => (seconds * 1e3, "ms"),
                 seconds => (seconds, "s"),
             };
-            // Three digits, without the noise of a difference of two decimal fractions.
+            // Three digits, without the representation error of the subtracted decimal fractions.
             write!(f, "{} {unit}", libm::round(value * 1e3) / 1e3)?;
         }
         if self.number > 0.0 {
@@ -82,7 +82,8 @@ impl fmt::Display for Deviation {
     }
 }
 
-/// By how much two lines differ in their numbers; `None` if they differ otherwise, or by more than is allowed.
+/// The differences between the numbers of two lines; `None` if the lines differ otherwise, or by more than the
+/// tolerance.
 pub(crate) fn deviation(one: &str, other: &str, allowed: Tolerance) -> Option<Deviation> {
     let (ones, others) = (Pieces::of(one), Pieces::of(other));
     if ones.words != others.words {
@@ -95,7 +96,7 @@ pub(crate) fn deviation(one: &str, other: &str, allowed: Tolerance) -> Option<De
         let limit = if unit.is_some() { allowed.seconds } else { allowed.number };
         let difference = (one.value - other.value).abs() * scale;
         let digit = one.digit.max(other.digit) * scale;
-        // A count is not rounded, a time and a fraction are.
+        // Times and fractions are rounded, counts are not.
         let is_rounded = (unit.is_some() || digit < 1.0) && digit <= ROUNDING * limit;
         let is_near = difference <= limit || is_rounded && difference < (limit + digit) * NOT_QUITE;
         if !is_near {
@@ -109,7 +110,7 @@ pub(crate) fn deviation(one: &str, other: &str, allowed: Tolerance) -> Option<De
     Some(deviation)
 }
 
-/// The seconds of the unit that a piece of text begins with.
+/// The value in seconds of the unit with which a text begins.
 fn unit(text: &str) -> Option<f64> {
     let text = text.trim_start_matches([' ', '\t', '(', '[']);
     let end = text.find(|c: char| !c.is_alphabetic()).unwrap_or(text.len());
@@ -117,7 +118,7 @@ fn unit(text: &str) -> Option<f64> {
     UNITS.iter().find(|(name, _)| *name == word).map(|(_, seconds)| *seconds)
 }
 
-/// A number as it is printed.
+/// A printed number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Printed {
     value: f64,
@@ -125,11 +126,11 @@ struct Printed {
     digit: f64,
 }
 
-/// A line in pieces.
+/// A line, split into numbers and the texts around them.
 #[derive(Debug, Default, PartialEq)]
 struct Pieces<'a> {
     numbers: Vec<Printed>,
-    /// The texts before, between and after them.
+    /// The texts before, between and after the numbers.
     words: Vec<&'a str>,
 }
 
@@ -185,7 +186,7 @@ fn skip(bytes: &[u8], from: usize, belongs: impl Fn(u8) -> bool) -> usize {
     from + bytes.iter().skip(from).take_while(|byte| belongs(**byte)).count()
 }
 
-/// One past digits, point, digits and exponent.
+/// The end of digits, decimal point, digits and exponent.
 fn end_of_number(bytes: &[u8], from: usize) -> usize {
     let digits = |at: usize| skip(bytes, at, |byte| byte.is_ascii_digit());
     let mut end = digits(from);

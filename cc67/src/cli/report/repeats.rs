@@ -1,4 +1,4 @@
-//! Remarks that a program brings about again and again: each is shown once, and counted from then on.
+//! Remarks that a program causes repeatedly: each is shown once, and counted from then on.
 
 use std::collections::BTreeMap;
 
@@ -10,12 +10,12 @@ pub(crate) const MOST: usize = 1000;
 pub(crate) struct Repeats {
     /// The number of repetitions of each.
     again: BTreeMap<String, u64>,
-    /// The number of further different remarks, once no more were shown.
+    /// The number of further different remarks after the maximum was reached.
     left_out: u64,
 }
 
 impl Repeats {
-    /// Notes a remark; whether it should be shown.
+    /// Counts a remark; returns whether it should be shown.
     pub(crate) fn is_shown(&mut self, text: &str) -> bool {
         if let Some(again) = self.again.get_mut(text) {
             *again += 1;

@@ -1,7 +1,7 @@
 //! Output of a run: console lines on stdout and everything else on stderr, or all of it as JSON on stdout.
 //!
-//! With `--json` each line is an object with a `type`, and the last one, of type `end`, sums the run up. Texts that are
-//! not UTF-8 have the replacement character where they are not.
+//! With `--json` each line is an object with a `type`, and the last one, of type `end`, summarises the run. Invalid
+//! UTF-8 in texts is replaced by the replacement character.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -18,20 +18,20 @@ use crate::cli::io::exit::Exit;
 use crate::cli::io::terminal;
 use cc67_host::{Ending, EndingAxis, EndingThread, SourceCall, remark};
 
-/// The style in which a run is shown.
+/// The style for showing a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Style {
-    /// The board time comes before each console line.
+    /// True to show the board time before each console line.
     pub(crate) time: bool,
-    /// Details are shown, too.
+    /// True to show details.
     pub(crate) is_verbose: bool,
-    /// Every line is written at once, not only when the buffer is full.
+    /// True to write every line at once, not only when the buffer is full.
     pub(crate) is_live: bool,
-    /// As JSON.
+    /// True for JSON.
     pub(crate) json: bool,
 }
 
-/// A line of `--json`.
+/// A line of output with `--json`.
 #[derive(Debug, Serialize)]
 #[serde(tag = "type", rename_all = "lowercase")]
 enum JsonLine<'a> {
@@ -42,15 +42,15 @@ enum JsonLine<'a> {
         seconds: f64,
         thread: Option<u8>,
         text: &'a str,
-        /// Of code of the real processor.
+        /// Registers and code, for code of the real processor.
         #[serde(flatten, skip_serializing_if = "Option::is_none")]
         scene: Option<SceneLeft<'a>>,
     },
-    /// The PC did something for a program.
+    /// The PC has acted for a program.
     Pc { seconds: f64, text: &'a str },
     /// An expectation of the stimulus was not met.
     Unmet { seconds: f64, text: &'a str },
-    /// A remark of the simulation; a row of the table of remarks has a code.
+    /// A remark of the simulation; it has a code if it is in the table of remarks.
     Remark {
         seconds: f64,
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -64,23 +64,22 @@ enum JsonLine<'a> {
     End(Summary<'a>),
 }
 
-/// Registers and code around the place of a trap.
+/// Registers and code around the position of a trap.
 #[derive(Clone, Debug, Serialize)]
 struct SceneLeft<'a> {
     /// The address of the instruction.
     at: u32,
     /// Values by the names of the registers.
     registers: BTreeMap<&'a str, u32>,
-    /// Words around the place.
+    /// The words around the position.
     code: Vec<CodeLeft<'a>>,
 }
 
 /// A word of code.
 #[derive(Clone, Debug, Serialize)]
 struct CodeLeft<'a> {
-    /// Its address.
     at: u32,
-    /// The word and the instruction in it.
+    /// The word with its instruction.
     text: &'a str,
 }
 
@@ -97,9 +96,9 @@ impl<'a> From<&'a Scene> for SceneLeft<'a> {
 struct Summary<'a> {
     /// `ended`, `limit`, `still running`, `trapped` or `unmet`.
     reason: &'a str,
-    /// The exit code that goes with it.
+    /// The corresponding exit code.
     exit: u8,
-    /// Board time.
+    /// The board time.
     seconds: f64,
     ticks: u64,
     /// The number of lines, traps and remarks.
@@ -109,14 +108,14 @@ struct Summary<'a> {
     /// Threads that have not ended, and the axes that programs have used.
     threads: Vec<ThreadLeft<'a>>,
     used_axes: Vec<AxisLeft<'a>>,
-    /// Threads that are active still.
+    /// The threads that are still active.
     active: &'a [u8],
-    /// In which state the board is left.
+    /// The final state of the board.
     #[serde(flatten)]
     state: &'a FinalState,
 }
 
-/// The last line of `--json` of a run that did not come about.
+/// The last line of `--json` for a run that could not be started.
 pub(crate) fn no_run(exit: Exit, reason: &str) -> String {
     let line = JsonLine::End(Summary {
         reason,
@@ -147,7 +146,7 @@ struct ThreadLeft<'a> {
     since: f64,
 }
 
-/// A place in a source.
+/// A position in a source.
 #[derive(Clone, Copy, Debug, Serialize)]
 struct CallLeft<'a> {
     file: &'a str,
@@ -193,7 +192,7 @@ impl<'a> From<&'a EndingAxis> for AxisLeft<'a> {
     }
 }
 
-/// A program that a stimulus may load: its thread, its name, and what is known about it.
+/// A program that a stimulus may load: its thread, its name, and its debug information.
 pub(crate) type Offered = (ThreadId, String, DebugInfo);
 
 /// The destination of events.
@@ -208,18 +207,18 @@ pub(crate) struct Screen<W: Write> {
     traps: u64,
     remarks: u64,
     repeats: Repeats,
-    /// Inputs that nothing drives, with their readers: reported together when the run is over.
+    /// Undriven inputs with their readers: reported together at the end of the run.
     undriven: Vec<(String, Bit, u8)>,
     /// Traps that are shown after the lines that the thread printed before.
     traps_held: Vec<Event>,
     error: Option<io::Error>,
 }
 
-/// Time in which the board sends what a thread printed before its trap.
+/// The time within which the board sends the lines that a thread printed before its trap.
 const PRINTED: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 20);
 
 impl<W: Write> Screen<W> {
-    /// A screen for a run of these programs, and of those that a stimulus may load.
+    /// Creates a screen for a run of these programs, and of those that a stimulus may load.
     pub(crate) fn new(
         out: W,
         style: Style,
@@ -245,7 +244,7 @@ impl<W: Write> Screen<W> {
         }
     }
 
-    /// Another program has been loaded.
+    /// Notes that another program has been loaded.
     fn replace(&mut self, thread: ThreadId, name: &str) {
         let offered = self.offered.iter().find(|(other, known, _)| *other == thread && known == name);
         let Some((_, _, debug)) = offered else { return };
@@ -258,7 +257,7 @@ impl<W: Write> Screen<W> {
         }
     }
 
-    /// Shows an event; a trap after the lines that were printed before it, which the board sends later.
+    /// Shows an event; a trap is shown after the lines printed before it, which the board sends later.
     pub(crate) fn show(&mut self, event: &Event) {
         if !matches!(event.kind, EventKind::ConsoleLine(_)) {
             self.show_traps(event.at);
@@ -270,7 +269,7 @@ impl<W: Write> Screen<W> {
         self.show_now(event);
     }
 
-    /// Shows the traps up to a time that have not been shown.
+    /// Shows the pending traps up to a time.
     fn show_traps(&mut self, until: Cycles) {
         let (due, later) = std::mem::take(&mut self.traps_held).into_iter().partition(|trap| trap.at < until);
         self.traps_held = later;
@@ -318,7 +317,7 @@ impl<W: Write> Screen<W> {
         if self.style.is_live { self.out.flush() } else { Ok(()) }
     }
 
-    /// Shows a text that is not the programs'.
+    /// Shows a text that is not program output.
     fn say(&mut self, event: &Event, text: &str) {
         let is_trap = matches!(event.kind, EventKind::Trap(_) | EventKind::Halted(_));
         *(if is_trap { &mut self.traps } else { &mut self.remarks }) += 1;
@@ -327,7 +326,7 @@ impl<W: Write> Screen<W> {
             if may_repeat && !self.repeats.is_shown(text) {
                 return;
             }
-            // What was printed before stands before it on a terminal that shows both.
+            // On a terminal that shows both, output printed before should appear before.
             let flushed = self.out.flush();
             self.keep(flushed);
             terminal::note(text);
@@ -371,7 +370,7 @@ impl<W: Write> Screen<W> {
         self.error = self.error.take().or(written.err());
     }
 
-    /// Says how the run has ended.
+    /// Reports the end of the run.
     pub(crate) fn end(
         &mut self,
         exit: Exit,
@@ -411,10 +410,10 @@ impl<W: Write> Screen<W> {
         self.keep(written);
     }
 
-    /// Writes what is left; whether anybody reads it, and the first error of all writes.
+    /// Writes the remaining output; returns whether anybody reads it.
     ///
     /// # Errors
-    /// Why stdout cannot be written; a reader that has seen enough, as `head` has, is not a failure.
+    /// The first error of all writes; a reader that closes early, such as `head`, is not an error.
     pub(crate) fn finish(&mut self) -> io::Result<Audience> {
         let flushed = self.out.flush();
         self.keep(flushed);
@@ -426,7 +425,7 @@ impl<W: Write> Screen<W> {
     }
 }
 
-/// The presence of a reader of the output.
+/// The presence of a reader for the output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub(crate) enum Audience {

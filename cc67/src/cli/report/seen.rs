@@ -13,13 +13,13 @@ pub(crate) struct Seen {
 }
 
 impl Seen {
-    /// Takes up an event.
+    /// Notes an event.
     pub(crate) fn note(&mut self, event: &Event) {
         self.trapped |= matches!(event.kind, EventKind::Trap(_) | EventKind::Halted(_));
         self.unmet |= matches!(event.kind, EventKind::Unmet(_));
     }
 
-    /// The exit code and its reason.
+    /// The exit code and the reason.
     pub(crate) fn exit(&self, end: End, is_limited: bool) -> (Exit, &'static str) {
         match end {
             _ if self.trapped => (Exit::Trapped, "trapped"),

@@ -1,4 +1,4 @@
-//! The state in which a run left the board: axes, bits, elements of `persist.UserData`.
+//! The final state of the board: axes, bits, elements of `persist.UserData`.
 
 use std::collections::BTreeMap;
 
@@ -10,14 +10,13 @@ use kmotiondef::{AxisId, Bit};
 use runtime::trace::Item;
 use serde::Serialize;
 
-/// The state of a board.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct FinalState {
-    /// Axes that are enabled or not at 0.
+    /// The axes that are enabled or not at 0.
     axes: Vec<AxisState>,
-    /// Bits that are 1.
+    /// The bits that are 1.
     bits: Vec<u16>,
-    /// Elements that are not 0.
+    /// The elements that are not 0.
     persist: BTreeMap<usize, i32>,
 }
 
@@ -34,7 +33,7 @@ struct AxisState {
 impl FinalState {
     /// The present state.
     pub(crate) fn of<T: Target>(session: &Session<T>) -> Self {
-        // A firmware without the variables of the surroundings shows none of it.
+        // With a firmware that lacks the variables of the surroundings, nothing is shown.
         if !session.can(Capability::Surroundings) {
             return Self::default();
         }

@@ -1,4 +1,4 @@
-//! Message and input boxes of programs on a connected controller, answered by the person at the terminal.
+//! Message and input boxes of programs on a connected controller, answered by the user at the terminal.
 
 use std::io::{self, BufRead, IsTerminal};
 use std::sync::mpsc::{self, Receiver};
@@ -13,19 +13,19 @@ use runtime::{Event, OpenBox};
 use super::BoardSession;
 use crate::cli::io::terminal;
 
-/// The time between two looks at boxes and answers, in seconds.
+/// The interval at which boxes and answers are checked, in seconds.
 const LOOK: f64 = 0.1;
 
-/// The person who answers.
+/// The user who answers.
 #[derive(Debug, Default)]
 struct Person {
-    /// The box that was asked about.
+    /// The box whose question was shown.
     asked: Option<OpenBox>,
-    /// The lines that the person types; `None` before the first question.
+    /// The lines typed by the user; `None` before the first question.
     lines: Option<Receiver<String>>,
 }
 
-/// Runs until everything has ended, or to the limit, and asks the person at the terminal for answers to boxes.
+/// Runs until everything has ended, or to the limit, and asks the user at the terminal for answers to boxes.
 pub(crate) fn run_with_boxes<T: Target>(
     rig: &mut BoardSession<T>,
     limit: Ticks,
@@ -45,7 +45,7 @@ pub(crate) fn run_with_boxes<T: Target>(
 }
 
 impl Person {
-    /// Asks about a new box; returns the answer, once there is one.
+    /// Shows the question of a new box; returns the answer, once there is one.
     fn look(&mut self, open: Option<OpenBox>) -> Option<String> {
         if open != self.asked {
             self.asked = open;
@@ -89,7 +89,7 @@ fn lines() -> Receiver<String> {
     receiver
 }
 
-/// The answer that a person has typed, as `--answer` has it; `None` if the box has no such answer.
+/// The answer typed by the user, in the form of `--answer`; `None` if it is not valid for the box.
 fn setting(open: &OpenBox, typed: &str) -> Option<String> {
     match open {
         OpenBox::Message { buttons, .. } => {

@@ -1,4 +1,5 @@
-//! Connected controllers: the question of the first time, the connection, the firmware that programs are linked for.
+//! Connected controllers: the confirmation before the first use, the connection, the firmware for which programs are
+//! linked.
 
 use std::fs;
 use std::io::{self, BufRead, IsTerminal};
@@ -13,7 +14,7 @@ use kmotiondef::ThreadId;
 use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::io::{state, terminal};
 
-/// Connects to the controller at an address, after a person has agreed.
+/// Connects to the controller at an address, after the user has agreed.
 pub(crate) fn connect(address: &Address, is_agreed: bool) -> Result<ControllerLink> {
     agree_unless(is_agreed)?;
     let connection = ControllerLink::open(address)?;
@@ -41,14 +42,14 @@ fn agree() -> Result<()> {
     }
     let Some(path) = record else { return Ok(()) };
     let kept = path.parent().map_or(Ok(()), fs::create_dir_all);
-    // Without this file the question comes again, which does no harm.
+    // Without this file the question is asked again, which does no harm.
     if let Err(error) = kept.and_then(|()| fs::write(&path, format!("{agreed}{folder}\n"))) {
         terminal::note(&format!("the answer cannot be kept in {}: {error}", path.display()));
     }
     Ok(())
 }
 
-/// Asks the person at the terminal a question; nobody there is no.
+/// Asks the user at the terminal a question; without a terminal, the answer is no.
 pub(crate) fn agrees(question: &str) -> Result<bool> {
     if !(io::stdin().is_terminal() && io::stderr().is_terminal()) {
         bail!("nobody is here to agree to that: `--yes` does");
@@ -56,7 +57,7 @@ pub(crate) fn agrees(question: &str) -> Result<bool> {
     agrees_to(question)
 }
 
-/// Asks the person at the terminal a question; returns whether the answer is yes.
+/// Asks the user at the terminal a question; returns whether the answer is yes.
 fn agrees_to(question: &str) -> Result<bool> {
     terminal::aside(&format!("{question} [y/N] "));
     let mut answer = String::new();
@@ -64,12 +65,13 @@ fn agrees_to(question: &str) -> Result<bool> {
     Ok(matches!(answer.trim(), "y" | "Y" | "yes"))
 }
 
-/// The file with the project folders for which a person has agreed.
+/// The file with the project folders for which the user has agreed.
 fn record() -> Option<PathBuf> {
     Some(state::folder()?.join("controllers"))
 }
 
-/// Returns what programs for a controller are linked against: what the options name, or else its own firmware.
+/// Returns the firmware against which programs for a controller are linked: the one in the options, or otherwise the
+/// controller's own.
 pub(crate) fn firmware(
     connection: &ControllerLink,
     named: Firmware,
@@ -88,7 +90,7 @@ pub(crate) fn firmware(
     Ok(if board.is_default() { Firmware::default() } else { Firmware::Board(board) })
 }
 
-/// Returns what reports the progress of downloads.
+/// Returns a function that reports the progress of downloads.
 pub(crate) fn progress() -> impl FnMut(ThreadId, Progress) + Send + 'static {
     |thread, Progress { done, total }| {
         let is_shown = io::stderr().is_terminal();
@@ -116,7 +118,7 @@ pub(crate) fn stop<T: Target>(session: &mut Session<T>, events: EventSink<'_>) {
     if session.target().lost().is_some() || !io::stdin().is_terminal() {
         return;
     }
-    // Nobody is there when the answer cannot be read.
+    // An answer that cannot be read is no.
     if agrees_to("Disable all axes?").unwrap_or(false) {
         for axis in session.target().axes().iter() {
             session.exchange(format!("DisableAxis{axis}").as_bytes(), events);

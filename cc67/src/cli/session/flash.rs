@@ -1,4 +1,4 @@
-//! The file that a board's flash memory is kept in.
+//! The file that stores a board's flash memory.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use runtime::{Event, EventKind, FLASH_SIZE};
 use crate::cli::io::input::read;
 use crate::cli::io::{output, terminal};
 
-/// A file of flash memory, if there is one, and what it holds.
+/// The file for flash memory, if there is one, and its contents.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Flash {
     path: Option<PathBuf>,
@@ -23,18 +23,18 @@ const COMPLETE: &[u8] = b"Program Flash Image Complete";
 /// The message that it prints after that.
 const VERIFIED: &[u8] = b"Verify Complete";
 
-/// Events that wait until the file has what the first of them acknowledges.
+/// Events that are held until the file contains the data whose storage the first of them acknowledges.
 #[derive(Debug, Default)]
 pub(super) struct HeldEvents {
     events: Vec<Event>,
-    /// True if there is a file to wait for.
+    /// True if the data are stored in a file.
     is_kept: bool,
     /// True if the last contents could not be written.
     is_lost: bool,
 }
 
 impl HeldEvents {
-    /// Hands an event on, or holds it, and all after it, if it acknowledges that flash is written.
+    /// Passes an event on; holds it, and all later ones, if it acknowledges that flash is written.
     pub(super) fn pass(&mut self, event: Event, sink: &mut dyn FnMut(Event)) {
         let is_complete = matches!(&event.kind, EventKind::Reply(line) if line == COMPLETE);
         let is_verified = matches!(&event.kind, EventKind::ConsoleLine(line) if line == VERIFIED);
@@ -47,7 +47,7 @@ impl HeldEvents {
         }
     }
 
-    /// Hands on what was held; without the acknowledgement if flash is not kept.
+    /// Passes on the held events; without the acknowledgement if flash is not stored.
     fn hand_on(self, is_kept: bool, sink: &mut dyn FnMut(Event)) {
         let is_acknowledgement = |event: &Event| match &event.kind {
             EventKind::Reply(line) => line == COMPLETE,
@@ -59,7 +59,7 @@ impl HeldEvents {
 }
 
 impl Flash {
-    /// Reads the file, if it is there.
+    /// Reads the file, if it exists.
     pub(super) fn read(path: Option<PathBuf>) -> Result<Self> {
         let Some(path) = path else { return Ok(Self::default()) };
         let before = if path.exists() { Some(read(&path)?) } else { None };
@@ -78,7 +78,7 @@ impl Flash {
         HeldEvents { events: Vec::new(), is_kept: self.path.is_some(), is_lost: self.is_lost }
     }
 
-    /// Writes the flash to its file if events are held for that, and hands them on.
+    /// Writes the flash to its file if events are held for that, and passes them on.
     pub(super) fn acknowledge<'m>(
         &mut self,
         held: HeldEvents,
@@ -98,19 +98,19 @@ impl Flash {
         self.before.clone()
     }
 
-    /// A board holds this from the start: only something else is kept.
+    /// Notes the initial contents of a board: only different contents are stored.
     pub(super) fn begins_with(&mut self, now: &[u8]) {
         if self.path.is_some() && self.before.is_none() {
             self.before = Some(now.to_vec());
         }
     }
 
-    /// The file and what it holds, if it is there.
+    /// The file and its contents, if it exists.
     pub(super) fn file(&self) -> Option<(&Path, &[u8])> {
         self.path.as_deref().zip(self.before.as_deref())
     }
 
-    /// Keeps what flash memory holds now, if that is another than before; only looks at it if there is a file.
+    /// Stores the present contents of flash memory if they have changed; reads them only if there is a file.
     pub(crate) fn keep<'m>(&mut self, now: impl FnOnce() -> &'m [u8]) -> Result<()> {
         let Some(path) = &self.path else { return Ok(()) };
         let now = now();

@@ -1,8 +1,9 @@
-//! The serial port of a board and whatever it is connected to.
+//! The serial port of a board and the other end of its line.
 //!
-//! Files keep a run a function of its inputs: their characters arrive at the port's rate from the moment the program
-//! first looks for them. A terminal, a TCP peer or another program acts when it likes: the run is then kept at about real time, and
-//! what arrives when is no longer the same in every run. Without these options nothing is connected.
+//! With files, a run is a function of its inputs: their characters arrive at the port's rate, beginning when the
+//! program first polls for them. A terminal, a TCP peer or another program acts at any time: the run is then kept at
+//! about real time, and the arrival times are no longer the same in every run. Without these options nothing is
+//! connected.
 
 use std::io::{self, Read, Write};
 use std::net::{Ipv4Addr, TcpListener};
@@ -22,22 +23,22 @@ use crate::cli::io::pace::Pace;
 use crate::cli::io::pty::Terminal;
 use crate::cli::io::terminal;
 
-/// Ticks that a run with a peer continues before it polls the peer: 9.99 ms.
+/// The number of ticks after which a run polls its peer: 9.99 ms.
 const PART: u64 = 111;
-/// Pieces that a peer may be ahead with, and characters that wait on the line, before it has to wait.
+/// The number of chunks that a peer may send ahead, and of characters on the line, from which it has to wait.
 const AHEAD: usize = 16;
 const BACKLOG: usize = 4096;
-/// The same on the peer's clock; the run is about as fast as the board.
+/// The same interval on the peer's clock; the run is about as fast as the board.
 const PART_TIME: Duration = Duration::from_millis(10);
 
-/// The other end, which lives in real time.
+/// The other end, which runs in real time.
 #[derive(Debug)]
 struct Peer {
     name: String,
-    /// The bytes that it has sent; ends when it disconnects.
+    /// The received bytes; ends when the peer disconnects.
     incoming: Receiver<Vec<u8>>,
     outgoing: Outgoing,
-    /// A program is waited for when the run is over.
+    /// A child process, whose end is awaited at the end of the run.
     child: Option<Child>,
 }
 
@@ -50,7 +51,7 @@ impl std::fmt::Debug for Outgoing {
     }
 }
 
-/// Makes the peer that the option names.
+/// Creates the peer given by the option.
 fn peer(text: &str) -> Result<Peer> {
     match text.split_once(':') {
         Some(("tcp", port)) => tcp(port),
@@ -73,7 +74,7 @@ fn tcp(port: &str) -> Result<Peer> {
     Ok(Peer::new(format!("client {from}"), stream, outgoing, None))
 }
 
-/// Starts a program whose input and output are the line.
+/// Starts a program whose input and output are connected to the line.
 fn program(command: &str) -> Result<Peer> {
     let mut words = command.split_whitespace();
     let name = words.next().context("`--uart run:` names no program")?;
@@ -94,7 +95,7 @@ fn pty() -> Result<Peer> {
 }
 
 impl Peer {
-    /// Reads what the peer sends in the background.
+    /// Reads the peer's data in the background.
     fn new(
         name: String,
         mut reader: impl Read + Send + 'static,
@@ -118,30 +119,30 @@ impl Peer {
 /// Runs a session to the end of a tick.
 type PartRunner<'a, T> = &'a mut dyn FnMut(&mut Session<T>, Ticks, &mut dyn FnMut(Event));
 
-/// The line from the board to whatever it is connected to; nothing, unless it is connected.
+/// The line between the board and its other end; without one, nothing is connected.
 #[derive(Debug, Default)]
 pub(super) struct SerialLine {
     peer: Option<Peer>,
     output: Option<Draft>,
     /// The error that stopped writing.
     failed: Option<io::Error>,
-    /// The characters from the board that the peer has not been given.
+    /// The characters from the board that are still to be passed to the peer.
     fresh: Vec<u8>,
-    /// True if the loss of the peer was reported.
+    /// True if the loss of the peer has been reported.
     is_told: bool,
-    /// The time for which a part of a run waits for the peer.
+    /// The time for which each part of a run waits for the peer.
     patience: Duration,
 }
 
 impl SerialLine {
-    /// The other end of the port, which is waited for if it has to be there.
+    /// Connects the other end of the port; waits for it if it must be present.
     pub(super) fn connect(uart: &UartArguments) -> Result<Self> {
         let peer = uart.uart.as_deref().map(peer).transpose()?;
         let output = uart.uart_output.as_deref().map(Draft::new).transpose()?;
         Ok(Self { peer, output, failed: None, fresh: Vec::new(), is_told: false, patience: PART_TIME })
     }
 
-    /// Takes up a character that the board has sent.
+    /// Notes a character sent by the board.
     pub(super) fn note(&mut self, event: &Event) {
         if let EventKind::UartSent(byte) = event.kind {
             if self.peer.is_some() {
@@ -155,12 +156,12 @@ impl SerialLine {
         }
     }
 
-    /// Somebody else keeps the board at the pace of a clock, so the line does not wait for the peer.
+    /// Notes that other code keeps the board at the pace of a clock, so that the line does not wait for the peer.
     pub(super) fn is_paced_elsewhere(&mut self) {
         self.patience = Duration::ZERO;
     }
 
-    /// Runs the board to its end, or to the limit, and the line beside it; at the pace of a clock, if there is one.
+    /// Runs the board to its end, or to the limit, together with the line; at the pace of a clock, if there is one.
     pub(super) fn run<T: Target>(
         &mut self,
         session: &mut Session<T>,
@@ -184,7 +185,8 @@ impl SerialLine {
         }
     }
 
-    /// Runs the board to the end of a tick, also when its programs have ended, and the line beside it; `run` runs a part.
+    /// Runs the board to the end of a tick, even when its programs have ended, together with the line; `run` runs a
+    /// part.
     pub(super) fn advance<T: Target>(
         &mut self,
         session: &mut Session<T>,
@@ -205,13 +207,14 @@ impl SerialLine {
         }
     }
 
-    /// The tick at which the peer and the clock are looked at next.
+    /// The tick at which the peer and the clock are polled next.
     fn part(&self, tick: Ticks, limit: Ticks, is_paced: bool) -> Ticks {
         let is_paced = self.peer.is_some() || is_paced;
         if is_paced { Ticks::new((tick.get() + PART).min(limit.get())) } else { limit }
     }
 
-    /// Gives the peer what was sent and puts on the line what it sends. While enough waits there it is not listened to.
+    /// Passes the board's characters to the peer, and the peer's to the line. While enough characters wait on the line,
+    /// the peer's are not read.
     fn exchange<T: Target>(&mut self, session: &mut Session<T>) {
         let came = self.take(session.target().uart_backlog());
         if !came.is_empty() {
@@ -219,7 +222,7 @@ impl SerialLine {
         }
     }
 
-    /// Gives the peer what was sent and takes what it sends, for as long as a part of the run lasts.
+    /// Passes the board's characters to the peer and takes its characters, for the duration of a part of the run.
     fn take(&mut self, backlog: usize) -> Vec<u8> {
         let Some(peer) = &mut self.peer else { return Vec::new() };
         let fresh = std::mem::take(&mut self.fresh);
@@ -247,12 +250,12 @@ impl SerialLine {
         came
     }
 
-    /// The run has ended: the peer may end, and what was sent is written.
+    /// Ends the connection: lets the peer end, and writes the remaining characters.
     pub(super) fn finish(&mut self) -> Result<()> {
         if let Some(peer) = self.peer.take() {
             drop(peer.outgoing);
             if let Some(mut child) = peer.child {
-                // It ends with its input, or it is ended.
+                // It ends with its input, or is killed.
                 thread::sleep(PART_TIME);
                 let _ = child.kill();
                 let _ = child.wait();

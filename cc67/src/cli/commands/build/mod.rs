@@ -1,4 +1,4 @@
-//! `cc67 build`: compile and link for a thread, write what is requested.
+//! `cc67 build`: compile and link for a thread, write the requested files.
 
 mod names;
 
@@ -103,7 +103,7 @@ pub(super) fn thread(text: &str) -> Result<ThreadId, String> {
     number.ok_or_else(|| format!("valid range 1-{}", ThreadId::MAX))
 }
 
-/// Compiles, links, writes.
+/// Compiles, links and writes.
 pub(super) fn build(arguments: &BuildArguments) -> Result<Exit> {
     let options = arguments.compiler.resolve(arguments.target(), Timing::VENDOR)?;
     let levels = arguments.compiler.levels()?;
@@ -118,7 +118,7 @@ pub(super) fn build(arguments: &BuildArguments) -> Result<Exit> {
         }
         return arguments.write_objects(&units);
     }
-    // Linking uses the objects up.
+    // Linking consumes the objects.
     let objects = if emit.contains(&Emit::Object) { arguments.objects(&units)? } else { Vec::new() };
     let linked = link_units(&mut units, arguments.thread, &options);
     let has_errors = diagnostics::report_all(&units, &levels, arguments.compiler.format());
@@ -137,7 +137,7 @@ pub(super) fn build(arguments: &BuildArguments) -> Result<Exit> {
 }
 
 impl BuildArguments {
-    /// The first file that is named.
+    /// The first file on the command line.
     pub(super) fn first(&self) -> Option<&OsStr> {
         self.files.first().map(|path| path.as_os_str())
     }
@@ -146,7 +146,7 @@ impl BuildArguments {
         self.target.named().unwrap_or(Target::C67x)
     }
 
-    /// Refuses forms of output that code for the controller does not have.
+    /// Rejects forms of output that do not exist for the controller's processor.
     fn check_target(&self, emit: &[Emit]) -> Result<()> {
         if self.target() == Target::Sim {
             ensure!(
@@ -162,7 +162,7 @@ impl BuildArguments {
         Ok(())
     }
 
-    /// Refuses ELF images where no loader takes them.
+    /// Rejects ELF images for boards whose loader does not take them.
     fn check_form(&self, board: &TargetBoard) -> Result<()> {
         if self.form == ImageForm::Elf {
             ensure!(board.has_elf, "`--form elf`: {} loads COFF images alone", board.name);
@@ -174,7 +174,7 @@ impl BuildArguments {
         Ok(())
     }
 
-    /// Objects are for the target that is requested.
+    /// Checks that objects are for the requested target.
     fn check_objects(&self, units: &[Compilation]) -> Result<()> {
         for unit in units {
             let Some(target) = unit.object.as_ref().map(Object::target) else { continue };
@@ -188,7 +188,7 @@ impl BuildArguments {
         Ok(())
     }
 
-    /// The kinds that are requested.
+    /// The requested kinds of output.
     fn emit(&self) -> Vec<Emit> {
         let mut emit = self.emit.clone();
         if self.compile_only {
@@ -214,7 +214,7 @@ impl BuildArguments {
         Ok(Exit::Success)
     }
 
-    /// The objects of all sources, with their names.
+    /// The objects of all sources, with their file names.
     fn objects(&self, units: &[Compilation]) -> Result<Vec<(PathBuf, Vec<u8>)>> {
         let sources = self.files.iter().zip(units).filter(|(path, _)| !units::is_object_name(path));
         let sources: Vec<_> = sources.collect();
@@ -233,7 +233,7 @@ impl BuildArguments {
         Ok(objects)
     }
 
-    /// Writes everything that is made of the linked program.
+    /// Writes all files made from the linked program.
     fn write_program(&self, linked: &Linked, emit: &[Emit]) -> Result<()> {
         let first = self.files.first().context("there is a file")?;
         let program = self.output.clone().unwrap_or_else(|| names::image(first, self.thread));
@@ -270,12 +270,12 @@ impl BuildArguments {
     }
 }
 
-/// Returns how many warnings were shown.
+/// Returns the number of warnings shown.
 fn warnings(units: &[Compilation], levels: &Levels) -> usize {
     units.iter().map(|unit| diagnostics::warnings(unit, levels)).sum()
 }
 
-/// The loops that took too much work to overlap, a line each.
+/// The loops for which modulo scheduling exceeded its budget, one per line.
 fn without_overlap(linked: &Linked) -> String {
     let loops = linked.functions.iter().flat_map(|function| &function.exceeded);
     let line = |place: &SourceLine| {
@@ -288,8 +288,8 @@ fn without_overlap(linked: &Linked) -> String {
     loops.map(line).collect()
 }
 
-/// The line that the vendor's editor shows after a compilation: the sizes of the sections, and
-/// the bytes from the first to the last, gaps included.
+/// The line that the vendor's editor shows after a compilation: the sizes of the sections, and the size from the first
+/// to the last byte, including gaps.
 fn sizes(linked: &Linked, warnings: usize) -> String {
     let warnings = match warnings {
         0 => "No Warnings".to_owned(),
@@ -301,7 +301,7 @@ fn sizes(linked: &Linked, warnings: usize) -> String {
     format!("No Errors, {warnings}, text={text}, bss={}, data={data}, total={total}", linked.bss.size)
 }
 
-/// Returns whether a path has one of the given extensions, in any letter case.
+/// Returns whether a path has one of the given extensions, ignoring case.
 fn has_extension(path: &Path, extensions: &[&str]) -> bool {
     let own = path.extension().unwrap_or_default();
     extensions.iter().any(|extension| own.eq_ignore_ascii_case(extension))

@@ -1,4 +1,4 @@
-//! Names of what `cc67 build` writes, as the vendor's tools choose them.
+//! Names of the files that `cc67 build` writes, as in the vendor's tools.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -20,12 +20,12 @@ pub(super) fn image(source: &Path, thread: ThreadId) -> PathBuf {
     source.with_file_name(name)
 }
 
-/// The object of a source: `prog.c` becomes `prog.o`.
+/// The object file of a source: `prog.c` becomes `prog.o`.
 pub(super) fn object(source: &Path) -> PathBuf {
     source.with_extension("o")
 }
 
-/// A file beside an image: `prog(1).out` becomes `prog(1).map`.
+/// A file next to an image: `prog(1).out` becomes `prog(1).map`.
 pub(super) fn beside(image: &Path, extension: &str) -> PathBuf {
     if has_extension(image, &["out"]) {
         return image.with_extension(extension);

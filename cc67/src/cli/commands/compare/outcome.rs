@@ -11,13 +11,13 @@ use runtime::{Event, EventKind};
 use crate::cli::report::numbers::{Deviation, Tolerance, deviation};
 use crate::cli::session::BoardSession;
 
-/// Pins of the board.
+/// The number of pins of the board.
 const PINS: i32 = 48;
 /// Pins of step generators: the level of a pulse is not modelled at register level.
 const STEP_PINS: [std::ops::Range<usize>; 2] = [8..16, 36..44];
-/// Pins that the firmware turns while there is a KStep: they select its inputs.
+/// Pins that the firmware toggles while there is a KStep: they select its inputs.
 const KSTEP_PINS: std::ops::Range<usize> = 2..4;
-/// Digits of positions that are compared: a thousandth.
+/// The precision with which positions are compared: a thousandth.
 const POSITION: f64 = 1e-3;
 
 /// The kind of a line.
@@ -27,29 +27,29 @@ pub(super) enum LineKind {
     Reply,
     /// An action of the PC.
     Host,
-    /// An expectation of the stimulus that is not met.
+    /// An expectation of the stimulus that was not met.
     Unmet,
 }
 
-/// The outcome of a run, on either board.
+/// The outcome of a run on either board.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Outcome {
-    /// Board time in seconds, what it is, text.
+    /// Board time in seconds, the kind, and the text.
     pub(super) lines: Vec<(f64, LineKind, String)>,
     /// The end of the run.
     pub(super) end: String,
-    /// When it ended.
+    /// The time of the end.
     pub(super) ticks: Ticks,
-    /// The characters that the serial port has sent, if it is recorded.
+    /// The characters sent by the serial port, if recorded.
     serial: Vec<u8>,
     user_data: Vec<u32>,
-    /// The state before the run, of a board that was not reset.
+    /// The state before the run, for a board that was not reset.
     before: Before,
-    /// Commanded and measured position of each axis.
+    /// The commanded and measured position of each axis.
     pub(super) axes: Vec<(f64, f64)>,
-    /// The command's movement of each axis within the tolerance of time, if it is still moving.
+    /// The commanded movement of each axis during the tolerance of time, if it is still moving.
     pub(super) reach: Vec<f64>,
-    /// The positions of the axes at the very end: those that came to rest a little later.
+    /// The positions of the axes at the very end, for those that came to rest a little later.
     pub(super) last_axes: Vec<(f64, f64)>,
     /// The pins at the end.
     pins: Vec<Pin>,
@@ -57,7 +57,7 @@ pub(super) struct Outcome {
     has_kstep: bool,
 }
 
-/// The state of a board that was not reset, before a run.
+/// The state before a run of a board that was not reset.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Before {
     user_data: Vec<u32>,
@@ -65,7 +65,7 @@ struct Before {
     pins: Vec<Pin>,
 }
 
-/// A difference: what, on the model, on the firmware, and the page with the specification.
+/// A difference: the quantity, its values on the model and on the firmware, and the page with the specification.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Difference {
     pub(super) what: String,
@@ -75,7 +75,7 @@ pub(super) struct Difference {
 }
 
 impl Outcome {
-    /// Takes up a line of an event.
+    /// Records an event's line.
     pub(super) fn note(&mut self, event: &Event) {
         if let EventKind::UartSent(byte) = event.kind {
             self.serial.push(byte);
@@ -91,18 +91,18 @@ impl Outcome {
         self.lines.push((seconds, kind, text.into_owned()));
     }
 
-    /// Notes what a board that was not reset holds before the run.
+    /// Records the state before the run of a board that was not reset.
     pub(super) fn look_before<T: Target>(&mut self, session: &Session<T>) {
         let (user_data, axes, pins) = (user_data(session), axes(session), pins(session));
         self.before = Before { user_data, axes, pins };
     }
 
-    /// Drops what only a simulated PC reports.
+    /// Drops the lines that only a simulated PC reports.
     pub(super) fn without_the_pc(&mut self) {
         self.lines.retain(|line| line.1 != LineKind::Host);
     }
 
-    /// Looks at what the modelled board, or a controller, is left with.
+    /// Records the final state of the modelled board or of a controller.
     pub(super) fn look_at_model<T: Target>(&mut self, rig: &BoardSession<T>) {
         let session = &rig.session;
         self.ticks = session.tick();
@@ -111,7 +111,7 @@ impl Outcome {
         self.pins = pins(session);
     }
 
-    /// Reads the final state of the board with the firmware file.
+    /// Records the final state of the board with the firmware file.
     pub(super) fn look_at_firmware(&mut self, session: &Session<BootedTarget>) {
         let target = session.target();
         if let Some(persist) = target.file().address("persist") {
@@ -124,7 +124,7 @@ impl Outcome {
         self.pins = (0..PINS as usize).map(|number| pin(target.pin(number))).collect();
     }
 
-    /// The largest difference between the times of lines, the first ones set to each other.
+    /// The largest difference between the times of lines, relative to the first lines.
     pub(super) fn latest(&self, other: &Self) -> f64 {
         let pairs = self.lines.iter().zip(&other.lines);
         pairs.map(|(one, two)| (one.0 - two.0).abs()).fold(0.0, f64::max)
@@ -144,7 +144,7 @@ impl Outcome {
             found.push(Difference::new("serial port", one, two, "devices.md"));
         }
         for (index, (one, two)) in self.user_data.iter().zip(&firmware.user_data).enumerate() {
-            // What neither run has changed says nothing.
+            // A value that neither run has changed carries no information.
             let is_untouched = *one == 0 && firmware.before.user_data.get(index) == Some(two);
             if one != two && !is_untouched {
                 let hex = |word: &u32| format!("0x{word:08X}");
@@ -208,8 +208,8 @@ impl Outcome {
         for (pin, (one, two)) in self.pins.iter().zip(&firmware.pins).enumerate() {
             let is_pulsed = STEP_PINS.iter().any(|pins| pins.contains(&pin))
                 || firmware.has_kstep && KSTEP_PINS.contains(&pin);
-            // What drives an input is the same on both, and a generator's output is high for a part of the time.
-            // What only an earlier program has made an output says nothing.
+            // Inputs are driven equally on both boards, and the output of a generator is high for only part of the
+            // time. A pin made an output only by an earlier program carries no information.
             let is_untouched = !one.is_output && firmware.before.pins.get(pin) == Some(two);
             let matters = (one.is_output || two.is_output) && !is_pulsed && !is_untouched;
             if matters && one.is_high != two.is_high {
@@ -221,7 +221,7 @@ impl Outcome {
     }
 }
 
-/// The pins of a board as its memory and its bits show them.
+/// The pins of a board, from its memory and its bits.
 fn pins<T: Target>(session: &Session<T>) -> Vec<Pin> {
     let directions = [0, 1].map(|word| session.peek_object::<u32>(BIT_DIR_SHADOW.element(word).address()));
     let pins = (0..PINS).map(|pin| Pin {
@@ -231,7 +231,7 @@ fn pins<T: Target>(session: &Session<T>) -> Vec<Pin> {
     pins.collect()
 }
 
-/// Commanded and measured position of each axis.
+/// The commanded and measured position of each axis.
 fn axes<T: Target>(session: &Session<T>) -> Vec<(f64, f64)> {
     let axes = session.target().axes().iter().map(|axis| {
         let base = chan(axis).address();
@@ -269,14 +269,14 @@ impl Difference {
 #[derive(Debug, Default)]
 pub(super) struct Near {
     count: usize,
-    /// The first one.
+    /// The index of the first.
     first: usize,
-    /// The most of all.
+    /// The largest deviation.
     most: Deviation,
 }
 
 impl Near {
-    /// Itself, if there are any.
+    /// `self` if there are any such lines.
     pub(super) fn any(&self) -> Option<&Self> {
         (self.count > 0).then_some(self)
     }
@@ -285,7 +285,7 @@ impl Near {
         if self.count == 0 {
             self.first = line;
         }
-        // A number that is spelled differently is the same number.
+        // A number in a different notation is still the same number.
         if !deviation.is_none() {
             self.count += 1;
             self.most = self.most.max(deviation);

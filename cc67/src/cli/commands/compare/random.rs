@@ -1,7 +1,9 @@
-//! Random scenarios: drawn by seed, played on the model and on the firmware file, reduced to the smallest where the boards differ.
+//! Random scenarios: generated from seeds, played on the model and on the firmware file, and reduced if the boards
+//! differ.
 //!
-//! A scenario is a program whose statements are each in a slice of its own and that observes axes and outputs, or a list of
-//! lines that the PC sends. Both boards get the same text. What is found is kept as a vector for the board's tests.
+//! A scenario is either a program that executes each statement in a slice of its own and records axes and outputs, or a
+//! list of lines sent by the PC. Both boards get the same text. Differences are kept as vectors for the tests of the
+//! board.
 
 mod areas;
 mod draw;
@@ -43,16 +45,16 @@ pub(super) struct RandomArguments {
     keep: Option<PathBuf>,
 }
 
-/// The scenarios of an area.
+/// The results of an area.
 #[derive(Debug, Default)]
 struct Tally {
     equal: u64,
-    /// The quantities that differ first, each with the scenarios.
+    /// The first quantities that differ, each with its scenarios.
     different: BTreeMap<String, Vec<u64>>,
 }
 
 impl RandomArguments {
-    /// The areas that are requested: all if none is named.
+    /// The requested areas: all if none is named.
     fn areas(&self) -> Vec<Area> {
         let named = self.random.as_deref().unwrap_or_default();
         if named.is_empty() { Area::ALL.to_vec() } else { named.to_vec() }
@@ -102,7 +104,7 @@ impl RandomArguments {
         Ok(tally)
     }
 
-    /// Reduces a scenario, shows it and keeps it.
+    /// Reduces a scenario, shows it and stores it.
     fn report(&self, scenario: &Scenario, found: &Difference, firmware: &BootedFirmware) -> Result<()> {
         let mut same = |scenario: &Scenario| {
             let (difference, ..) = compared(scenario, firmware).ok()?;
@@ -120,7 +122,8 @@ impl RandomArguments {
     }
 }
 
-/// Plays a scenario on both boards; the first difference, and the observations of the model and of the firmware.
+/// Plays a scenario on both boards; returns the first difference, and the observations of the model and of the
+/// firmware.
 fn compared(
     scenario: &Scenario,
     firmware: &BootedFirmware,
@@ -131,12 +134,12 @@ fn compared(
     Ok((difference, observations))
 }
 
-/// The quantity of a difference, the same for all axes and elements.
+/// The quantity of a difference, without the number of the axis or element.
 fn class(difference: &Difference) -> String {
     difference.what.chars().filter(|c| !c.is_ascii_digit()).collect::<String>().replace("[]", "")
 }
 
-/// A reduced scenario and its difference, for a person.
+/// A reduced scenario and its difference, as text.
 fn shown(scenario: &Scenario, difference: &Difference) -> String {
     let mut text = format!("{}: {}", scenario.name, difference.what);
     if let Some(at) = difference.at {

@@ -19,7 +19,6 @@ use rustyline::{Context, Editor, Helper};
 use super::screen::Printer;
 use super::words;
 
-/// An input.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Input {
     /// A line.
@@ -28,15 +27,16 @@ pub(super) enum Input {
     Interrupt,
 }
 
-/// Lines that come while the board continues.
+/// Lines that arrive while the board continues.
 pub(super) struct Lines {
     inputs: Receiver<Input>,
-    /// Tells the keyboard to read on: a terminal that nobody reads any more must not be left in its editing mode.
+    /// Tells the keyboard thread to continue: it must not leave the terminal in editing mode when nobody reads lines
+    /// any more.
     ready: Option<Sender<()>>,
 }
 
 impl Lines {
-    /// The next line, if it comes in time.
+    /// The next line, if it comes before the timeout.
     pub(super) fn within(&self, time: Duration) -> Result<Input, RecvTimeoutError> {
         self.inputs.recv_timeout(time)
     }
@@ -46,16 +46,16 @@ impl Lines {
         self.inputs.recv().map_err(|_| RecvTimeoutError::Disconnected)
     }
 
-    /// Notes that the line is done, and allows another one.
+    /// Notes that the line has been executed, and allows another one.
     pub(super) fn ready(&self) {
         if let Some(ready) = &self.ready {
-            // A keyboard that is gone ends the input, which the next line shows.
+            // If the keyboard thread has ended, so has the input, which the next read shows.
             let _ = ready.send(());
         }
     }
 }
 
-/// Lines of a person, edited in a thread of its own so that the board continues meanwhile.
+/// Lines typed by the user, edited in a separate thread so that the board continues meanwhile.
 pub(super) fn keyboard() -> Result<(Lines, Printer)> {
     let mut editor: Editor<Guide, DefaultHistory> = Editor::new().context("no terminal to edit lines on")?;
     editor.set_helper(Some(Guide));
@@ -65,12 +65,12 @@ pub(super) fn keyboard() -> Result<(Lines, Printer)> {
     Ok((Lines { inputs, ready: Some(ready) }, Box::new(printer)))
 }
 
-/// Hands over lines until the end of the input, or until nobody takes them.
+/// Passes on lines until the end of the input, or until the receiver is dropped.
 fn read(editor: &mut Editor<Guide, DefaultHistory>, sender: &Sender<Input>, go_on: &Receiver<()>) {
     loop {
         let input = match editor.readline("KFLOP> ") {
             Ok(line) => {
-                // A line that cannot be remembered is only harder to repeat.
+                // If a line cannot be added to the history, it only has to be typed again.
                 let _ = editor.add_history_entry(&line);
                 Input::Line(line)
             }
@@ -83,7 +83,7 @@ fn read(editor: &mut Editor<Guide, DefaultHistory>, sender: &Sender<Input>, go_o
     }
 }
 
-/// Lines of a script, read beside a board that keeps pace with the clock.
+/// Lines of a script, read in the background while the board keeps pace with the clock.
 pub(super) fn script_beside() -> Lines {
     let (sender, inputs) = channel();
     thread::spawn(move || {
@@ -96,7 +96,7 @@ pub(super) fn script_beside() -> Lines {
     Lines { inputs, ready: None }
 }
 
-/// Completes words, and hints at what a command takes.
+/// Completes words, and shows hints about a command's arguments.
 struct Guide;
 
 /// Returns the completions of the word at the cursor: its start, and the names.
@@ -118,7 +118,7 @@ fn candidates(line: &str, cursor: usize) -> (usize, Vec<String>) {
     (start, names)
 }
 
-/// Sources and folders whose path begins with a text, after its thread number.
+/// Sources and folders whose path begins with a text after an optional thread number.
 fn files(text: &str) -> Vec<String> {
     let (thread, path) = match text.split_once(':') {
         Some((thread, path)) => (&text[..=thread.len()], path),

@@ -1,8 +1,8 @@
-//! `cc67 console`: a simulated board to talk to, by hand or from a script.
+//! `cc67 console`: a simulated board that takes commands, by hand or from a script.
 //!
-//! A line is script commands for the board, or begins with one of the console's own words ([`words`]). By hand the
-//! board keeps pace with the clock; from a script it runs as fast as it can, and time passes only where the script
-//! lets it: each line takes as long as on the wire, `wait` as long as it says.
+//! A line contains script commands for the board, or begins with one of the console's own words ([`words`]). In
+//! interactive use the board keeps pace with the clock; with a script it runs as fast as it can, and time passes only
+//! as the script requires: each line takes as long as on the wire, `wait` takes the given time.
 
 mod input;
 mod screen;
@@ -39,9 +39,9 @@ use crate::cli::report::seen::Seen;
 use crate::cli::report::trace::{self, Trace};
 use crate::cli::session::{BoardSession, Setup, Work};
 
-/// The interval at which a board that keeps pace with the clock is run.
+/// The interval at which the board is run when it keeps pace with the clock.
 const BEAT: Duration = Duration::from_millis(10);
-/// Ticks that a board which does not keep pace runs before the keyboard is polled again.
+/// The number of ticks after which the keyboard is polled again when the board runs at full speed.
 const TICKS_PER_POLL: u64 = 1111;
 
 /// Arguments of `cc67 console`.
@@ -76,7 +76,7 @@ pub(super) struct ConsoleArguments {
     compiler: CompilerArguments,
 }
 
-/// Talks to a board until the input ends.
+/// Runs the console until the input ends.
 pub(super) fn console(arguments: &ConsoleArguments) -> Result<Exit> {
     if arguments.serve.is_some() {
         arguments.board.controller.refuse_in("console --serve")?;
@@ -94,7 +94,7 @@ pub(super) fn console(arguments: &ConsoleArguments) -> Result<Exit> {
 }
 
 impl ConsoleArguments {
-    /// Returns the terms on which the board is served to programs of the PC.
+    /// Returns the terms for serving the board to programs of the PC.
     fn terms(&self, address: &str) -> Terms<'_> {
         Terms {
             addresses: vec![address.to_owned()],
@@ -126,12 +126,12 @@ enum Flow {
     Leave,
 }
 
-/// A board, and the person or script that talks to it.
+/// A board, and the user or script that controls it.
 struct Console<'a, T: Target> {
     arguments: &'a ConsoleArguments,
     rig: BoardSession<T>,
     shown: Shown<'a>,
-    /// Inputs that are pressed, and the level of each before.
+    /// Pressed inputs, each with its previous level.
     pressed: BTreeMap<Bit, bool>,
 }
 
@@ -153,7 +153,7 @@ impl<'a, T: Target> Console<'a, T> {
         Ok(console)
     }
 
-    /// Has the screen know what is loaded.
+    /// Informs the screen about the loaded programs.
     fn know_programs(&mut self) {
         self.shown.screen.programs = self.rig.session.debug().into_iter().map(|(_, debug)| debug).collect();
     }
@@ -170,13 +170,13 @@ impl<'a, T: Target> Console<'a, T> {
         }
     }
 
-    /// Takes the lines of a script one after another; then the programs continue to their end.
+    /// Executes the lines of a script one after another; then the programs continue to their end.
     fn script(&mut self) -> Result<Exit> {
         for line in io::stdin().lock().split(b'\n') {
             let line = line.context("cannot read the script")?;
             let flow = match str::from_utf8(&line) {
                 Ok(text) => self.line(text.trim_end_matches('\r')),
-                // Bytes that are no text are for the board.
+                // Bytes that are not UTF-8 are sent to the board.
                 Err(_) => {
                     self.send(&line);
                     Flow::Continue
@@ -192,7 +192,8 @@ impl<'a, T: Target> Console<'a, T> {
         let is_connected = self.arguments.board.controller.on.is_some();
         let usual = match (is_connected, self.arguments.programs.is_empty()) {
             (false, _) => DEFAULT_LIMIT,
-            // Programs on a controller go on without this command; those that are named here are waited for.
+            // Programs on a controller continue without this command; it waits only for those named on the command
+            // line.
             (true, true) => 0.0,
             (true, false) => f64::INFINITY,
         };
@@ -209,7 +210,7 @@ impl<'a, T: Target> Console<'a, T> {
         Ok(exit)
     }
 
-    /// Takes lines as they come while the board keeps pace with the clock.
+    /// Executes lines as they come while the board keeps pace with the clock.
     fn keep_pace(&mut self, input: &Lines) -> Result<Exit> {
         self.rig.is_paced();
         let pace = Pace::new(self.rig.session.tick());
@@ -218,12 +219,12 @@ impl<'a, T: Target> Console<'a, T> {
             if self.take(input, input.within(BEAT), &mut interrupted) == Flow::Leave {
                 return self.leave();
             }
-            // A board that falls behind leaves room for the keyboard.
+            // A board that falls behind still leaves time for the keyboard.
             self.advance(pace.due().min(Ticks::new(self.rig.session.tick().get() + TICKS_PER_POLL)));
         }
     }
 
-    /// Takes lines as they come; as long as programs run, so does the board, as fast as it can.
+    /// Executes lines as they come; while programs run, the board runs as fast as it can.
     fn hurry(&mut self, input: &Lines) -> Result<Exit> {
         let mut interrupted = false;
         loop {
@@ -235,7 +236,7 @@ impl<'a, T: Target> Console<'a, T> {
         }
     }
 
-    /// Says good-bye with what is still held.
+    /// Ends the console, and shows output that is still held.
     fn leave(&mut self) -> Result<Exit> {
         let shown = &mut self.shown;
         self.rig.finish(&mut |event| shown.note(&event))?;
@@ -249,7 +250,7 @@ impl<'a, T: Target> Console<'a, T> {
         Ok(self.shown.seen.exit(End::AllEnded, true).0)
     }
 
-    /// A line, or an interruption: the first one stops the programs, the second one leaves.
+    /// Handles a line, or an interruption: the first one stops the programs, the second one ends the console.
     fn take(&mut self, lines: &Lines, next: Result<Input, RecvTimeoutError>, interrupted: &mut bool) -> Flow {
         let flow = match next {
             Ok(Input::Line(line)) => {
@@ -273,7 +274,7 @@ impl<'a, T: Target> Console<'a, T> {
         flow
     }
 
-    /// One line of the person or script.
+    /// Executes one line.
     fn line(&mut self, line: &str) -> Flow {
         if self.rig.session.target().is_in_command() {
             self.send(line.as_bytes());
@@ -291,7 +292,7 @@ impl<'a, T: Target> Console<'a, T> {
                 }
             }
             Some(Err(error)) => self.shown.screen.note(&error.to_string()),
-            // Blanks at the end are the board's: it shows them in the line of an error.
+            // Trailing blanks are sent to the board, which echoes them in error messages.
             None => self.send(line.trim_start().as_bytes()),
         }
         Flow::Continue
@@ -335,18 +336,18 @@ impl<'a, T: Target> Console<'a, T> {
         loaded.map(drop)
     }
 
-    /// Stops threads where they are.
+    /// Stops threads.
     fn stop(&mut self, is_invoked: impl Fn(ThreadId) -> bool) {
         ThreadId::all().filter(|thread| is_invoked(*thread)).for_each(|thread| self.rig.session.stop(thread));
     }
 
-    /// Sends a line to the board, and lets pass the time it takes.
+    /// Sends a line to the board, and lets the time pass that it takes.
     fn send(&mut self, line: &[u8]) {
         let shown = &mut self.shown;
         self.rig.exchange(line, &mut |event| shown.note(&event));
     }
 
-    /// The tick this many seconds from now.
+    /// The tick after this many seconds.
     fn after(&self, seconds: f64) -> Ticks {
         self.rig.session.tick_after(seconds)
     }
@@ -361,14 +362,14 @@ impl<'a, T: Target> Console<'a, T> {
 /// The destinations of the board's events.
 struct Shown<'a> {
     screen: Screen,
-    /// The events that matter for the exit code.
+    /// The events that determine the exit code.
     seen: Seen,
     trace: Option<Trace>,
     arguments: &'a ConsoleArguments,
 }
 
 impl Shown<'_> {
-    /// Shows an event, and keeps it for the traces and the exit code.
+    /// Shows an event, and records it for the traces and the exit code.
     fn note(&mut self, event: &Event) {
         if let Some(trace) = &mut self.trace {
             trace.note(event);

@@ -1,7 +1,7 @@
 //! Output of the console.
 //!
-//! At a terminal everything goes through the line editor, which keeps the line being typed below it. Else lines of the
-//! board go to stdout, and what the simulation reports to stderr.
+//! At a terminal all output goes through the line editor, which keeps the line being typed below it. Otherwise lines of
+//! the board go to stdout, and reports of the simulation to stderr.
 
 use std::io::{self, Write};
 
@@ -21,7 +21,7 @@ pub(super) struct Screen {
     time: bool,
     printer: Option<Printer>,
     error: Option<io::Error>,
-    /// True if inputs that nothing drives are reported together at the end; then those that were read.
+    /// True if undriven inputs are reported together at the end; then the inputs that were read.
     groups: bool,
     undriven: Vec<(String, Bit, u8)>,
     /// Debug information of the loaded programs.
@@ -29,23 +29,23 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    /// A screen that shows the board time before each line, or does not, and reports inputs that nothing drives at the
-    /// end, or as they are read.
+    /// Creates a screen, with or without the board time before each line; it reports undriven inputs at the end, or as
+    /// they are read.
     pub(super) const fn new(time: bool, groups: bool) -> Self {
         Self { time, printer: None, error: None, groups, undriven: Vec::new(), programs: Vec::new() }
     }
 
-    /// Shows everything through a line editor from now on.
+    /// From now on shows everything through a line editor.
     pub(super) fn print_through(&mut self, printer: Printer) {
         self.printer = Some(printer);
     }
 
-    /// Returns whether the reader of the output is gone.
+    /// Returns whether nobody reads the output any more.
     pub(super) const fn is_closed(&self) -> bool {
         self.error.is_some()
     }
 
-    /// Returns the first error of writing; a reader that closes early, as `head` does, is not a failure.
+    /// Returns the first write error; a reader that closes early, such as `head`, is not an error.
     pub(super) fn finish(&mut self) -> io::Result<()> {
         if !self.undriven.is_empty() {
             self.note(&remark::undriven(&self.undriven));
@@ -56,7 +56,7 @@ impl Screen {
         }
     }
 
-    /// An event of the board.
+    /// Shows an event of the board.
     pub(super) fn show(&mut self, event: &Event) {
         match &event.kind {
             EventKind::ConsoleLine(line) | EventKind::Reply(line) => {
@@ -83,12 +83,12 @@ impl Screen {
         }
     }
 
-    /// A text that was requested.
+    /// Shows a requested text.
     pub(super) fn text(&mut self, text: &str) {
         self.bytes(text.as_bytes());
     }
 
-    /// A remark of the simulation.
+    /// Shows a remark of the simulation.
     pub(super) fn note(&mut self, text: &str) {
         match &mut self.printer {
             Some(printer) => {

@@ -1,4 +1,4 @@
-//! The console's own words, beside the board's script commands.
+//! The console's own words, in addition to the board's script commands.
 
 use anyhow::{Context, Result, anyhow, bail};
 use kmotiondef::bits::{BitDirection, range_of};
@@ -23,19 +23,19 @@ pub(super) enum Word {
     Run(String),
     /// Toggle an input until it is released.
     Press(Bit),
-    /// Give an input back the level it had.
+    /// Restore the previous level of an input.
     Release(Bit),
     /// Execute a statement of a stimulus.
     Act(String),
-    /// Tell the board time.
+    /// Show the board time.
     Time,
     /// Let board time pass.
     Wait(f64),
-    /// Leave.
+    /// Quit.
     Quit,
 }
 
-/// A word and what it does.
+/// A word and its description.
 struct Row {
     name: &'static str,
     usage: &'static str,
@@ -71,21 +71,21 @@ const ROWS: &[Row] = &[
     Row { name: "quit", usage: "quit", help: "leaves the console, like `exit` and the end of the input" },
 ];
 
-/// Words that statements of a stimulus begin with.
+/// The first words of stimulus statements.
 pub(in crate::cli::commands) const ACTIONS: &[&str] =
     &["bit", "set", "clear", "toggle", "pulse", "adc", "axis", "encoder", "uart", "persist", "konnect"];
 
-/// The names of everything that a line may begin with.
+/// The words with which a line may begin.
 pub(super) fn first_words() -> impl Iterator<Item = &'static str> {
     ROWS.iter().map(|row| row.name).chain(COMMANDS.iter().map(|command| command.name))
 }
 
-/// The names of everything that can be explained.
+/// The topics of help.
 pub(super) fn topics() -> impl Iterator<Item = &'static str> {
     first_words().chain(FIRMWARE_FUNCTIONS.iter().map(|function| function.name))
 }
 
-/// Reads a line that begins with one of the words; `None` if it is for the board.
+/// Parses a line that begins with one of the words; `None` if it is for the board.
 pub(super) fn parse(line: &str) -> Option<Result<Word>> {
     let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
     let rest = rest.trim();
@@ -96,7 +96,7 @@ pub(super) fn parse(line: &str) -> Option<Result<Word>> {
         "help" | "?" => Ok(Word::Help((!rest.is_empty()).then(|| rest.to_owned()))),
         "load" => needed("a file").map(Word::Load),
         "run" => needed("a file").map(Word::Run),
-        // `Kill 2` is the board's.
+        // `Kill 2` is a command of the board.
         "kill" if rest.starts_with("all") => kill(rest),
         "wait" => needed("seconds").and_then(|text| match seconds(&text) {
             Ok(seconds) => Ok(Word::Wait(seconds)),
@@ -111,7 +111,7 @@ pub(super) fn parse(line: &str) -> Option<Result<Word>> {
     })
 }
 
-/// A statement of a stimulus; what is none may be a command of the board that begins with the same word.
+/// A statement of a stimulus; otherwise it may be a command of the board that begins with the same word.
 fn statement(line: &str, word: &str) -> Option<Result<Word>> {
     match Stimulus::parse(&format!("at 0us {line}"), "the line") {
         Ok(_) => Some(Ok(Word::Act(line.to_owned()))),
@@ -120,7 +120,7 @@ fn statement(line: &str, word: &str) -> Option<Result<Word>> {
     }
 }
 
-/// An input that a person presses or releases.
+/// An input that is pressed or released.
 fn bit(text: &str) -> Result<Bit> {
     let number = text.parse().ok().and_then(Bit::new);
     let is_input = |bit: &Bit| {

@@ -27,7 +27,7 @@ use crate::cli::io::input::read;
 use crate::cli::io::{output, terminal as screen};
 use crate::cli::session::{Setup, Started};
 
-/// The end of a run by default: an hour of board time.
+/// The default end of a run: an hour of board time.
 const LIMIT: f64 = 3600.0;
 
 /// Arguments of `cc67 debug`.
@@ -61,7 +61,7 @@ pub(super) struct DebugArguments {
 }
 
 impl DebugArguments {
-    /// The programs, if the files beside them should be used.
+    /// The programs, if the files next to them should be used.
     pub(super) fn with_sidecars(&self) -> Option<&[OsString]> {
         (!self.sidecars.no_sidecar).then_some(&self.programs)
     }
@@ -79,7 +79,7 @@ struct LaunchArguments {
 }
 
 impl LaunchArguments {
-    /// Parses the words, and adds the files beside the first program, as on a command line.
+    /// Parses the words, and adds the files next to the first program, as on a command line.
     fn with_sidecars(words: &[OsString]) -> Result<Self> {
         let arguments = Self::try_parse_from(words)?;
         let Some(programs) = arguments.debug.with_sidecars() else { return Ok(arguments) };
@@ -108,7 +108,7 @@ pub(super) fn debug(arguments: &DebugArguments) -> Result<Exit> {
     converse(debugger, arguments)
 }
 
-/// Takes commands from a file or a person.
+/// Reads commands from a file or a user.
 fn converse<T: Target + 'static>(debugger: Debugger<T>, arguments: &DebugArguments) -> Result<Exit> {
     let shell = Shell::new(debugger);
     for why in shell.debugger().programs().unknown() {
@@ -123,7 +123,7 @@ fn converse<T: Target + 'static>(debugger: Debugger<T>, arguments: &DebugArgumen
     exit
 }
 
-/// Notes what continues on a target whose time passes by itself.
+/// Reports the threads that continue on a target whose time passes by itself.
 fn note_active<T: Target>(shell: &Shell<T>) {
     let session = shell.debugger().session();
     if session.can(Capability::StopTime) {
@@ -136,29 +136,29 @@ fn note_active<T: Target>(shell: &Shell<T>) {
     }
 }
 
-/// Makes the setup that the arguments ask for; `None` if a program has errors, which have been reported.
+/// Creates the setup for the arguments; `None` if a program has errors, which have been reported.
 fn setup(arguments: &DebugArguments) -> Result<Option<Setup>> {
     let started = Started { programs: &arguments.programs, first: &arguments.sidecars.first };
     Setup::new(started, &arguments.board, &arguments.compiler)
 }
 
-/// The tick at which a run ends at the latest.
+/// The latest tick at which a run ends.
 fn limit(arguments: &DebugArguments) -> Ticks {
     Ticks::new((arguments.limit.unwrap_or(LIMIT) / TIMEBASE).round() as u64)
 }
 
-/// A debugger of the programs; `None` if one has errors, which have been reported.
+/// A debugger for the programs; `None` if one has errors, which have been reported.
 fn debugger(arguments: &DebugArguments) -> Result<Option<Debugger<AnyTarget>>> {
     let Some(setup) = setup(arguments)? else { return Ok(None) };
     Ok(Some(Debugger::new(setup.for_debugger()?, limit(arguments))))
 }
 
-/// Does the commands of a file.
+/// Executes the commands of a file.
 fn batch<T: Target>(shell: &mut Shell<T>, path: &std::path::Path) -> Result<Exit> {
     let text =
         if path.as_os_str() == "-" { io::read_to_string(io::stdin())?.into_bytes() } else { read(path)? };
     for line in String::from_utf8_lossy(&text).lines() {
-        // An empty line of a script repeats nothing.
+        // In a script, an empty line does not repeat the last command.
         if line.trim().is_empty() {
             continue;
         }
@@ -173,7 +173,7 @@ fn batch<T: Target>(shell: &mut Shell<T>, path: &std::path::Path) -> Result<Exit
     Ok(Exit::Success)
 }
 
-/// Shows the board's output while it runs; a reader that is gone misses it.
+/// Shows the board's output during a run; a write error is ignored.
 fn show(text: &str) {
     match text.strip_prefix("cc67: ") {
         Some(remark) => screen::note(remark.trim_end()),
@@ -181,7 +181,7 @@ fn show(text: &str) {
     }
 }
 
-/// Serves clients of a port on this computer.
+/// Serves clients at a port of this computer.
 fn listen(arguments: &DebugArguments, port: u16, is_once: bool) -> Result<Exit> {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))
         .with_context(|| format!("cannot listen on port {port}"))?;
@@ -201,8 +201,8 @@ fn listen(arguments: &DebugArguments, port: u16, is_once: bool) -> Result<Exit> 
     }
 }
 
-/// Returns a debugger of what a client asks for: programs, and the options of a board under their long names. Options of
-/// the command line apply where the client names none.
+/// Creates a debugger for a client's launch request: programs, and the options of a board by their long names. Options
+/// of the command line apply unless the client sets them.
 fn launch(arguments: &DebugArguments, request: &Launch) -> Result<Debugger<AnyTarget>, String> {
     let line = request.command_line().map_err(|error| error.to_string())?;
     let words = canonical_words([&arguments.words, line.as_slice()].concat());

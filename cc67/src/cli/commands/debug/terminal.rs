@@ -1,4 +1,4 @@
-//! A person with a keyboard: lines with history and completion.
+//! Interactive input: lines with history and completion.
 
 use std::borrow::Cow;
 use std::cell::RefCell;
@@ -42,7 +42,7 @@ pub(super) fn talk<T: Target + 'static>(shell: &Rc<RefCell<Shell<T>>>) -> Result
     loop {
         match editor.readline(PROMPT) {
             Ok(line) => {
-                // A line that cannot be remembered is only harder to repeat.
+                // If a line cannot be added to the history, it only has to be typed again.
                 let _ = editor.add_history_entry(&line);
                 if !obey(&mut shell.borrow_mut(), &line)? {
                     return Ok(Exit::Success);
@@ -54,7 +54,7 @@ pub(super) fn talk<T: Target + 'static>(shell: &Rc<RefCell<Shell<T>>>) -> Result
     }
 }
 
-/// Executes a line; returns whether there may be another one.
+/// Executes a line; returns whether to continue.
 fn obey<T: Target>(shell: &mut Shell<T>, line: &str) -> Result<bool> {
     match shell.command(line, &mut |text| show(text)) {
         Ok(CommandOutput::Text(text)) => output::print(&text)?,
@@ -64,7 +64,7 @@ fn obey<T: Target>(shell: &mut Shell<T>, line: &str) -> Result<bool> {
     Ok(true)
 }
 
-/// Completes commands and what programs name.
+/// Completes commands and names in programs.
 struct Guide<T: Target>(Rc<RefCell<Shell<T>>>);
 
 impl<T: Target> Completer for Guide<T> {

@@ -1,7 +1,7 @@
 //! The command line of the vendor's compiler.
 //!
-//! Options begin with one `-` and are told apart by the table [`OPTIONS`]; an option's argument
-//! is the next word, or follows directly where the table says so. Everything else is a file, told by its suffix.
+//! Options begin with one `-` and are listed in the table [`OPTIONS`]; an option's argument is the next word, or
+//! follows directly if the table says so. Everything else is a file, whose kind is determined by its suffix.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -28,17 +28,17 @@ This is cc67 in place of the vendor's compiler; `cc67 --help` shows its own comm
 /// The default address of a program.
 pub(super) const DEFAULT_TEXT: u32 = 0x400;
 
-/// The text begins at a multiple of this.
+/// The alignment of the text.
 const FETCH_PACKET: u32 = 32;
 
 /// The meaning of a command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Invocation {
-    /// To compile.
+    /// Compile a program.
     Compile(Box<CompileRequest>),
-    /// Nothing; help is due.
+    /// Show the help.
     Help,
-    /// Print the directories in which the compiler looks for its files.
+    /// Print the directories that the compiler searches for its files.
     SearchDirectories,
 }
 
@@ -49,13 +49,13 @@ pub(super) struct CompileRequest {
     pub(super) source: PathBuf,
     /// The firmware file.
     pub(super) firmware: Option<PathBuf>,
-    /// The file to write; `None` if the program is only to be compiled.
+    /// The output file; `None` if the program is only compiled.
     pub(super) output: Option<PathBuf>,
-    /// Address of the text.
+    /// The address of the text.
     pub(super) text: u32,
-    /// Address of the initialised data, if not after the text.
+    /// The address of the initialised data; `None` for directly after the text.
     pub(super) data: Option<u32>,
-    /// Address of the uninitialised data, if not after the initialised.
+    /// The address of the uninitialised data; `None` for directly after the initialised data.
     pub(super) bss: Option<u32>,
     /// True if symbols and line numbers are written.
     pub(super) has_symbols: bool,
@@ -72,13 +72,13 @@ pub(super) struct CompileRequest {
 /// The way in which an option takes its argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Takes {
-    /// It has none.
+    /// It has no argument.
     Nothing,
-    /// The next word.
+    /// In the next word.
     Next,
-    /// The rest of the word, or the next word if there is no rest.
+    /// In the rest of the word, or in the next word if there is no rest.
     RestOrNext,
-    /// The rest of the word, which may be empty.
+    /// In the rest of the word, which may be empty.
     Rest,
 }
 
@@ -95,15 +95,15 @@ enum OptionMeaning {
     Output,
     CompileOnly,
     SearchDirectories,
-    /// Options of the linker, some of which matter.
+    /// Options for the linker, some of which are used.
     Linker,
     /// The C standard of the program.
     Standard,
-    /// Accepted for old command lines; nothing follows from it here.
+    /// Accepted for old command lines, and ignored.
     Nothing,
 }
 
-/// Every option; the first one that fits counts.
+/// All options; the first match counts.
 const OPTIONS: &[(&str, Takes, OptionMeaning)] = &[
     ("-text", Takes::Next, OptionMeaning::Text),
     ("-data", Takes::Next, OptionMeaning::Data),
@@ -135,10 +135,10 @@ const OPTIONS: &[(&str, Takes, OptionMeaning)] = &[
     ("-f", Takes::Rest, OptionMeaning::Nothing),
 ];
 
-/// Reads a command line without the program's name.
+/// Parses a command line without the program's name.
 ///
 /// # Errors
-/// What is wrong with it, in the vendor's words where there are any.
+/// The error, in the vendor's words if there are any.
 pub(super) fn parse(arguments: &[OsString]) -> Result<Invocation, String> {
     let mut reading = Reading {
         request: CompileRequest { text: DEFAULT_TEXT, ..CompileRequest::default() },
@@ -169,7 +169,7 @@ pub(super) fn parse(arguments: &[OsString]) -> Result<Invocation, String> {
     reading.finish()
 }
 
-/// The row of the table that an option fits.
+/// The matching row of the table.
 fn find(word: &str) -> Option<(&'static str, Takes, OptionMeaning)> {
     let fits = |(name, takes, _): &&(&'static str, Takes, OptionMeaning)| match takes {
         Takes::Nothing | Takes::Next => word == *name,
@@ -178,7 +178,7 @@ fn find(word: &str) -> Option<(&'static str, Takes, OptionMeaning)> {
     OPTIONS.iter().find(fits).copied()
 }
 
-/// A command line while it is read.
+/// A command line during parsing.
 struct Reading {
     request: CompileRequest,
     sources: Vec<PathBuf>,
@@ -204,7 +204,7 @@ impl Reading {
             OptionMeaning::CompileOnly => self.compile_only = true,
             OptionMeaning::SearchDirectories => self.search_directories = true,
             OptionMeaning::Linker => {
-                // `-Wl,-Ttext,80050000`, or with `=`: the call of newer versions.
+                // `-Wl,-Ttext,80050000`, or with `=`: the form used by newer versions.
                 let mut words = value.split([',', '=']).skip_while(|word| *word != "-Ttext").skip(1);
                 if let Some(address) = words.next() {
                     request.text = text_address(address)?;
@@ -263,13 +263,13 @@ fn text_address(value: &str) -> Result<u32, String> {
 
 fn address(value: &str, section: &str) -> Result<u32, String> {
     let digits = value.strip_prefix("0x").or_else(|| value.strip_prefix("0X")).unwrap_or(value);
-    // `from_str_radix` would take a sign.
+    // `from_str_radix` would accept a sign.
     let is_number = digits.bytes().all(|byte| byte.is_ascii_hexdigit());
     let address = is_number.then(|| u32::from_str_radix(digits, 16).ok()).flatten();
     address.ok_or_else(|| format!("Invalid {section} address option"))
 }
 
-/// A path as this system writes it: the calls of Windows programs have backslashes.
+/// A path in this system's notation: calls by Windows programs have backslashes.
 fn native(path: &Path) -> PathBuf {
     match path.to_str() {
         Some(text) if !cfg!(windows) && text.contains('\\') && !path.exists() => {

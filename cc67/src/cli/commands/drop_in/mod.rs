@@ -1,13 +1,13 @@
 //! The drop-in mode: `cc67` in place of the vendor's compiler.
 //!
-//! The controller's PC software starts its compiler with one source file, the firmware file and
-//! the address of a thread, and reads what it says (specification, `dialect.md` section 4,
-//! `coff.md` section 8). Called by the name `tcc67`, or with that command line, `cc67` takes the
-//! same arguments and answers in the same form: nothing on success, else `file:line: message`
-//! in less than 4000 bytes and exit code 1. What it writes is an image for the controller's processor.
+//! The controller's PC software starts its compiler with one source file, the firmware file and the address of a
+//! thread, and reads the compiler's messages (specification, `dialect.md` section 4, `coff.md` section 8). If it is
+//! called by the name `tcc67`, or with such a command line, `cc67` takes the same arguments and answers in the same
+//! form: no output on success, otherwise `file:line: message` in less than 4000 bytes and exit code 1. The output is an
+//! image for the controller's processor.
 //!
-//! The names that a program may use are those of the firmware file and no others; what it lacks is
-//! an undefined symbol, even where the simulated board would have it.
+//! A program may use only the names in the firmware file; other names are undefined symbols, even if the simulated
+//! board has them.
 
 mod arguments;
 
@@ -33,14 +33,14 @@ use compiler::pp::{self, Disk};
 use compiler::render::vendor;
 use compiler::{Compilation, Options, files, image};
 
-/// The name under which programs expect the vendor's compiler.
+/// The name by which programs call the vendor's compiler.
 const NAME: &str = "tcc67";
 
-/// Returns whether the arguments of a process, the program's name first, are meant for the vendor's compiler.
+/// Returns whether the arguments of a process, beginning with the program's name, are meant for the vendor's compiler.
 pub(super) fn is_invoked(arguments: &[OsString]) -> bool {
     let Some((program, rest)) = arguments.split_first() else { return false };
     let stem = Path::new(program).file_stem().unwrap_or_default();
-    // `cc67` itself begins with a subcommand and has no option of these names.
+    // `cc67` itself begins with a subcommand, and has no options with these names.
     let is_vendors = |argument: &OsString| {
         let argument = argument.to_string_lossy();
         argument == "-text" || argument == "-nostdinc" || argument.starts_with("-Wl,-Ttext")
@@ -50,7 +50,7 @@ pub(super) fn is_invoked(arguments: &[OsString]) -> bool {
             && rest.iter().any(is_vendors)
 }
 
-/// Does what the vendor's compiler does with the arguments of a process.
+/// Acts as the vendor's compiler would for the arguments of a process.
 pub(super) fn main(arguments: &[OsString]) -> ExitCode {
     let rest = arguments.get(1..).unwrap_or_default();
     let result = match arguments::parse(rest) {
@@ -69,7 +69,7 @@ pub(super) fn main(arguments: &[OsString]) -> ExitCode {
     match result {
         Ok(()) => Exit::Success,
         Err(text) => {
-            // Nobody is left to be told when stderr is gone.
+            // If stderr is closed, nobody can be informed.
             let _ = io::stderr().write_all(text.as_bytes());
             Exit::Failure
         }
@@ -78,11 +78,11 @@ pub(super) fn main(arguments: &[OsString]) -> ExitCode {
 }
 
 fn print(text: &str) {
-    // Nobody is left to be told when stdout is gone.
+    // If stdout is closed, nobody can be informed.
     let _ = io::stdout().write_all(text.as_bytes());
 }
 
-/// Compiles, links and writes; the error has all messages of the compiler.
+/// Compiles, links and writes; the error contains all messages of the compiler.
 fn compile(request: &CompileRequest) -> Result<(), String> {
     let text = files::read(&request.source)
         .map_err(|_| format!("tcc: file '{}' not found\n", request.source.display()))?;
@@ -110,11 +110,12 @@ fn compile(request: &CompileRequest) -> Result<(), String> {
 
 /// The name of the firmware file of the older board.
 const OTHER_FIRMWARE: &str = "DSPKMotion";
-/// The reason for which a program is compiled for the older board by mistake (host-protocol.md section 9, item 7).
+/// The reason why a program may be compiled for the older board by mistake (host-protocol.md section 9, item 7).
 const MISTAKEN: &str =
     "the KMotion library takes a board that is in use by another client for the older KMotion: try again";
 
-/// A program for the older board would be downloaded to a place where no thread of this one begins.
+/// Rejects programs for the older board: they would be downloaded to an address at which no thread of this board
+/// begins.
 fn refuse_other_boards(request: &CompileRequest) -> Result<(), String> {
     let stem = request.firmware.as_deref().and_then(Path::file_stem).unwrap_or_default();
     if stem.eq_ignore_ascii_case(OTHER_FIRMWARE) {
@@ -165,7 +166,7 @@ fn options(request: &CompileRequest, firmware: Option<Firmware>) -> Options {
     }
 }
 
-/// The thread whose space begins at an address; the first one for all other addresses.
+/// The thread whose space begins at an address; for other addresses, the first thread.
 fn thread(text: u32) -> Option<ThreadId> {
     let own = ThreadId::all().find(|thread| program_base(*thread).get() == text);
     own.or_else(|| ThreadId::all().next())

@@ -1,4 +1,4 @@
-//! I/O bits: the ranges, and one bit by its number, as `bit46`, `bit 46` or `46`.
+//! I/O bits: the ranges, and single bits by number, as `bit46`, `bit 46` or `46`.
 
 use std::fmt::Write as _;
 
@@ -15,7 +15,7 @@ pub(super) fn list() -> String {
     })
 }
 
-/// Explains a bit, if the name is one of a bit.
+/// Explains a bit, if the name denotes one.
 pub(super) fn answer(name: &str) -> Result<Option<String>> {
     let lower = name.to_lowercase();
     let digits = lower.strip_prefix("bit").unwrap_or(&lower).trim();
@@ -70,7 +70,7 @@ fn use_of(range: &BitRange, number: u32) -> String {
     }
 }
 
-/// Describes the hardware that it needs, and how the simulated machine drives it.
+/// Describes the required hardware, and how the simulated machine drives it.
 fn outside(range: &BitRange, number: u32) -> String {
     let board = match range.kind {
         BitKind::KanalogInput

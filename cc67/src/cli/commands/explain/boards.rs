@@ -1,4 +1,4 @@
-//! The boards that have a name: a line for names that not every board has, an answer for those of other boards alone.
+//! The boards with a name: a line for names that not all boards have, an answer for names that only other boards have.
 
 use std::fmt::Write as _;
 
@@ -6,7 +6,8 @@ use kmotiondef::boards::{TargetBoard, boards};
 use kmotiondef::firmware::row_named;
 use kmotiondef::variables::variable_named;
 
-/// The boards whose firmware has a name and those whose firmware has it not, as a line of a list; empty if all are alike.
+/// The boards whose firmware has a name and those whose firmware lacks it, as a line of a list; empty if all boards are
+/// alike.
 pub(super) fn line(name: &str) -> String {
     let (with, without): (Vec<&TargetBoard>, Vec<&TargetBoard>) = boards().partition(|board| board.has(name));
     if with.is_empty() || without.is_empty() {

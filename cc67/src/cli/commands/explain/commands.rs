@@ -13,7 +13,7 @@ pub(super) fn entries() -> impl Iterator<Item = Explained> {
     all().map(|command| Explained { name: command.name, about: format!("Script command: {}.", command.help) })
 }
 
-/// The commands of all firmware.
+/// The commands of all firmware versions.
 fn all() -> impl Iterator<Item = &'static Command> {
     let is_new = |command: &&Command| COMMANDS.iter().all(|known| known.name != command.name);
     COMMANDS.iter().chain(LATER_COMMANDS.iter().filter(is_new)).chain(KOGNA_COMMANDS)
@@ -46,7 +46,7 @@ pub(super) fn answer(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
     ))
 }
 
-/// The boards that have a command and those that lack it; nothing if all have it.
+/// The boards that have a command and those that lack it; empty if all have it.
 fn boards_of(command: &Command) -> String {
     let with: Vec<_> = boards_with(command.name).map(|(_, board)| board.name).collect();
     let without = boards().filter(|board| ModelledBoard::of(board).is_some());
@@ -57,7 +57,7 @@ fn boards_of(command: &Command) -> String {
     format!("\n- Boards with it: {}. Boards without: {}.\n", with.join(", "), without.join(", "))
 }
 
-/// Most rows begin with a verb, those of values with a noun.
+/// Most descriptions begin with a verb; those of commands that return values begin with a noun.
 fn described(help: &str) -> String {
     let first = help.split(' ').next().unwrap_or_default();
     let is_verb = first.ends_with('s') && !["axis", "options", "coefficients", "cycles"].contains(&first);

@@ -1,7 +1,7 @@
-//! Firmware functions: the row of the table, waits, common mistakes, an example.
+//! Firmware functions: the row of the table, waits, common errors, an example.
 //!
-//! What goes wrong and an example are on the page `pages/functions.md`, whose headings name functions; a function that is
-//! not there has the call of an example program.
+//! Common errors and examples are on the page `pages/functions.md`, whose headings name functions; for a function not
+//! mentioned there, the example is a call in an example program.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -14,10 +14,10 @@ use runtime::REMARKS;
 use super::{Explained, boards};
 use crate::cli::commands::examples;
 
-/// Under each heading the names of functions, then their text.
+/// The page: headings with names of functions, each followed by their text.
 const PAGE: &str = include_str!("../pages/functions.md");
 
-/// Cycles of the processor in a microsecond.
+/// Cycles of the processor per microsecond.
 const CYCLES_PER_US: f64 = 200.0;
 
 fn shown() -> impl Iterator<Item = &'static FirmwareFunction> {
@@ -81,7 +81,7 @@ pub(super) fn answer(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
     Some(text)
 }
 
-/// The arguments with a meaning beyond their C type, as a line of a list.
+/// The arguments whose meaning goes beyond their C type, as a line of a list.
 fn arguments(function: &FirmwareFunction) -> String {
     let meanings = function.params.iter().filter_map(|param| {
         let meaning = match param.role {
@@ -104,7 +104,7 @@ fn sentence(function: &FirmwareFunction) -> String {
     function.doc.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The remarks whose text or description names a function.
+/// The remarks whose text or description mentions a function.
 fn codes(name: &str) -> Vec<String> {
     let names = |text: &str| {
         text.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|word| word == name)

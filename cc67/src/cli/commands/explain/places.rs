@@ -1,4 +1,4 @@
-//! Firmware variables, the structures with their fields, and constants of the header.
+//! Firmware variables, structures with their fields, and constants of the header.
 
 use std::fmt::Write as _;
 
@@ -33,7 +33,7 @@ pub(super) fn variables() -> String {
     })
 }
 
-/// Explains variables, structures, fields and constants of a name.
+/// Explains variables, structures, fields and constants with a name.
 pub(super) fn answer(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
     let mut parts = Vec::new();
     for row in FIRMWARE_VARIABLES.iter().filter(|row| is_meant(row.name)) {
@@ -96,7 +96,7 @@ fn start(start: Start, stored: Stored) -> String {
     format!("It is {value} {kept}.\n")
 }
 
-/// The constants that a field of modes takes.
+/// The constants for a field with modes.
 fn modes(field: &str) -> String {
     let suffix = match field {
         "InputMode" | "OutputMode" => "_MODE",
@@ -115,7 +115,7 @@ fn modes(field: &str) -> String {
     })
 }
 
-/// The first five modes of the headers are those of inputs; their numbers begin at 0 again with those of outputs.
+/// The first five modes in the headers are input modes; the numbers of output modes begin at 0 again.
 fn modes_of_input() -> Vec<&'static str> {
     let all = constants().filter(|(name, _)| name.ends_with("_MODE"));
     let mut names: Vec<_> =
@@ -125,7 +125,7 @@ fn modes_of_input() -> Vec<&'static str> {
     names
 }
 
-/// Returns the field that takes a mode.
+/// Returns the field for a mode.
 fn used_by(name: &str) -> String {
     ["InputMode", "OutputMode", "BacklashMode"]
         .into_iter()

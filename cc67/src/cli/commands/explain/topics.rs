@@ -1,8 +1,8 @@
-//! Pages on subjects: one file each, whose first paragraph describes it.
+//! Pages on topics: one file each, described by its first paragraph.
 
 use super::{Explained, first_sentence};
 
-/// Name and page.
+/// Names and pages.
 const PAGES: &[(&str, &str)] = &[
     ("threads", include_str!("../pages/topics/threads.md")),
     ("races", include_str!("../pages/topics/races.md")),

@@ -1,8 +1,8 @@
-//! Words of other languages and boards: what to write for them here.
+//! Words of other languages and boards, with their equivalents here.
 
 use compiler::words::foreign;
 
-/// The advice for a word.
+/// The advice on a word.
 pub(super) fn answer(name: &str) -> Option<String> {
     let advice = foreign::word(name).map(|word| word.advice);
     let of_type = || foreign::TYPES.iter().find(|(word, _)| *word == name).map(|(_, advice)| *advice);

@@ -1,7 +1,7 @@
 //! `cc67 init`: a project folder ready for an editor and for CI.
 //!
-//! The folder holds a first program with its test, the header of the board for editors, and what VS Code
-//! and a CI service need to know. The files are those of `project/`, the headers those of the compiler.
+//! The folder contains a first program with its test, the header of the board for editors, and the configuration for VS
+//! Code and a CI service. The files come from `project/`, the headers from the compiler.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -26,7 +26,7 @@ pub(super) struct InitArguments {
     example: Option<String>,
 }
 
-/// The examples for a beginning: name, program, and a stimulus of its own.
+/// The examples for new projects: name, program, and a stimulus of its own.
 const EXAMPLES: &[(&str, &str, Option<&[u8]>)] = &[
     ("homing", "homing/index.c", Some(include_bytes!("examples/homing.stim"))),
     ("probe", "probing/tool_length.c", None),
@@ -47,7 +47,7 @@ fn example(name: &str) -> Result<Vec<(String, Vec<u8>)>> {
     Ok(files)
 }
 
-/// The files of a project beside the headers: name, text.
+/// The files of a project other than headers: name and text.
 const PROJECT: &[(&str, &[u8])] = &[
     ("README.md", include_bytes!("project/README.md")),
     ("first.c", include_bytes!("project/first.c")),

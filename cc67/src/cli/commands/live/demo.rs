@@ -1,4 +1,4 @@
-//! The demonstration: a machine that homes and mills, as files in a folder of its own, to be edited while it runs.
+//! The demonstration: a machine that homes and mills, as files in a new folder, which can be edited while it runs.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs, process};
@@ -23,7 +23,7 @@ pub(super) fn write() -> Result<PathBuf> {
     Ok(folder)
 }
 
-/// The arguments that show it, after the name of the command.
+/// The arguments for showing it, after the name of the command.
 pub(super) fn arguments(folder: &Path) -> Vec<String> {
     let file = |name: &str| folder.join(name).display().to_string();
     let watch = "dest0,dest1,dest2,bit140";

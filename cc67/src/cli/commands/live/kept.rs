@@ -1,7 +1,8 @@
-//! The token and the port of a project's pages, kept so that a page that is open finds the next run of the command.
+//! The token and the port of a project's page, stored so that an open page can reconnect to the next run of the
+//! command.
 //!
-//! One file holds the projects that were shown last, a line each: token, port, folder. It is readable for its owner alone.
-//! A file that cannot be read or written costs nothing but that pages have to be opened again.
+//! One file contains the projects shown last, one per line: token, port, folder. Only its owner can read it. If the
+//! file cannot be read or written, the only consequence is that pages must be opened again.
 
 use std::env;
 use std::fs::{self, File, OpenOptions};
@@ -11,19 +12,19 @@ use std::process;
 
 use crate::cli::io::state;
 
-/// Projects that are kept.
+/// The maximum number of projects in the file.
 const MOST: usize = 50;
 
-/// The access to the pages of a project.
+/// The access to the page of a project.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct KeptAccess {
-    /// The token of their address.
+    /// The token in its URL.
     pub(super) token: String,
-    /// The port of their address.
+    /// The port in its URL.
     pub(super) port: u16,
 }
 
-/// The access of the last run in this folder, if it is known.
+/// The access of the last run in this folder, if known.
 pub(super) fn read() -> Option<KeptAccess> {
     let (file, project) = (record()?, project()?);
     let text = fs::read_to_string(file).ok()?;
@@ -32,18 +33,18 @@ pub(super) fn read() -> Option<KeptAccess> {
         .map(|(_, access)| access)
 }
 
-/// Keeps the access for the next run in this folder.
+/// Stores the access for the next run in this folder.
 pub(super) fn write(access: &KeptAccess) {
     let (Some(file), Some(project)) = (record(), project()) else { return };
     let known = fs::read_to_string(&file).unwrap_or_default();
     let others = known.lines().filter(|line| parsed(line).is_some_and(|(folder, _)| folder != project));
     let line = format!("{} {} {project}", access.token, access.port);
     let lines: Vec<&str> = std::iter::once(&*line).chain(others.take(MOST - 1)).collect();
-    // Without this file pages have to be opened again, which is no failure of this run.
+    // Without this file pages must be opened again, which is not an error of this run.
     let _ = replace(&file, &(lines.join("\n") + "\n"));
 }
 
-/// Writes a file that only its owner can read, all at once.
+/// Writes a file that only its owner can read, in one step.
 fn replace(file: &Path, text: &str) -> io::Result<()> {
     let folder = file.parent().unwrap_or(Path::new(""));
     fs::create_dir_all(folder)?;
@@ -58,13 +59,13 @@ fn private(file: &Path) -> io::Result<File> {
     OpenOptions::new().write(true).create(true).truncate(true).mode(0o600).open(file)
 }
 
-/// The folder is in the user's profile, which others cannot read.
+/// Creates the file: the folder is in the user's profile, which others cannot read.
 #[cfg(not(unix))]
 fn private(file: &Path) -> io::Result<File> {
     OpenOptions::new().write(true).create(true).truncate(true).open(file)
 }
 
-/// The folder of a line, and the access to its pages.
+/// The folder in a line, and the access to its page.
 fn parsed(line: &str) -> Option<(&str, KeptAccess)> {
     let (token, rest) = line.split_once(' ')?;
     let (port, folder) = rest.split_once(' ')?;

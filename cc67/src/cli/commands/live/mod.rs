@@ -1,6 +1,6 @@
 //! `cc67 live`: a simulated board on a page in the browser.
 //!
-//! What the page shows and does is in `cc67-live`; here it gets its board, and a browser.
+//! The page itself is implemented in `cc67-live`; this module provides the board, and opens a browser.
 
 mod demo;
 mod kept;
@@ -30,7 +30,7 @@ use crate::cli::io::terminal;
 use crate::cli::session::{BoardSession, Setup, Started, Work};
 use kept::KeptAccess;
 
-/// The port that is taken if it is free and no other is requested.
+/// The default port, if it is free.
 const PORT: u16 = 8067;
 
 /// Arguments of `cc67 live`.
@@ -75,19 +75,19 @@ pub(super) struct LiveArguments {
 }
 
 impl LiveArguments {
-    /// The programs, if what is beside them should be used.
+    /// The programs, if the files next to them should be used.
     pub(super) fn with_sidecars(&self) -> Option<&[OsString]> {
         (!self.sidecars.no_sidecar).then_some(&self.programs)
     }
 }
 
-/// Leaves an option of the serial port out of the help: [`live`] refuses it.
+/// Hides an option of the serial port in the help: [`live`] rejects it.
 fn hide_serial_port(argument: Arg) -> Arg {
     let is_hidden = argument.get_id().as_str().starts_with("uart");
     if is_hidden { argument.hide(true) } else { argument }
 }
 
-/// A factor of time.
+/// Parses a speed factor.
 fn speed(text: &str) -> Result<f64, String> {
     let factor = text.parse().ok().filter(|factor| (0.01..=100.0).contains(factor));
     factor.ok_or_else(|| "expected a number from 0.01 to 100".to_owned())
@@ -108,7 +108,7 @@ pub(super) fn live(arguments: &LiveArguments) -> Result<Exit> {
     let mut server = None;
     loop {
         let Some(mut setup) = arguments.setup()? else { return Ok(Exit::Failure) };
-        // Nothing is loaded into a controller before somebody has switched control on.
+        // Nothing is loaded into a controller before control is enabled on the page.
         let waiting = if setup.is_of_controller() { setup.take_programs() } else { Vec::new() };
         let debugger = arguments.attach.open()?;
         let mut end = ShowEnd::TimeOver;
@@ -120,17 +120,17 @@ pub(super) fn live(arguments: &LiveArguments) -> Result<Exit> {
     }
 }
 
-/// The page of a board, and the programs that wait until a person loads them.
+/// The page of a board, and the programs that wait until a user loads them.
 struct LivePage<'a> {
     arguments: &'a LiveArguments,
     waiting: Vec<UserProgram>,
-    /// The server, once it listens: it stays for another board.
+    /// The server, once it listens: it is kept for the next board.
     server: &'a mut Option<Server>,
     /// The reason for the end.
     end: &'a mut ShowEnd,
 }
 
-/// Shows the demonstration, with those of the arguments that are about the page.
+/// Shows the demonstration, with the arguments that concern the page.
 fn demonstrate(arguments: &LiveArguments) -> Result<Exit> {
     let folder = demo::write()?;
     terminal::note(&format!("the files of the demonstration are in {}", folder.display()));
@@ -156,7 +156,7 @@ impl Work for LivePage<'_> {
     fn on<T: Target>(self, mut rig: BoardSession<T>) -> Result<Exit> {
         let Self { arguments, waiting, server, end } = self;
         let mut show = arguments.show()?;
-        // An editor that is attached cannot be given another board.
+        // An attached editor cannot be switched to another board.
         show.machine.can_rebuild =
             arguments.attach.debug.is_none() && arguments.board.controller.on.is_none();
         for compiled in waiting {
@@ -189,7 +189,7 @@ impl Work for LivePage<'_> {
     }
 }
 
-/// Collects the contents of a page besides the board: the programs, and the equipment that is connected.
+/// Collects the contents of a page that are not the board's state: the programs, and the connected equipment.
 pub(super) fn show(
     programs: &[OsString],
     board: &BoardArguments,
@@ -223,8 +223,8 @@ pub(super) fn show(
     })
 }
 
-/// Listens for pages: on the port that is requested, or else on that of the last run in this folder, the usual one, or
-/// one that is free. Pages of the last run are let in again, unless other computers can listen to the connection.
+/// Listens for pages: on the requested port, or otherwise on the port of the last run in this folder, the default port,
+/// or a free port. Pages of the last run may reconnect, unless other computers can listen to the connection.
 pub(super) fn listen(port: Option<u16>, board: &BoardArguments) -> Result<Server> {
     let host = board.pc.address().unwrap_or(Ipv4Addr::LOCALHOST.into());
     let kept = if host.is_loopback() { kept::read() } else { None };
@@ -246,7 +246,7 @@ pub(super) fn listen(port: Option<u16>, board: &BoardArguments) -> Result<Server
     Ok(server)
 }
 
-/// Prints the address of the page, and opens it.
+/// Prints the URL of the page, and opens it.
 pub(super) fn announce(server: &Server, board: &BoardArguments, opens: bool) -> Result<()> {
     if board.pc.address().is_some_and(|host| !host.is_loopback()) {
         terminal::note("other computers can reach this page: anyone with the address can move the machine");
@@ -260,7 +260,7 @@ pub(super) fn announce(server: &Server, board: &BoardArguments, opens: bool) -> 
 }
 
 impl LiveArguments {
-    /// Refuses what a controller cannot do.
+    /// Rejects options that do not work with a controller.
     fn refuse_with_controller(&self) -> Result<()> {
         ensure!(!self.demo, "`--demo` is a simulated machine: it does not work with `--on`");
         ensure!(!self.paused, "`--paused`: the time of a connected controller cannot be stopped");
@@ -276,7 +276,7 @@ impl LiveArguments {
         Ok(())
     }
 
-    /// Reads and compiles what the board is made of; `None` if a program has errors, which have been reported.
+    /// Reads and compiles the inputs for the board; `None` if a program has errors, which have been reported.
     fn setup(&self) -> Result<Option<Setup>> {
         let started = Started { programs: &self.programs, first: &self.sidecars.first };
         Setup::new(started, &self.board, &self.compiler)
@@ -312,7 +312,7 @@ impl LiveArguments {
     }
 }
 
-/// Opens the browser that the person uses; where that cannot be done, the address is in the terminal.
+/// Opens the user's browser; if that is not possible, a note refers to the URL in the terminal.
 fn open(url: &str) {
     let (program, arguments): (_, &[&str]) = if cfg!(target_os = "macos") {
         ("open", &[])

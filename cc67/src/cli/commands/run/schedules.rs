@@ -1,7 +1,7 @@
-//! Runs of the same programs by many schedules, in one process: the part of `cc67 test --schedules` that is done where a
-//! test is run.
+//! Runs the same programs with many schedules, in one process: the part of `cc67 test --schedules` that happens in the
+//! process of a test.
 //!
-//! One JSON object a line on stdout for each schedule that fails.
+//! For each failing schedule, one JSON object is written to a line of stdout.
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -34,11 +34,11 @@ pub(crate) struct ExploreArguments {
 /// A schedule that fails.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Failing {
-    /// Its place in the list of schedules.
+    /// Its position in the list of schedules.
     pub(crate) number: u64,
     /// The schedule as text.
     pub(crate) schedule: String,
-    /// The failure.
+    /// The reason of the failure.
     pub(crate) why: String,
 }
 
@@ -48,7 +48,7 @@ impl ExploreArguments {
         self.explore.is_some()
     }
 
-    /// Runs by all schedules; `make` sets up one run, `None` if a program has errors.
+    /// Runs with all schedules; `make` sets up one run, and returns `None` if a program has errors.
     pub(super) fn explore(
         &self,
         limit: Ticks,
@@ -84,7 +84,7 @@ fn schedules(list: &str) -> Result<Vec<(u64, Schedule)>> {
 #[derive(Debug, Default)]
 struct ScheduledRun {
     console: String,
-    /// The first loss that the detector has seen.
+    /// The first lost update found by the detector.
     loss: Option<&'static str>,
     exit: Option<Exit>,
 }

@@ -1,4 +1,4 @@
-//! The board that is served, with its link, its files and whatever is recorded of it.
+//! The served board, with its link, its files and its recordings.
 
 use anyhow::Result;
 use cc67_host::Target;
@@ -18,12 +18,12 @@ use crate::cli::io::terminal;
 use crate::cli::report::seen::Seen;
 use crate::cli::report::trace::Trace;
 
-/// Ticks in which the board takes a line at the latest.
+/// The maximum number of ticks until the board takes a line.
 const TAKEN_WITHIN: u64 = 11_111;
-/// The beginning of the board's message about a command that it refuses (host-protocol.md section 2).
+/// The beginning of the board's message about a command that it rejects (host-protocol.md section 2).
 const REFUSED: &[u8] = b"error, ";
 
-/// A board under control, and what came over its link.
+/// A board under control, and the data received over its link.
 pub(super) struct ServedBoard<'a, T: Target> {
     board: Served<T>,
     terms: &'a Terms<'a>,
@@ -34,17 +34,17 @@ pub(super) struct ServedBoard<'a, T: Target> {
     seen: Seen,
     trace: Option<Trace>,
     has_told_replies: bool,
-    /// True if the board's answers are for a page.
+    /// True if the board's replies are for a page.
     is_for_page: bool,
-    /// True if programs that print wait, as too much output is unread.
+    /// True if programs that print have to wait because too much output is unread.
     is_held_back: bool,
-    /// The wire to the one client that has the link to itself, if the board is served so.
+    /// The wire to the only client of the link, if the board is served in this way.
     pub(super) wire: Option<WireEnd>,
     has_told_wire: bool,
 }
 
 impl<'a, T: Target> ServedBoard<'a, T> {
-    /// A board, recorded by the terms.
+    /// Creates the served board, recorded as the terms require.
     pub(super) fn new(mut board: Served<T>, trace: Option<Trace>, terms: &'a Terms<'a>) -> Result<Self> {
         let log = terms.log.map(ExchangeLog::new).transpose()?;
         let wire = terms.is_on_wire().then(WireEnd::default);
@@ -67,12 +67,12 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         })
     }
 
-    /// Number of the last tick that has passed.
+    /// The number of the last completed tick.
     pub(super) fn tick(&self) -> Ticks {
         self.board.tick()
     }
 
-    /// Returns whether a debugger may be attached, or is.
+    /// Returns whether a debugger is attached, or can attach.
     pub(super) fn is_attended(&self) -> bool {
         self.board.is_attended()
     }
@@ -96,7 +96,7 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         true
     }
 
-    /// Sends a line and lets the board take it. One with an escape is not echoed.
+    /// Sends a line and lets the board take it. A line with an escape is not echoed.
     pub(super) fn send(&mut self, before: &[u8], line: &[u8]) {
         if let Some(log) = &mut self.log {
             log.line(self.board.tick(), line, self.board.is_in_command());
@@ -105,7 +105,7 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         self.until(TAKEN_WITHIN, |board| !board.is_receiving());
     }
 
-    /// Sends a line for a page, which alone sees what the board answers.
+    /// Sends a line for a page, which alone receives the board's reply.
     pub(super) fn send_for_page(&mut self, before: &[u8], line: &[u8]) {
         self.log("page:");
         self.forward();
@@ -117,7 +117,7 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         self.send_on_wire(wire::console_lines(&sent));
     }
 
-    /// Gives the board what its client has sent, once it has taken what came before.
+    /// Sends the board the data of its client, once it has taken the previous data.
     pub(super) fn feed(&mut self) {
         if let Some(wire) = self.wire.as_mut().filter(|wire| wire.has_incoming())
             && !self.board.is_receiving()
@@ -126,17 +126,17 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         }
     }
 
-    /// Returns whether the board has not taken all bytes that it was sent.
+    /// Returns whether the board still has to take bytes that were sent.
     pub(super) fn is_receiving(&self) -> bool {
         self.board.is_receiving()
     }
 
-    /// Returns whether the board has not taken all that a client has sent who has the link to itself.
+    /// Returns whether the board still has to take bytes of the only client of the link.
     pub(super) fn is_feeding(&self) -> bool {
         self.wire.as_ref().is_some_and(|wire| wire.has_incoming() || self.is_receiving())
     }
 
-    /// Sends the client what the board has sent, and has programs that print wait while it does not read.
+    /// Sends the board's data to the client, and makes programs that print wait while the client does not read.
     pub(super) fn forward(&mut self) {
         if self.wire.is_some() {
             let sent = self.board.take_wire();
@@ -159,7 +159,8 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         self.board.is_in_command()
     }
 
-    /// Shows the board on its page, if it has one, and does what is wished there; what is for the desk.
+    /// Shows the board on its page, if it has one, and executes the page's requests; returns the requests for the
+    /// dispatcher.
     pub(super) fn show(&mut self) -> Option<PageRequests> {
         let mut events = Vec::new();
         self.board.attend(&mut |event| events.push(event));
@@ -172,7 +173,8 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         Some(wishes)
     }
 
-    /// Has programs that print wait while too many lines wait for the console; `waiting` are those off the link.
+    /// Makes programs that print wait while too many lines wait for the console; `waiting` is the number of lines
+    /// already taken from the link.
     pub(super) fn hold_back(&mut self, waiting: usize) {
         let limit = if self.is_held_back { CONSOLE_LINES / 2 } else { CONSOLE_LINES };
         let is_too_much = self.is_heard && waiting + self.link.console_lines() >= limit;
@@ -182,7 +184,7 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         }
     }
 
-    /// Notes in the log what a client asked and was answered.
+    /// Logs a client's request and its answer.
     pub(super) fn log(&mut self, text: &str) {
         if let Some(log) = &mut self.log {
             log.remark(self.board.tick(), text, self.board.is_in_command());
@@ -194,14 +196,14 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         self.log.is_some()
     }
 
-    /// Reopens the link: what is under way is dropped on both ends.
+    /// Reopens the link: pending data are dropped on both ends.
     pub(super) fn reopen(&mut self) {
         self.board.receive(b"\x03");
         self.until(TAKEN_WITHIN, |board| !board.is_receiving());
         self.link.clear();
     }
 
-    /// Takes up what happened.
+    /// Handles events.
     fn take(&mut self, events: Vec<Event>) {
         for event in events {
             if let Some(trace) = &mut self.trace {
@@ -216,12 +218,12 @@ impl<'a, T: Target> ServedBoard<'a, T> {
     }
 
     fn event(&mut self, event: Event) {
-        // A page shows what it has requested itself, and not what others have.
+        // A page shows the replies to its own requests, and not those to others.
         if self.is_for_page || !matches!(event.kind, EventKind::Reply(_)) {
             self.board.show(&event);
         }
         match &event.kind {
-            // The client has the bytes themselves.
+            // The client receives the bytes themselves.
             EventKind::Reply(_) | EventKind::Echo(_) | EventKind::ConsoleLine(_) if self.wire.is_some() => {}
             EventKind::Reply(line) => {
                 if !self.is_for_page {
@@ -251,7 +253,7 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         }
     }
 
-    /// The board is served no more: files are written, and the exit code is that of its programs.
+    /// Ends serving: the files are written, and the exit code is determined by the board's programs.
     pub(super) fn finish(mut self) -> Result<Exit> {
         let mut events = Vec::new();
         let finished = self.board.finish(&mut |event| events.push(event));

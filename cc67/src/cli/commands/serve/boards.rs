@@ -1,4 +1,4 @@
-//! Several boards of one server, each with its machine, in a thread of its own.
+//! Several boards of one server, each with its machine, in a separate thread.
 
 use std::path::PathBuf;
 use std::sync::mpsc::channel;
@@ -12,7 +12,7 @@ use crate::cli::io::exit::Exit;
 use crate::cli::io::{stack, terminal};
 use crate::cli::session::Setup;
 
-/// A board of several: its name, and its machine file.
+/// One of several boards: its name, and its machine file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct BoardFile {
     name: String,
@@ -20,7 +20,7 @@ pub(super) struct BoardFile {
 }
 
 impl BoardFile {
-    /// Reads `NAME=MACHINE.toml`.
+    /// Parses `NAME=MACHINE.toml`.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         match text.split_once('=') {
             Some((name, file)) if !name.is_empty() && !file.is_empty() => {
@@ -30,7 +30,7 @@ impl BoardFile {
         }
     }
 
-    /// The board of the arguments with this machine.
+    /// The setup of the arguments with this machine.
     fn setup(&self, arguments: &ServeArguments) -> Result<Option<Setup>> {
         let mut board = arguments.board.clone();
         board.machine = Some(self.machine.clone());
@@ -86,7 +86,7 @@ pub(super) fn serve(terms: &Terms<'_>, arguments: &ServeArguments) -> Result<Exi
     })
 }
 
-/// Refuses what is of one board.
+/// Rejects options that apply to a single board.
 fn refuse_for_several(terms: &Terms<'_>, arguments: &ServeArguments) -> Result<()> {
     let has_page = {
         #[cfg(feature = "live")]

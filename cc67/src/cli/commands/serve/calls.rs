@@ -11,7 +11,7 @@ use super::link::LinkLine;
 use super::message::{Call, Reply, Request, location};
 use crate::cli::io::terminal;
 
-/// Before a line that is not echoed.
+/// The prefix of a line that is not echoed.
 pub(super) const SILENT: &[u8] = b"\x1b\x01";
 /// The time limit for the answer to a line, in milliseconds.
 const ANSWER_WITHIN: u32 = 3000;
@@ -19,13 +19,13 @@ const ANSWER_WITHIN: u32 = 3000;
 const READY_WITHIN: u32 = 100;
 /// The generation of the firmware.
 const FIRMWARE: i32 = 2;
-/// The result of a line that does not come in time.
+/// The result if a line does not come in time.
 const TIMEOUT: i32 = 2;
-/// The error that a client receives when it gives up the link.
+/// The error that a client receives when it closes the link.
 const FAILED: &str = "Read Failed - Auto Disconnect";
 
 impl<T: Target> Dispatcher<'_, T> {
-    /// Does what a client asks for; its reply, if that is known already.
+    /// Executes a client's request; returns the reply, if it is already known.
     pub(super) fn ask(&mut self, client: u64, request: &Request) -> Option<Reply> {
         if request.index(self.slot.boards) != Some(self.slot.index) {
             return Some(Reply::number(elsewhere(&request.call)));
@@ -65,7 +65,7 @@ impl<T: Target> Dispatcher<'_, T> {
         success
     }
 
-    /// A line and the first line of its answer.
+    /// Sends a line and waits for the first line of its reply.
     fn exchange(&mut self, client: u64, line: &[u8]) -> Option<Reply> {
         let begin = self.board.tick().get();
         self.write(SILENT, line);
@@ -96,7 +96,7 @@ impl<T: Target> Dispatcher<'_, T> {
         }
     }
 
-    /// Asks for the token once. Who has it does not get it a second time.
+    /// Requests the token once. The client that holds it does not get it a second time.
     fn lock(&mut self, client: u64) -> Lock {
         self.connect();
         match &mut self.token {
@@ -115,7 +115,7 @@ impl<T: Target> Dispatcher<'_, T> {
         }
     }
 
-    /// Reads a line for the console, if nobody has the token.
+    /// Reads a line for the console, if nobody holds the token.
     fn service_console(&mut self) {
         if self.token.taken_by.is_none() && self.state.is_open {
             self.board.until(EXCHANGE, |board| board.link.has_line());
@@ -132,14 +132,14 @@ impl<T: Target> Dispatcher<'_, T> {
         Some(line)
     }
 
-    /// A line for the console: without one it is discarded.
+    /// Passes a line to the console; without a console it is discarded.
     fn show(&mut self, line: Vec<u8>) {
         if self.console.client.is_some() {
             self.console.lines.push_back(line);
         }
     }
 
-    /// Looks for what a client waits for: its reply, if it has come or the time has passed.
+    /// Checks whether a wait of a client is over: returns the reply if it has come or the time limit has passed.
     pub(super) fn look(&mut self, waiting: &mut Waiting, time: Instant) -> Option<Reply> {
         while let Some(line) = self.read() {
             match (&mut waiting.wanted, line) {
@@ -178,7 +178,7 @@ impl<T: Target> Dispatcher<'_, T> {
     }
 }
 
-/// The result of a call for a board that is not there.
+/// The result of a call for a board that does not exist.
 fn elsewhere(call: &Call) -> i32 {
     if *call == Call::Lock {
         Lock::NotConnected as i32

@@ -1,4 +1,4 @@
-//! A thread for the client that has the board's link to itself: bytes from it to the [desk](super::desk), and back.
+//! A thread for the only client of the board's link: passes bytes from it to the [dispatcher](super::desk), and back.
 
 use std::io::{ErrorKind, Read, Write};
 use std::sync::Arc;
@@ -10,12 +10,12 @@ use std::time::Duration;
 use super::desk::Note;
 use super::wire::WireClient;
 
-/// Bytes on their way to the board, before the client has to wait.
+/// The number of bytes on their way to the board from which the client has to wait.
 const UNTAKEN: usize = 4096;
-/// The pause after which a client that is ahead of the board looks whether the board has taken something.
+/// The interval at which a waiting client checks whether the board has taken bytes.
 const PAUSE: Duration = Duration::from_millis(1);
 
-/// A client whose bytes are carried; dropping it reports its end to the desk.
+/// A client whose bytes are passed on; dropping it reports its end to the dispatcher.
 #[derive(Debug)]
 pub(super) struct PluggedClient {
     number: u64,
@@ -23,19 +23,19 @@ pub(super) struct PluggedClient {
     untaken: Arc<AtomicUsize>,
 }
 
-/// Tells the desk that a client has the link from now on.
+/// Informs the dispatcher of a new client of the link.
 pub(super) fn plug(number: u64, desk: &Sender<Note>, writer: impl Write + Send + 'static) -> PluggedClient {
     let (outgoing, inbox) = channel();
     let (unread, untaken) = (Arc::<AtomicUsize>::default(), Arc::<AtomicUsize>::default());
     let client = WireClient { number, outgoing, unread: Arc::clone(&unread), untaken: Arc::clone(&untaken) };
     thread::spawn(move || send(writer, &inbox, &unread));
-    // A desk that is closed takes nothing below.
+    // If the dispatcher has ended, sending fails below, too.
     let _ = desk.send(Note::Plugged(client));
     PluggedClient { number, desk: desk.clone(), untaken }
 }
 
 impl PluggedClient {
-    /// Carries bytes between the client and the desk until the client disconnects.
+    /// Passes bytes between the client and the dispatcher until the client disconnects.
     pub(super) fn carry(self, mut reader: impl Read) {
         let mut buffer = [0; UNTAKEN];
         loop {
@@ -59,7 +59,7 @@ impl PluggedClient {
 
 impl Drop for PluggedClient {
     fn drop(&mut self) {
-        // The desk may have closed before.
+        // An error means that the dispatcher has already ended.
         let _ = self.desk.send(Note::Unplugged(self.number));
     }
 }

@@ -1,8 +1,8 @@
-//! A connection to a client, as whole messages.
+//! A connection to a client, as complete messages.
 //!
-//! Over a socket or a port a message is its length, two bytes with the low one first, and that number of bytes; over a
-//! [pipe](super::pipe) it is what was written at once. What the messages say is the same. Source: host-protocol.md
-//! section 8, wire.md section 7.
+//! Over a socket or a port a message is its length, as two bytes with the low one first, followed by that number of
+//! bytes; over a [pipe](super::pipe) it is a single write. The contents of messages are the same. Source:
+//! host-protocol.md section 8, wire.md section 7.
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, TcpStream};
@@ -12,13 +12,13 @@ use cc67_host::seats::Closer;
 
 use super::message::REPLY;
 
-/// Bytes of a message to us at most.
+/// The maximum size of a message from a client.
 pub(super) const LONGEST: usize = 4096;
-/// The client's answer to each message before a reply.
+/// The client's answer to each message before the reply.
 const ACKNOWLEDGED: u8 = 0xAA;
-/// The beginning of the first message of the library of version 4.32, which has no length.
+/// The beginning of the first message of the library of version 4.32, which is not preceded by a length.
 const OLD_LIBRARY: [u8; 8] = [9, 0, 0, 0, 0, 0, 0, 0];
-/// Bytes of a text that are read before its connection is closed.
+/// The number of bytes of a text that are read before its connection is closed.
 const TEXT_LIMIT: u64 = 1 << 16;
 
 /// A message of a connection.
@@ -26,33 +26,34 @@ const TEXT_LIMIT: u64 = 1 << 16;
 pub(super) enum Received {
     /// A message.
     Message(Vec<u8>),
-    /// The beginning of a text, from a client that expects to talk to a person or to a web server.
+    /// The beginning of a text, from a client that expects a terminal or a web server.
     Text,
     /// A message of the library of version 4.32.
     OldLibrary,
-    /// Nothing: the client is gone, or sends what cannot be a message.
+    /// Nothing: the client has disconnected, or sends data that cannot be a message.
     Nothing,
 }
 
 /// A connection that carries messages in both directions.
 pub(super) trait ClientConnection: Send + 'static {
-    /// Returns the way to close it from another thread, if there is one.
+    /// Returns a function that closes it from another thread, if there is one.
     fn closer(&self) -> Option<Closer>;
-    /// Limits the time that it waits for the client, where the system can.
+    /// Limits the time for which it waits for the client, if the operating system supports that.
     fn limit_wait(&mut self, most: Option<Duration>);
-    /// Receives the first message, which may be of another kind than ours.
+    /// Receives the first message, which may be of another kind.
     fn receive_first(&mut self) -> Received;
     /// Receives a message.
     fn receive(&mut self) -> Received;
-    /// Sends a message; `None` if the client is gone.
+    /// Sends a message; `None` if the client has disconnected.
     fn send(&mut self, message: &[u8]) -> Option<()>;
-    /// Receives the byte by which the client acknowledges a message; `None` if it is gone.
+    /// Receives the byte by which the client acknowledges a message; `None` if the client has disconnected.
     fn receive_byte(&mut self) -> Option<u8>;
-    /// Answers a client that sends text with a text, and reads on a little, so that it is not lost with the connection.
+    /// Answers a client that sends text with a text, and reads on a little, so that the answer is not lost when the
+    /// connection is closed.
     fn refuse(&mut self, text: &[u8]);
 }
 
-/// Sends what answers a request: each message before the last is acknowledged by the client. `None` if it is gone.
+/// Sends the answer to a request: the client acknowledges each message before the last. `None` if it has disconnected.
 pub(super) fn answer(connection: &mut impl ClientConnection, messages: &[Vec<u8>]) -> Option<()> {
     for bytes in messages {
         connection.send(bytes)?;
@@ -63,30 +64,31 @@ pub(super) fn answer(connection: &mut impl ClientConnection, messages: &[Vec<u8>
     Some(())
 }
 
-/// A connection of bytes.
+/// A connection as a stream of bytes.
 pub(super) trait Stream: Read + Write + Send + 'static {
-    /// Returns the way to close it from another thread; none if the system has no descriptor for that.
+    /// Returns a function that closes it from another thread; `None` if the operating system has no file descriptor
+    /// left for that.
     fn closer(&self) -> Option<Closer>;
-    /// Limits the time that a read waits.
+    /// Limits the time for which a read waits.
     fn limit_wait(&self, most: Option<Duration>);
-    /// Ends what is sent; what comes is still received.
+    /// Ends sending; receiving is still possible.
     fn end(&self);
 }
 
 impl Stream for TcpStream {
     fn closer(&self) -> Option<Closer> {
         let stream = self.try_clone().ok()?;
-        // One that is closed already needs no closing.
+        // A connection that is already closed needs no closing.
         Some(Box::new(move || drop(stream.shutdown(Shutdown::Both))))
     }
 
     fn limit_wait(&self, most: Option<Duration>) {
-        // Without the limit it waits longer.
+        // Without the limit it only waits longer.
         let _ = self.set_read_timeout(most);
     }
 
     fn end(&self) {
-        // A client that is gone needs no end.
+        // A disconnected client needs no end.
         let _ = self.shutdown(Shutdown::Write);
     }
 }
@@ -95,17 +97,17 @@ impl Stream for TcpStream {
 impl Stream for std::os::unix::net::UnixStream {
     fn closer(&self) -> Option<Closer> {
         let stream = self.try_clone().ok()?;
-        // One that is closed already needs no closing.
+        // A connection that is already closed needs no closing.
         Some(Box::new(move || drop(stream.shutdown(Shutdown::Both))))
     }
 
     fn limit_wait(&self, most: Option<Duration>) {
-        // Without the limit it waits longer.
+        // Without the limit it only waits longer.
         let _ = self.set_read_timeout(most);
     }
 
     fn end(&self) {
-        // A client that is gone needs no end.
+        // A disconnected client needs no end.
         let _ = self.shutdown(Shutdown::Write);
     }
 }
@@ -141,7 +143,7 @@ impl<S: Stream> ClientConnection for S {
     fn refuse(&mut self, text: &[u8]) {
         if self.write_all(text).is_ok() {
             self.end();
-            // Whatever it is, it is not for us.
+            // The data are read only to be discarded.
             let _ = std::io::copy(&mut self.take(TEXT_LIMIT), &mut std::io::sink());
         }
     }
@@ -160,7 +162,7 @@ fn read_first(stream: &mut impl Read) -> Received {
     if length != [low, high] {
         return read_body(stream, length);
     }
-    // The old library has sent no more than this, and waits.
+    // The old library sends no more than this, and then waits.
     let mut begin = [0; 6];
     if stream.read_exact(&mut begin).is_err() {
         return Received::Nothing;
@@ -192,7 +194,7 @@ fn read_body(stream: &mut impl Read, length: [u8; 2]) -> Received {
     Received::Message(bytes)
 }
 
-/// Writes a message; `None` if the client is gone.
+/// Writes a message; `None` if the client has disconnected.
 fn write(stream: &mut impl Write, bytes: &[u8]) -> Option<()> {
     let length = u16::try_from(bytes.len()).ok()?;
     stream.write_all(&[&length.to_le_bytes()[..], bytes].concat()).and_then(|()| stream.flush()).ok()

@@ -1,8 +1,8 @@
 //! The dispatcher: takes one request after another for the one board, and keeps its time.
 //!
-//! At the pace of a clock the board is never far from it: it waits for the clock, and requests wait for the board. Without
-//! a clock its time passes only while a client waits for an answer, so that the same questions get the same answers each
-//! time, however long a client sleeps between them.
+//! With a clock, the board stays close to the clock's time: it waits for the clock, and requests wait for the board.
+//! Without a clock, board time passes only while a client waits for an answer, so that the same requests get the same
+//! answers each time, however long a client sleeps between them.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
@@ -23,43 +23,44 @@ use crate::cli::io::exit::Exit;
 use crate::cli::io::pace::{Pace, now};
 use crate::cli::io::terminal;
 
-/// The interval at which a board at the pace of a clock is run while there is no request.
+/// The interval at which a board with a clock is run while there is no request.
 const BEAT: Duration = Duration::from_millis(10);
-/// That interval while a client waits for the board, or for the clock.
+/// The interval while a client waits for the board, or for the clock.
 const SHORT_BEAT: Duration = Duration::from_millis(1);
-/// Ticks that the board runs before requests are polled again.
+/// The number of ticks after which requests are polled again.
 const TICKS_PER_POLL: u64 = 111;
-/// Ticks that the board may be ahead of a clock at the board's own pace, before requests wait for the clock: 1 ms.
+/// The number of ticks by which the board may be ahead of a clock at normal speed before requests wait for the clock: 1
+/// ms.
 const AHEAD: f64 = 11.0;
 /// The time for which the board runs before requests are polled again.
 const AT_ONCE: Duration = Duration::from_millis(25);
 /// The time for which the board runs while a request waits.
 const BEFORE_ANSWER: Duration = Duration::from_millis(5);
-/// Seconds of the clock by which a board may be late; one that is later does not catch up.
+/// The delay in seconds beyond which a board does not catch up.
 const PATIENCE: f64 = 0.25;
-/// The time for which a command from a page waits for a token that a client holds.
+/// The time for which a command from a page waits while a client holds the token.
 const TOKEN_PATIENCE: Duration = Duration::from_millis(500);
-/// Console lines that are sent before one reply at most.
+/// The maximum number of console lines sent before a reply.
 const LINES_AT_ONCE: usize = 10;
 
 /// A message to the dispatcher.
 #[derive(Debug)]
 pub(super) enum Note {
-    /// A client, and where its answers go.
+    /// A client has connected; its answers go to this sender.
     Came(u64, Sender<Vec<Vec<u8>>>),
     /// A request of a client.
     Asked(u64, Request),
     /// A message of a client that is not a request: its bytes.
     Unknown(u64, Vec<u8>),
-    /// A client is gone.
+    /// A client has disconnected.
     Left(u64),
-    /// A client that has the board's link to itself.
+    /// A client of the board's link has connected.
     Plugged(WireClient),
     /// Bytes of that client.
     Bytes(u64, Vec<u8>),
-    /// That client is gone.
+    /// That client has disconnected.
     Unplugged(u64),
-    /// The server is to end.
+    /// The server should end.
     End,
 }
 
@@ -71,14 +72,14 @@ enum Course {
     Leave,
 }
 
-/// A reply that a client waits for.
+/// The reply for which a client waits.
 #[derive(Clone, Debug)]
 pub(super) enum Wanted {
     /// A line of a reply, without its end.
     Answer,
     /// A line of a reply, with its end.
     Line,
-    /// `Ready`; whether an error came before.
+    /// `Ready`, and whether an error came before it.
     Ready { after_error: bool },
 }
 
@@ -87,18 +88,18 @@ pub(super) enum Wanted {
 pub(super) struct Waiting {
     pub(super) client: u64,
     pub(super) wanted: Wanted,
-    /// When it waits no longer.
+    /// The time limit of the wait.
     pub(super) until: Instant,
-    /// Without a clock: ticks that the board still runs for it.
+    /// Without a clock: the number of ticks that the board still runs for it.
     pub(super) left: u64,
 }
 
-/// The token of the board: a counter that belongs to nobody.
+/// The token of the board: a counter with no owner.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Token {
-    /// The client that has taken it last.
+    /// The client that took it last.
     pub(super) taken_by: Option<u64>,
-    /// True if it was reported that this client waits for itself.
+    /// True if it was reported that this client waits for a token that it holds itself.
     pub(super) has_told: bool,
 }
 
@@ -107,20 +108,20 @@ pub(super) struct Token {
 pub(super) struct ConsoleClient {
     /// The client, if one has registered.
     pub(super) client: Option<u64>,
-    /// Lines that it has not received yet.
+    /// The lines that it has not received yet.
     pub(super) lines: VecDeque<Vec<u8>>,
 }
 
-/// The link to the board, as clients find it.
+/// The link to the board, as clients see it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LinkState {
     /// True if it is open.
     pub(super) is_open: bool,
-    /// True if its loss was reported since the last read.
+    /// True if its loss has been reported since the last read.
     pub(super) has_told_failure: bool,
 }
 
-/// The place of a board among those of a server.
+/// The position of a board among the boards of a server.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BoardSlot {
     /// Its index.
@@ -134,7 +135,7 @@ pub(super) struct Dispatcher<'a, T: Target> {
     pub(super) board: ServedBoard<'a, T>,
     pub(super) slot: BoardSlot,
     terms: &'a Terms<'a>,
-    /// The clock, if the board keeps pace with one, and its speed.
+    /// The clock and its speed, if the board follows one.
     clock: Option<(Pace, f64)>,
     inbox: Inbox,
     clients: BTreeMap<u64, Sender<Vec<Vec<u8>>>>,
@@ -142,7 +143,7 @@ pub(super) struct Dispatcher<'a, T: Target> {
     pub(super) token: Token,
     pub(super) console: ConsoleClient,
     pub(super) state: LinkState,
-    /// Error texts for the next answer.
+    /// Error texts to be sent before the next reply.
     pub(super) error_texts: Vec<String>,
     pub(super) page: PageState,
 }
@@ -151,12 +152,12 @@ pub(super) struct Dispatcher<'a, T: Target> {
 #[derive(Debug)]
 struct Inbox {
     incoming: Receiver<Note>,
-    /// The messages that have arrived and are not taken yet.
+    /// The messages that have arrived and are still to be handled.
     notes: VecDeque<Note>,
 }
 
 impl Inbox {
-    /// Takes in what has arrived.
+    /// Collects the messages that have arrived.
     fn collect(&mut self) {
         self.notes.extend(self.incoming.try_iter());
     }
@@ -165,18 +166,18 @@ impl Inbox {
 /// The actions and requests of pages.
 #[derive(Debug, Default)]
 pub(super) struct PageState {
-    /// The moment at which the clock was stopped.
+    /// The time at which the clock was stopped.
     stopped: Option<Instant>,
-    /// Requests of clients that have come since.
+    /// The requests of clients since then.
     held: Vec<Note>,
-    /// The speed that was last wished, and `None` for a clock that is stopped.
+    /// The speed that was last requested, where the inner `None` stands for a stopped clock.
     wished: Option<Option<f64>>,
-    /// Script commands, with the moment in which each was typed.
+    /// Script commands, each with the time at which it was typed.
     commands: VecDeque<(Instant, String)>,
 }
 
 impl<'a, T: Target> Dispatcher<'a, T> {
-    /// A dispatcher for requests from `inbox`.
+    /// Creates a dispatcher for requests from `inbox`.
     pub(super) fn new(
         board: ServedBoard<'a, T>,
         slot: BoardSlot,
@@ -200,7 +201,7 @@ impl<'a, T: Target> Dispatcher<'a, T> {
         }
     }
 
-    /// Serves until it is ended, the board time is up, or the last client is gone and should be the last.
+    /// Serves until a request to end, until the time limit, or, if so requested, until the last client disconnects.
     pub(super) fn run(mut self) -> Result<Exit> {
         let limit = self.terms.limit.map_or(u64::MAX, |seconds| (seconds / TIMEBASE).round() as u64);
         self.look_at_page();
@@ -236,7 +237,7 @@ impl<'a, T: Target> Dispatcher<'a, T> {
             (None, Some(_)) if self.ticks_wanted() > 0 => Duration::ZERO,
             (None, Some(until)) => until.saturating_duration_since(now()),
             (None, None) if self.page.wished.is_some() || self.board.is_attended() => BEAT,
-            // Time passes in exchanges only.
+            // Time passes only in exchanges.
             (None, None) => return Some(self.inbox.incoming.recv().unwrap_or(Note::End)),
         };
         match self.inbox.incoming.recv_timeout(patience) {
@@ -273,7 +274,7 @@ impl<'a, T: Target> Dispatcher<'a, T> {
         Course::Continue
     }
 
-    /// Takes up an event of the client that has the link to itself.
+    /// Handles a message about the only client of the link.
     fn wire(&mut self, note: Note) -> Course {
         let Some(wire) = &mut self.board.wire else { return Course::Continue };
         match note {
@@ -285,7 +286,7 @@ impl<'a, T: Target> Dispatcher<'a, T> {
         if self.terms.once && wire.is_unplugged() { Course::Leave } else { Course::Continue }
     }
 
-    /// A client is gone: what it had is free again.
+    /// Handles the end of a client: the token and console are free again if it had them.
     fn left(&mut self, client: u64) -> Course {
         self.clients.remove(&client);
         self.waiting.retain(|waiting| waiting.client != client);
@@ -300,7 +301,7 @@ impl<'a, T: Target> Dispatcher<'a, T> {
         if self.terms.once && self.clients.is_empty() { Course::Leave } else { Course::Continue }
     }
 
-    /// Answers a client; before the reply go error texts, and console lines if it is the console.
+    /// Answers a client; error texts are sent before the reply, and so are console lines if it is the console.
     pub(super) fn answer(&mut self, client: u64, reply: Reply) {
         let errors = self.error_texts.drain(..).map(|text| message::error_text(&text));
         let mut messages: Vec<_> = errors.collect();
@@ -310,13 +311,13 @@ impl<'a, T: Target> Dispatcher<'a, T> {
         }
         messages.push(reply.bytes());
         if let Some(answers) = self.clients.get(&client) {
-            // A client that is gone is taken out when its connection says so.
+            // A disconnected client is removed when its connection reports it.
             let _ = answers.send(messages);
         }
         self.board.hold_back(self.console.lines.len());
     }
 
-    /// Shows the board on its page, if it has one, and does what is wished there.
+    /// Shows the board on its page, if it has one, and executes the page's requests.
     fn look_at_page(&mut self) {
         self.board.hold_back(self.console.lines.len());
         let Some(wishes) = self.board.show() else { return };
@@ -330,7 +331,7 @@ impl<'a, T: Target> Dispatcher<'a, T> {
         self.send_commands(time);
     }
 
-    /// Stops the clock, or starts it again; nothing that clients wait for passes meanwhile.
+    /// Stops or starts the clock; the time limits of clients are extended accordingly.
     fn set_clock(&mut self, speed: Option<f64>, time: Instant) {
         let Some(speed) = speed else {
             self.page.stopped.get_or_insert(time);
@@ -344,7 +345,7 @@ impl<'a, T: Target> Dispatcher<'a, T> {
         self.clock = Some((Pace::with_speed(self.board.tick(), speed), speed));
     }
 
-    /// Sends what pages have typed, when it comes between nobody's question and its answer.
+    /// Sends the commands typed on pages, unless a client's exchange is in progress.
     fn send_commands(&mut self, time: Instant) {
         while let Some((typed, _)) = self.page.commands.front() {
             let is_taken = self.token.taken_by.is_some() && time < *typed + TOKEN_PATIENCE;
@@ -358,7 +359,7 @@ impl<'a, T: Target> Dispatcher<'a, T> {
         }
     }
 
-    /// Lets the clock come up to a board that is ahead of it.
+    /// Waits until the clock reaches a board that is ahead of it.
     fn wait_for_clock(&mut self) {
         if let Some((pace, speed)) = &self.clock {
             let ahead = self.board.tick().get().saturating_sub(pace.due().get());
@@ -369,8 +370,8 @@ impl<'a, T: Target> Dispatcher<'a, T> {
         self.catch_up(u64::MAX, BEFORE_ANSWER);
     }
 
-    /// Brings the board up to the clock, unless something comes that should be taken first, or it takes too long: a board
-    /// that cannot keep up is not chased.
+    /// Runs the board up to the clock's time, unless a message should be handled first, or it takes too long: a board
+    /// that cannot keep up falls behind the clock.
     fn catch_up(&mut self, limit: u64, at_once: Duration) {
         let Some((pace, speed)) = &self.clock else { return self.run_for_clients() };
         let (due, speed) = (pace.due().get().min(limit), *speed);
@@ -403,13 +404,13 @@ impl<'a, T: Target> Dispatcher<'a, T> {
         }
     }
 
-    /// The ticks that the longest wait of a client still takes; none where there is a clock.
+    /// The number of ticks still required by the longest wait of a client; 0 with a clock.
     fn ticks_wanted(&self) -> u64 {
         self.waiting.iter().map(|waiting| waiting.left).max().unwrap_or(0)
     }
 
-    /// Runs the board a little for those who wait, until it has something for them; and for a client that has its link
-    /// to itself as long as it takes what was sent, and an exchange longer.
+    /// Runs the board a little for waiting clients, until it has a result for one of them; for the only client of the
+    /// link, until the board has taken its bytes, and for the duration of an exchange after that.
     fn run_for_clients(&mut self) {
         if self.board.is_feeding() {
             while self.board.is_feeding() && self.inbox.notes.is_empty() {
@@ -429,7 +430,7 @@ impl<'a, T: Target> Dispatcher<'a, T> {
         }
     }
 
-    /// Answers those whose line has come, or whose time has passed.
+    /// Answers the clients whose line has come, or whose time limit has passed.
     fn settle(&mut self) {
         let time = now();
         for mut waiting in std::mem::take(&mut self.waiting) {
@@ -440,8 +441,8 @@ impl<'a, T: Target> Dispatcher<'a, T> {
         }
     }
 
-    /// Has a client wait for the board, at most for some milliseconds; its reply, if the board needs no longer for it than
-    /// for an exchange.
+    /// Makes a client wait for the board, at most for some milliseconds; returns the reply if it comes within the
+    /// duration of an exchange.
     pub(super) fn wait(&mut self, client: u64, wanted: Wanted, milliseconds: u32) -> Option<Reply> {
         let time = now();
         let length = Duration::from_millis(milliseconds.into());
@@ -461,25 +462,25 @@ impl<'a, T: Target> Dispatcher<'a, T> {
         }
     }
 
-    /// The ticks that the board runs for a wait, if there is no clock that it follows.
+    /// The number of ticks that the board runs for a wait, if it follows no clock.
     pub(super) fn ticks(&self, length: Duration) -> u64 {
         if self.is_clocked() { 0 } else { (length.as_secs_f64() / TIMEBASE).round() as u64 }
     }
 
-    /// Returns whether the time limit of a wait has passed: on the clock; or on the board, and for ReadLineTimeOut on
-    /// both.
+    /// Returns whether the time limit of a wait has passed. With a clock, the clock decides; without one, the board's
+    /// ticks; for ReadLineTimeOut, both must have passed.
     pub(super) fn has_passed(&self, waiting: &Waiting, time: Instant) -> bool {
         let is_timed = self.is_clocked() || matches!(waiting.wanted, Wanted::Line);
         waiting.left == 0 && (!is_timed || time >= waiting.until)
     }
 
-    /// Returns whether the board keeps pace with a clock.
+    /// Returns whether the board follows a clock.
     pub(super) const fn is_clocked(&self) -> bool {
         self.clock.is_some()
     }
 }
 
-/// A message that is not a request, by the number of the call at its beginning.
+/// Describes a message that is not a request, with the number of the call at its beginning.
 fn unknown(message: &[u8]) -> String {
     match message.first_chunk() {
         Some(code) => format!("there is no call {} with these arguments", i32::from_le_bytes(*code)),

@@ -1,8 +1,9 @@
-//! `--home DIR`: the folder in which the vendor's library looks for its compiler, its server and the firmware's files.
+//! `--home DIR`: the folder in which the vendor's library expects its compiler, its server and the files of the
+//! firmware.
 //!
-//! Compiler and server are links to this command, or copies of it on Windows; it acts by the name that it is called by.
-//! The server is started by the library when it finds none; it serves then what `cc67 serve --home` was last told to
-//! serve.
+//! Compiler and server are links to this command, or copies on Windows; the command acts according to the name by which
+//! it is called. The library starts the server if it finds none; the server then uses the arguments of the last `cc67
+//! serve --home`.
 
 use std::ffi::{OsStr, OsString};
 use std::fs;
@@ -18,29 +19,30 @@ use crate::cli::io::terminal;
 
 /// The name under which the library expects its server.
 const SERVER: &str = "KMotionServer";
-/// The name under which it expects its compiler.
+/// The name under which the library expects its compiler.
 const COMPILER: &str = if cfg!(windows) { "TCC67" } else { "tcc67" };
-/// The folder of both: on Windows that of the application and of the library, which looks for nothing elsewhere.
+/// The folder of both: on Windows that of the application and of the library, which searches no other folder.
 const BINARIES: &str = if cfg!(windows) { r"KMotion\Release" } else { "bin" };
-/// Folders of the firmware's files, and the name of the firmware file in each.
+/// The folders with the firmware's files, and the name of the firmware file in each.
 const FIRMWARE: [(&str, &str); 2] = [("DSP_KFLOP", "DSPKFLOP.out"), ("DSP_KMotion", "DSPKMotion.out")];
-/// Variables of the G-code interpreter that it keeps from one run to the next: home positions, the offset of G92, the
+/// The variables of the G-code interpreter that are stored between runs: home positions, the offset of G92, the
 /// coordinate system in use, and the origins of nine (NIST RS274NGC, section 3.2.1).
 const VARIABLES: &str = "Data/emc.var";
-/// Options that make the folder, and are not for the server in it.
+/// Options that are only for creating the folder, and not for the server in it.
 const OURS: [&str; 2] = ["--home", "--mcodes"];
-/// Programs that M codes start.
+/// The folder of the programs started by M codes.
 const PROGRAMS: &str = "MCodes";
-/// The name of the file with the last command line of the server: its folder, and its words, one a line.
+/// The file with the last command line of the server: its working folder, and its words, one per line.
 const OPTIONS: &str = "serve.options";
-/// The file with the output of a server that the library has started: on Windows nobody reads it, and a full pipe would stop the server.
+/// The file with the output of a server started by the library: on Windows nobody reads its output, and a full pipe
+/// would block it.
 const SAID: &str = "server.log";
 /// The explanation of the folder.
 const EXPLANATION: &str = "README.txt";
 
-/// Makes what is missing in the folder.
+/// Creates the missing parts of the folder.
 ///
-/// `programs` is the folder of the programs that M codes start.
+/// `programs` is the folder of the programs started by M codes.
 pub(super) fn make(folder: &Path, programs: Option<&Path>) -> Result<PathBuf> {
     let folder = std::path::absolute(folder).context("--home")?;
     for part in [BINARIES, "Data", FIRMWARE[0].0, FIRMWARE[1].0] {
@@ -84,7 +86,7 @@ pub(super) fn lines(folder: &Path) -> String {
     format!("export KMOTIONX_HOME='{folder}'\nexport LD_LIBRARY_PATH=FOLDER_OF_THE_LIBRARY\n./YOUR_PROGRAM\n")
 }
 
-/// Describes the folder for people who find it later.
+/// The text that explains the folder to users who find it later.
 fn explanation() -> String {
     let (library, place) = if cfg!(windows) {
         ("KMotion library", "Put your application and the DLLs of the library beside them.")
@@ -108,7 +110,7 @@ fn explanation() -> String {
     .concat()
 }
 
-/// Notes what is served, for the server that the library starts.
+/// Stores the arguments for the server that the library starts.
 pub(super) fn remember(folder: &Path, words: impl Iterator<Item = OsString>) -> Result<()> {
     let here = std::env::current_dir().context("cannot find the present folder")?;
     let mut text = here.into_os_string();
@@ -126,12 +128,12 @@ pub(super) fn remember(folder: &Path, words: impl Iterator<Item = OsString>) -> 
     output::write(&folder.join(OPTIONS), text.as_encoded_bytes())
 }
 
-/// Returns whether a word is an option of this name, alone or with its value.
+/// Returns whether a word is an option with this name, alone or with its value.
 fn is_option(word: &str, name: &str) -> bool {
     word.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('='))
 }
 
-/// The command line that is meant when the command is called by the name of the vendor's server; `None` if it is not.
+/// The stored command line, if the command is called by the name of the vendor's server; otherwise `None`.
 pub(in crate::cli::commands) fn called_as_server(arguments: &[OsString]) -> Option<Vec<OsString>> {
     let (program, given) = arguments.split_first()?;
     let program = Path::new(program);
@@ -139,16 +141,16 @@ pub(in crate::cli::commands) fn called_as_server(arguments: &[OsString]) -> Opti
         return None;
     }
     let mut words: Vec<OsString> = ["cc67", "serve", "--once"].map(OsString::from).into();
-    // On Windows it is called by its bare name.
+    // On Windows it is called by its name without a path.
     let file = if cfg!(windows) { std::env::current_exe().ok()? } else { program.to_owned() };
     let home = file.ancestors().nth(1 + Path::new(BINARIES).components().count());
     if let Some(text) = home.and_then(|home| fs::read_to_string(home.join(OPTIONS)).ok()) {
         if let Some(home) = home.filter(|_| cfg!(windows)) {
-            // Where it cannot be written, nobody reads it either.
+            // If the file cannot be written, the output is lost in any case.
             let _ = terminal::write_to(&home.join(SAID));
         }
         let mut lines = text.lines();
-        // Paths among the words are as they were typed there.
+        // Paths in the words are relative to the folder in which they were typed.
         if lines.next().is_some_and(|folder| std::env::set_current_dir(folder).is_ok()) {
             words.extend(lines.map(OsString::from));
         }
@@ -157,12 +159,12 @@ pub(in crate::cli::commands) fn called_as_server(arguments: &[OsString]) -> Opti
     Some(words)
 }
 
-/// Writes a file that is not there; what a person has put there stays.
+/// Writes a file unless it exists; a user's file stays.
 fn supply(path: &Path, bytes: &[u8]) -> Result<()> {
     if path.exists() { Ok(()) } else { output::write(path, bytes) }
 }
 
-/// Zeros for all variables; the first coordinate system is in use.
+/// Zeros for all variables, with the first coordinate system in use.
 fn variables() -> String {
     let axes = |first: u32| first..first + 6;
     let sets = [5161, 5181, 5211].into_iter().chain((5221..=5381).step_by(20));
@@ -172,13 +174,14 @@ fn variables() -> String {
     numbers.iter().map(|number| format!("{number}\t{:.6}\n", f64::from(u8::from(*number == 5220)))).collect()
 }
 
-/// Makes a link to a folder, so that a program is found there as soon as it is written, with the files that it includes.
+/// Creates a link to a folder, so that a program is found there as soon as it is written, together with the files that
+/// it includes.
 #[cfg(unix)]
 fn link_folder(folder: &Path, path: &Path) -> Result<()> {
     link(folder, path)
 }
 
-/// Copies the files of a folder, where links are not everybody's.
+/// Copies the files of a folder, on systems where not all users may create links.
 #[cfg(not(unix))]
 fn link_folder(folder: &Path, path: &Path) -> Result<()> {
     fs::create_dir_all(path).map_err(|error| output::cannot_write(path, &error))?;
@@ -192,7 +195,7 @@ fn link_folder(folder: &Path, path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Makes a link to the command or to a folder; one that is there is replaced, a file of another kind is not.
+/// Creates a link to the command or to a folder; replaces an existing link, but no other file.
 #[cfg(unix)]
 fn link(command: &Path, path: &Path) -> Result<()> {
     if let Ok(known) = fs::symlink_metadata(path) {

@@ -1,4 +1,4 @@
-//! Data that the board has sent over its link and that has not been read yet.
+//! Data received from the board over its link and not read yet.
 //!
 //! Lines of replies, echoes and the console are read in the order in which they came. Source: host-protocol.md sections
 //! 4, 7 and 9.
@@ -8,28 +8,28 @@ use std::mem;
 
 use cc67_host::REPLY_BYTES;
 
-/// Console lines that are kept while no client is the console; older ones are dropped.
+/// The number of console lines kept while no client is the console; older ones are dropped.
 pub(in crate::cli::commands) const UNHEARD_LINES: usize = 256;
-/// Console lines that wait for the client that is the console; then the board is no longer read, and programs that print
-/// wait, as on a board the PC of which reads nothing.
+/// The number of console lines waiting for the console's client from which the board is no longer read, and programs
+/// that print have to wait, as on a board whose PC reads nothing.
 pub(in crate::cli::commands) const CONSOLE_LINES: usize = 10_000;
 
 /// A line of the board, without its end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum LinkLine {
-    /// Of a reply, or the echo of a command.
+    /// A line of a reply, or the echo of a command.
     Reply(Vec<u8>),
-    /// Of the console.
+    /// A line of the console.
     Console(Vec<u8>),
 }
 
 /// The unread lines.
 #[derive(Debug, Default)]
 pub(super) struct Unread {
-    /// Each line with its number in the order of all.
+    /// Each line with its number in the order of arrival.
     replies: VecDeque<(u64, Vec<u8>)>,
     console: VecDeque<(u64, Vec<u8>)>,
-    /// The echo of a line that has not ended.
+    /// The incomplete echo of a line.
     partial: Vec<u8>,
     lines: u64,
     reply_bytes: usize,
@@ -37,7 +37,7 @@ pub(super) struct Unread {
 }
 
 impl Unread {
-    /// A line of a reply came.
+    /// Adds a line of a reply.
     pub(super) fn reply(&mut self, line: &[u8]) {
         let mut whole = mem::take(&mut self.partial);
         whole.extend(line);
@@ -50,7 +50,7 @@ impl Unread {
         self.replies.push_back((self.lines, whole));
     }
 
-    /// Characters came back that the board was sent.
+    /// Adds characters that the board has echoed.
     pub(super) fn echo(&mut self, bytes: &[u8]) {
         for byte in bytes {
             match byte {
@@ -61,7 +61,7 @@ impl Unread {
         }
     }
 
-    /// A console line came; some client is the console, or none.
+    /// Adds a console line; `is_heard` tells whether a client is the console.
     pub(super) fn console(&mut self, line: Vec<u8>, is_heard: bool) {
         while !is_heard && self.console.len() >= UNHEARD_LINES {
             self.console.pop_front();
@@ -85,7 +85,7 @@ impl Unread {
         !self.partial.is_empty()
     }
 
-    /// The next line, whatever it is.
+    /// The next line of either kind.
     pub(super) fn next(&mut self) -> Option<LinkLine> {
         let reply = self.replies.front().map_or(u64::MAX, |(number, _)| *number);
         if self.console.front().is_some_and(|(number, _)| *number < reply) {
@@ -104,7 +104,7 @@ impl Unread {
         self.reply_bytes = 0;
     }
 
-    /// Returns, once, whether unread replies were lost.
+    /// Returns once whether unread replies were lost.
     pub(super) fn take_lost_replies(&mut self) -> bool {
         mem::take(&mut self.lost_replies)
     }

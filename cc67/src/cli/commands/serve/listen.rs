@@ -1,8 +1,8 @@
 //! Listeners: sockets and ports, and a thread for each connection.
 //!
-//! A connection reads requests, hands them to the [desk](super::desk) and sends what it answers. It alone waits for its
-//! client: one that sends half a message, or reads no reply, keeps nobody else from the board. At a pseudo-terminal and
-//! a raw port the board's own bytes are [carried](super::carry).
+//! The thread of a connection reads requests, passes them to the [dispatcher](super::desk) and sends its answers. It
+//! alone waits for its client: a client that sends half a message, or does not read its reply, blocks nobody else. At a
+//! pseudo-terminal and a raw port the board's own bytes are [passed on](super::carry).
 
 use std::io::{self, Read};
 use std::iter;
@@ -25,44 +25,45 @@ use super::pipe;
 use crate::cli::io::pty::Terminal;
 use crate::cli::io::terminal;
 
-/// Connections at a time.
+/// The maximum number of connections at a time.
 pub(in crate::cli::commands) const MOST_CLIENTS: usize = 200;
-/// The pause after a connection that the system has no descriptor for.
+/// The pause after the operating system had no file descriptor for a connection.
 const PAUSE: Duration = Duration::from_millis(100);
 /// The reply to a client that sends text.
 const NO_TEXT: &[u8] =
     b"cc67: a board is served here to programs that use the KMotion client library (4.34), not as text; to type commands: cc67 console\r\n";
-/// The address of a pseudo-terminal, and how the addresses of ports begin that carry the board's own bytes.
+/// The address of a pseudo-terminal, and the prefix of the addresses of raw ports, which carry the board's own bytes.
 const TERMINAL: &str = "pty";
 const RAW_PORT: &str = "tcp-raw:";
 
-/// Sockets in folders, which are removed at the end.
+/// Socket files, which are removed at the end.
 #[derive(Debug, Default)]
 pub(super) struct Places(Vec<PathBuf>);
 
 impl Drop for Places {
     fn drop(&mut self) {
         for path in &self.0 {
-            // One that somebody has removed before needs no removal.
+            // A file that someone has already removed needs no removal.
             let _ = std::fs::remove_file(path);
         }
     }
 }
 
-/// The way from a connection to the desk.
+/// The path of connections to the dispatchers.
 #[derive(Clone, Debug)]
 pub(super) struct Door {
-    /// The desk of the first board, which also answers for boards that are not there.
+    /// The dispatcher of the first board, which also answers for boards that do not exist.
     desk: Sender<Note>,
-    /// The desks of the other boards.
+    /// The dispatchers of the other boards.
     others: Arc<[Sender<Note>]>,
-    /// Connections so far.
+    /// The number of connections so far.
     numbers: Arc<AtomicU64>,
-    /// The places of those that are connected.
+    /// The seats of the connected clients.
     seats: Seats,
 }
 
-/// Takes connections to the boards of some desks at these addresses in the background; `option` is where they come from.
+/// Accepts connections at these addresses in the background and passes them to the boards' dispatchers; `option` is the
+/// option with the addresses.
 pub(super) fn listen(addresses: &[String], option: &str, desks: &[Sender<Note>]) -> Result<Places> {
     let (desk, others) = desks.split_first().context("a board is served")?;
     let door = Door {
@@ -94,12 +95,12 @@ pub(super) fn listen(addresses: &[String], option: &str, desks: &[Sender<Note>])
     Ok(places)
 }
 
-/// Returns whether an address is for a client that has the board's link to itself.
+/// Returns whether an address is for a single client of the board's link.
 pub(super) fn is_wire(address: &str) -> bool {
     address == TERMINAL || address.starts_with(RAW_PORT)
 }
 
-/// Makes a pseudo-terminal that carries the board's own bytes.
+/// Creates a pseudo-terminal that carries the board's own bytes.
 fn carry_on_terminal(door: &Door) -> Result<()> {
     let terminal = Terminal::open()?;
     terminal::note(&format!("a board is served on serial:{}", terminal.name()));
@@ -111,19 +112,19 @@ fn carry_on_terminal(door: &Door) -> Result<()> {
     })
 }
 
-/// Takes connections that carry the board's own bytes, one at a time.
+/// Accepts connections that carry the board's own bytes, one at a time.
 fn carry_on_port(port: &str, door: &Door) -> Result<()> {
     let listener = bind(port)?;
     terminal::note(&format!("a board is served on tcp:localhost:{}", listener.local_addr()?.port()));
     let (door, link) = (door.clone(), RawLink::default());
     in_background(move || {
-        // Small messages go out at once; where that cannot be set, they are only later.
+        // Small messages should be sent at once; without this setting they are only delayed.
         let streams = connections(listener.incoming()).inspect(|stream| drop(stream.set_nodelay(true)));
         streams.for_each(|stream| link.admit(stream, &door));
     })
 }
 
-/// The board's link at a raw port, which one client has at a time: one that has sent nothing gives it to the next.
+/// The board's link at a raw port, for one client at a time: a client that has sent nothing loses it to the next one.
 #[derive(Clone, Debug, Default)]
 struct RawLink(Arc<Mutex<Option<Holder>>>);
 
@@ -137,11 +138,11 @@ struct Holder {
 
 impl RawLink {
     fn holder(&self) -> MutexGuard<'_, Option<Holder>> {
-        // It is whole at any time.
+        // The value is consistent at all times.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Carries the bytes of a client in a thread of its own, or refuses it.
+    /// Passes on the bytes of a client in a separate thread, or rejects it.
     fn admit(&self, stream: TcpStream, door: &Door) {
         let number = door.numbers.fetch_add(1, Ordering::Relaxed) + 1;
         if let Err(why) = self.carry(number, stream, door) {
@@ -152,10 +153,10 @@ impl RawLink {
     fn carry(&self, number: u64, stream: TcpStream, door: &Door) -> Result<()> {
         let writer = stream.try_clone()?;
         let (has_spoken, before) = self.take(number, &stream)?;
-        // The desk knows the new client before the end of the one before.
+        // The dispatcher must learn of the new client before the end of the previous one.
         let plugged = plug(number, &door.desk, writer);
         if let Some(before) = before {
-            // One that is gone is closed.
+            // The previous client may already have disconnected.
             let _ = before.shutdown(Shutdown::Both);
         }
         let link = self.clone();
@@ -166,7 +167,7 @@ impl RawLink {
         spawned.inspect_err(|_| self.leave(number))
     }
 
-    /// Gives the link to a client; returns where it notes its first words, and the stream of the client before it.
+    /// Gives the link to a client; returns the flag for its first data, and the stream of the previous client.
     fn take(&self, number: u64, stream: &TcpStream) -> Result<(Arc<AtomicBool>, Option<TcpStream>)> {
         let stream = stream.try_clone()?;
         let mut holder = self.holder();
@@ -184,13 +185,13 @@ impl RawLink {
         Ok((has_spoken, before.map(|before| before.stream)))
     }
 
-    /// A client is gone.
+    /// Handles the end of a client.
     fn leave(&self, number: u64) {
         self.holder().take_if(|holder| holder.number == number);
     }
 }
 
-/// The bytes of a client, of which the first are noted.
+/// The bytes of a client; sets a flag with the first of them.
 #[derive(Debug)]
 struct FirstWords {
     stream: TcpStream,
@@ -215,18 +216,18 @@ fn listen_on_port(port: &str, door: &Door) -> Result<()> {
     terminal::note(&format!("a board is served on tcp:{}", listener.local_addr()?.port()));
     let door = door.clone();
     in_background(move || {
-        // Small messages go out at once; where that cannot be set, they are only later.
+        // Small messages should be sent at once; without this setting they are only delayed.
         let streams = connections(listener.incoming()).inspect(|stream| drop(stream.set_nodelay(true)));
         streams.for_each(|stream| door.enter(stream));
     })
 }
 
-/// Connections as they come; where the system has no descriptor for one, after a pause.
+/// Connections as they come, with a pause if the operating system has no file descriptor for one.
 fn connections<S>(incoming: impl Iterator<Item = io::Result<S>>) -> impl Iterator<Item = S> {
     incoming.filter_map(|connection| connection.inspect_err(|_| thread::sleep(PAUSE)).ok())
 }
 
-/// Runs in a thread of its own.
+/// Runs in a separate thread.
 fn in_background(work: impl FnOnce() + Send + 'static) -> Result<()> {
     thread::Builder::new().spawn(work).context("there is no thread for it")?;
     Ok(())
@@ -236,7 +237,7 @@ fn in_background(work: impl FnOnce() + Send + 'static) -> Result<()> {
 fn listen_on_path(address: &str, door: &Door) -> Result<PathBuf> {
     use std::os::unix::net::{UnixListener, UnixStream};
 
-    // What a server that was killed has left serves nobody.
+    // A socket left by a killed server serves nobody.
     let is_socket = std::fs::symlink_metadata(address)
         .is_ok_and(|known| std::os::unix::fs::FileTypeExt::is_socket(&known.file_type()));
     if is_socket {
@@ -258,18 +259,19 @@ fn listen_on_path(_: &str, _: &Door) -> Result<PathBuf> {
 }
 
 impl Door {
-    /// The desks of all boards.
+    /// The dispatchers of all boards.
     fn desks(&self) -> impl Iterator<Item = &Sender<Note>> {
         iter::once(&self.desk).chain(&*self.others)
     }
 
-    /// The desk for a request.
+    /// The dispatcher for a request.
     fn desk(&self, request: &Request) -> &Sender<Note> {
         let index = request.index(1 + self.others.len()).unwrap_or(0);
         self.desks().nth(index).unwrap_or(&self.desk)
     }
 
-    /// Serves a connection in a thread of its own; if there are too many, the one that is silent the longest is closed.
+    /// Serves a connection in a separate thread; if there are too many, closes the one that has been silent the
+    /// longest.
     pub(super) fn enter(&self, connection: impl ClientConnection) {
         let number = self.numbers.fetch_add(1, Ordering::Relaxed) + 1;
         let Some(admission) = self.seats.take(connection.closer()) else {
@@ -289,7 +291,7 @@ impl Door {
     }
 }
 
-/// Answers requests until the client disconnects, or asks for what does not exist.
+/// Answers requests until the client disconnects, or makes an invalid request.
 fn serve(number: u64, mut connection: impl ClientConnection, seat: &Seat, door: &Door) {
     connection.limit_wait(Some(FIRST_WORDS));
     let mut received = connection.receive_first();
@@ -302,19 +304,19 @@ fn serve(number: u64, mut connection: impl ClientConnection, seat: &Seat, door: 
             ));
             return;
         }
-        // Somebody who only looks whether a server listens is not a client that `--once` waits for.
+        // A connection that only checks for a server is not a client for which `--once` waits.
         Received::Nothing => return,
         Received::Message(_) => {}
     }
     let (answers, inbox) = channel();
     for desk in door.desks() {
-        // A desk that is closed answers nothing below.
+        // If the dispatcher has ended, there is no answer below.
         let _ = desk.send(Note::Came(number, answers.clone()));
     }
     while let Received::Message(bytes) = &received {
         seat.hear();
         let Some(request) = Request::read(bytes) else {
-            // A desk that is closed needs no news.
+            // An error means that the dispatcher has ended.
             let _ = door.desk.send(Note::Unknown(number, bytes.clone()));
             break;
         };
@@ -328,7 +330,7 @@ fn serve(number: u64, mut connection: impl ClientConnection, seat: &Seat, door: 
         received = connection.receive();
     }
     for desk in door.desks() {
-        // It may have closed before.
+        // An error means that the dispatcher has already ended.
         let _ = desk.send(Note::Left(number));
     }
 }

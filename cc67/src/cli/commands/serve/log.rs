@@ -1,7 +1,7 @@
-//! The log of the exchanges: what clients asked, as a script for `cc67 console`.
+//! The log of the exchanges: the requests of clients, as a script for `cc67 console`.
 //!
-//! A line for the board is a line of the script; `wait` lets the time pass that passed between two of them; everything
-//! else is a comment. So `cc67 console PROGRAM < LOG` asks the same board the same again.
+//! A line for the board is a line of the script; `wait` lets the time between two of them pass; everything else is a
+//! comment. So `cc67 console PROGRAM < LOG` repeats the requests to the same board.
 
 use std::fs::File;
 use std::io::Write;
@@ -16,13 +16,13 @@ use super::super::console::ACTIONS;
 use crate::cli::io::output::cannot_write;
 use crate::cli::io::terminal;
 
-/// A file that grows with each exchange; nothing of it is held back, so that a server that is killed leaves all of it.
+/// A file that grows with each exchange; it is not buffered, so that it is complete even if the server is killed.
 #[derive(Debug)]
 pub(super) struct ExchangeLog {
     path: PathBuf,
-    /// Nothing once it could not be written.
+    /// `None` once a write has failed.
     file: Option<File>,
-    /// The tick that the script has reached, as far as it is known.
+    /// The tick that the script has reached.
     reached: u64,
 }
 
@@ -33,28 +33,28 @@ impl ExchangeLog {
         Ok(Self { path: path.to_owned(), file: Some(file), reached: 0 })
     }
 
-    /// A line is sent to the board: a command, or data of the command in progress.
+    /// Logs a line to the board: a command, or data of the command in progress.
     pub(super) fn line(&mut self, tick: Ticks, line: &[u8], is_data: bool) {
         let mut text = Vec::new();
         if !is_data {
             text.extend(self.pause(tick).into_bytes());
             self.reached += EXCHANGE;
         }
-        // The board takes upper and lower case alike, the words of the console are lower case.
+        // The board ignores case, while the console's own words are in lower case.
         text.extend(line.iter().map(u8::to_ascii_uppercase).filter(|byte| *byte != b'\n'));
         text.push(b'\n');
         self.write(&text);
     }
 
-    /// The words of the console that let the time pass until a tick.
+    /// The console commands that let time pass until a tick.
     fn pause(&mut self, tick: Ticks) -> String {
         let pause = tick.get().saturating_sub(self.reached);
         self.reached += pause;
         if pause == 0 { String::new() } else { format!("wait {:.6}\n", pause as f64 * TIMEBASE) }
     }
 
-    /// A page has done something to the world around the board: a statement of a stimulus. What the console has no word
-    /// for is a comment.
+    /// Logs an action of a page on the world around the board: a statement of a stimulus. Actions without a console
+    /// command become comments.
     pub(super) fn act(&mut self, tick: Ticks, act: &str, is_in_command: bool) {
         let is_word = |word: &str| ACTIONS.contains(&word);
         if is_in_command || !act.split(' ').next().is_some_and(is_word) {

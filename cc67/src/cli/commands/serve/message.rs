@@ -1,16 +1,16 @@
 //! Requests and replies as bytes. Source: host-protocol.md section 8.
 //!
-//! Numbers have four bytes, texts end with a 0. A request is the number of a call, the number of a board and what the
-//! call takes; a reply is a 0, the result and what the call yields. How messages are told apart is the business of
-//! their [connection](super::connection).
+//! Numbers have four bytes, texts end with a 0. A request consists of the number of a call, the number of a board and
+//! the arguments of the call; a reply consists of a 0, the result and the output of the call. The
+//! [connection](super::connection) separates messages.
 
-/// Bytes of a message from us at most.
+/// The maximum size of a message to a client.
 const LONGEST_REPLY: usize = 2561;
-/// Begins a normal reply.
+/// The first byte of a normal reply.
 pub(super) const REPLY: u8 = 0;
-/// Begins a console line.
+/// The first byte of a console line.
 const CONSOLE: u8 = 1;
-/// Begins an error text.
+/// The first byte of an error text.
 const ERROR: u8 = 2;
 
 /// The requested call.
@@ -19,7 +19,7 @@ pub(super) enum Call {
     WriteLineReadLine(Vec<u8>),
     WriteLine(Vec<u8>),
     WriteLineWithEcho(Vec<u8>),
-    /// With the time it may take, in milliseconds.
+    /// With the time limit in milliseconds.
     ReadLine(u32),
     ListLocations,
     Failed,
@@ -34,7 +34,7 @@ pub(super) enum Call {
 }
 
 impl Call {
-    /// Its name in the vendor's library, with the line that it sends.
+    /// Its name in the vendor's library, with the line sent.
     pub(super) fn name(&self) -> String {
         let line = |name: &str, line: &[u8]| format!("{name}({})", String::from_utf8_lossy(line));
         match self {
@@ -60,7 +60,7 @@ impl Call {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Request {
     pub(super) call: Call,
-    /// 0, -1 … for the first, second … board that is connected; else the [location] of one.
+    /// 0, -1 … for the first, second … connected board; otherwise the [location] of a board.
     board: i32,
 }
 
@@ -85,7 +85,7 @@ impl Request {
             6 => Call::Disconnect,
             7 => Call::FirmwareVersion,
             8 => Call::CheckForReady,
-            // Recovery asks for the token as well.
+            // A recovery call also requests the token.
             9 | 11 => Call::Lock,
             10 => Call::Location,
             12 => Call::Release,
@@ -96,7 +96,7 @@ impl Request {
         Some(Self { call, board })
     }
 
-    /// Its name for a log, with its board if that is not there.
+    /// Its name for a log, including its board if that does not exist.
     pub(super) fn name(&self, boards: usize) -> String {
         let name = self.call.name();
         if self.index(boards).is_some() {
@@ -106,7 +106,7 @@ impl Request {
         }
     }
 
-    /// Returns the index of the board that it is for, if there are that many.
+    /// Returns the index of its board, if there are that many.
     pub(super) fn index(&self, boards: usize) -> Option<usize> {
         let index = match usize::try_from(self.board) {
             Ok(0) => 0,
@@ -132,12 +132,12 @@ fn text(bytes: &[u8]) -> Vec<u8> {
 pub(super) struct Reply(Vec<u8>);
 
 impl Reply {
-    /// A result alone.
+    /// A reply with only a result.
     pub(super) fn number(result: i32) -> Self {
         Self([&[REPLY][..], &result.to_le_bytes()].concat())
     }
 
-    /// A result and a text.
+    /// A reply with a result and a text.
     pub(super) fn text(result: i32, text: &[u8]) -> Self {
         let mut reply = Self::number(result);
         let room = LONGEST_REPLY - reply.0.len() - 1;
@@ -145,7 +145,7 @@ impl Reply {
         reply
     }
 
-    /// A list of numbers.
+    /// A reply with a list of numbers.
     pub(super) fn numbers(list: &[i32]) -> Self {
         let mut reply = Self::number(0);
         let count = i32::try_from(list.len()).unwrap_or(0);
@@ -153,7 +153,6 @@ impl Reply {
         reply
     }
 
-    /// Its bytes.
     pub(super) fn bytes(self) -> Vec<u8> {
         self.0
     }
@@ -181,7 +180,7 @@ mod tests {
     fn the_example_of_the_specification_is_a_request() {
         let request = Request::read(VERSION).expect("a request");
         assert_eq!(request, Request { call: Call::WriteLineReadLine(b"Version".to_vec()), board: 0 });
-        // The library of version 4.32 gives no name with its request for the token.
+        // The library of version 4.32 requests the token without a name.
         assert!(Request::read(&[9, 0, 0, 0, 0, 0, 0, 0]).is_some_and(|request| request.call == Call::Lock));
     }
 

@@ -1,6 +1,6 @@
-//! `cc67 serve`: a board for programs of the PC, in place of the vendor's server process.
+//! `cc67 serve`: a board for PC programs, in place of the vendor's server process.
 //!
-//! The vendor's client library talks to a process that owns the board, over a socket; that process is this one.
+//! The vendor's client library communicates over a socket with a process that owns the board; this is that process.
 //!
 //! ```text
 //! listen    sockets and ports; a thread for each connection
@@ -118,9 +118,9 @@ pub(super) struct ServeArguments {
 /// The speed of board time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum PaceName {
-    /// This many times as fast as a clock.
+    /// This many times the speed of a clock.
     Clock(f64),
-    /// Only in exchanges.
+    /// Time passes only in exchanges.
     Exchanges,
 }
 
@@ -132,29 +132,29 @@ fn pace(text: &str) -> Result<PaceName, String> {
     factor.map(PaceName::Clock).ok_or_else(|| "expected a number from 0.01 to 1000, or `fast`".to_owned())
 }
 
-/// The terms on which a board is served.
+/// The terms for serving a board.
 #[derive(Debug)]
 pub(super) struct Terms<'a> {
     /// The addresses of the listeners, and the option that names them.
     pub(super) addresses: Vec<String>,
     pub(super) option: &'static str,
-    /// The speed of board time relative to the clock; without it, board time only passes in exchanges.
+    /// The speed of board time relative to the clock; `None` if board time passes only in exchanges.
     pub(super) pace: Option<f64>,
     /// True if the server ends with the last client.
     pub(super) once: bool,
-    /// The board time that ends it, in seconds.
+    /// The board time at which it ends, in seconds.
     pub(super) limit: Option<f64>,
     /// The log of the exchanges.
     pub(super) log: Option<&'a Path>,
-    /// The recording, and the title of pictures.
+    /// The recording, and the title of plots.
     pub(super) trace: &'a TraceArguments,
     pub(super) title: String,
-    /// The page that shows it.
+    /// The page on which it is shown.
     #[cfg(feature = "live")]
     pub(super) page: Option<page::PagePlan<'a>>,
 }
 
-/// Serves clients until it is ended.
+/// Serves clients until it ends.
 pub(super) fn serve(arguments: &ServeArguments) -> Result<Exit> {
     arguments.board.controller.refuse_in("serve")?;
     let given = arguments.listen.clone();
@@ -190,12 +190,12 @@ pub(super) fn serve(arguments: &ServeArguments) -> Result<Exit> {
 }
 
 impl Terms<'_> {
-    /// Returns whether one client has the board's link to itself.
+    /// Returns whether a single client uses the board's link.
     pub(super) fn is_on_wire(&self) -> bool {
         self.addresses.iter().any(|address| listen::is_wire(address))
     }
 
-    /// Serves the board of a setup until it is ended.
+    /// Serves the board of a setup until it ends.
     pub(super) fn serve(&self, setup: Setup, debugger: Option<AttachPoint>) -> Result<Exit> {
         if !self.is_on_wire() {
             return self.serve_one(setup, debugger);
@@ -225,19 +225,20 @@ impl Terms<'_> {
     }
 }
 
-/// The boards of a server before its first client: listeners begin when all are ready.
+/// The boards of a server before its first client: listeners start when all of them are ready.
 struct Opening<'a> {
     terms: &'a Terms<'a>,
     desks: Vec<Sender<Note>>,
-    /// The server is to end, even where a debugger has stopped a board.
+    /// Set when the server should end, even if a debugger has stopped a board.
     is_ending: Arc<AtomicBool>,
-    /// The number of boards that are not ready.
+    /// The number of boards that are not ready yet.
     missing: AtomicUsize,
     places: Mutex<Places>,
 }
 
 impl<'a> Opening<'a> {
-    /// The beginning for boards with these desks; Ctrl-C and a request of the system to end end all of them.
+    /// Prepares boards with these dispatchers; Ctrl-C and a termination request of the operating system end all of
+    /// them.
     fn new(terms: &'a Terms<'a>, desks: Vec<Sender<Note>>) -> Result<Self> {
         let is_ending = Arc::<AtomicBool>::default();
         let (is_told, told) = (Arc::clone(&is_ending), desks.clone());
@@ -250,7 +251,7 @@ impl<'a> Opening<'a> {
         Ok(Self { terms, desks, is_ending, missing, places: Mutex::default() })
     }
 
-    /// A board is ready; with the last one listeners begin.
+    /// Notes that a board is ready; listeners start with the last one.
     fn note_ready(&self) -> Result<()> {
         if self.missing.fetch_sub(1, Ordering::Relaxed) > 1 {
             return Ok(());
@@ -263,15 +264,15 @@ impl<'a> Opening<'a> {
     }
 }
 
-/// Ends all desks.
+/// Ends all dispatchers.
 fn end_all(desks: &[Sender<Note>]) {
     for desk in desks {
-        // A desk that is closed has ended.
+        // An error means that the dispatcher has already ended.
         let _ = desk.send(Note::End);
     }
 }
 
-/// One of the boards, to be served.
+/// One of the boards to be served.
 struct BoardWork<'a> {
     opening: &'a Opening<'a>,
     inbox: Receiver<Note>,

@@ -1,4 +1,4 @@
-//! `--live`: the page of a board that is served.
+//! `--live`: the page of a served board.
 
 use anyhow::{Context, Result};
 use cc67_host::{Session, Target};
@@ -22,16 +22,16 @@ pub(super) struct PageArguments {
     no_open: bool,
 }
 
-/// A page to be opened.
+/// A requested page.
 #[derive(Debug)]
 pub(in crate::cli::commands) struct PagePlan<'a> {
     arguments: &'a ServeArguments,
-    /// Board time in a second; `None` if it passes in exchanges only.
+    /// Seconds of board time per second; `None` if it passes only in exchanges.
     speed: Option<f64>,
 }
 
 impl<'a> PagePlan<'a> {
-    /// The page that the arguments ask for.
+    /// The page requested by the arguments.
     pub(super) fn wanted(arguments: &'a ServeArguments, speed: Option<f64>) -> Option<Self> {
         arguments.page.live.then_some(Self { arguments, speed })
     }

@@ -1,22 +1,23 @@
-//! Clients over a named pipe of Windows, as the vendor's library there reaches its server. Source: wire.md section 7.
+//! Clients over a named pipe of Windows, through which the vendor's library reaches its server there. Source: wire.md
+//! section 7.
 //!
-//! A message is what is written at once; the client, which reads bytes, gets no second one before it has answered the
-//! first. A later library writes the length of each message as a message of its own before it: that is recognised by
-//! its first message, and answered in kind.
+//! A message is a single write; the client, which reads bytes, receives the second message only after it has answered
+//! the first. A later version of the library sends the length of each message as a separate message before it: it is
+//! recognised by its first message, and answered in the same way.
 //!
-//! A client finds a free instance as soon as the client before it has had an answer; of two that come at the same moment
-//! one has to try again, as the library does.
+//! A client finds a free instance as soon as the previous client has been answered; if two come at the same time, one
+//! of them must try again, as the library does.
 
 use anyhow::Result;
 
-/// The word for a pipe in addresses.
+/// The name of a pipe in addresses.
 const PIPE: &str = "pipe";
 /// The folder of all pipes.
 const FOLDER: &str = r"\\.\pipe\";
 /// The name of the pipe of the vendor's server.
 const VENDORS: &str = "kmotionpipe";
 
-/// The path of the pipe that an address names: `pipe`, `pipe:NAME` or the path itself; `None` if it names no pipe.
+/// The path of the pipe for an address: `pipe`, `pipe:NAME` or the path itself; `None` if the address is not a pipe.
 pub(super) fn name(address: &str) -> Option<String> {
     if address == PIPE {
         return Some(format!("{FOLDER}{VENDORS}"));
@@ -28,7 +29,7 @@ pub(super) fn name(address: &str) -> Option<String> {
 #[cfg(windows)]
 pub(super) use windows::listen;
 
-/// Says that there are no such pipes here.
+/// Returns an error: this system has no such pipes.
 #[cfg(not(windows))]
 pub(super) fn listen(path: &str, _: &super::listen::Door) -> Result<()> {
     anyhow::bail!("{path} is a named pipe, which only Windows has; a socket or tcp:PORT works here")
@@ -55,18 +56,18 @@ mod windows {
     use crate::cli::commands::serve::listen::Door;
     use crate::cli::io::terminal;
 
-    /// Bytes of the buffers of a pipe.
+    /// The size of a pipe's buffers in bytes.
     const BUFFER: u32 = 4096;
-    /// The time that a client waits for a free instance unless it asks for another, in milliseconds.
+    /// The default time for which a client waits for a free instance, in milliseconds.
     const WAIT: NonZeroU32 = NonZeroU32::new(10_000).expect("it is not 0");
-    /// The system's number for a pipe all instances of which have a client.
+    /// The system's error number if all instances of a pipe have a client.
     const BUSY: i32 = 231;
-    /// The pause after an instance could not be made, in which nobody is let in.
+    /// The pause after an instance could not be created, during which no client can connect.
     const PAUSE: Duration = Duration::from_millis(100);
 
-    /// Takes connections at a pipe in the background.
+    /// Accepts connections at a pipe in the background.
     pub(in crate::cli::commands::serve) fn listen(path: &str, door: &Door) -> Result<()> {
-        // Not each system that has these pipes refuses a second server.
+        // Not all systems with named pipes reject a second server.
         let is_served = match OpenOptions::new().read(true).write(true).open(path) {
             Ok(_) => true,
             Err(error) => error.raw_os_error() == Some(BUSY),
@@ -98,7 +99,7 @@ mod windows {
     #[derive(Debug)]
     pub(in crate::cli::commands::serve) struct PipeConnection {
         stream: DuplexPipeStream<Messages>,
-        /// True if the length of each message comes before it, as a message of its own.
+        /// True if the length of each message is sent as a separate message before it.
         has_lengths: bool,
     }
 
@@ -118,7 +119,7 @@ mod windows {
             self.stream.send(bytes).ok().filter(|sent| *sent == bytes.len()).map(drop)
         }
 
-        /// The message after its length.
+        /// The message that follows its length.
         fn body(&mut self, length: [u8; 2]) -> Received {
             let length = usize::from(u16::from_le_bytes(length));
             self.read().filter(|body| body.len() == length).map_or(Received::Nothing, Received::Message)
@@ -126,7 +127,7 @@ mod windows {
     }
 
     impl ClientConnection for PipeConnection {
-        /// The system closes a pipe only for the thread that reads from it.
+        /// The operating system can close a pipe only for the thread that reads from it.
         fn closer(&self) -> Option<Closer> {
             None
         }
@@ -164,7 +165,7 @@ mod windows {
         }
 
         fn refuse(&mut self, text: &[u8]) {
-            // A client that is gone needs no answer.
+            // A disconnected client needs no answer.
             let _ = self.write(text);
         }
     }

@@ -17,36 +17,36 @@ use crate::cli::session::BoardSession;
 
 use super::Terms;
 
-/// The requests of pages to the desk.
+/// The requests of pages to the dispatcher.
 #[derive(Debug, Default)]
 pub(super) struct PageRequests {
-    /// The events of the ticks that a page has run.
+    /// The events of the ticks run by a page.
     pub(super) events: Vec<Event>,
     /// Lines of script commands.
     pub(super) commands: Vec<String>,
     /// The actions of a page on the world, as statements.
     pub(super) acts: Vec<String>,
-    /// Seconds of board time in a second; `None` while the clock is stopped.
+    /// Seconds of board time per second; `None` while the clock is stopped.
     pub(super) speed: Option<f64>,
 }
 
 /// A board that clients can use.
 pub(super) struct Served<T: Target> {
     rig: BoardSession<T>,
-    /// The server is to end, even where a debugger has stopped the board.
+    /// Set when the server should end, even if a debugger has stopped the board.
     is_ending: Arc<AtomicBool>,
     #[cfg(feature = "live")]
     view: Option<LiveView<T>>,
 }
 
 impl<T: Target> Served<T> {
-    /// The board of a session, on a page if the terms have one; and its trace.
+    /// Creates the served board of a session, with a page if the terms require one; returns it with its trace.
     pub(super) fn new(
         mut rig: BoardSession<T>,
         terms: &Terms<'_>,
         is_ending: Arc<AtomicBool>,
     ) -> Result<(Self, Option<Trace>)> {
-        // A page shows signals without a file of them.
+        // A page shows signals even if they are not written to a file.
         #[cfg(feature = "live")]
         let is_shown_only = terms.page.is_some() && terms.trace.is_unwritten();
         #[cfg(not(feature = "live"))]
@@ -72,7 +72,7 @@ impl<T: Target> Served<T> {
 }
 
 impl<T: Target> Served<T> {
-    /// Number of the last tick that has passed.
+    /// The number of the last completed tick.
     pub(super) fn tick(&self) -> Ticks {
         self.rig.session.tick()
     }
@@ -91,12 +91,12 @@ impl<T: Target> Served<T> {
         });
     }
 
-    /// Returns whether a debugger may be attached, or is.
+    /// Returns whether a debugger is attached, or can attach.
     pub(super) fn is_attended(&self) -> bool {
         self.rig.attendant.is_some()
     }
 
-    /// Serves a debugger while no time passes.
+    /// Serves a debugger while time does not pass.
     pub(super) fn attend(&mut self, sink: &mut dyn FnMut(Event)) {
         if self.is_attended() {
             self.advance(self.tick(), sink);
@@ -108,7 +108,7 @@ impl<T: Target> Served<T> {
         self.rig.session.receive(bytes);
     }
 
-    /// Keeps from now on what it sends, for a client that has its link to itself.
+    /// From now on keeps the bytes sent by the board, for the only client of its link.
     pub(super) fn tap_wire(&mut self) {
         self.rig.session.tap_wire();
     }
@@ -118,7 +118,7 @@ impl<T: Target> Served<T> {
         self.rig.session.take_wire()
     }
 
-    /// Returns whether some bytes are still to be taken.
+    /// Returns whether the board still has to take bytes.
     pub(super) fn is_receiving(&self) -> bool {
         self.rig.session.target().is_receiving()
     }
@@ -128,7 +128,7 @@ impl<T: Target> Served<T> {
         self.rig.session.target().is_in_command()
     }
 
-    /// Says whether anybody takes its console lines; while nobody does, programs that print wait.
+    /// Sets whether somebody takes console lines; if not, programs that print have to wait.
     pub(super) fn listen(&mut self, listens: bool) {
         self.rig.session.listen(listens);
     }
@@ -145,7 +145,7 @@ impl<T: Target> Served<T> {
         self.rig.finish(sink)
     }
 
-    /// Shows something that happened.
+    /// Shows an event.
     #[cfg(feature = "live")]
     pub(super) fn show(&mut self, event: &Event) {
         if let Some(view) = &mut self.view {
@@ -153,7 +153,8 @@ impl<T: Target> Served<T> {
         }
     }
 
-    /// Shows how it is now, and does what pages ask for; what else they wish, if there are any.
+    /// Shows the present state and executes requests of pages; returns the requests for the dispatcher, if there is a
+    /// page.
     #[cfg(feature = "live")]
     pub(super) fn beat(&mut self) -> Option<PageRequests> {
         let wishes = self.view.as_mut()?.beat(&mut self.rig.session);
@@ -161,12 +162,12 @@ impl<T: Target> Served<T> {
         Some(PageRequests { events, commands, acts, speed })
     }
 
-    /// Nothing shows it.
+    /// Does nothing: there is no page.
     #[cfg(not(feature = "live"))]
     #[expect(clippy::unused_self, reason = "with a page, it is shown there")]
     pub(super) fn show(&mut self, _: &Event) {}
 
-    /// There are no pages that wish anything.
+    /// Returns `None`: there is no page.
     #[cfg(not(feature = "live"))]
     #[expect(clippy::unused_self, reason = "with a page, it is shown there")]
     pub(super) fn beat(&mut self) -> Option<PageRequests> {

@@ -1,8 +1,8 @@
 //! The board's own bytes for one client: at a pseudo-terminal, or over TCP.
 //!
-//! A client has the link to itself, as at the board's USB port, and the PC that serves programs is where it is. What it
-//! sends waits here until the board takes it, and what the board sends until the client reads: a client that reads
-//! nothing makes programs that print wait, as on the board.
+//! A single client uses the link, as at the board's USB port, and the PC that serves programs is at the client's end.
+//! The client's data wait here until the board takes them, and the board's data until the client reads them: a client
+//! that does not read makes programs that print wait, as on the board.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -10,51 +10,51 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
-/// The number of unread bytes from which programs that print must wait.
+/// The number of unread bytes from which programs that print have to wait.
 pub(in crate::cli::commands) const UNREAD_BYTES: usize = 1 << 16;
-/// The number of unread bytes from which further ones are lost: a firmware file also answers a client that reads
-/// nothing.
+/// The number of unread bytes beyond which further ones are lost: a firmware file answers even a client that does not
+/// read.
 pub(in crate::cli::commands) const LOST_BYTES: usize = 1 << 20;
-/// The time after the last byte in which a client is served without delay.
+/// The time after the last byte during which a client is served without delay.
 const LIVELY: Duration = Duration::from_secs(2);
 
-/// A client that is connected.
+/// A connected client.
 #[derive(Debug)]
 pub(super) struct WireClient {
     pub(super) number: u64,
     pub(super) outgoing: Sender<Vec<u8>>,
-    /// Bytes on their way to it.
+    /// The number of bytes on their way to the client.
     pub(super) unread: Arc<AtomicUsize>,
-    /// Bytes of it that the board has not taken.
+    /// The number of its bytes that the board has not taken.
     pub(super) untaken: Arc<AtomicUsize>,
 }
 
-/// The board's end of the wire, and the client at the other.
+/// The board's end of the wire, and the client at the other end.
 #[derive(Debug, Default)]
 pub(super) struct WireEnd {
     client: Option<WireClient>,
     /// Bytes for the board.
     incoming: VecDeque<u8>,
-    /// When the client last sent or received something.
+    /// The time of the client's last transfer in either direction.
     last: Option<Instant>,
     is_held_back: bool,
 }
 
 impl WireEnd {
-    /// A client is connected.
+    /// Connects a client.
     pub(super) fn plug(&mut self, client: WireClient) {
         self.incoming.clear();
         self.client = Some(client);
     }
 
-    /// A client is gone: what the board has not taken is lost.
+    /// Disconnects a client: bytes that the board has not taken are lost.
     pub(super) fn unplug(&mut self, number: u64) {
         if self.client.take_if(|client| client.number == number).is_some() {
             self.incoming.clear();
         }
     }
 
-    /// Returns whether nobody is connected.
+    /// Returns whether there is no client.
     pub(super) const fn is_unplugged(&self) -> bool {
         self.client.is_none()
     }
@@ -67,7 +67,7 @@ impl WireEnd {
         }
     }
 
-    /// Returns whether bytes for the board wait.
+    /// Returns whether there are bytes for the board.
     pub(super) fn has_incoming(&self) -> bool {
         !self.incoming.is_empty()
     }
@@ -81,7 +81,7 @@ impl WireEnd {
         bytes
     }
 
-    /// Sends bytes of the board to the client; whether they are lost although one is connected.
+    /// Sends bytes of the board to the client; returns whether they are lost although a client is connected.
     pub(super) fn send(&mut self, bytes: Vec<u8>, time: Instant) -> bool {
         let Some(client) = self.client.as_ref().filter(|_| !bytes.is_empty()) else { return false };
         if client.unread.load(Ordering::Relaxed) > LOST_BYTES {
@@ -89,17 +89,18 @@ impl WireEnd {
         }
         client.unread.fetch_add(bytes.len(), Ordering::Relaxed);
         self.last = Some(time);
-        // A client that is gone is taken out when its connection says so.
+        // A disconnected client is removed when its connection reports it.
         let _ = client.outgoing.send(bytes);
         false
     }
 
-    /// Returns whether the client may wait for the board.
+    /// Returns whether the client may be waiting for the board.
     pub(super) fn is_lively(&self, time: Instant) -> bool {
         self.last.is_some_and(|last| time < last + LIVELY)
     }
 
-    /// Returns whether programs that print have to wait from now on, or no longer have to; `None` if that has not changed.
+    /// Returns whether programs that print have to wait from now on, or no longer have to; `None` if this has not
+    /// changed.
     pub(super) fn hold_back(&mut self) -> Option<bool> {
         let unread = self.client.as_ref().map(|client| client.unread.load(Ordering::Relaxed));
         let limit = if self.is_held_back { UNREAD_BYTES / 2 } else { UNREAD_BYTES };
@@ -111,7 +112,7 @@ impl WireEnd {
     }
 }
 
-/// The console lines among the bytes of the board: the rest are answers to others.
+/// The console lines in the bytes of the board: the rest are replies to others.
 pub(super) fn console_lines(bytes: &[u8]) -> Vec<u8> {
     bytes
         .split_inclusive(|byte| *byte == b'\n')

@@ -10,26 +10,26 @@ use crate::cli::args::sidecars::{Head, Project, SIDECARS};
 use crate::cli::io::input::{files_below, read};
 use crate::cli::io::terminal;
 
-/// A program with the console it should show.
+/// A program with its expected output.
 #[derive(Debug)]
 pub(super) struct Case {
     /// The program.
     pub(super) source: PathBuf,
-    /// The expected output, if there is a golden.
+    /// The expected output, if there is one.
     pub(super) expected: Option<String>,
-    /// Arguments of `cc67 run` in front of the program.
+    /// Arguments of `cc67 run` before the program.
     pub(super) options: Vec<String>,
     /// Programs for other threads, after it.
     pub(super) also: Vec<String>,
 }
 
 impl Case {
-    /// Returns the path of its golden.
+    /// Returns the path of its expected output.
     pub(super) fn golden(&self) -> PathBuf {
         self.source.with_extension("expected")
     }
 
-    /// The folder it is run in.
+    /// The folder in which it is run.
     pub(super) fn folder(&self) -> &Path {
         match self.source.parent() {
             Some(folder) if folder != Path::new("") => folder,
@@ -44,7 +44,7 @@ impl Case {
     }
 }
 
-/// The tests among the paths: programs that are named, and those in folders, in the order of names.
+/// The tests at the paths: programs that are named, and those in folders, in the order of names.
 pub(super) fn find(paths: &[PathBuf]) -> Result<Vec<Case>> {
     let mut cases = Vec::new();
     for path in paths {
@@ -61,7 +61,7 @@ pub(super) fn find(paths: &[PathBuf]) -> Result<Vec<Case>> {
     Ok(cases)
 }
 
-/// Adds the tests of a folder and of those in it.
+/// Adds the tests in a folder and its subfolders.
 fn search(folder: &Path, cases: &mut Vec<Case>) -> Result<()> {
     for path in files_below(folder, "c")? {
         let head = Head::of(&path)?;
@@ -97,7 +97,8 @@ fn note_orphans(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Options of the project file for the programs of tests; files with their whole path, as a test is run in its folder.
+/// Options of the project file for the programs of tests; files have absolute paths, as a test is run in its own
+/// folder.
 fn project(path: &Path) -> Result<Vec<String>> {
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     let folder = folder.canonicalize().with_context(|| format!("cannot read {}", folder.display()))?;
@@ -119,7 +120,7 @@ fn case(path: &Path, head: Head) -> Result<Case> {
             options.extend([(*option).to_owned(), name]);
         }
     }
-    // What is nearer to the program comes later, and wins.
+    // Options of files closer to the program come later, and take precedence.
     options.splice(0..0, project);
     let golden = path.with_extension("expected");
     let expected = match golden.exists() {

@@ -1,8 +1,8 @@
 //! Tests on a connected controller.
 //!
-//! It has no model of a machine and a time of its own. So of what is expected only the console and the exit code are
-//! compared, without board times; a person does what `manual` statements ask for; tests that need the model are skipped,
-//! and the report says what was not checked.
+//! A controller has no model of a machine, and its own time. So only the console and the exit code are compared with
+//! the expected ones, without board times; the user performs the actions of `manual` statements; tests that need the
+//! model are skipped, and the report states what was not checked.
 
 use cc67_controller::{BY_HAND, UNCHECKED};
 
@@ -12,17 +12,17 @@ use super::near;
 use super::verdict::Verdict;
 use crate::cli::io::exit::Exit;
 
-/// The words with which `cc67 run` refuses an option or a statement.
+/// Parts of the messages with which `cc67 run` rejects an option or a statement.
 const REFUSED: [&str; 4] = [
     "is about a simulated board",
     "does not work with `--on`",
     "only the model of a machine does this",
     "the PC does not hear the serial port",
 ];
-/// Seconds after which a program that does not end is stopped.
+/// The option that stops a program which does not end.
 const LIMIT: &str = "--for=60";
 
-/// Expectations that a controller does not check, by the names of their tests.
+/// Expectations that are not checked on a controller, by the names of their tests.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct Unchecked {
     times: Vec<String>,
@@ -30,7 +30,7 @@ pub(super) struct Unchecked {
 }
 
 impl Unchecked {
-    /// Keeps of what tests expect what a controller can show.
+    /// Reduces the expected outputs of tests to the parts that exist on a controller.
     pub(super) fn reduce(cases: &mut [Case]) -> Self {
         let mut unchecked = Self::default();
         for case in cases {
@@ -65,7 +65,7 @@ impl Unchecked {
     }
 }
 
-/// Returns the text of a line of a run's messages that the person at the controller should see at once.
+/// Returns the text of a message line of a run that the user at the controller should see at once.
 pub(super) fn for_person(line: &str) -> Option<&str> {
     line.strip_prefix("cc67: ").filter(|text| text.starts_with(BY_HAND) || text.starts_with(UNCHECKED))
 }
@@ -93,7 +93,7 @@ pub(super) fn verdict(case: &Case, mut shown: Shown) -> Verdict {
             return Verdict::Skipped(reason.to_owned());
         }
     }
-    // The messages of an unmet expectation say more than the exit code.
+    // The messages about unmet expectations are more informative than the exit code.
     if shown.code != Some(Exit::Unmet as i32) {
         shown.golden = golden::without_notes(&shown.golden);
     }

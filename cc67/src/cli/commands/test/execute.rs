@@ -18,7 +18,7 @@ use super::verdict::Verdict;
 use super::{connected, firmware, relay};
 use crate::cli::io::{output, terminal};
 
-/// Runs all cases on all engines, `jobs` runs at a time; the verdicts have the order of the cases.
+/// Runs all cases on all engines, with `jobs` runs at a time; returns the verdicts in the order of the cases.
 pub(super) fn all(
     cases: &[Case],
     executors: &[Executor],
@@ -68,7 +68,7 @@ fn execute(runs: &[Run<'_>], jobs: usize) -> Result<Vec<Shown>> {
     slots.into_iter().map(|slot| slot.into_inner().ok().flatten().context("a test was not run")?).collect()
 }
 
-/// Judges the runs of a case, the first engine first.
+/// Judges the runs of a case, beginning with the first engine.
 fn verdict<'a>(
     case: &Case,
     runs: impl Iterator<Item = (&'a Executor, Shown)>,
@@ -107,29 +107,29 @@ fn verdict<'a>(
     })
 }
 
-/// Writes what a run showed as what is expected.
+/// Writes the output of a run as the expected output.
 pub(super) fn write(case: &Case, shown: &Shown) -> Result<()> {
     output::write(&case.golden(), shown.golden.as_bytes())
 }
 
-/// The index of a run that nobody has taken.
+/// The index of the next run that has not been taken.
 fn claim(next: &AtomicUsize, count: usize) -> Option<usize> {
     let index = next.fetch_add(1, Ordering::Relaxed);
     (index < count).then_some(index)
 }
 
-/// One test about to be run on one engine, or on the firmware file.
+/// One test, to be run on one engine, or on the firmware file.
 struct Run<'a> {
     command: &'a Path,
     case: &'a Case,
     executor: &'a Executor,
     options: &'a [String],
-    /// A number of its own, for the name of its temporary folder.
+    /// A unique number, for the name of its temporary folder.
     scratch: usize,
 }
 
 impl Run<'_> {
-    /// Runs the program in its folder; files that it writes go to a temporary one.
+    /// Runs the program in its folder; files that it writes go to a temporary folder.
     fn execute(&self, bar: &ProgressBar) -> Result<Shown> {
         let files = env::temp_dir().join(format!("cc67-test-{}-{}", process::id(), self.scratch));
         let name = self.case.source.file_name().unwrap_or_default();
@@ -147,15 +147,15 @@ impl Run<'_> {
         };
         let output = output.with_context(|| format!("cannot run {}", self.case.name()))?;
         let took = start.elapsed();
-        // It exists only if the program wrote a file.
+        // The folder exists only if the program wrote a file.
         let _ = fs::remove_dir_all(&files);
-        // A golden has the usual folder of files.
+        // An expected output contains the default folder of files.
         let stderr = String::from_utf8_lossy(&output.stderr).replace(&*files.to_string_lossy(), "cc67-files");
         let shown = golden::shown(&output.stdout, stderr.as_bytes(), output.status.code());
         Ok(Shown { took, ..shown })
     }
 
-    /// Shows a line of the run that is for the person at the controller.
+    /// Shows a line of the run that is meant for the user at the controller.
     fn relay(&self, line: &str) {
         if let Some(text) = connected::for_person(line) {
             terminal::note(&format!("{}: {text}", self.case.name()));

@@ -1,4 +1,4 @@
-//! The executors of tests.
+//! The means of executing tests.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,6 @@ use anyhow::{Context, Result};
 
 use crate::cli::args::engine::EngineName;
 
-/// The executor of a test.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Executor {
     /// An engine, with the modelled firmware.
@@ -21,13 +20,13 @@ pub(super) enum Executor {
 }
 
 impl Executor {
-    /// A firmware file; tests run in folders of their own.
+    /// A firmware file; its path is absolute, as tests run in their own folders.
     pub(super) fn firmware(path: &Path) -> Result<Self> {
         let whole = path.canonicalize().with_context(|| format!("cannot read {}", path.display()))?;
         Ok(Self::Boot(whole))
     }
 
-    /// Options of `cc67 run` that ask for it.
+    /// The options of `cc67 run` that select it.
     pub(super) fn options(&self) -> Vec<OsString> {
         match self {
             Self::Engine(engine) => vec!["--engine".into(), engine.name().into()],

@@ -1,7 +1,7 @@
 //! Tests on the user's own firmware file.
 //!
-//! Remarks and traps are of the modelled firmware, so of what is expected only the console and the exit code are; and
-//! programs that measure time print other last digits. What needs something that only the model has is skipped.
+//! Remarks and traps exist only in the modelled firmware, so only the console and the exit code are compared; and
+//! programs that measure time print different last digits. Tests that need features of the model are skipped.
 
 use super::case::Case;
 use super::golden::{self, Shown};
@@ -9,10 +9,10 @@ use super::near::is_near;
 use super::verdict::Verdict;
 use crate::cli::io::exit::Exit;
 
-/// The end of the message with which `cc67 run` refuses an option.
+/// The end of the message with which `cc67 run` rejects an option.
 const REFUSED: &str = " does not work with `--boot`";
 
-/// Keeps of what a test expects what a firmware file can show.
+/// Reduces the expected output of a test to the parts that exist with a firmware file.
 pub(super) fn reduce(case: &mut Case) {
     case.expected = case.expected.as_deref().map(golden::without_notes);
 }

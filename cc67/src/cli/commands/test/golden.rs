@@ -1,4 +1,4 @@
-//! The text of an `.expected` file: all that a run shows, and how it ended.
+//! The text of an `.expected` file: the output of a run, and how it ended.
 
 use std::time::Duration;
 
@@ -7,18 +7,18 @@ use runtime::is_request;
 /// The output of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Shown {
-    /// The golden text: console, notes of the board, exit code.
+    /// The text in the format of the file: console, notes of the board, exit code.
     pub(super) golden: String,
     /// The rest of stderr: the messages of the compiler.
     pub(super) messages: String,
-    /// The exit code; `None` of a process that was killed.
+    /// The exit code; `None` for a process that was killed.
     pub(super) code: Option<i32>,
-    /// The time it took on the clock.
+    /// The duration on the clock.
     pub(super) took: Duration,
 }
 
 impl Shown {
-    /// Returns the part of the golden after the console: remarks of the board, traps, unmet expectations.
+    /// Returns the part after the console: remarks of the board, traps, unmet expectations.
     pub(super) fn notes(&self) -> &str {
         let marks = ["---- notes\n", "---- exit ", "---- killed\n"];
         let first = marks.iter().filter_map(|mark| find(&self.golden, mark)).min();
@@ -26,7 +26,7 @@ impl Shown {
     }
 }
 
-/// The board's messages about faults on the console.
+/// Messages of the board about faults on the console.
 const FAULTS: &[&str] = &[
     "Following Error Disabled Axis",
     "Limit Disabled Axis",
@@ -35,12 +35,13 @@ const FAULTS: &[&str] = &[
     "Fatal Error",
 ];
 
-/// The beginnings of the message about a run that is cut off while threads are still active.
+/// The beginnings of messages about a run that was stopped while threads were still active.
 const CUT_OFF: &[&str] = &["cc67: still running after ", "cc67: at the end, after "];
 
 impl Shown {
-    /// Returns the parts that a person should review before they become the expected output: traps, remarks, unmet
-    /// expectations, and faults that the board prints on the console. Threads that have not ended and requests to the PC are none of these.
+    /// Returns the parts that a user should review before they become the expected output: traps, remarks, unmet
+    /// expectations, and faults that the board prints on the console, but not threads that have not ended or requests
+    /// to the PC.
     pub(super) fn doubts(&self) -> String {
         let (console, notes) = self.golden.split_at(self.golden.len() - self.notes().len());
         let faults = console.lines().filter(|line| FAULTS.iter().any(|fault| line.contains(fault)));
@@ -55,7 +56,7 @@ impl Shown {
     }
 }
 
-/// A golden text without messages: the console, and how the run ended.
+/// An expected output without notes: the console, and how the run ended.
 pub(super) fn without_notes(golden: &str) -> String {
     let Some(at) = find(golden, "---- notes\n") else { return golden.to_owned() };
     let (console, rest) = golden.split_at(at);
@@ -71,7 +72,7 @@ fn find(text: &str, mark: &str) -> Option<usize> {
     }
 }
 
-/// Puts together what a process printed.
+/// Combines the output of a process.
 pub(super) fn shown(stdout: &[u8], stderr: &[u8], code: Option<i32>) -> Shown {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).replace("\r\n", "\n");
     let mut golden = text(stdout);

@@ -1,4 +1,4 @@
-//! The results as a person reads them: a line for each failure, its differences, the count.
+//! The results as text: a line for each failure, its differences, the count.
 
 use similar::{ChangeTag, TextDiff};
 
@@ -8,10 +8,10 @@ use super::schedules::FailingSchedule;
 use super::verdict::Verdict;
 use compiler::render::human::Color;
 
-/// Lines around a difference.
+/// The number of lines shown around a difference.
 const CONTEXT: usize = 3;
 
-/// All results.
+/// The report of all results.
 pub(super) fn report(cases: &[Case], verdicts: &[Verdict], color: Color) -> String {
     let mut text = String::new();
     let (mut passed, mut blessed, mut failed, mut skipped) = (0, 0, 0, 0);
@@ -92,7 +92,7 @@ fn failure(case: &Case, verdict: &Verdict, paint: &Paint) -> String {
     }
 }
 
-/// Lines, indented.
+/// Indents lines.
 pub(super) fn indented(text: &str) -> String {
     text.lines().map(|line| format!("  {line}\n")).collect()
 }
@@ -101,7 +101,7 @@ fn messages(shown: &Shown) -> String {
     shown.messages.clone()
 }
 
-/// The lines that differ, with some around them.
+/// The lines that differ, with the surrounding ones.
 pub(super) fn diff(old: &str, new: &str, paint: &Paint) -> String {
     let diff = TextDiff::from_lines(old, new);
     let mut text = String::new();
@@ -122,7 +122,7 @@ pub(super) fn diff(old: &str, new: &str, paint: &Paint) -> String {
     text
 }
 
-/// Text in colours, if the terminal shows them.
+/// Colours for text, if the terminal shows them.
 pub(super) struct Paint {
     pub(super) color: Color,
 }

@@ -1,4 +1,4 @@
-//! The results as other tools read them: JSON and JUnit.
+//! The results for other tools: JSON and JUnit.
 
 use std::time::Duration;
 
@@ -24,7 +24,6 @@ const fn is_zero(count: &usize) -> bool {
     *count == 0
 }
 
-/// One test of the report.
 #[derive(Serialize)]
 struct Test<'a> {
     name: String,
@@ -93,9 +92,9 @@ pub(super) fn json(cases: &[Case], verdicts: &[Verdict]) -> String {
     text
 }
 
-/// A JUnit report, as continuous integration shows it.
+/// A JUnit report, for continuous integration.
 ///
-/// The class of a test is its folder; its time that of its runs on the clock.
+/// The class of a test is its folder; its time is the sum of the times of its runs.
 pub(super) fn junit(cases: &[Case], verdicts: &[Verdict], took: &[Duration]) -> String {
     let failed = verdicts.iter().filter(|verdict| verdict.is_bad()).count();
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
@@ -137,7 +136,7 @@ pub(super) fn junit(cases: &[Case], verdicts: &[Verdict], took: &[Duration]) -> 
     text
 }
 
-/// Text within XML; what XML cannot hold becomes a question mark.
+/// Escapes text for XML; characters that XML does not allow become question marks.
 fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {

@@ -1,9 +1,9 @@
 //! `cc67 test`: golden tests of user programs.
 //!
-//! A test is a program `NAME.c` with `NAME.expected` beside it, which holds what the console shows.
-//! The program is run by this very command, in a process of its own for each engine, so a test is
-//! exactly what `cc67 run` does and no program can spoil another's result. The results are listed in
-//! the order of the programs' names, whichever is ready first.
+//! A test is a program `NAME.c` with a file `NAME.expected`, which contains the console output. This same command runs
+//! the program in a separate process for each engine, so a test is exactly what `cc67 run` does, and programs cannot
+//! influence each other's results. The results are listed in the order of the programs' names, whichever is ready
+//! first.
 
 mod case;
 mod connected;
@@ -38,7 +38,7 @@ use golden::Shown;
 use schedules::ScheduleArguments;
 use verdict::Verdict;
 
-/// Options that are the command's own; all others in `[test]` of a project file are those of its programs.
+/// Options of the command itself; all others in `[test]` of a project file are options for its programs.
 const OWN_OPTIONS: &[&str] =
     &["bless", "force", "engine", "as", "boot", "schedules", "seed", "jobs", "json", "junit", "on", "yes"];
 
@@ -99,7 +99,7 @@ With --on, console and exit code are compared, without board times; the report s
 Exit code: 0 all tests passed, 1 some failed, 2 wrong usage.";
 
 impl TestArguments {
-    /// The command's own options in the project file of what is tested.
+    /// The command's own options in the project file of the tests.
     pub(super) fn of_project(&self) -> Result<Vec<OsString>> {
         let Some(path) = self.paths.first() else { return Ok(Vec::new()) };
         let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new("")) };
@@ -108,7 +108,7 @@ impl TestArguments {
         Ok(project.map(own).unwrap_or_default())
     }
 
-    /// Everything that executes each program.
+    /// The means of executing each program.
     fn executors(&self) -> Vec<Executor> {
         let engines = self.engines();
         let as_board = engines.clone().into_iter().map(Executor::AsBoard);
@@ -122,7 +122,7 @@ impl TestArguments {
     }
 }
 
-/// Finds the tests, runs them and reports.
+/// Finds the tests, runs them and reports the results.
 pub(super) fn test(arguments: &TestArguments) -> Result<Exit> {
     let mut cases = case::find(&arguments.paths)?;
     if cases.is_empty() {
@@ -167,7 +167,8 @@ pub(super) fn test(arguments: &TestArguments) -> Result<Exit> {
     Ok(if verdicts.iter().any(Verdict::is_bad) { Exit::Failure } else { Exit::Success })
 }
 
-/// Asks whether faults, remarks, traps and an exit code should be expected from now on; without a terminal, they are not.
+/// Asks whether faults, remarks, traps and an exit code should become expected output; without a terminal, the answer
+/// is no.
 fn agrees(name: &str, shown: &Shown) -> Result<bool> {
     if !io::stdin().is_terminal() {
         return Ok(false);
@@ -183,7 +184,7 @@ fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }
 
-/// The command itself, to run programs with: this file, or the script that a package started the command by.
+/// The command itself, for running programs: this executable, or the script by which a package started it.
 fn this_command() -> Result<PathBuf> {
     if let Some(script) = std::env::var_os("CC67_COMMAND") {
         return Ok(script.into());

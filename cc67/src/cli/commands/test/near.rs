@@ -1,11 +1,11 @@
-//! Texts that are equal but for last digits.
+//! Texts that are equal except for the last digits of numbers.
 
 use crate::cli::report::numbers::{Tolerance, deviation};
 
-/// By how much printed numbers may differ.
+/// The allowed difference of printed numbers.
 const ALLOWED: Tolerance = Tolerance { seconds: 0.001, number: 0.001 };
 
-/// Returns whether texts are equal but for numbers that may differ.
+/// Returns whether texts are equal except for allowed differences of numbers.
 pub(super) fn is_near(expected: &str, shown: &str) -> bool {
     let mut lines = expected.lines().zip(shown.lines());
     expected.lines().count() == shown.lines().count()

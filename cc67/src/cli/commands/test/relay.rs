@@ -4,7 +4,7 @@ use std::io::{self, BufRead, BufReader, Read};
 use std::process::{Command, Output, Stdio};
 use std::thread;
 
-/// Runs a command to its end, and shows each line of its stderr as it comes.
+/// Runs a command to its end, and shows each line of its stderr at once.
 pub(super) fn output(command: &mut Command, mut show: impl FnMut(&str)) -> io::Result<Output> {
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
     let out = child.stdout.take().map(|mut out| {

@@ -1,4 +1,4 @@
-//! Runs a test by many schedules, and looks for the smallest one that fails.
+//! Runs a test with many schedules, and reduces a failing one.
 
 use std::ffi::OsString;
 use std::fs;
@@ -30,24 +30,24 @@ pub(super) struct ScheduleArguments {
     seed: u64,
 }
 
-/// A schedule by which a test fails.
+/// A schedule with which a test fails.
 #[derive(Debug)]
 pub(super) struct FailingSchedule {
-    /// The seed that was found.
+    /// The seed with which it was found.
     pub(super) seed: u64,
     /// The smallest schedule that fails.
     pub(super) smallest: Schedule,
-    /// The failure then.
+    /// The reason of the failure.
     pub(super) why: String,
-    /// The remarks of the board then.
+    /// The remarks of the board in that run.
     pub(super) notes: String,
 }
 
-/// The seeds that are run in one process.
+/// The number of seeds that are run in one process.
 const CHUNK: u64 = 32;
 
 impl ScheduleArguments {
-    /// Runs the tests that have passed so far by the schedules.
+    /// Runs the tests that have passed so far with the schedules.
     pub(super) fn explore(
         &self,
         cases: &[Case],
@@ -84,7 +84,7 @@ impl ScheduleSearch<'_> {
         let work = || -> Result<()> {
             loop {
                 let from = next.fetch_add(CHUNK, Ordering::Relaxed);
-                // What is found in lower seeds makes this chunk useless.
+                // A failure found with a lower seed makes this chunk unnecessary.
                 let is_found =
                     found.lock().is_ok_and(|found| found.iter().any(|failing| failing.number < from));
                 if from >= seeds.end || is_found {
@@ -106,7 +106,7 @@ impl ScheduleSearch<'_> {
         Ok(found.into_iter().min_by_key(|failing| failing.number))
     }
 
-    /// The smallest schedule that fails, by leaving out parts as long as one is left that fails.
+    /// Finds the smallest schedule that fails, by removing parts as long as the rest still fails.
     fn smallest(&self, found: Failing) -> Result<FailingSchedule> {
         let parse = |failing: &Failing| failing.schedule.parse::<Schedule>().map_err(anyhow::Error::msg);
         let seed = found.number;
@@ -139,7 +139,7 @@ impl ScheduleSearch<'_> {
         text.lines().map(|line| serde_json::from_str(line).context("a line is a schedule")).collect()
     }
 
-    /// Runs the programs with more options.
+    /// Runs the programs with additional options.
     fn run<const N: usize>(&self, also: [OsString; N]) -> Result<process::Output> {
         let files =
             env::temp_dir().join(format!("cc67-schedules-{}-{:?}", process::id(), thread::current().id()));
@@ -152,7 +152,7 @@ impl ScheduleSearch<'_> {
         command.args(self.options).args(&self.case.options).arg(name).args(&self.case.also);
         command.current_dir(self.case.folder()).stdin(Stdio::null()).env("NO_COLOR", "1");
         let output = command.output().with_context(|| format!("cannot run {}", self.case.name()))?;
-        // It exists only if the program wrote a file.
+        // The folder exists only if the program wrote a file.
         let _ = fs::remove_dir_all(&files);
         Ok(output)
     }

@@ -4,26 +4,25 @@ use super::executor::Executor;
 use super::golden::Shown;
 use super::schedules::FailingSchedule;
 
-/// The verdict on a test.
 #[derive(Debug)]
 pub(super) enum Verdict {
-    /// Every engine showed what was expected.
+    /// Every engine produced the expected output.
     Passed,
     /// The expected text was rewritten.
     Blessed,
-    /// The text would be written, but holds more than a console: the user is asked first.
+    /// The text would be written, but contains more than a console: the user is asked first.
     Asked(Shown),
-    /// The text is not written: nothing was run, or not as it should.
+    /// The text is not written: nothing was run, or the run was not as required.
     Refused(Shown),
     /// There is no expected text.
     Unknown,
-    /// It needs what the firmware file does not have: what that is.
+    /// It needs something that the firmware file lacks; the text names it.
     Skipped(String),
-    /// The engines agree on something else.
+    /// The engines agree on a different output.
     Differs(Shown),
-    /// It shows something else, or goes wrong, by a schedule.
+    /// With some schedule it produces a different output, or fails.
     FailsBySchedule(FailingSchedule),
-    /// An engine did not show what the first one did.
+    /// An engine's output differs from the first engine's.
     Disagrees(Shown, Executor, Shown),
 }
 
@@ -33,7 +32,7 @@ impl Verdict {
         !self.is_good() && !matches!(self, Self::Skipped(_))
     }
 
-    /// Returns whether the test was run and is as it should be.
+    /// Returns whether the test was run and has passed.
     pub(super) fn is_good(&self) -> bool {
         matches!(self, Self::Passed | Self::Blessed)
     }

@@ -1,4 +1,4 @@
-//! Contents of a plot: panels of lines over time, and strips of levels below them.
+//! The contents of a plot: panels of lines over time, with strips of levels below them.
 
 /// Values over time; each holds until the next.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,41 +9,41 @@ pub(in crate::cli) struct Line {
     pub(in crate::cli) points: Vec<(f64, f64)>,
 }
 
-/// Lines that share an axis of values.
+/// Lines that share a vertical axis.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::cli) struct Panel {
     /// The title.
     pub(in crate::cli) title: String,
-    /// The unit of the values; empty for mere numbers.
+    /// The unit of the values; empty for numbers without a unit.
     pub(in crate::cli) unit: String,
     /// The lines.
     pub(in crate::cli) lines: Vec<Line>,
 }
 
-/// Spans in which something is so: a bit is high, a thread has the processor.
+/// Intervals in which a state holds: a bit is high, a thread has the processor.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::cli) struct Strip {
     /// The name of the level.
     pub(in crate::cli) name: String,
-    /// Beginnings and ends in seconds, ascending.
+    /// The beginnings and ends in seconds, ascending.
     pub(in crate::cli) spans: Vec<(f64, f64)>,
-    /// Instants of note, ascending.
+    /// Marked times, ascending.
     pub(in crate::cli) marks: Vec<Mark>,
 }
 
-/// An instant of note on a strip.
+/// A marked time on a strip.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::cli) struct Mark {
-    /// The instant in seconds.
+    /// The time in seconds.
     pub(in crate::cli) at: f64,
     /// The event.
     pub(in crate::cli) text: String,
 }
 
-/// Something between two strips.
+/// An event between two strips.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::cli) struct Link {
-    /// The instant in seconds.
+    /// The time in seconds.
     pub(in crate::cli) at: f64,
     /// The indices of the strips.
     pub(in crate::cli) strips: [usize; 2],
@@ -64,7 +64,7 @@ pub(in crate::cli) struct Chart {
     pub(in crate::cli) strips: Vec<Strip>,
     /// Links between strips, ascending in time.
     pub(in crate::cli) links: Vec<Link>,
-    /// The first and the last instant.
+    /// The first and the last time.
     pub(in crate::cli) range: (f64, f64),
     /// The scale of the horizontal axis.
     pub(in crate::cli) scale: Scale,
@@ -85,7 +85,7 @@ impl Scale {
     pub(in crate::cli::report) fn shown(self, position: f64) -> f64 {
         match self {
             Self::Linear => position,
-            // Without the last digits, which the way through the logarithm has changed.
+            // Rounded, because the logarithm and its inverse have changed the last digits.
             Self::Logarithmic => format!("{:.9e}", libm::pow(10.0, position)).parse().unwrap_or(position),
         }
     }
@@ -101,8 +101,8 @@ impl Line {
         })
     }
 
-    /// At most about `columns` times four points that look the same: of each column of time the first, the lowest,
-    /// the highest and the last.
+    /// At most about four points per column that look the same: the first, the lowest, the highest and the last point
+    /// of each column.
     pub(in crate::cli::report) fn thinned(&self, range: (f64, f64), columns: usize) -> Vec<(f64, f64)> {
         if self.points.len() <= 4 * columns {
             return self.points.clone();
@@ -124,7 +124,7 @@ impl Line {
 }
 
 impl Panel {
-    /// The range of values to show: the extent of the lines, with a little room.
+    /// The range of values to show: the extent of the lines, with a small margin.
     pub(in crate::cli::report) fn range(&self) -> (f64, f64) {
         let extents: Vec<_> = self.lines.iter().filter_map(Line::extent).collect();
         let low = extents.iter().map(|extent| extent.0).fold(f64::INFINITY, f64::min);
@@ -132,12 +132,12 @@ impl Panel {
         if !(low.is_finite() && high.is_finite()) {
             return (-1.0, 1.0);
         }
-        // A constant gets a window around it, whatever its size.
+        // A constant line gets a margin around its value, whatever its size.
         let room = if high > low { (high - low) * 0.06 } else { (low.abs() * 0.1).max(1.0) };
         (low - room, high + room)
     }
 
-    /// Title and unit.
+    /// The title with the unit.
     pub(in crate::cli::report) fn heading(&self) -> String {
         match self.unit.as_str() {
             "" => self.title.clone(),

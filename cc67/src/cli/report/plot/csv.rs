@@ -1,8 +1,8 @@
-//! Tables of numbers, as programs that gather data and `cc67 run --trace` write them.
+//! Tables of numbers, as written by programs that gather data and by `cc67 run --trace`.
 //!
-//! Columns are separated by commas, semicolons, tabs or blanks. A first line that is not all numbers names the columns.
-//! Lines that begin with `#` and empty lines are skipped. The files of the vendor's step response and Bode screens are known
-//! by their first column.
+//! Columns are separated by commas, semicolons, tabs or blanks. A first line that contains anything but numbers names
+//! the columns. Lines that begin with `#` and empty lines are skipped. The files of the vendor's step response and Bode
+//! screens are recognised by their first column.
 
 use anyhow::{Result, bail};
 
@@ -10,10 +10,11 @@ use super::chart::Chart;
 use super::responses;
 use super::samples::{Column, Samples};
 
-/// Names of a first column that is the time.
+/// Names of a first column that contains times.
 const TIMES: [&str; 5] = ["t", "time", "time_s", "seconds", "time (s)"];
 
-/// A chart of the table: one panel a column, over the first column if that is the time, else over the line's number.
+/// A chart of the table: one panel per column, over the first column if it contains times, otherwise over the line's
+/// number.
 pub(super) fn chart(title: &str, text: &str) -> Result<Chart> {
     let table = read(text)?;
     match table.names.first().map(String::as_str) {
@@ -34,7 +35,7 @@ pub(super) fn chart(title: &str, text: &str) -> Result<Chart> {
     let columns = names.map(|name| Column { name: name.clone(), unit: String::new() }).collect();
     let rows = times.iter().copied().zip(table.rows.into_iter().map(|row| row[first..].to_vec())).collect();
     let end = times.last().copied().unwrap_or_default();
-    // Every value is in the table: none has to be held.
+    // The table contains every value, so none is held longer.
     let samples = Samples { columns, rows, step: f64::INFINITY, end, ..Samples::default() };
     let panels = if has_time { samples.panels() } else { samples.plain_panels() };
     let strips = if has_time { samples.strips() } else { Vec::new() };
@@ -100,7 +101,7 @@ fn read(text: &str) -> Result<Table> {
     Ok(Table { names, rows })
 }
 
-/// The fields of the first line, of which those in quotes may hold commas.
+/// The fields of the first line; fields in quotes may contain commas.
 fn head(line: &str) -> Vec<String> {
     if !line.contains('"') {
         return split(line).into_iter().map(str::to_owned).collect();

@@ -1,4 +1,4 @@
-//! Draws a chart as a picture, with the same code as SVG and as PNG.
+//! Draws a chart as a picture; the same code is used for SVG and PNG.
 
 use std::fmt::Write as _;
 
@@ -17,15 +17,15 @@ const TITLE: u32 = 54;
 const PANEL: u32 = 190;
 const STRIP: u32 = 26;
 const FOOT: u32 = 48;
-/// Pixels from one mark of a strip to the next, at least.
+/// The minimum distance between marks on a strip, in pixels.
 const MARK_GAP: i32 = 3;
 /// Room for the numbers to the left of the panels.
 const LEFT: u32 = 90;
 const RIGHT: u32 = 24;
-/// Heading of a panel, with its legend.
+/// The height of a panel's heading with its legend.
 const HEADING: u32 = 26;
 
-/// Colours that people who see red and green alike can tell apart (Okabe and Ito).
+/// Colours that can be distinguished by people with red-green blindness (Okabe and Ito).
 pub(super) const COLORS: [(u8, u8, u8); 7] = [
     (0, 114, 178),
     (213, 94, 0),
@@ -47,16 +47,16 @@ pub(super) fn svg(chart: &Chart) -> Result<Vec<u8>> {
     Ok(text.into_bytes())
 }
 
-/// The drawing of the lines of the panels.
+/// The way of drawing the lines of the panels.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Curves {
-    /// The same code as all else, to whole pixels.
+    /// By the common code, at whole pixels.
     Drawn,
-    /// Somebody else.
+    /// Not at all: another function draws them.
     LeftOut,
 }
 
-/// The lines of all panels, to a hundredth of a pixel.
+/// The lines of all panels, with a precision of a hundredth of a pixel.
 fn curves(chart: &Chart) -> String {
     let mut text = String::new();
     for (panel, top) in chart.panels.iter().zip((TITLE..).step_by(PANEL as usize)) {
@@ -77,12 +77,12 @@ fn curves(chart: &Chart) -> String {
     text
 }
 
-/// A coordinate to a hundredth of a pixel.
+/// Rounds a coordinate to a hundredth of a pixel.
 fn short(value: f64) -> f64 {
     libm::round(value * 100.0) / 100.0
 }
 
-/// The points of a line in pixels of its panel.
+/// The points of a line, in pixels of its panel.
 fn points(chart: &Chart, panel: &Panel, line: &Line) -> Vec<(f64, f64)> {
     let (low, high) = panel.range();
     let (top, bottom) = (f64::from(HEADING), f64::from(PANEL) - 12.0);
@@ -92,10 +92,12 @@ fn points(chart: &Chart, panel: &Panel, line: &Line) -> Vec<(f64, f64)> {
     without_flat(shown.map(|(time, value)| (place(chart, time), up(value))).collect())
 }
 
-/// Turns within a pixel in a line that is still drawn thick: those of a few jolts, but not of noise.
+/// The maximum number of reversals within a pixel for a line that is drawn thick: some jolts cause few, noise causes
+/// many.
 const TURNS: usize = 40;
 
-/// A thick line has a spike at each place where it turns back within a pixel, as noise does all the time.
+/// Returns the thickness of a line: a thick line has a spike at each reversal within a pixel, which noise has
+/// everywhere.
 fn thickness(points: &[(f64, f64)]) -> u32 {
     let turns = points.windows(3).filter(|three| {
         let (before, after) = (three[1].1 - three[0].1, three[2].1 - three[1].1);
@@ -172,7 +174,7 @@ fn write<B: DrawingBackend>(
     area.draw_text(text, &style, at).map_err(text_of)
 }
 
-/// The instants at which the picture has vertical lines.
+/// The times at which the picture has vertical lines.
 fn marks(chart: &Chart) -> Vec<f64> {
     match chart.scale {
         Scale::Linear => steps(chart.range, 10),
@@ -202,7 +204,7 @@ fn steps((low, high): (f64, f64), count: u32) -> Vec<f64> {
 
 /// Formats a number without insignificant digits.
 pub(super) fn number(value: f64) -> String {
-    // What is left of a step that should be 0.
+    // A remainder of a step that should be 0.
     let value = if value.abs() < 1e-12 { 0.0 } else { value };
     if value != 0.0 && !(1e-4..1e7).contains(&value.abs()) {
         return format!("{value:e}");
@@ -211,12 +213,12 @@ pub(super) fn number(value: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Returns the horizontal position of an instant.
+/// Returns the horizontal position of a time.
 fn across(chart: &Chart, time: f64) -> i32 {
     place(chart, time) as i32
 }
 
-/// The same between two pixels.
+/// The horizontal position, as a fraction of pixels.
 fn place(chart: &Chart, time: f64) -> f64 {
     let (low, high) = chart.range;
     let width = f64::from(WIDTH - LEFT - RIGHT);
@@ -263,7 +265,7 @@ fn draw_panel<B: DrawingBackend>(
     Ok(())
 }
 
-/// The title of a panel, and after it the names of its lines in their colours.
+/// The title of a panel, followed by the names of its lines in their colours.
 fn heading<B: DrawingBackend>(panel: &Panel, area: &Area<B>) -> Result<(), String> {
     let style = ("sans-serif", 15).into_font();
     let title = panel.heading();
@@ -304,7 +306,7 @@ fn draw_strip<B: DrawingBackend>(
     Ok(())
 }
 
-/// The marks of a strip in pixels, without those that would run together.
+/// The marks of a strip in pixels, without those that would touch another one.
 fn spaced_marks(chart: &Chart, strip: &Strip) -> Vec<i32> {
     let mut spaced: Vec<i32> = Vec::new();
     for mark in &strip.marks {
@@ -316,7 +318,7 @@ fn spaced_marks(chart: &Chart, strip: &Strip) -> Vec<i32> {
     spaced
 }
 
-/// Links from strip to strip, over the whole picture.
+/// Draws the links between strips, across the whole picture.
 fn draw_links<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Result<(), String> {
     let first = TITLE + PANEL * chart.panels.len() as u32;
     let middle = |strip: usize| (first + STRIP * strip as u32 + STRIP / 2) as i32;
@@ -330,7 +332,7 @@ fn draw_links<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Result<(), St
     Ok(())
 }
 
-/// The spans of a strip in pixels; those without a gap between them that shows run together.
+/// The spans of a strip in pixels; spans without a visible gap are merged.
 fn bars(chart: &Chart, strip: &Strip) -> Vec<(i32, i32)> {
     let mut bars: Vec<(i32, i32)> = Vec::new();
     for (from, to) in &strip.spans {
@@ -343,7 +345,7 @@ fn bars(chart: &Chart, strip: &Strip) -> Vec<(i32, i32)> {
     bars
 }
 
-/// The points without those in the middle of a horizontal segment.
+/// The points except those within a horizontal segment.
 fn without_flat(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     let mut kept: Vec<(f64, f64)> = Vec::with_capacity(points.len());
     for point in points {
@@ -359,7 +361,7 @@ fn without_flat(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     kept
 }
 
-/// The numbers of the horizontal axis, at a height of an area.
+/// Draws the numbers of the horizontal axis, at a height of an area.
 fn draw_marks<B: DrawingBackend>(chart: &Chart, area: &Area<B>, top: i32) -> Result<(), String> {
     let style = ("sans-serif", 13).into_font();
     for mark in marks(chart) {
@@ -370,7 +372,7 @@ fn draw_marks<B: DrawingBackend>(chart: &Chart, area: &Area<B>, top: i32) -> Res
     Ok(())
 }
 
-/// The horizontal axis below the panels, with its label.
+/// Draws the horizontal axis below the panels, with its label.
 fn draw_foot<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Result<(), String> {
     draw_marks(chart, area, 2)?;
     let style = ("sans-serif", 13).into_font();

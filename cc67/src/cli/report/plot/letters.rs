@@ -1,8 +1,8 @@
-//! Letters of our own, so that a picture does not depend on what fonts a computer has; in pictures of pixels they are
-//! set here.
+//! An embedded font, so that a picture does not depend on the computer's fonts; in PNG pictures this module draws the
+//! letters.
 //!
-//! What draws the rest begins every letter at a whole pixel, without the room that the font wants to its left: `136`
-//! would be read as `1 36`.
+//! The drawing library begins every letter at a whole pixel, without the bearing that the font specifies on its left:
+//! `136` would look like `1 36`.
 
 use std::sync::{LazyLock, Once};
 
@@ -16,7 +16,7 @@ use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyl
 static FONT: LazyLock<FontRef<'static>> =
     LazyLock::new(|| FontRef::try_from_slice(UBUNTU_LIGHT).expect("the font is valid"));
 
-/// Makes the letters known to what measures texts, and writes them in pictures of lines.
+/// Registers the font for measuring text and for SVG pictures.
 pub(super) fn register() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
@@ -25,7 +25,7 @@ pub(super) fn register() {
     });
 }
 
-/// A picture of pixels whose letters are where the font wants them, between pixels as well.
+/// A PNG picture with letters at the positions that the font specifies, including fractions of a pixel.
 pub(super) struct Pixels<'a>(pub(super) BitMapBackend<'a>);
 
 type Drawn<'a> = Result<(), DrawingErrorKind<<BitMapBackend<'a> as DrawingBackend>::ErrorType>>;
@@ -76,17 +76,17 @@ impl<'a> DrawingBackend for Pixels<'a> {
             VPos::Center => -height / 2.0,
             VPos::Bottom => -height,
         };
-        // The line on which letters stand lies between two rows of pixels: flat feet are sharp then.
+        // The baseline lies between two rows of pixels, so that the lower edges of letters are sharp.
         let foot = libm::roundf(at.1 as f32 + up + BASELINE * size);
         self.letters(text, size, (at.0 as f32 + left, foot), style.color())
     }
 }
 
-/// The distance of the baseline from the top of a text, as part of its size.
+/// The distance of the baseline from the top of a text, as a fraction of its size.
 const BASELINE: f32 = 0.75;
 
 impl<'a> Pixels<'a> {
-    /// Draws letters one after another from a place on their line.
+    /// Draws letters one after another, beginning at a position on the baseline.
     fn letters(&mut self, text: &str, size: f32, (left, foot): (f32, f32), color: BackendColor) -> Drawn<'a> {
         for (letter, along) in places(text, size) {
             let glyph = letter.with_scale_and_position(PxScale::from(size), point(left + along, foot));
@@ -102,7 +102,7 @@ impl<'a> Pixels<'a> {
     }
 }
 
-/// The letters of a text, and how far each is from its beginning, in pixels.
+/// The letters of a text, each with its distance from the beginning in pixels.
 fn places(text: &str, size: f32) -> Vec<(ab_glyph::GlyphId, f32)> {
     let font = FONT.as_scaled(size);
     let (mut along, mut before) = (0.0, None);
@@ -129,7 +129,7 @@ mod tests {
 
     use super::*;
 
-    /// The columns of pixels that a text of 13 pixels covers.
+    /// The columns of pixels covered by a text of size 13.
     fn covered(text: &str) -> Vec<u32> {
         let (width, height) = (60, 20);
         let mut pixels = vec![255; (width * height * 3) as usize];
@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn letter_spacing_is_that_of_the_font() {
-        // Three stems, a digit's width apart: 0.559 of the size for this font's figures.
+        // Three stems at the distance of a digit's width: 0.559 of the size for this font's figures.
         let stems = covered("111");
         let groups = stems.chunk_by(|a, b| b - a == 1).map(|group| group[group.len() - 1]);
         let right_edges: Vec<u32> = groups.collect();

@@ -1,6 +1,6 @@
-//! Plots: `cc67 run --plot FILE` of what moved, `cc67 plot` of saved data.
+//! Plots: `cc67 run --plot FILE` for motion, `cc67 plot` for saved data.
 //!
-//! The suffix of the picture decides: `.svg`, `.png`, or `.html` for a page with zoom and cursor.
+//! The suffix of the file determines the format: `.svg`, `.png`, or `.html` for a page with zoom and cursor.
 
 pub(crate) mod chart;
 mod csv;
@@ -18,12 +18,12 @@ use anyhow::{Result, bail};
 use crate::cli::io::output;
 use chart::Chart;
 
-/// The chart of saved data: columns of numbers, or a value change dump.
+/// The chart for saved data: columns of numbers, or a value change dump.
 pub(crate) fn chart_of(title: &str, text: &str, is_dump: bool) -> Result<Chart> {
     if is_dump { vcd::chart(title, text) } else { csv::chart(title, text) }
 }
 
-/// Forms of a picture.
+/// The format of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Form {
     Svg,
@@ -32,7 +32,7 @@ pub(crate) enum Form {
 }
 
 impl Form {
-    /// The form that a file name asks for.
+    /// The format for a file name.
     pub(crate) fn of(path: &Path) -> Result<Self> {
         let suffix = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         Ok(match suffix.as_str() {
@@ -44,7 +44,7 @@ impl Form {
     }
 }
 
-/// Writes the picture of a chart.
+/// Writes a chart as a picture.
 ///
 /// # Errors
 /// There is nothing to draw, or the file cannot be written.

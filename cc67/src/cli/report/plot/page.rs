@@ -1,4 +1,4 @@
-//! A chart as one page for a browser, with zoom and cursor; it needs nothing else, no network either.
+//! A chart as one self-contained page for a browser, with zoom and cursor; it needs no network.
 
 use anyhow::Result;
 use serde::Serialize;
@@ -6,15 +6,15 @@ use serde::Serialize;
 use super::chart::{Chart, Line, Scale};
 use super::draw::COLORS;
 
-/// The page, with a mark in place of the data.
+/// The page, with a placeholder for the data.
 const PAGE: &str = include_str!("page.html");
 const MARK: &str = "@DATA@";
 
-/// Most points of all lines, and most spans of all strips: more are thinned, so that a page has at most 2 MB whatever it
-/// shows, and is quick to open.
+/// The maximum number of points of all lines, and of spans of all strips; larger numbers are thinned, so that a page
+/// has at most 2 MB and opens quickly.
 const POINTS: usize = 60_000;
 const SPANS: usize = 20_000;
-/// Most marks of a strip.
+/// The maximum number of marks on a strip.
 const MARKS: usize = 1_000;
 
 #[derive(Serialize)]
@@ -22,7 +22,7 @@ struct PageData<'a> {
     title: &'a str,
     abscissa: &'a str,
     range: (f64, f64),
-    /// Positions on the horizontal axis are logarithms.
+    /// True if positions on the horizontal axis are logarithms.
     #[serde(rename = "isLogarithmic")]
     is_logarithmic: bool,
     colors: Vec<String>,
@@ -38,7 +38,7 @@ struct PagePanel<'a> {
     lines: Vec<PageLine<'a>>,
 }
 
-/// Times and values as two lists, which browsers keep small.
+/// Times and values as separate lists, which take less space.
 #[derive(Serialize)]
 struct PageLine<'a> {
     name: &'a str,
@@ -60,7 +60,7 @@ struct PageLink<'a> {
     text: &'a str,
 }
 
-/// The page of a chart.
+/// The page for a chart.
 pub(super) fn html(chart: &Chart) -> Result<Vec<u8>> {
     let lines: usize = chart.panels.iter().map(|panel| panel.lines.len()).sum();
     let (points, spans) = (POINTS / lines.max(1), SPANS / chart.strips.len().max(1));
@@ -105,14 +105,14 @@ pub(super) fn html(chart: &Chart) -> Result<Vec<u8>> {
 }
 
 fn page_line(line: &Line, range: (f64, f64), most: usize) -> PageLine<'_> {
-    // What a line needs to look the same comes first: only what is left of it is thinned.
+    // First the points without influence on the look of a line are removed, and only the rest is thinned.
     let line_of_corners = Line { name: String::new(), points: corners(line.points.clone()) };
     let points = line_of_corners.thinned(range, most / 4);
     let (t, v) = points.into_iter().map(|(time, value)| (short(time), short(value))).unzip();
     PageLine { name: &line.name, t, v }
 }
 
-/// The points without those within an interval of constant value: the line is the same without them.
+/// The points except those within an interval of constant value, which do not change the line.
 fn corners(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     let mut kept: Vec<(f64, f64)> = Vec::new();
     for point in points {
@@ -128,7 +128,7 @@ fn corners(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     kept
 }
 
-/// The spans, those that touch as one.
+/// Merges spans that touch.
 fn joined(spans: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let mut joined: Vec<(f64, f64)> = Vec::new();
     for (from, to) in spans {
@@ -141,7 +141,7 @@ fn joined(spans: &[(f64, f64)]) -> Vec<(f64, f64)> {
     joined
 }
 
-/// The spans, about `most` of them at most: those too close to be distinguished become one.
+/// At most about `most` spans: those that are too close to be distinguished are merged.
 fn bounded(spans: Vec<(f64, f64)>, range: (f64, f64), most: usize) -> Vec<(f64, f64)> {
     if spans.len() <= most {
         return spans;
@@ -157,7 +157,7 @@ fn bounded(spans: Vec<(f64, f64)>, range: (f64, f64), most: usize) -> Vec<(f64, 
     bounded
 }
 
-/// The number with nine digits, which is more than a page can show; all of them would double its size.
+/// Rounds a number to nine digits, more than a page can show; all digits would double its size.
 fn short(value: f64) -> f64 {
     format!("{value:.8e}").parse().unwrap_or(value)
 }

@@ -1,6 +1,6 @@
 //! Files of the vendor's PC program: a step response over seconds, a Bode plot over hertz on a logarithmic axis.
 //!
-//! Both have a header, and numbers with commas between them; exponents may have three digits. Later versions add columns.
+//! Both have a header, and numbers separated by commas; exponents may have three digits. Later versions add columns.
 
 use anyhow::{Result, bail};
 
@@ -10,7 +10,7 @@ use super::csv::Table;
 /// Names of the columns of a step response after `Sample` and `Time`, each with the title of its panel.
 const STEP: [&str; 2] = ["Command", "Position"];
 
-/// The points of a column over another one.
+/// The points of one column over another one.
 fn points(
     table: &Table,
     across: impl Fn(&[f64]) -> Option<f64>,
@@ -44,7 +44,7 @@ pub(super) fn step(title: &str, table: &Table) -> Result<Chart> {
     Ok(Chart { title: title.to_owned(), abscissa, panels, range, ..Chart::default() })
 }
 
-/// Magnitude in decibels and phase in degrees of the open loop, of a row with the measured closed loop.
+/// Magnitude in decibels and phase in degrees of the open loop, computed from a row with the measured closed loop.
 fn open_loop(row: &[f64]) -> Option<(f64, f64)> {
     let [_, a, b, c, d, ..] = row else { return None };
     let square = a * a + b * b;
@@ -55,9 +55,9 @@ fn open_loop(row: &[f64]) -> Option<(f64, f64)> {
     Some((10.0 * libm::log10(re * re + im * im), libm::atan2(im, re).to_degrees()))
 }
 
-/// The chart of a Bode file; older ones without magnitude and phase have them computed.
+/// The chart of a Bode file; for older files without magnitude and phase, they are computed.
 pub(super) fn bode(title: &str, table: &Table) -> Result<Chart> {
-    // At 0 Hz nothing is measured, and there is no place for it.
+    // At 0 Hz nothing is measured, and a logarithmic axis has no position for it.
     let hertz = |row: &[f64]| row.first().copied().filter(|hertz| *hertz > 0.0).map(libm::log10);
     let of = |name: &str| table.names.iter().position(|known| known == name);
     let mut panels = Vec::new();
@@ -91,7 +91,7 @@ pub(super) fn bode(title: &str, table: &Table) -> Result<Chart> {
 mod tests {
     use super::super::csv::chart;
 
-    /// The example of the manual, with the comma that its print has lost.
+    /// The example in the manual, with the comma that its printed version lacks.
     const BODE: &str = "Freq,InputRe,InputIm,OutputRe,OutputIm,Mag,Phase,SmoothMag,SmoothPhase
 0,2.329706e+007,0,2.344316e+007,0,44.10739,-180,0,0
 5.425347,1.968735e+007,0,1.98995e+007,-32055.19,39.34598,-171.5001,39.34598,-171.5001
@@ -107,7 +107,7 @@ mod tests {
         assert_eq!(shown, [5.425347, 10.85069]);
         let titles: Vec<_> = bode.panels.iter().map(|panel| panel.heading()).collect();
         assert_eq!(titles, ["open loop: magnitude (dB)", "open loop: phase (degrees)"]);
-        // Without its columns, magnitude and phase are computed from what was measured.
+        // Without these columns, magnitude and phase are computed from the measurements.
         let short: String =
             BODE.lines().map(|line| line.split(',').take(5).collect::<Vec<_>>().join(",") + "\n").collect();
         let computed = chart("b.txt", &short).expect("it is one");

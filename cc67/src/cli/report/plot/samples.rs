@@ -1,29 +1,28 @@
-//! Values that were sampled together, and the panels that show them.
+//! Values that were sampled together, and the panels for them.
 //!
-//! An axis gets panels for where it was sent and where it was, its velocity, its following error and its output, as far
-//! as they ever change. Everything else that is not a bit gets a panel of its own. Values are known when they change; in
-//! between the last one holds.
+//! An axis gets panels for its commanded and measured position, its velocity, its following error and its output, if
+//! these change. Every other quantity except bits gets its own panel. Values are recorded when they change; between two
+//! samples the last value holds.
 
 use std::collections::BTreeMap;
 
 use super::chart::{Line, Panel, Strip};
 
-/// Axes of the board.
+/// The number of axes.
 const AXES: usize = 8;
 
-/// A jump within one sample that is so much faster than what surrounds it is no movement: the axis was given another
-/// position, by `Zero` or `EnableAxisDest`.
+/// The factor by which a jump within one sample exceeds the surrounding speed if it is not a movement: the axis was
+/// given another position, by `Zero` or `EnableAxisDest`.
 const JUMP: f64 = 20.0;
 
-/// Points of a line.
 type Points = Vec<(f64, f64)>;
 
-/// A quantity that was sampled.
+/// A sampled quantity.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::cli) struct Column {
-    /// Its name: those of axes begin with `dest`, `pos` and `out`, those of bits with `bit`.
+    /// Its name: names for axes begin with `dest`, `pos` and `out`, those of bits with `bit`.
     pub(in crate::cli) name: String,
-    /// The unit; empty for mere numbers.
+    /// The unit; empty for numbers without a unit.
     pub(in crate::cli) unit: String,
 }
 
@@ -32,29 +31,29 @@ pub(in crate::cli) struct Column {
 pub(in crate::cli) struct Samples {
     /// The quantities.
     pub(in crate::cli) columns: Vec<Column>,
-    /// Seconds, and a value for each quantity.
+    /// The time in seconds, and a value for each quantity.
     pub(in crate::cli) rows: Vec<(f64, Vec<f64>)>,
-    /// Seconds between two samples while values change.
+    /// The interval between samples while values change, in seconds.
     pub(in crate::cli) step: f64,
-    /// Until when the last values hold, in seconds.
+    /// The time until which the last values hold, in seconds.
     pub(in crate::cli) end: f64,
     /// The axes by number: name, unit, and whether their position is measured.
     pub(in crate::cli) axes: BTreeMap<usize, PlottedAxis>,
 }
 
-/// The labels of an axis in pictures.
+/// The labels of an axis in plots.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(in crate::cli) struct PlottedAxis {
     /// Its name; empty for its number.
     pub(in crate::cli) name: String,
     /// The name of its unit; empty for `units`.
     pub(in crate::cli) units: String,
-    /// True if its position is measured: if not, the position of its load is shown.
+    /// True if its position is measured; otherwise the position of its load is shown.
     pub(in crate::cli) is_measured: bool,
 }
 
 impl Samples {
-    /// The panels of all quantities but bits.
+    /// The panels of all quantities except bits.
     pub(in crate::cli) fn panels(&self) -> Vec<Panel> {
         let mut panels: Vec<Panel> = (0..AXES).flat_map(|axis| self.of_axis(axis)).collect();
         let is_other = |name: &str| is_numbered(name, &["dest", "pos", "load", "out", "bit"]).is_none();
@@ -76,7 +75,7 @@ impl Samples {
         columns.map(panel).collect()
     }
 
-    /// The bits among the quantities as strips.
+    /// The bits among the quantities, as strips.
     pub(in crate::cli::report) fn strips(&self) -> Vec<Strip> {
         let bits = self.columns.iter().enumerate();
         let bits = bits.filter_map(|(index, column)| Some((index, is_numbered(&column.name, &["bit"])?)));
@@ -163,7 +162,7 @@ fn in_words(names: &[&str]) -> String {
     }
 }
 
-/// The number after one of these words, if a name is nothing else.
+/// The number after one of these words, if a name consists of nothing else.
 fn is_numbered<'a>(name: &'a str, words: &[&str]) -> Option<&'a str> {
     let number = words.iter().find_map(|word| name.strip_prefix(word))?;
     (!number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())).then_some(number)
@@ -173,7 +172,7 @@ fn changes(points: &Points) -> bool {
     points.windows(2).any(|pair| pair[0].1 != pair[1].1)
 }
 
-/// When a value was not 0.
+/// The intervals in which a value was not 0.
 fn spans(points: &Points) -> Vec<(f64, f64)> {
     let mut spans = Vec::new();
     for pair in points.windows(2).filter(|pair| pair[0].1 != 0.0) {
@@ -203,7 +202,7 @@ fn slope(points: &Points) -> Points {
     slopes
 }
 
-/// One line minus another with the same instants.
+/// The difference of two lines with the same times.
 fn difference(a: &Points, b: &Points) -> Points {
     a.iter().zip(b).map(|(a, b)| (a.0, a.1 - b.1)).collect()
 }

@@ -1,7 +1,7 @@
-//! Value change dumps, as `cc67 run --trace` and logic analysers write them.
+//! Value change dumps, as written by `cc67 run --trace` and logic analysers.
 //!
-//! Wires of one bit become strips, real numbers and vectors panels, texts are left out. The dump names its variables in
-//! scopes; where two have one name, the scope tells them apart.
+//! Wires of one bit become strips, real numbers and vectors become panels, texts are omitted. The dump declares its
+//! variables in scopes; the scope distinguishes variables with the same name.
 
 use std::collections::BTreeMap;
 
@@ -34,7 +34,7 @@ pub(super) fn chart(title: &str, text: &str) -> Result<Chart> {
     })
 }
 
-/// The numbers as rows: one for each instant at which one of them changes.
+/// The numbers as rows: one for each time at which one of them changes.
 fn samples(variables: &[&Variable], end: f64) -> Samples {
     let names = variables.iter().map(|variable| variable.name.clone());
     let columns: Vec<_> = names.map(|name| Column { name, unit: String::new() }).collect();
@@ -73,7 +73,7 @@ fn strip(variable: &Variable, end: f64) -> Strip {
     Strip { name: spaced(&variable.name), spans, marks: Vec::new() }
 }
 
-/// `bit46` as the pictures of a run write it.
+/// `bit46` in the notation of a run's plots.
 fn spaced(name: &str) -> String {
     for word in ["bit", "thread"] {
         match name.strip_prefix(word) {
@@ -95,20 +95,20 @@ enum VariableKind {
 /// A variable of the dump.
 #[derive(Debug)]
 struct Variable {
-    /// Its number among all.
+    /// Its position in the order of declarations.
     order: usize,
     name: String,
     kind: VariableKind,
-    /// Seconds and values.
+    /// Times in seconds, and values.
     changes: Vec<(f64, f64)>,
 }
 
-/// A dump as far as it is read.
+/// A partially read dump.
 #[derive(Debug)]
 struct Dump {
     /// The variables by their short names.
     variables: BTreeMap<String, Variable>,
-    /// Seconds of a unit of time.
+    /// The unit of time in seconds.
     unit: f64,
     scopes: Vec<String>,
     now: f64,
@@ -134,7 +134,7 @@ fn read(text: &str) -> Result<Dump> {
 }
 
 impl Dump {
-    /// A section of the head.
+    /// Handles a section of the head.
     fn declare(&mut self, section: &str, body: &[&str]) -> Result<()> {
         match (section, body) {
             ("$timescale", _) => self.unit = timescale(&body.concat())?,
@@ -159,7 +159,7 @@ impl Dump {
         Ok(())
     }
 
-    /// A time or the value of a variable.
+    /// Handles a time or the value of a variable.
     fn change<'a>(&mut self, word: &'a str, words: &mut impl Iterator<Item = &'a str>) -> Result<()> {
         let (kind, rest) = word.split_at(word.chars().next().map_or(0, char::len_utf8));
         let (id, value) = match kind {
@@ -191,7 +191,7 @@ impl Dump {
     }
 }
 
-/// Seconds of `1ns`.
+/// The value of `1ns` in seconds.
 fn timescale(text: &str) -> Result<f64> {
     let digits = text.len() - text.trim_start_matches(|character: char| character.is_ascii_digit()).len();
     let (count, unit) = text.split_at(digits);
@@ -202,7 +202,7 @@ fn timescale(text: &str) -> Result<f64> {
     }
 }
 
-/// The number that a vector is; bits that are unknown count as 0.
+/// The value of a vector; unknown bits count as 0.
 fn binary(text: &str) -> f64 {
     text.chars().fold(0.0, |number, digit| 2.0 * number + f64::from(u8::from(digit == '1')))
 }

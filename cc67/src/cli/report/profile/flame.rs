@@ -1,16 +1,16 @@
-//! The profile as a flame graph: a picture whose widths are the time of the processor.
+//! The profile as a flame graph: a picture in which widths are processor time.
 //!
-//! A thread waits nearly always, and its waits would leave no room for what it computes: the table has them.
+//! A thread nearly always waits, and its waits would leave no room for its computations: only the table contains them.
 
 use anyhow::{Context, Result};
 use inferno::flamegraph::{self, Options};
 
 use super::Account;
 
-/// Cycles in a microsecond.
+/// Cycles per microsecond.
 const CYCLES_PER_US: i64 = 200;
 
-/// Draws the account; the tower of each thread holds its functions and lines.
+/// Draws the profile; the tower of each thread contains its functions and lines.
 pub(super) fn draw(account: &Account) -> Result<Vec<u8>> {
     let lines = folded(account);
     let mut options = Options::default();
@@ -23,7 +23,7 @@ pub(super) fn draw(account: &Account) -> Result<Vec<u8>> {
     Ok(picture)
 }
 
-/// `thread 1;main;work count` for each place, as flame graph tools read it.
+/// `thread 1;main;work count` for each position, in the format of flame graph tools.
 fn folded(account: &Account) -> Vec<String> {
     let mut lines = Vec::new();
     for (place, spent) in account {
@@ -33,7 +33,7 @@ fn folded(account: &Account) -> Vec<String> {
             None => frame.function.clone(),
         }));
         tower.extend(place.firmware.clone());
-        // Widths are whole microseconds; what is shorter cannot be seen in a picture.
+        // Widths are whole microseconds; shorter times are not visible in a picture.
         let cycles = spent.computing.get();
         if cycles >= CYCLES_PER_US {
             lines.push(format!("{} {}", tower.join(";"), cycles / CYCLES_PER_US));

@@ -1,7 +1,7 @@
-//! `cc67 run --profile`: where board time went, by thread, function and line.
+//! `cc67 run --profile`: the use of board time by thread, function and line.
 //!
-//! The account of the [profiling engine](vm::profile) is exact, so a profile is the same each time. A segment's cost is
-//! spread over the instructions of the segment, whose lines the image knows.
+//! The [profiling engine](vm::profile) counts exactly, so a profile is the same each time. The cost of a segment is
+//! distributed over its instructions, whose lines are in the image.
 
 mod flame;
 mod sampled;
@@ -25,9 +25,9 @@ use crate::cli::io::output;
 /// The form and file of a profile.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum ProfileOutput {
-    /// A table after the run.
+    /// A table.
     Table,
-    /// The report, and a flame graph.
+    /// A table, and a flame graph in a file.
     Flame(PathBuf),
 }
 
@@ -43,12 +43,12 @@ pub(crate) fn target(text: &str) -> Result<ProfileOutput> {
     Ok(ProfileOutput::Flame(path))
 }
 
-/// Writes the flame graph, if one is wanted, and gives the table.
+/// Writes the flame graph if requested, and returns the table.
 pub(crate) fn report(board: &Board<ProfilingEngine>, target: &ProfileOutput) -> Result<String> {
     finish(&collect(board), board.now(), target)
 }
 
-/// Draws an account, if that is wanted, and makes a table of it.
+/// Draws the profile if requested, and returns it as a table.
 fn finish(account: &Account, end: Cycles, target: &ProfileOutput) -> Result<String> {
     if let ProfileOutput::Flame(path) = target {
         output::write(path, &flame::draw(account)?)?;
@@ -56,14 +56,14 @@ fn finish(account: &Account, end: Cycles, target: &ProfileOutput) -> Result<Stri
     Ok(table::table(account, end))
 }
 
-/// Whose time it is.
+/// The consumer of processor time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Whose {
-    /// A thread's or the call-back's.
+    /// A thread or the call-back.
     Program(ContextId),
-    /// That of the firmware's own thread.
+    /// The firmware's own thread.
     Firmware,
-    /// That of code which no interrupt comes into: the servo.
+    /// Code that cannot be interrupted: the servo.
     Interrupt,
 }
 
@@ -75,20 +75,20 @@ struct ProfileFrame {
     line: Option<u32>,
 }
 
-/// A place in the source with the functions that led there.
+/// A position in the source with the functions that led to it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct ProfilePlace {
     whose: Whose,
-    /// The outermost function first.
+    /// The calls, the outermost function first.
     frames: Vec<ProfileFrame>,
     /// The firmware function in which the time was spent.
     firmware: Option<String>,
 }
 
-/// The time spent at each place.
+/// The time spent at each position.
 type Account = BTreeMap<ProfilePlace, Spent>;
 
-/// Turns addresses into places; a segment becomes its lines.
+/// Converts addresses to positions; a segment is converted to its lines.
 fn collect(board: &Board<ProfilingEngine>) -> Account {
     let mut account = Account::new();
     for (site, spent) in board.machine().engine().profile().sites() {
@@ -122,7 +122,7 @@ fn collect(board: &Board<ProfilingEngine>) -> Account {
     account
 }
 
-/// The instructions that share what was spent at a site.
+/// The instructions that share the time spent at a site.
 fn parts(
     board: &Board<ProfilingEngine>,
     site: &Site,
@@ -141,7 +141,7 @@ fn parts(
     if total == 0 {
         return vec![(head, spent)];
     }
-    // What a device register took beyond the instructions stays with the first of them.
+    // Time for a device register beyond the instructions is assigned to the first of them.
     let times = spent.computing.get() / total;
     let rest = spent.computing.get() - times * total;
     let mut parts: Vec<_> = costs
@@ -157,13 +157,13 @@ fn parts(
     parts
 }
 
-/// The program in whose text an address lies.
+/// The program whose text contains an address.
 fn program_of(board: &Board<ProfilingEngine>, address: CodeAddr) -> Option<&vm::program::Program> {
     let mut programs = kmotiondef::ThreadId::all().filter_map(|thread| board.machine().program(thread));
     programs.find(|program| program.word_at(address).is_some())
 }
 
-/// The function that an address lies in, and within it the one whose call it replaces.
+/// The function at an address, and the function inlined there.
 fn frames(board: &Board<ProfilingEngine>, address: CodeAddr) -> Vec<ProfileFrame> {
     let frame = |function: &str, file: &str, line| ProfileFrame {
         function: function.to_owned(),

@@ -1,8 +1,8 @@
 //! The profile of a run on the user's own firmware file: samples of the processor, each of which represents some
 //! cycles.
 //!
-//! Code of a program has its lines; code of the firmware has the names of the file. A firmware function that waits looks
-//! again and again whether it may continue, so that its time is computing.
+//! Code of a program has its lines; code of the firmware has the names from the file. A firmware function that waits
+//! polls for the end of the wait, so its time counts as computing.
 
 use anyhow::Result;
 use boot::ProcessorState;
@@ -27,7 +27,7 @@ impl<'a> Sampled<'a> {
         Self { target: session.target(), known }
     }
 
-    /// Writes the flame graph, if one is wanted, and gives the table.
+    /// Writes the flame graph if requested, and returns the table.
     pub(crate) fn report(&self, output: &ProfileOutput) -> Result<String> {
         let mut account = Account::new();
         for (state, time) in self.target.sampled() {

@@ -8,10 +8,10 @@ use vm::profile::Spent;
 
 use super::{Account, ProfilePlace, Whose};
 
-/// Rows of a table; what is after them took less.
+/// The number of rows in a table; the others took less time.
 const ROWS: usize = 15;
 
-/// The time of a function by itself, and with all that it called.
+/// The time of a function itself, and including the functions that it called.
 #[derive(Clone, Copy, Default)]
 struct FunctionTimes {
     own: Spent,
@@ -68,7 +68,7 @@ fn functions(places: &[(&ProfilePlace, &Spent)]) -> Vec<(String, FunctionTimes)>
             let function = functions.entry(innermost.clone()).or_default();
             function.own = plus(function.own, **spent);
         }
-        // A function that calls itself is counted once.
+        // A recursive function is counted once.
         for name in names.into_iter().collect::<BTreeSet<_>>() {
             let function = functions.entry(name).or_default();
             function.total = plus(function.total, **spent);
@@ -77,7 +77,7 @@ fn functions(places: &[(&ProfilePlace, &Spent)]) -> Vec<(String, FunctionTimes)>
     longest_first(functions, |function| function.total)
 }
 
-/// The lines, with what the firmware functions they call took.
+/// The lines, including the time of firmware functions called from them.
 fn lines(places: &[(&ProfilePlace, &Spent)]) -> Vec<(String, Spent)> {
     let mut lines: BTreeMap<String, Spent> = BTreeMap::new();
     for (place, spent) in places {
@@ -102,7 +102,7 @@ fn plus(a: Spent, b: Spent) -> Spent {
     Spent { computing: a.computing + b.computing, waiting: a.waiting + b.waiting }
 }
 
-/// A span in the unit in which it is easily read.
+/// A time in a unit that suits its size.
 fn time(span: Cycles) -> String {
     let seconds = span.get() as f64 / Cycles::PER_SECOND.get() as f64;
     match span.get() {

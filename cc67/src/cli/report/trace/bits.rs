@@ -1,4 +1,4 @@
-//! Changes of bits as a table: `time_ns,bit,value,thread`, thread 0 for what no thread did.
+//! Changes of bits as a table: `time_ns,bit,value,thread`, with thread 0 for changes that no thread made.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -9,11 +9,11 @@ use kmotiondef::{Cycles, Ticks};
 use super::{Sink, TraceEntry, nanoseconds};
 use crate::cli::io::output::Draft;
 
-/// The table in the making.
+/// The table being written.
 pub(super) struct Changes(Draft);
 
 impl Changes {
-    /// Begins it.
+    /// Creates the table.
     pub(super) fn new(path: &Path) -> Result<Self> {
         let mut draft = Draft::new(path)?;
         writeln!(draft, "time_ns,bit,value,thread")?;

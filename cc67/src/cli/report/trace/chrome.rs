@@ -1,7 +1,7 @@
 //! A trace as the events of trace viewers: threads as tracks, bits and items as counters, prints as marks.
 //!
-//! The format is the "Trace Event Format" of Chrome, which Perfetto reads; with the suffix `.json.gz` it is compressed, as
-//! Perfetto reads it as well. Tracks are named where they begin.
+//! The format is the "Trace Event Format" of Chrome, which Perfetto reads; with the suffix `.json.gz` it is compressed,
+//! which Perfetto also reads. Tracks are named where they begin.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
@@ -19,7 +19,7 @@ use super::columns::Columns;
 use super::{Sink, TraceEntry, nanoseconds};
 use crate::cli::io::output::Draft;
 
-/// The board as the viewer's process, and its tracks beside the threads, which have their own numbers.
+/// The board as the viewer's process, and its tracks in addition to the threads, whose tracks have the thread numbers.
 const BOARD: u32 = 1;
 const CONSOLE: u32 = 8;
 const UART: u32 = 9;
@@ -69,14 +69,14 @@ fn microseconds(at: Cycles) -> f64 {
     nanoseconds(at) as f64 / 1000.0
 }
 
-/// The bytes of the file, as they are or compressed.
+/// The bytes of the file, plain or compressed.
 enum TraceFile {
     Plain(Draft),
     Compressed(GzEncoder<Draft>),
 }
 
 impl TraceFile {
-    /// Begins the file; its suffix determines the form.
+    /// Creates the file; its suffix determines the format.
     fn new(path: &Path) -> Result<Self> {
         let draft = Draft::new(path)?;
         let is_compressed = path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("gz"));
@@ -101,7 +101,7 @@ impl TraceFile {
         }
     }
 
-    /// The file is complete.
+    /// Completes the file.
     fn commit(self) -> Result<()> {
         match self {
             Self::Plain(draft) => draft.commit(),
@@ -110,21 +110,21 @@ impl TraceFile {
     }
 }
 
-/// The file in the making.
+/// The file being written.
 pub(super) struct Events {
     file: TraceFile,
     columns: Columns,
-    /// True if an event precedes, after which a comma belongs.
+    /// True if an event has been written, after which a comma is needed.
     has_any: bool,
     threads: BTreeSet<ThreadId>,
     bits: BTreeSet<Bit>,
     has_sent: bool,
-    /// The latest values of the counters, by index in a sample.
+    /// The latest values of the counters, by their indices in a sample.
     shown: BTreeMap<usize, f64>,
 }
 
 impl Events {
-    /// Begins it.
+    /// Creates the file.
     pub(super) fn new(path: &Path, columns: Columns) -> Result<Self> {
         let mut file = TraceFile::new(path)?;
         write!(file.writer(), "{{\"displayTimeUnit\":\"ns\",\"traceEvents\":[")?;
@@ -150,7 +150,7 @@ impl Events {
         serde_json::to_writer(&mut writer, event).map_err(io::Error::from)
     }
 
-    /// Shows the items whose values are new.
+    /// Writes the items whose values have changed.
     fn sample(&mut self, at: Cycles, values: &[f64]) -> io::Result<()> {
         let columns: Vec<(usize, Option<Bit>, String)> = self
             .columns
@@ -158,7 +158,7 @@ impl Events {
             .map(|(index, shown)| (index, shown.item().and_then(Item::bit), shown.to_string()))
             .collect();
         for (index, bit, name) in columns {
-            // JSON has no infinity; viewers take nothing for a gap.
+            // JSON has no infinity, and viewers show `null` as a gap.
             let value = values.get(index).copied().filter(|value| value.is_finite()).unwrap_or_default();
             if let Some(bit) = bit {
                 if self.bits.insert(bit) {

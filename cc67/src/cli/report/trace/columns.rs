@@ -1,28 +1,28 @@
-//! Columns of a trace: the requested items, or else those of axes that have been enabled.
+//! Columns of a trace: the requested items, or by default those of axes that have been enabled.
 //!
-//! A picture of an axis whose position nobody measures shows where its load is; for that the loads are recorded as well.
+//! A plot of an axis whose position is not measured shows the position of its load; so loads are recorded, too.
 
 use kmotiondef::Axes;
 use kmotiondef::boards::boards;
 use runtime::trace::{Item, Quantity, TraceRequest};
 
-/// The quantities of a trace, each with its place in a sample.
+/// The quantities of a trace, each with its index in a sample.
 #[derive(Clone, Debug)]
 pub(super) struct Columns {
     quantities: Vec<Quantity>,
-    /// True if these are the items of all axes, of which only the enabled ones are shown, with their loads in pictures.
+    /// True if these are the items of all axes, of which only the enabled ones are shown; plots also show their loads.
     is_default: bool,
-    /// Axes that were enabled at some time.
+    /// The axes that have been enabled at some time.
     enabled: u16,
 }
 
 impl Columns {
-    /// Returns the items that are recorded for pictures by default.
+    /// Returns the items that are recorded for plots by default.
     pub(super) fn of_pictures(axes: Axes) -> Vec<Item> {
         [Item::of_axes(axes), Item::of_loads(axes)].concat()
     }
 
-    /// Nothing is enabled yet.
+    /// Creates the columns; no axis has been enabled yet.
     pub(super) fn new(request: &TraceRequest) -> Self {
         let items: Vec<_> = request.quantities.iter().filter_map(Quantity::item).collect();
         let is_default = boards()
@@ -30,22 +30,22 @@ impl Columns {
         Self { quantities: request.quantities.clone(), is_default, enabled: 0 }
     }
 
-    /// Takes up which axes are enabled now.
+    /// Notes the presently enabled axes.
     pub(super) fn note(&mut self, enabled: u16) {
         self.enabled |= enabled;
     }
 
-    /// All of them, shown or not.
+    /// All quantities, shown or not.
     pub(super) fn all(&self) -> &[Quantity] {
         &self.quantities
     }
 
-    /// Those to show in tables and dumps, and where each is in a sample.
+    /// The quantities for tables and dumps, and the index of each in a sample.
     pub(super) fn shown(&self) -> impl Iterator<Item = (usize, &Quantity)> {
         self.of_enabled().filter(|(_, quantity)| !self.is_default || !is_load(quantity))
     }
 
-    /// Those to show in a picture: of the axes `is_measured` where they are, of the others where their loads are.
+    /// The quantities for a plot: the positions of axes with `is_measured`, and the loads of the others.
     pub(super) fn pictured(&self, is_measured: impl Fn(usize) -> bool) -> Vec<(usize, &Quantity)> {
         let is_shown = |quantity: &Quantity| match quantity.item() {
             Some(item) if item.kind() == "pos" => is_measured(item.index()),
@@ -55,7 +55,7 @@ impl Columns {
         self.of_enabled().filter(|(_, quantity)| !self.is_default || is_shown(quantity)).collect()
     }
 
-    /// Those of axes that were enabled, or what was requested.
+    /// The quantities of axes that have been enabled, or those that were requested.
     fn of_enabled(&self) -> impl Iterator<Item = (usize, &Quantity)> {
         let is_shown = |quantity: &Quantity| {
             let of_axis = |item: Item| item.axis().or((item.kind() == LOAD).then_some(item.index()));
@@ -66,7 +66,7 @@ impl Columns {
     }
 }
 
-/// The kind of item that is the place of a load.
+/// The kind of item with the position of a load.
 const LOAD: &str = "load";
 
 fn is_load(quantity: &Quantity) -> bool {

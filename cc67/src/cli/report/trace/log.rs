@@ -1,7 +1,7 @@
-//! The recording in memory from which pictures are made.
+//! The recording in memory from which plots are made.
 //!
-//! A picture is no larger because a run was longer, and neither is this: when there is too much, of every two samples
-//! the later one is kept, and spans with little between them become one.
+//! A plot of a longer run is no larger, and neither is this recording: if it grows too large, only the later one of
+//! every two samples is kept, and spans with short gaps are merged.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,13 +12,13 @@ use runtime::trace::{Quantity, TraceRequest};
 use super::TraceEntry;
 use super::columns::Columns;
 
-/// Most samples.
+/// The maximum number of samples.
 pub(crate) const SAMPLES: usize = 200_000;
-/// Most spans of bits, and as many of threads.
+/// The maximum number of spans for bits, and for threads.
 const SPANS: usize = 500_000;
-/// Most interruptions of threads.
+/// The maximum number of interruptions of threads.
 const INTERRUPTIONS: usize = 200_000;
-/// Most remarks on accesses of two threads.
+/// The maximum number of remarks on accesses of two threads.
 const RACES: usize = 100;
 
 /// A recording in memory.
@@ -28,21 +28,21 @@ pub(super) struct Log {
     pub(super) samples: Vec<(Cycles, Vec<f64>)>,
     /// The time that a sample represents.
     pub(super) step: Cycles,
-    /// When bits were high.
+    /// The intervals in which bits were high.
     bits: Spans<Bit>,
-    /// Bits that are high, and since when.
+    /// The bits that are high, and the times since when.
     high: BTreeMap<Bit, Cycles>,
-    /// Bits that have changed.
+    /// The bits that have changed.
     changed: BTreeSet<Bit>,
-    /// When threads had the processor.
+    /// The intervals in which threads had the processor.
     pub(super) threads: Spans<ThreadId>,
     /// The first interruptions of threads at instructions.
     pub(super) interruptions: Vec<Interruption>,
-    /// The first remarks on accesses of two threads, and when they were made.
+    /// The first remarks on accesses of two threads, each with its time.
     pub(super) races: Vec<(Cycles, Remark)>,
 }
 
-/// The end of a slice before some instruction.
+/// The end of a slice before an instruction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Interruption {
     pub(super) thread: ThreadId,
@@ -52,7 +52,7 @@ pub(super) struct Interruption {
 }
 
 impl Log {
-    /// Nothing yet, of what was requested.
+    /// Creates an empty recording for a request.
     pub(super) fn new(request: &TraceRequest) -> Self {
         let every = i64::try_from(request.every).unwrap_or(i64::MAX);
         Self {
@@ -68,7 +68,7 @@ impl Log {
         }
     }
 
-    /// Keeps an entry.
+    /// Adds an entry.
     pub(super) fn note(&mut self, at: Cycles, entry: TraceEntry) {
         match entry {
             TraceEntry::Bit { bit, level, .. } => self.note_bit(bit, level, at),
@@ -100,7 +100,7 @@ impl Log {
         }
     }
 
-    /// Makes samples represent twice the time, until a quarter of them is gone.
+    /// Doubles the time represented by a sample, until a quarter of the samples are removed.
     fn thin(&mut self) {
         while self.samples.len() > SAMPLES / 4 * 3 {
             self.step = self.step + self.step;
@@ -112,18 +112,18 @@ impl Log {
         }
     }
 
-    /// Returns the quantities to show, each with its index in a sample; for axes that are not measured, those of the
-    /// load.
+    /// Returns the quantities to show, each with its index in a sample; for axes that are not measured, the positions
+    /// of the loads.
     pub(super) fn columns(&self, is_measured: impl Fn(usize) -> bool) -> Vec<(usize, &Quantity)> {
         self.columns.pictured(is_measured)
     }
 
-    /// Bits that have changed, in ascending order.
+    /// The bits that have changed, in ascending order.
     pub(super) fn changed_bits(&self) -> impl Iterator<Item = Bit> {
         self.changed.iter().copied()
     }
 
-    /// When a bit that has changed was high, up to `end`.
+    /// The intervals in which a bit that has changed was high, up to `end`.
     pub(super) fn spans_of(&self, bit: Bit, end: Cycles) -> Vec<(Cycles, Cycles)> {
         let last = self.high.get(&bit).map(|since| (*since, end));
         self.bits.of(bit).chain(last).collect()
@@ -135,7 +135,7 @@ impl Log {
     }
 }
 
-/// Adds a sample; of those in an interval of `step` only the last one is kept: what holds at its end.
+/// Adds a sample; in each interval of `step`, only the last one is kept: the values at the interval's end.
 fn keep(samples: &mut Vec<(Cycles, Vec<f64>)>, step: Cycles, sample: (Cycles, Vec<f64>)) {
     let interval = |at: Cycles| (at.get() - 1).div_euclid(step.get());
     match samples.last_mut() {
@@ -144,12 +144,12 @@ fn keep(samples: &mut Vec<(Cycles, Vec<f64>)>, step: Cycles, sample: (Cycles, Ve
     }
 }
 
-/// Stretches of time in which something was so.
+/// Intervals of time in which a state held.
 #[derive(Debug)]
 pub(super) struct Spans<K> {
     list: Vec<(K, Cycles, Cycles)>,
     limit: usize,
-    /// Spans with less between them are one.
+    /// Spans with a shorter gap are merged.
     gap: Cycles,
 }
 
@@ -158,7 +158,7 @@ impl<K: Copy + Ord> Spans<K> {
         Self { list: Vec::new(), limit, gap: Cycles::PER_TICK }
     }
 
-    /// Adds a span; those of one thing come in the order of time.
+    /// Adds a span; the spans of one key come in the order of time.
     fn add(&mut self, key: K, from: Cycles, to: Cycles) {
         self.list.push((key, from, to));
         if self.list.len() > self.limit {
@@ -166,7 +166,7 @@ impl<K: Copy + Ord> Spans<K> {
         }
     }
 
-    /// Joins what is close together until half of the spans are gone.
+    /// Merges close spans until half of them are gone.
     fn join(&mut self) {
         while self.list.len() > self.limit / 2 {
             let mut last: BTreeMap<K, usize> = BTreeMap::new();
@@ -185,7 +185,7 @@ impl<K: Copy + Ord> Spans<K> {
         }
     }
 
-    /// The spans of one thing.
+    /// The spans of one key.
     pub(super) fn of(&self, key: K) -> impl Iterator<Item = (Cycles, Cycles)> {
         self.list.iter().filter(move |(other, _, _)| *other == key).map(|(_, from, to)| (*from, *to))
     }
@@ -209,7 +209,7 @@ mod tests {
         }
         assert_eq!(log.step, ticks(8));
         assert!((SAMPLES / 2..=SAMPLES).contains(&log.samples.len()), "{}", log.samples.len());
-        // What is kept stands at the ends of intervals of eight ticks.
+        // The remaining samples are at the ends of intervals of eight ticks.
         assert!(
             log.samples
                 .iter()

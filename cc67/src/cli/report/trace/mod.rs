@@ -1,9 +1,9 @@
-//! `--trace` and related options: what a run did, as a file for a viewer or a table.
+//! `--trace` and related options: the events and values of a run, as a file for a viewer or as a table.
 //!
-//! The suffix of the file decides: `.vcd` for waveform viewers, `.json` for trace viewers (Perfetto, Chrome), anything
-//! else is a table of values. Files grow while the run continues, under temporary names, and get their own when it is
-//! over: a run of any length needs no more memory than a short one, and one that is killed leaves no half file. Only
-//! pictures are made of what is kept in memory, which is bounded, too.
+//! The suffix of the file determines the format: `.vcd` for waveform viewers, `.json` for trace viewers (Perfetto,
+//! Chrome), anything else for a table of values. Files grow while the run continues, under temporary names, and get
+//! their own names at the end: a run of any length needs no more memory than a short one, and a killed run leaves no
+//! incomplete file. Only plots are made from data in memory, whose size is also bounded.
 
 mod bits;
 mod chrome;
@@ -37,10 +37,10 @@ use log::Log;
 pub(crate) use log::SAMPLES;
 use order::Order;
 
-/// Returns the recording that a session should make; `None` if nothing is traced.
+/// Returns the recording that a session should make; `None` if there is no trace.
 ///
 /// # Errors
-/// Something is wrong with what is requested, or the target does not have it.
+/// The request is not valid, or the target does not support it.
 pub(crate) fn request<T: Target>(
     arguments: &TraceArguments,
     session: &Session<T>,
@@ -67,7 +67,7 @@ pub(crate) fn request<T: Target>(
     Ok(Some(request))
 }
 
-/// Refuses what the data recorder of a controller does not record.
+/// Rejects quantities that the data recorder of a controller cannot record.
 fn recorded_by_the_board(arguments: &TraceArguments, request: &TraceRequest) -> Result<()> {
     if arguments.trace_items.is_none() {
         bail!(
@@ -110,7 +110,7 @@ fn requested(
     Ok(Some(TraceRequest { quantities, every: *trace_every, changes, packets }))
 }
 
-/// A suffix that is known, or none.
+/// Checks that a suffix is known, or absent.
 fn known_suffix(path: &Path) -> Result<()> {
     match suffix(path).as_str() {
         "" | "csv" | "txt" | "vcd" | "json" => Ok(()),
@@ -122,7 +122,7 @@ fn known_suffix(path: &Path) -> Result<()> {
     }
 }
 
-/// The suffix that determines the format; that of a compressed file is the one before `.gz`, if it is known.
+/// The suffix that determines the format; for a compressed file it is the one before `.gz`, if it is known.
 fn suffix(path: &Path) -> String {
     let last = |path: &Path| path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let suffix = last(path);
@@ -130,18 +130,18 @@ fn suffix(path: &Path) -> String {
     if suffix == "gz" && before == "json" { before } else { suffix }
 }
 
-/// Something that a trace shows; its instant comes with it.
+/// An entry of a trace; its time is passed separately.
 #[derive(Clone, Debug, PartialEq)]
 enum TraceEntry {
-    /// A bit has changed, and the thread that did it.
+    /// A bit has changed; with the thread that changed it.
     Bit { bit: Bit, level: bool, thread: Option<ThreadId> },
-    /// A thread has the processor until then; the servo interrupt has stopped it before an instruction.
+    /// A thread has the processor until `end`; with the instruction before which the servo interrupt stopped it.
     Slice { thread: ThreadId, end: Cycles, interrupted_at: Option<CodeAddr> },
     /// A remark on accesses of two threads.
     Race(Remark),
-    /// Real code has executed a packet.
+    /// The processor has executed a packet of real code.
     Packet { thread: Option<ThreadId>, address: CodeAddr, cycles: Cycles, text: String },
-    /// Items have these values; the axes that are enabled.
+    /// The values of the items, and the enabled axes.
     Sample { values: Vec<f64>, enabled: u16 },
     /// A console line.
     Line(String),
@@ -173,34 +173,34 @@ impl TraceEntry {
     }
 }
 
-/// A file that grows with a run.
+/// A file that grows during a run.
 trait Sink {
-    /// Takes up what has happened; instants never go back.
+    /// Writes an entry; times never decrease.
     fn note(&mut self, at: Cycles, entry: &TraceEntry) -> io::Result<()>;
 
-    /// The run has ended with this tick.
+    /// Completes the file; the run has ended with this tick.
     fn finish(self: Box<Self>, end: Ticks) -> Result<()>;
 
-    /// The file.
+    /// The path of the file.
     fn path(&self) -> &Path;
 }
 
 /// All files of a run.
 pub(crate) struct Trace {
-    /// Nothing is written before the end.
+    /// True if nothing is written before the end.
     is_late: bool,
     order: Order,
     sinks: Vec<Box<dyn Sink>>,
     log: Option<Log>,
-    /// The labels of axes in pictures.
+    /// The labels of axes in plots.
     axes: BTreeMap<usize, PlottedAxis>,
-    /// The lines of programs, of which pictures name some.
+    /// The lines of programs, some of which are named in plots.
     programs: Vec<DebugInfo>,
-    /// The first file that could not be written, and why.
+    /// The first file that could not be written, with the error.
     failed: Option<(PathBuf, io::Error)>,
 }
 
-/// Explains why something is not recorded, as a message of the option.
+/// The reason why a quantity cannot be recorded, as a message about the option.
 fn refused(error: WatchError) -> anyhow::Error {
     match error {
         WatchError::Missing => {
@@ -213,7 +213,7 @@ fn refused(error: WatchError) -> anyhow::Error {
 }
 
 impl Trace {
-    /// Begins all files; `is_late` if samples come at the end, after everything else.
+    /// Creates all files; `is_late` is true if samples come at the end, after all other entries.
     pub(crate) fn begin(arguments: &TraceArguments, request: &TraceRequest, is_late: bool) -> Result<Self> {
         let mut sinks: Vec<Box<dyn Sink>> = Vec::new();
         for path in &arguments.trace {
@@ -235,8 +235,8 @@ impl Trace {
         Ok(Self { is_late, order: Order::default(), sinks, log, axes, programs, failed: None })
     }
 
-    /// Pictures call axes as the machine file does, show the loads of those that are not measured, and name lines of the
-    /// programs.
+    /// Takes information from the board for plots: the names of axes in the machine file, the axes that are not
+    /// measured, and the lines of programs.
     pub(crate) fn know_board<T: Target>(&mut self, session: &Session<T>) {
         self.programs = session.debug().into_iter().map(|(_, debug)| debug).collect();
         self.know_axes(session.target().standing_axes());
@@ -250,7 +250,7 @@ impl Trace {
         self.axes.extend(axes.into_iter().map(plotted));
     }
 
-    /// Completes all files; `end` is the last tick of the run, `title` what pictures are called.
+    /// Completes all files; `end` is the last tick of the run, `title` the title of plots.
     pub(crate) fn finish(mut self, arguments: &TraceArguments, end: Ticks, title: &str) -> Result<()> {
         self.pass_on(true);
         if let Some((path, error)) = self.failed {
@@ -278,7 +278,7 @@ impl Trace {
         Ok(())
     }
 
-    /// Takes up an event, if it belongs to a trace.
+    /// Handles an event, if it belongs to a trace.
     pub(crate) fn note(&mut self, event: &Event) {
         if let Some(entry) = TraceEntry::of(event) {
             self.order.add(event.at, entry);
@@ -288,7 +288,7 @@ impl Trace {
         }
     }
 
-    /// Writes what is in order, at the end everything.
+    /// Writes the entries that are in order; at the end, all entries.
     fn pass_on(&mut self, is_over: bool) {
         while let Some((at, entry)) = self.order.take(is_over) {
             for sink in &mut self.sinks {
@@ -314,7 +314,7 @@ fn nanoseconds(at: Cycles) -> i64 {
 mod testing {
     use super::*;
 
-    /// The requests of a run with a few records of each kind.
+    /// The request for a run with a few records of each kind.
     pub(crate) fn request() -> TraceRequest {
         let item = |name| Quantity::from(Item::new(name).expect("an item"));
         TraceRequest {
@@ -325,7 +325,7 @@ mod testing {
         }
     }
 
-    /// Its records, as they come: not quite in order.
+    /// Its records in the order of arrival: not quite sorted by time.
     pub(crate) fn events() -> Vec<Event> {
         let us = |us: i64| Cycles::new(us * Cycles::PER_SECOND.get() / 1_000_000);
         let (bit, thread) = (Bit::new(46).expect("a bit"), ThreadId::new(1).expect("1 is a thread"));
@@ -340,7 +340,7 @@ mod testing {
         kinds.into_iter().map(|(at, kind)| Event { at: us(at), kind }).collect()
     }
 
-    /// The file that a run of seven ticks leaves under this name.
+    /// The file with this name after a run of seven ticks.
     pub(crate) fn file(name: &str) -> String {
         let folder = std::env::temp_dir().join(format!("cc67-trace-{}-{name}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a folder");
@@ -365,7 +365,7 @@ mod testing {
         text
     }
 
-    /// The records for pictures.
+    /// The recording for plots.
     pub(crate) fn log() -> Log {
         let mut log = Log::new(&request());
         for event in events() {

@@ -1,4 +1,4 @@
-//! Puts what has happened in order: a slice is reported when it has ended, an edge with the next tick.
+//! Sorts entries by time: a slice is reported at its end, an edge with the next tick.
 
 use std::collections::BTreeMap;
 
@@ -9,25 +9,25 @@ use super::TraceEntry;
 /// The largest delay with which an event may be reported.
 const WINDOW: Cycles = Cycles::new(4 * Cycles::PER_TICK.get());
 
-/// Entries that wait for those before them.
+/// Entries that wait for earlier ones.
 #[derive(Debug, Default)]
 pub(super) struct Order {
     waiting: BTreeMap<(Cycles, u64), TraceEntry>,
     count: u64,
     newest: Cycles,
-    /// The instant of the last one that was taken.
+    /// The time of the last entry that was taken.
     last: Cycles,
 }
 
 impl Order {
-    /// Adds an entry; those of one instant stay in the order in which they came.
+    /// Adds an entry; entries with the same time stay in the order of arrival.
     pub(super) fn add(&mut self, at: Cycles, entry: TraceEntry) {
         self.newest = self.newest.max(at);
         self.waiting.insert((at, self.count), entry);
         self.count += 1;
     }
 
-    /// The next entry that nothing can come before any more; at the end simply the next one.
+    /// The next entry, once no earlier one can arrive any more; at the end, simply the next one.
     pub(super) fn take(&mut self, is_over: bool) -> Option<(Cycles, TraceEntry)> {
         let next = self.waiting.first_entry()?;
         let at = next.key().0;

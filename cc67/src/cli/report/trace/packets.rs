@@ -1,6 +1,6 @@
-//! Packets of real code as a table: `cycle,thread,address,cycles,packet`, thread 0 for the call-back.
+//! Packets of real code as a table: `cycle,thread,address,cycles,packet`, with thread 0 for the call-back.
 //!
-//! `cycle` is the board time at which the packet began, in cycles of 5 ns since power-up; `cycles` is what it took.
+//! `cycle` is the board time at which the packet began, in cycles of 5 ns since power-up; `cycles` is its duration.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -14,16 +14,16 @@ use super::{Sink, TraceEntry};
 use crate::cli::args::trace::PacketFile;
 use crate::cli::io::output::Draft;
 
-/// Whose packets should be recorded.
+/// The threads whose packets should be recorded.
 ///
 /// # Errors
-/// The thread that is named has a program that is not real code, or no thread has any.
+/// The named thread has a program that is not real code, or no thread has real code.
 pub(super) fn wanted<T: Target>(file: &PacketFile, session: &Session<T>) -> Result<Packets> {
     let all = ThreadId::all().filter(|thread| file.thread.is_none_or(|wanted| wanted == *thread));
     let loaded: Vec<_> =
         all.filter_map(|thread| Some((thread, session.target().runs_processor_code(thread)?))).collect();
     let has_real_code = loaded.iter().any(|(_, is_real)| *is_real);
-    // Where nothing is loaded yet, real code may be later.
+    // If nothing is loaded yet, real code may be loaded later.
     if let (Some((thread, _)), false) = (loaded.first(), has_real_code) {
         bail!(
             "`--trace-packets`: thread {thread} runs bytecode, which has no packets; `--engine dsp` compiles for the \
@@ -33,11 +33,11 @@ pub(super) fn wanted<T: Target>(file: &PacketFile, session: &Session<T>) -> Resu
     Ok(file.thread.map_or(Packets::All, Packets::Of))
 }
 
-/// The table in the making.
+/// The table being written.
 pub(super) struct PacketTable(Draft);
 
 impl PacketTable {
-    /// Begins it.
+    /// Creates the table.
     pub(super) fn new(path: &Path) -> Result<Self> {
         let mut draft = Draft::new(path)?;
         writeln!(draft, "cycle,thread,address,cycles,packet")?;

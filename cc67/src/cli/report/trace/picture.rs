@@ -1,6 +1,6 @@
-//! `--plot`: a chart of what moved, made of what was traced.
+//! `--plot`: a chart of the motion in a run, made from its trace.
 //!
-//! What was sampled becomes panels; bits and the slices of the threads become strips.
+//! Sampled quantities become panels; bits and the slices of threads become strips.
 
 use std::collections::BTreeMap;
 
@@ -15,10 +15,10 @@ use super::unit;
 use crate::cli::report::plot::chart::{Chart, Link, Mark, Strip};
 use crate::cli::report::plot::samples::{Column, PlottedAxis, Samples};
 
-/// Strips in a picture; a program that moves more bits than that is looked at with `--trace`.
+/// The maximum number of strips in a plot; for programs that change more bits there is `--trace`.
 const STRIPS: usize = 16;
 
-/// The chart of a run of these programs up to a tick; `axes` has the names and units of each.
+/// The chart of a run of these programs up to a tick; `axes` contains the names and units of the axes.
 pub(super) fn chart(
     log: &Log,
     title: String,
@@ -46,7 +46,7 @@ pub(super) fn chart(
     let panels = samples.panels();
     let mut strips = bits(log, end);
     strips.truncate(STRIPS);
-    // When threads had the processor is beside what they did; alone it is no picture of a motion.
+    // The slices of threads are shown in addition to the motion; alone they are not a plot of a motion.
     let mut links = Vec::new();
     if !(panels.is_empty() && strips.is_empty() && log.races.is_empty()) {
         let first = strips.len();
@@ -67,7 +67,7 @@ pub(super) fn chart(
     in_readable_units(chart)
 }
 
-/// A chart of a very short run in milliseconds or microseconds: its instants have few digits then.
+/// Converts a chart of a very short run to milliseconds or microseconds, so that its times have few digits.
 fn in_readable_units(mut chart: Chart) -> Chart {
     let (factor, unit) = match chart.range.1 {
         end if end < 1e-3 => (1e6, "µs"),
@@ -89,7 +89,7 @@ fn seconds(at: Cycles) -> f64 {
     at.get() as f64 / Cycles::PER_SECOND.get() as f64
 }
 
-/// When each bit was high: those that are watched, else those that changed.
+/// The intervals in which each bit was high: the watched bits, or otherwise those that changed.
 fn bits(log: &Log, end: Cycles) -> Vec<Strip> {
     let columns = log.columns(|_| true);
     let watched: Vec<(usize, Bit)> =
@@ -116,7 +116,7 @@ fn strip(name: String, spans: impl IntoIterator<Item = (Cycles, Cycles)>) -> Str
     Strip { name, spans, marks: Vec::new() }
 }
 
-/// When each thread had the processor, and where slices ended inside a statement.
+/// The intervals in which each thread had the processor, with marks for slices that ended within a statement.
 fn threads(log: &Log, programs: &[DebugInfo]) -> Vec<(ThreadId, Strip)> {
     let strip = |thread| {
         let interruptions = log.interruptions.iter().filter(|interruption| interruption.thread == thread);
@@ -126,14 +126,14 @@ fn threads(log: &Log, programs: &[DebugInfo]) -> Vec<(ThreadId, Strip)> {
     ThreadId::all().map(strip).filter(|(_, strip)| !strip.spans.is_empty()).collect()
 }
 
-/// The mark of a slice that ended inside a statement.
+/// The mark for a slice that ended within a statement.
 fn split(interruption: &Interruption, programs: &[DebugInfo]) -> Option<Mark> {
     let place = programs.iter().find_map(|debug| debug.statement_around(interruption.before))?;
     let text = format!("interrupted inside the statement at {}:{}", place.file, place.line?);
     Some(Mark { at: seconds(interruption.at), text })
 }
 
-/// The link between the strips of the two threads that a remark is about.
+/// The link between the strips of the two threads in a remark.
 fn link(
     at: Cycles,
     about: &Remark,

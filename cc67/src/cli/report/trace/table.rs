@@ -1,6 +1,6 @@
-//! Samples as a table: the time in seconds, then the items; a line for each sampled tick.
+//! Samples as a table: the time in seconds, then the items; one line for each sampled tick.
 //!
-//! Which columns there are is known last, so all of them are written first and then copied.
+//! The columns to show are known only at the end, so all columns are written first and then copied.
 
 use std::io::{self, BufRead, Write};
 use std::path::Path;
@@ -12,7 +12,7 @@ use super::columns::Columns;
 use super::{Sink, TraceEntry};
 use crate::cli::io::output::{Draft, Scratch};
 
-/// The table in the making. Samples are recorded when they change; between them the last one holds.
+/// The table being written. Samples are recorded when they change; between two samples the last value holds.
 pub(super) struct Table {
     draft: Draft,
     body: Scratch,
@@ -28,13 +28,13 @@ fn instant(tick: u64) -> Cycles {
 }
 
 impl Table {
-    /// Begins it, with a line every few ticks.
+    /// Creates the table, with a line every few ticks.
     pub(super) fn new(path: &Path, columns: Columns, every: u64) -> Result<Self> {
         let (draft, body) = (Draft::new(path)?, Scratch::beside(path)?);
         Ok(Self { draft, body, columns, every, tick: every, values: None })
     }
 
-    /// The line of the next tick.
+    /// Writes the line of the next tick.
     fn line(&mut self) -> io::Result<()> {
         if let Some(values) = &self.values {
             let seconds = instant(self.tick).get() as f64 / Cycles::PER_SECOND.get() as f64;
@@ -91,7 +91,7 @@ impl Sink for Table {
     }
 }
 
-/// A name as a field of the table: in quotes if it has a comma or quotes.
+/// A name as a field of the table: in quotes if it contains a comma or quotes.
 fn field(name: &str) -> String {
     if name.contains([',', '"']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
 }

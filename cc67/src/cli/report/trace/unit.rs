@@ -15,7 +15,7 @@ const UNITS: &[(&str, &str)] = &[
     (", seconds a tick.", "s"),
 ];
 
-/// The unit of what is watched; empty for mere numbers.
+/// The unit of a watched quantity; empty for numbers without a unit.
 pub(super) fn of(quantity: &Quantity) -> &'static str {
     match quantity {
         Quantity::Item(item) => Item::unit(*item),
@@ -27,7 +27,7 @@ fn of_expression(text: &str) -> &'static str {
     // `2:count` is the `count` of thread 2.
     let place = text.rsplit(':').next().unwrap_or_default().trim();
     let is_place = |character: char| character.is_ascii_alphanumeric() || "_.[]->".contains(character);
-    // A minus that is no arrow makes it a difference.
+    // A minus sign that is not part of an arrow makes the expression a difference.
     if !place.chars().all(is_place) || place.replace("->", ".").contains(['-', '>']) {
         return "";
     }

@@ -1,7 +1,8 @@
 //! A trace as a value change dump: bits and threads as wires, items as real numbers, the console as a string.
 //!
-//! The head names all variables and their first values, which are known last: so the changes are written first and
-//! then copied after it. Numbers have their first sampled value from the start. The unit of time is the nanosecond.
+//! The head contains all variables and their initial values, which are known only at the end: so the changes are
+//! written first and then copied after it. Numbers have their first sampled value from the beginning. The unit of time
+//! is the nanosecond.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -16,12 +17,12 @@ use super::columns::Columns;
 use super::{Sink, TraceEntry, nanoseconds};
 use crate::cli::io::output::{Draft, Scratch};
 
-/// The signal of a variable; the head names them in this order.
+/// The signal of a variable; the head lists them in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Signal {
     Bit(Bit),
     Thread(ThreadId),
-    /// An item, by its place in a sample.
+    /// An item, by its index in a sample.
     Item(usize),
     Console,
 }
@@ -33,22 +34,22 @@ struct Variable {
     start: String,
 }
 
-/// The dump in the making.
+/// The dump being written.
 pub(super) struct Dump {
     draft: Draft,
     body: Scratch,
     columns: Columns,
     variables: BTreeMap<Signal, Variable>,
-    /// The instant of the changes written last, in nanoseconds.
+    /// The time of the last changes written, in nanoseconds.
     now: i64,
-    /// The thread that has the processor, and until when.
+    /// The thread that has the processor, and the end of its slice.
     slice: Option<(ThreadId, Cycles)>,
-    /// The values of items that were written last, by their place in a sample.
+    /// The last values written for items, by their indices in a sample.
     shown: BTreeMap<usize, f64>,
 }
 
 impl Dump {
-    /// Begins it.
+    /// Creates the dump.
     pub(super) fn new(path: &Path, columns: Columns) -> Result<Self> {
         let (draft, body) = (Draft::new(path)?, Scratch::beside(path)?);
         let (variables, shown) = (BTreeMap::new(), BTreeMap::new());
@@ -57,14 +58,14 @@ impl Dump {
         Ok(dump)
     }
 
-    /// Declares a signal, which begins with this value, and returns its identifier.
+    /// Declares a signal with its initial value, and returns its identifier.
     fn declare(&mut self, signal: Signal, start: &str) -> String {
         let number = self.variables.len() as u32;
         let variable = self.variables.entry(signal);
         variable.or_insert_with(|| Variable { id: id(number), start: start.to_owned() }).id.clone()
     }
 
-    /// Writes a change; slices that are over by then come first.
+    /// Writes a change, after the ends of slices that are over by then.
     fn change(&mut self, at: Cycles, value: &str, id: &str) -> io::Result<()> {
         self.end_slice(at)?;
         self.write(at, value, id)
@@ -79,14 +80,14 @@ impl Dump {
         writeln!(self.body, "{value}{id}")
     }
 
-    /// Ends the slice that is over at an instant.
+    /// Ends the slice that is over at a given time.
     fn end_slice(&mut self, now: Cycles) -> io::Result<()> {
         let Some((thread, end)) = self.slice.take_if(|(_, end)| *end <= now) else { return Ok(()) };
         let id = self.declare(Signal::Thread(thread), "0");
         self.write(end, "0", &id)
     }
 
-    /// Writes the items whose values are new.
+    /// Writes the items whose values have changed.
     fn sample(&mut self, at: Cycles, values: &[f64]) -> io::Result<()> {
         let columns: Vec<(usize, Option<Bit>)> = self
             .columns
@@ -94,9 +95,9 @@ impl Dump {
             .map(|(index, quantity)| (index, quantity.item().and_then(Item::bit)))
             .collect();
         for (index, bit) in columns {
-            // Readers differ in how they write what is no number.
+            // Readers differ in their notation for NaN and infinity.
             let value = values.get(index).copied().filter(|value| value.is_finite()).unwrap_or_default();
-            // A bit is a wire, whose changes come by themselves.
+            // A bit is a wire, whose changes are recorded separately.
             if let Some(bit) = bit {
                 self.declare(Signal::Bit(bit), if value == 0.0 { "0" } else { "1" });
                 continue;
@@ -109,7 +110,7 @@ impl Dump {
         Ok(())
     }
 
-    /// The head: all variables, and the value of each at the beginning.
+    /// The head: all variables, and their initial values.
     fn head(&self) -> String {
         let mut text = "$version cc67 $end\n$timescale 1 ns $end\n$scope module board $end\n".to_owned();
         for (signal, Variable { id, .. }) in &self.variables {
@@ -118,7 +119,7 @@ impl Dump {
                 Signal::Thread(thread) => ("wire 1", format!("thread{thread}")),
                 Signal::Item(index) => {
                     let name = self.columns.all().get(*index).map_or(String::new(), Quantity::to_string);
-                    // A name has no blanks.
+                    // A name must not contain blanks.
                     ("real 64", name.split_whitespace().collect())
                 }
                 Signal::Console => ("string 1", "console".to_owned()),
@@ -175,7 +176,7 @@ impl Sink for Dump {
     }
 }
 
-/// A short name for the variable of a number; letters only, as some readers take other characters for commands.
+/// A short identifier for the variable with a number; only letters, as some readers take other characters for commands.
 fn id(mut number: u32) -> String {
     const LETTERS: u32 = 26;
     let mut id = String::new();
@@ -188,7 +189,8 @@ fn id(mut number: u32) -> String {
     }
 }
 
-/// A string value has no spaces; those and what is not printable are written as viewers read them. Nor may it be empty.
+/// Escapes a string value: spaces and non-printable characters are written in the notation of viewers, and an empty
+/// string is replaced.
 fn escape(line: &str) -> String {
     let line = if line.is_empty() { " " } else { line };
     line.bytes().fold(String::new(), |mut text, byte| {

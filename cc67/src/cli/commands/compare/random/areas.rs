@@ -1,4 +1,4 @@
-//! The areas in which scenarios are drawn: one file each.
+//! The areas from which scenarios are generated: one file each.
 
 mod commands;
 mod moves;
@@ -33,11 +33,10 @@ pub(in crate::cli::commands::compare) enum Area {
 }
 
 impl Area {
-    /// Every area.
     pub(in crate::cli::commands::compare) const ALL: [Self; 7] =
         [Self::Commands, Self::Moves, Self::Paths, Self::Servo, Self::Outputs, Self::Threads, Self::Text];
 
-    /// Its name, as the command takes it.
+    /// Its name on the command line.
     pub(in crate::cli::commands::compare) fn name(self) -> &'static str {
         match self {
             Self::Commands => "commands",
@@ -50,7 +49,7 @@ impl Area {
         }
     }
 
-    /// The scenario of a seed.
+    /// Generates the scenario of a seed.
     pub(in crate::cli::commands::compare) fn scenario(self, seed: u64) -> Scenario {
         let mut writer = ScenarioWriter::new(self.name(), seed);
         match self {
@@ -66,11 +65,11 @@ impl Area {
     }
 }
 
-/// Writes a scenario part by part.
+/// Builds a scenario part by part.
 struct ScenarioWriter {
     draw: Draw,
     scenario: Scenario,
-    /// The slice in which the next statement is.
+    /// The slice of the next statement.
     slice: u32,
 }
 
@@ -102,21 +101,21 @@ impl ScenarioWriter {
         self.part(PartKind::Start, text);
     }
 
-    /// A statement in a slice some slices after the one before.
+    /// Adds a statement some slices after the previous one.
     fn later(&mut self, low: u32, high: u32, text: impl Into<String>) {
         self.slice += low + self.draw.below(high - low + 1);
         let slice = self.slice;
         self.part(PartKind::Slice { thread: 1, slice }, text);
     }
 
-    /// Ends the program some slices after its last statement; it looks at the columns in about 60 slices.
+    /// Ends the program some slices after its last statement; it records the columns in about 60 slices.
     fn observe_slices(&mut self, more: u32, columns: impl IntoIterator<Item = String>) {
         self.scenario.slices = self.slice + more;
         self.scenario.observed = Observed::Slices((self.scenario.slices / 60).max(1));
         self.scenario.columns = columns.into_iter().collect();
     }
 
-    /// Ends the program some slices after its last statement; it looks at the columns in every tick.
+    /// Ends the program some slices after its last statement; it records the columns in every tick.
     fn observe_ticks(&mut self, more: u32, columns: impl IntoIterator<Item = String>) {
         self.scenario.slices = self.slice + more;
         self.scenario.observed = Observed::Ticks;

@@ -1,11 +1,11 @@
-//! Numbers drawn by a seed: the same on every host.
+//! Random numbers from a seed: the same on every host.
 
-/// A sequence of numbers that follows from a seed.
+/// A sequence of random numbers.
 #[derive(Clone, Debug)]
 pub(super) struct Draw(u64);
 
 impl Draw {
-    /// The sequence of a seed, another one for each name.
+    /// The sequence for a seed; a different one for each name.
     pub(super) fn new(name: &str, seed: u64) -> Self {
         let mix = |state: u64, byte| (state ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3);
         let name = name.bytes().fold(0xCBF2_9CE4_8422_2325, mix);
@@ -35,7 +35,7 @@ impl Draw {
         self.below(100) < percent
     }
 
-    /// One of several.
+    /// Selects one of several values.
     pub(super) fn pick<T: Copy>(&mut self, from: &[T]) -> T {
         from[self.below(from.len() as u32) as usize]
     }
@@ -52,14 +52,14 @@ impl Draw {
         six_digits(low * libm::pow(high / low, exponent))
     }
 
-    /// A number of such a magnitude with either sign.
+    /// A number of such a magnitude, with random sign.
     pub(super) fn signed(&mut self, low: f64, high: f64) -> f64 {
         let magnitude = self.magnitude(low, high);
         if self.chance(50) { magnitude } else { -magnitude }
     }
 }
 
-/// A number with six digits, as programs and lines spell it.
+/// Rounds a number to six digits, as programs and lines write it.
 pub(super) fn six_digits(number: f64) -> f64 {
     format!("{number:.5e}").parse().unwrap_or(number)
 }

@@ -1,4 +1,4 @@
-//! The observation of a scenario on a board, and the first difference of two.
+//! The observation of a scenario on a board, and the first difference between two of them.
 
 use cc67_host::{BootedFirmware, HostError, Session, Setup, Target, UserProgram};
 use kmotiondef::structs::Chan;
@@ -10,11 +10,11 @@ use runtime::{Event, EventKind};
 use super::scenario::Scenario;
 use crate::record::{PATH, PATH_VARIABLES, PRECISION, SAMPLES, STATES};
 
-/// Ticks that the longest program takes; one that has stopped the board never ends.
+/// The number of ticks of the longest program; one that has stopped the board never ends.
 const LONGEST: u64 = 12_000;
-/// Ticks in which the texts that a program has printed reach the PC.
+/// The number of ticks in which printed texts reach the PC.
 const TO_THE_END: u64 = 300;
-/// Elements of `persist.UserData` that are compared.
+/// The number of elements of `persist.UserData` that are compared.
 const USER_DATA: usize = 100;
 /// A number at the end of a program.
 #[derive(Clone, Debug)]
@@ -27,19 +27,19 @@ pub(super) struct EndValue {
 /// The observation of a scenario on a board.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Observation {
-    /// Lines on the console, or the answer to each line.
+    /// Console lines, or the answer to each line sent.
     pub(super) texts: Vec<String>,
     /// The columns of each sample.
     pub(super) rows: Vec<Vec<f64>>,
     pub(super) end: Vec<EndValue>,
-    /// The reason why the board, or the program in thread 1, did not come to its end.
+    /// The reason why the board, or the program in thread 1, did not reach its end.
     halted: Option<String>,
 }
 
-/// The first difference of two observations.
+/// The first difference between two observations.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Difference {
-    /// The quantity: a column, a value at the end, a text.
+    /// The quantity: a column, a final value, or a text.
     pub(super) what: String,
     /// The number of the sample, or of the text.
     pub(super) at: Option<usize>,
@@ -47,7 +47,7 @@ pub(super) struct Difference {
     pub(super) firmware: String,
 }
 
-/// A board on which scenarios are tried.
+/// A board on which scenarios are played.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Subject<'f> {
     Model,
@@ -77,7 +77,7 @@ impl Subject<'_> {
     }
 }
 
-/// Plays a scenario on a board that has its programs.
+/// Plays a scenario on a board with loaded programs.
 fn played<T: Target>(session: &mut Session<T>, scenario: &Scenario) -> Observation {
     let mut observation = Observation::default();
     if scenario.is_session() {
@@ -108,7 +108,7 @@ fn played<T: Target>(session: &mut Session<T>, scenario: &Scenario) -> Observati
     observation
 }
 
-/// Sends a line, or lets time pass; what came back.
+/// Sends a line, or lets time pass; returns the answer.
 fn answer<T: Target>(session: &mut Session<T>, line: &str) -> String {
     if let Some(seconds) = line.strip_prefix("(run ").and_then(|rest| rest.strip_suffix(')')) {
         let limit = session.tick_after(seconds.parse().unwrap_or_default());
@@ -120,7 +120,7 @@ fn answer<T: Target>(session: &mut Session<T>, line: &str) -> String {
 }
 
 impl Observation {
-    /// Takes up what a program has left in memory.
+    /// Records the values that a program has left in memory.
     fn look_at<T: Target>(&mut self, session: &Session<T>, scenario: &Scenario) {
         let data = (1..USER_DATA).filter_map(|index| Some((index, session.user_data(index)?)));
         self.end.extend(data.map(|(index, value)| EndValue {
@@ -151,7 +151,7 @@ impl Observation {
         }
     }
 
-    /// Takes up the numbers of a copy of an axis: neither pointers nor what holds no number.
+    /// Records the numbers in a copy of an axis, without pointers and unused fields.
     fn look_at_axis<T: Target>(&mut self, session: &Session<T>, axis: AxisId, begin: GuestAddr) {
         for field in Chan::STRUCTURE.fields {
             let at = begin.offset(field.offset);
@@ -165,7 +165,7 @@ impl Observation {
             self.end.push(EndValue { name, value, is_single: field.ty == CType::Float });
         }
         for filter in 0..3 {
-            // Its coefficients are what the program stored; words 5 and 6 are its memory.
+            // The coefficients were stored by the program; words 5 and 6 hold the filter's state.
             for word in 5..7 {
                 let at = begin.offset(Chan::IIR.element(filter).offset() + 4 * word);
                 let value = f64::from(session.peek_object::<f32>(at));
@@ -175,7 +175,7 @@ impl Observation {
         }
     }
 
-    /// The first difference from what the firmware did.
+    /// The first difference from the firmware's observation.
     pub(super) fn difference(&self, firmware: &Self, scenario: &Scenario) -> Option<Difference> {
         if self.halted != firmware.halted {
             let shown = |halted: &Option<String>| halted.clone().unwrap_or_else(|| "ends".to_owned());
@@ -199,7 +199,7 @@ impl Observation {
     fn different_row(&self, firmware: &Self, scenario: &Scenario) -> Option<Difference> {
         for (at, (model, firmware)) in self.rows.iter().zip(&firmware.rows).enumerate() {
             for ((column, model), firmware) in scenario.columns.iter().zip(model).zip(firmware) {
-                // Samples are doubles, whatever their variable is.
+                // Samples are doubles, whatever the types of their variables.
                 if !is_equal(*model, *firmware, false) {
                     let (model, firmware) = (format!("{model:?}"), format!("{firmware:?}"));
                     return Some(Difference { what: column.clone(), at: Some(at), model, firmware });
@@ -209,7 +209,7 @@ impl Observation {
         None
     }
 
-    /// The values at the end that differ.
+    /// The final values that differ.
     pub(super) fn different_ends(&self, firmware: &Self) -> impl Iterator<Item = Difference> {
         let pairs = self.end.iter().zip(&firmware.end);
         pairs.filter(|(one, two)| !is_equal(one.value, two.value, one.is_single)).map(|(one, two)| {
@@ -219,7 +219,7 @@ impl Observation {
     }
 }
 
-/// Returns whether two numbers are equal: singles to the last bit, doubles nearly.
+/// Returns whether two numbers are equal: floats exactly, doubles approximately.
 fn is_equal(one: f64, two: f64, is_single: bool) -> bool {
     let is_same = one.to_bits() == two.to_bits() || one == two || one.is_nan() && two.is_nan();
     is_same || !is_single && (one - two).abs() <= PRECISION * two.abs().max(1.0)

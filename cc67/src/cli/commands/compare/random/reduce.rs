@@ -3,13 +3,13 @@
 use super::observation::Difference;
 use super::scenario::{Observed, Part, PartKind, Scenario};
 
-/// Scenarios that are tried for one reduction at most.
+/// The maximum number of scenarios that are tried for one reduction.
 const MOST_TRIALS: usize = 120;
 
 /// Reduces a scenario that differs to parts that are all necessary, in as few slices as possible.
 ///
-/// `differs` plays a scenario on both boards; it says where the same difference shows first, and `None` where it does not
-/// show.
+/// `differs` plays a scenario on both boards; it returns the position at which the same difference first shows, or
+/// `None` if it does not show.
 pub(super) fn reduced(
     scenario: &Scenario,
     differs: &mut dyn FnMut(&Scenario) -> Option<Difference>,
@@ -18,7 +18,7 @@ pub(super) fn reduced(
     let mut size = scenario.parts.len().div_ceil(2);
     while size > 0 && reduction.trials > 0 {
         let is_smaller = reduction.leave_out(size);
-        // Single parts again, as one may be necessary for another that has gone.
+        // Single parts are tried again, as one may have been necessary only for another that is now removed.
         if size > 1 || !is_smaller {
             size /= 2;
         }
@@ -34,7 +34,7 @@ struct Reduction<'d> {
 }
 
 impl Reduction<'_> {
-    /// Takes a scenario over if it still differs.
+    /// Keeps a scenario if it still differs.
     fn accept(&mut self, scenario: Scenario) -> bool {
         if self.trials == 0 {
             return false;
@@ -47,14 +47,14 @@ impl Reduction<'_> {
         is_different
     }
 
-    /// Leaves out groups of parts that are not necessary; whether there were any.
+    /// Removes groups of parts that are not necessary; returns whether there were any.
     fn leave_out(&mut self, size: usize) -> bool {
         let mut has_changed = false;
         let mut end = self.smallest.parts.len();
         while end > 0 {
             let begin = end.saturating_sub(size);
             let mut scenario = self.smallest.clone();
-            // Functions that others call stay.
+            // Functions used by other parts stay.
             let removed: Vec<Part> = scenario.parts.drain(begin..end).collect();
             let is_needed = removed.iter().any(|part| part.kind == PartKind::Head);
             has_changed |= !is_needed && self.accept(scenario);
@@ -63,7 +63,7 @@ impl Reduction<'_> {
         has_changed
     }
 
-    /// Ends the program soon after the first sample that differs, and brings its statements nearer to the beginning.
+    /// Ends the program soon after the first sample that differs, and moves its statements closer to the beginning.
     fn shorten(&mut self) {
         if self.smallest.is_session() {
             return;

@@ -1,19 +1,19 @@
-//! A scenario: what is done on a board, in parts that can be left out one by one.
+//! A scenario: actions on a board, in parts that can be removed one by one.
 
 use crate::record::SAMPLES;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-/// The kind of a part: where it is done.
+/// The kind of a part: the place where it is executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PartKind {
-    /// A line that the PC sends; `(run S)`: S seconds pass.
+    /// A line sent by the PC; `(run S)` lets S seconds pass.
     Line,
     /// A declaration outside the functions of the program in thread 1.
     Head,
-    /// A statement before anything is observed.
+    /// A statement before recording begins.
     Start,
-    /// A statement in the servo interrupt, before it is observed.
+    /// A statement in the servo interrupt, before the values are recorded.
     Tick,
     /// A statement in a slice of a thread's program.
     Slice { thread: u8, slice: u32 },
@@ -26,34 +26,33 @@ pub(super) struct Part {
     pub(super) text: String,
 }
 
-/// When a program looks at the columns.
+/// The times at which a program records the columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Observed {
-    /// Never; what it prints is all.
+    /// Never; only its output is compared.
     Printed,
-    /// In every nth slice.
+    /// In every n-th slice.
     Slices(u32),
-    /// In every servo interrupt from slice [`FIRST_TICK`] on.
+    /// In every servo interrupt, beginning with slice [`FIRST_TICK`].
     Ticks,
 }
 
-/// The slice in which observation in the servo interrupt begins.
+/// The slice in which recording in the servo interrupt begins.
 const FIRST_TICK: u32 = 2;
 
-/// A scenario.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Scenario {
-    /// Its name: area and seed.
+    /// Its name, consisting of area and seed.
     pub(super) name: String,
     pub(super) parts: Vec<Part>,
-    /// Slices of the programs; none of lines that the PC sends.
+    /// The number of slices of the programs; 0 for lines sent by the PC.
     pub(super) slices: u32,
     pub(super) observed: Observed,
-    /// Expressions in C that are observed.
+    /// C expressions that are recorded.
     pub(super) columns: Vec<String>,
 }
 
-/// The declarations of every program that observes; the memory of a program is described in `tests/board/measured`.
+/// The declarations of every recording program; `tests/board/measured` describes a program's memory.
 const HEAD: &str = "\
 int *g; double *r; int m; double *cs; double T0_; int dk_; int cbn; int k_;
 void *memcpy(void*,void*,int);
@@ -74,12 +73,12 @@ impl Scenario {
         self.parts.iter().filter(move |part| part.kind == kind).map(|part| part.text.as_str())
     }
 
-    /// The lines that the PC sends.
+    /// The lines sent by the PC.
     pub(super) fn lines(&self) -> impl Iterator<Item = &str> {
         self.at(PartKind::Line)
     }
 
-    /// The programs by their threads; that of thread 1 starts by itself.
+    /// The programs by their threads; the program of thread 1 starts automatically.
     pub(super) fn programs(&self) -> Vec<(u8, String)> {
         if self.is_session() {
             return Vec::new();
@@ -89,17 +88,17 @@ impl Scenario {
         threads.into_iter().map(|thread| (thread, text(thread))).collect()
     }
 
-    /// Samples of a run.
+    /// The number of samples in a run.
     pub(super) fn samples(&self) -> usize {
         (match self.observed {
             Observed::Printed => 0,
             Observed::Slices(every) => self.slices.div_ceil(every),
-            // Two ticks a slice, and less than those that are there at the end.
+            // Two ticks per slice, less than the actual number at the end.
             Observed::Ticks => 2 * self.slices.saturating_sub(FIRST_TICK + 2),
         }) as usize
     }
 
-    /// Slices between two samples, or ticks.
+    /// The number of slices, or of ticks, between two samples.
     pub(super) fn samples_every(&self) -> usize {
         match self.observed {
             Observed::Printed | Observed::Ticks => 1,
@@ -107,7 +106,7 @@ impl Scenario {
         }
     }
 
-    /// Statements in the slices of a thread.
+    /// The statements in the slices of a thread.
     fn slices_of(&self, thread: u8) -> String {
         let mut text = String::new();
         let mut slices: Vec<(u32, &str)> = self
@@ -153,7 +152,7 @@ impl Scenario {
         )
     }
 
-    /// The function that observes in the servo interrupt.
+    /// The call-back that records in the servo interrupt.
     fn call_back(&self) -> String {
         let (count, samples) = (self.columns.len(), self.samples());
         let statements: String = self.at(PartKind::Tick).flat_map(|text| [" ", text, "\n"]).collect();
@@ -175,12 +174,12 @@ impl Scenario {
 }
 
 impl Part {
-    /// The part in a line, with its slice.
+    /// The part as one line, with its slice.
     pub(super) fn shown(&self) -> String {
         let text = self.text.lines().next().unwrap_or_default();
         match self.kind {
             PartKind::Line | PartKind::Start => text.to_owned(),
-            // Functions of all scenarios of an area.
+            // The functions are the same in all scenarios of an area.
             PartKind::Head => format!("{text:.60} …"),
             PartKind::Tick => format!("every tick: {text}"),
             PartKind::Slice { thread: 1, slice } => format!("slice {slice}: {text}"),
@@ -188,7 +187,7 @@ impl Part {
         }
     }
 
-    /// The thread whose slices it is in.
+    /// The thread in one of whose slices it is executed.
     fn thread(&self) -> Option<u8> {
         match self.kind {
             PartKind::Slice { thread, .. } => Some(thread),

@@ -1,15 +1,16 @@
-//! A scenario and what the firmware did as a line of JSON: what tests ask of the model afterwards, without the firmware.
+//! A scenario and the firmware's observation as a line of JSON, which tests later compare with the model without the
+//! firmware.
 
 use serde_json::{Map, Value as Json, json};
 
 use super::observation::{Difference, Observation};
 use super::scenario::Scenario;
 
-/// Samples of a vector.
+/// The number of samples in a vector.
 const MOST_SAMPLES: usize = 24;
 
-/// The vector of a scenario: all that the firmware sent, some samples and those that differ from the model's, and what differs at the
-/// end.
+/// The vector of a scenario: all output of the firmware, a selection of samples with those that differ from the
+/// model's, and the final values that differ.
 pub(super) fn vector(
     scenario: &Scenario,
     difference: &Difference,
@@ -52,7 +53,7 @@ pub(super) fn vector(
     Json::Object(vector)
 }
 
-/// Samples all over the run, and the first that differ.
+/// Samples from the whole run, and the first that differ.
 fn rows(scenario: &Scenario, model: &Observation, firmware: &Observation) -> Json {
     let every = firmware.rows.len().div_ceil(MOST_SAMPLES / 2).max(1);
     let pairs = model.rows.iter().zip(&firmware.rows);

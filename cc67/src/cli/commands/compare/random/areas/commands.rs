@@ -1,12 +1,12 @@
-//! Script commands with arguments of all kinds, some misspelled.
+//! Script commands with arguments of all kinds, some of them misspelled.
 
 use runtime::commands::{Argument, COMMANDS};
 
 use super::ScenarioWriter;
 use crate::cli::commands::compare::random::draw::Draw;
 
-/// Commands that are not drawn: they stop or restart the board, wait for data of the PC, need a program, send what the boards
-/// hold from the time before, or have motions that last until the next line.
+/// Commands that are not generated: they stop or restart the board, wait for data from the PC, need a program, reply
+/// with the boards' earlier state, or start motions that last until the next line.
 const LEFT_OUT: &[&str] = &[
     "CheckDoneGather",
     "ClearFlashImage",
@@ -45,7 +45,7 @@ const LEFT_OUT: &[&str] = &[
     "Echo",
 ];
 
-/// Draws a scenario.
+/// Generates a scenario.
 pub(super) fn draw(writer: &mut ScenarioWriter) {
     let axes = 1 + writer.draw.below(3);
     for axis in 0..axes {
@@ -106,7 +106,7 @@ fn command(draw: &mut Draw) -> String {
     ended(draw, line)
 }
 
-/// A line with what may be after its arguments.
+/// Appends random text that may follow the arguments of a line.
 fn ended(draw: &mut Draw, mut line: String) -> String {
     if draw.chance(10) {
         line += draw.pick(&[" ", " 1", "x", "=", "  2 3", ";Dest0"]);

@@ -1,8 +1,8 @@
-//! Moves and jogs of one to three axes, each in the midst of what was before.
+//! Moves and jogs of one to three axes, each of which may interrupt the previous one.
 
 use super::ScenarioWriter;
 
-/// Draws a scenario.
+/// Generates a scenario.
 pub(super) fn draw(writer: &mut ScenarioWriter) {
     let count = 1 + writer.draw.below(3);
     let speeds: Vec<f64> = (0..count).map(|axis| set_up(writer, axis)).collect();
@@ -28,7 +28,7 @@ pub(super) fn draw(writer: &mut ScenarioWriter) {
     writer.observe_slices(more, columns.chain(["CS0_StoppingState".to_owned()]).collect::<Vec<_>>());
 }
 
-/// Sets up an axis; its speed.
+/// Sets up an axis; returns its speed.
 fn set_up(writer: &mut ScenarioWriter, axis: u32) -> f64 {
     let speed = writer.draw.magnitude(5.0, 2000.0);
     let acceleration = speed * writer.draw.magnitude(8.0, 300.0);

@@ -1,9 +1,9 @@
-//! Outputs of an axis in all modes, writes to amplifiers and to bits.
+//! Outputs of an axis in all modes, writes to amplifiers and bits.
 
 use super::ScenarioWriter;
 use crate::cli::commands::compare::random::scenario::PartKind;
 
-/// Draws a scenario.
+/// Generates a scenario.
 pub(super) fn draw(writer: &mut ScenarioWriter) {
     let mode = writer.draw.below(9);
     let input = writer.draw.pick(&["USER_INPUT_MODE", "USER_INPUT_MODE", "NO_INPUT_MODE"]);

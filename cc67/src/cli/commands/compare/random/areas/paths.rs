@@ -1,4 +1,4 @@
-//! Paths that a program builds in the buffer of segments, with overrides, feedhold and moves of their axes.
+//! Paths that a program builds in the segment buffer, with overrides, feedhold and moves of their axes.
 
 use super::ScenarioWriter;
 
@@ -13,7 +13,7 @@ void special(int cmd,int bit){ letters(); P->trajectory_mode=TRAJECTORY_SPECIAL;
 void begin(void){ CoordSystem0=0; ParametricIndex=0; ParametricIndexWrapped=0; CS0_t=0; CS0_TimeExecuted=0; CS0_TimeDownloaded=0; CS0_TimeLost=0; CS0_DoingRapid=0; CS0_TimeBase=TIMEBASE; CS0_TimeBaseDesired=TIMEBASE; CS0_Flushed=0; LastCoordSystem0=&ParametricCoeffs[0]; }
 void iOpenBuf(void); void iExecBuf(void);";
 
-/// Draws a scenario.
+/// Generates a scenario.
 pub(super) fn draw(writer: &mut ScenarioWriter) {
     writer.head(SEGMENTS);
     let count = 1 + writer.draw.below(3);
@@ -55,7 +55,7 @@ pub(super) fn draw(writer: &mut ScenarioWriter) {
     writer.observe_slices(more, columns.collect::<Vec<_>>());
 }
 
-/// Adds segments, each from the end of the one before; their duration in seconds.
+/// Adds segments, each beginning at the end of the previous one; returns their duration in seconds.
 fn segments(writer: &mut ScenarioWriter) -> f64 {
     let mut duration = 0.0;
     let mut place = [0.0; 3];

@@ -1,9 +1,9 @@
-//! A servo with a motor that a call-back moves: gains, filters, feed forward, limits.
+//! A servo with a motor simulated by a call-back: gains, filters, feed forward, limits.
 
 use super::ScenarioWriter;
 use crate::cli::commands::compare::random::scenario::PartKind;
 
-/// Draws a scenario.
+/// Generates a scenario.
 pub(super) fn draw(writer: &mut ScenarioWriter) {
     let output = writer.draw.pick(&["NO_OUTPUT_MODE", "DC_SERVO_MODE", "DAC_SERVO_MODE", "DAC_SERVO_MODE"]);
     let channel = writer.draw.below(8);
@@ -48,7 +48,7 @@ pub(super) fn draw(writer: &mut ScenarioWriter) {
     writer.observe_ticks(more, columns.map(str::to_owned).into_iter().chain(outputs).collect::<Vec<_>>());
 }
 
-/// Sets the gains, some of them, in single precision as programs do.
+/// Sets the gains, some of them in single precision, as programs do.
 fn gains(writer: &mut ScenarioWriter) {
     let limits = [
         ("P", 0.01, 100.0, 80),
@@ -74,7 +74,7 @@ fn gains(writer: &mut ScenarioWriter) {
     }
 }
 
-/// Sets a filter that is stable.
+/// Sets a stable filter.
 fn set_filter(writer: &mut ScenarioWriter, filter: u32) {
     let draw = &mut writer.draw;
     let a2 = draw.real(-0.9, 0.9);

@@ -3,10 +3,11 @@
 use super::ScenarioWriter;
 use crate::cli::commands::compare::random::draw::Draw;
 
-/// Conversions that programs declare themselves; `ltoa` reads a register that nobody sets.
+/// Declarations of conversions, which programs must declare themselves. Without `ltoa`: it reads an uninitialised
+/// register.
 const HEAD: &str = "int sprintf(char*,char*,...); int sscanf(const char*,const char*,...); double strtod(const char*,char**); int strtol(const char*,char**,int); int atoi(const char*); char *ecvt(double,int,int*,int*); char *fcvt(double,int,int*,int*); char b[400]; int i0,i1,i2; double d0,d1; float f0; char *e; void clear(void){ i0=-99; i1=-99; i2=-99; d0=-99; d1=-99; f0=-99; b[0]=0; }";
 
-/// Draws a scenario.
+/// Generates a scenario.
 pub(super) fn draw(writer: &mut ScenarioWriter) {
     writer.head(HEAD);
     for _ in 0..8 {
@@ -17,7 +18,7 @@ pub(super) fn draw(writer: &mut ScenarioWriter) {
         };
         writer.later(2, 2, text);
     }
-    // What was printed is on its way; nothing else is looked at.
+    // The printed lines are still on their way; nothing else is compared.
     writer.scenario.slices = writer.slice + 8;
 }
 
@@ -41,7 +42,7 @@ fn integer(draw: &mut Draw) -> String {
     }
 }
 
-/// A conversion of `printf` and its argument.
+/// A `printf` conversion and its argument.
 fn conversion(draw: &mut Draw) -> (String, String) {
     let flags: String = "-+ 0#".chars().filter(|_| draw.chance(12)).collect();
     let width = if draw.chance(40) { draw.below(16).to_string() } else { String::new() };

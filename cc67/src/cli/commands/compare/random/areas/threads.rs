@@ -1,13 +1,13 @@
-//! Threads that start, pause and resume one another, that wait, count and lock.
+//! Threads that start, pause and resume one another, wait, count and lock.
 
 use super::ScenarioWriter;
 use crate::cli::commands::compare::random::scenario::PartKind;
 
-/// A slice in which a thread has a lock, which nothing else stores to.
+/// A slice in which a thread holds a lock on a variable that nothing else stores to.
 const LOCKED: &str =
     "MutexLock(&persist.UserData[18]); WaitNextTimeSlice(); MutexUnlock(&persist.UserData[18]);";
 
-/// Draws a scenario.
+/// Generates a scenario.
 pub(super) fn draw(writer: &mut ScenarioWriter) {
     let count = 1 + writer.draw.below(3);
     for thread in 2..2 + count as u8 {
@@ -35,7 +35,7 @@ fn statement(writer: &mut ScenarioWriter, own: u32, count: u32) -> String {
     let other = 2 + draw.below(count);
     let cell = 10 + draw.below(8);
     match draw.below(16) {
-        // A thread that never ran must not be resumed: the board stops.
+        // A thread that never ran must not be resumed: that stops the board.
         0 | 1 if own == 1 => format!("PauseThread({other});"),
         2 | 3 if own == 1 => format!("StartThread({other});"),
         4 => format!("PauseThread({other});"),
