@@ -92,19 +92,19 @@ pub fn boards() -> impl Iterator<Item = &'static TargetBoard> + Clone {
 #[derive(Debug, Default)]
 struct BoardFacts {
     symbols: BTreeMap<&'static str, GuestAddr>,
-    /// Functions by name: those that the header declares, and those that it does not.
+    /// Functions by name: those declared in the header, and the others.
     declared: BTreeMap<&'static str, &'static str>,
     undeclared: BTreeMap<&'static str, &'static str>,
-    /// Names that the default header declares and this one does not.
+    /// Names that only the default header declares.
     removed: Vec<&'static str>,
     variables: BTreeMap<&'static str, &'static str>,
     defines: Vec<(&'static str, &'static str)>,
     undefines: Vec<&'static str>,
     enumerations: Vec<(&'static str, &'static str)>,
     structures: Vec<StructureLayout>,
-    /// The C headers, made at the first use.
+    /// The C headers, created at the first use.
     headers: OnceLock<Vec<Header>>,
-    /// The lines that are about this kind of board, not about addresses or one version.
+    /// The lines that apply to all boards of this kind, without addresses and the facts of one version.
     kind: Vec<&'static str>,
 }
 
@@ -130,7 +130,7 @@ pub struct FieldLayout {
     pub offset: u32,
     /// Its size in bytes.
     pub size: u32,
-    /// The C declaration, without the semicolon; empty for those of the default board.
+    /// The C declaration, without the semicolon; empty for fields of the default board.
     declaration: &'static str,
     meaning: &'static str,
 }
@@ -301,7 +301,7 @@ impl TargetBoard {
         Some(BoardFunction { address, ty, origin })
     }
 
-    /// The prototype of a function that the header of this board declares or its firmware has.
+    /// The prototype of a function declared in this board's header or present in its firmware.
     fn prototype_text(&self, name: &str) -> Option<String> {
         let facts = self.facts.as_ref();
         let own = facts.and_then(|facts| facts.declared.get(name).or_else(|| facts.undeclared.get(name)));
@@ -393,7 +393,7 @@ impl TargetBoard {
              board {kind}-{number}\nversion {version}\n",
             self.name
         );
-        // ELF files have none.
+        // ELF files have no time stamp.
         if time_stamp > 0 {
             text += &format!("time {time_stamp}\n");
         }
@@ -410,8 +410,8 @@ impl TargetBoard {
         text
     }
 
-    /// The prototypes, declarations and definitions by which the header of this board differs from that of another, by
-    /// name, and the text of each here; empty for a name that is not here.
+    /// The prototypes, declarations and definitions by which the header of this board differs from the default one: the
+    /// text for each name; empty for a removed name.
     fn stated(&self) -> BTreeMap<&'static str, &'static str> {
         let Some(facts) = &self.facts else { return BTreeMap::new() };
         let defines = facts.defines.iter().map(|(name, value)| (*name, value.trim()));
@@ -471,7 +471,7 @@ impl TargetBoard {
         objects
     }
 
-    /// Returns whether the analog inputs are of 16 bits, where the tables have 32.
+    /// Returns whether the analog inputs have 16 bits, where the tables have 32.
     fn has_short_inputs(&self) -> bool {
         let declared = self.facts.as_ref().and_then(|facts| facts.variables.get("ADC_BufferIn"));
         declared.is_some_and(|declaration| declaration.starts_with("short"))
@@ -505,7 +505,7 @@ impl TargetBoard {
     /// Reads a file of facts.
     ///
     /// # Panics
-    /// If a line is not one of those that the head of this module lists: the files are part of cc67.
+    /// A line is not in the format described at the beginning of this module: the files are part of cc67.
     fn read(text: &'static str) -> Self {
         let mut board = Self { name: "", version: "", time_stamp: None, facts: None, ..Self::DEFAULT };
         let mut facts = BoardFacts::default();
@@ -578,7 +578,8 @@ impl BoardFacts {
 }
 
 impl StructureLayout {
-    /// The fields that another layout of the structure has elsewhere or not at all.
+    /// A description of the fields that have another offset in a different layout of the structure, or are missing
+    /// there.
     fn change(&self, other: &Self) -> Option<String> {
         let place = |fields: &[FieldLayout], name: &str| {
             fields.iter().find(|field| field.name == name).map(|field| (field.offset, field.size))
@@ -607,7 +608,7 @@ impl FieldLayout {
     }
 }
 
-/// A region at the base and with the size of a line.
+/// A region with the base and size in a line.
 fn region(kind: Region, line: &str) -> Region {
     let (base, size) = line.split_once(' ').unwrap_or((line, "0"));
     kind.at(hexadecimal(base), hexadecimal(size))
@@ -623,7 +624,7 @@ fn hexadecimal(text: &str) -> u32 {
     number(text.trim_start_matches("0x"), 16)
 }
 
-/// A number of a file of facts.
+/// Parses a number in a file of facts.
 fn number(text: &str, radix: u32) -> u32 {
     u32::from_str_radix(text, radix).unwrap_or_else(|_| panic!("a file of facts has `{text}` for a number"))
 }

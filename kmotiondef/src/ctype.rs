@@ -124,7 +124,7 @@ impl CType {
         }
     }
 
-    /// The word or words of a type that is not derived from another.
+    /// The spelling of a type that is not derived from another.
     const fn word(self) -> &'static str {
         match self {
             Self::Char => "char",

@@ -238,14 +238,14 @@ pub fn function_at(address: GuestAddr) -> Option<usize> {
     }
 }
 
-/// Slots of the table; a power of two, and at least twice the functions.
+/// The number of slots of the hash table: a power of two, at least twice the number of functions.
 const SLOTS: usize = 1 << SLOT_BITS;
 const SLOT_BITS: u32 = 10;
 
-/// The number of a function and one, where its address leads or in the first free slot after that.
+/// The number of a function plus one, in the slot of its address or the next free one.
 static BY_ADDRESS: [Option<NonZeroU16>; SLOTS] = by_address();
 
-/// Multiplicative hashing: the golden ratio spreads addresses that lie close together.
+/// Multiplicative hashing: the golden ratio spreads adjacent addresses.
 const fn slot(address: GuestAddr) -> usize {
     (address.get().wrapping_mul(0x9E37_79B1) >> (u32::BITS - SLOT_BITS)) as usize
 }

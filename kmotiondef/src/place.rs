@@ -88,7 +88,7 @@ impl<T: GuestType, const N: usize> Place<[T; N]> {
     }
 }
 
-// Derives would ask the same of the type that is only named.
+// Derived implementations would require the same traits of the type parameter, which is only a marker.
 impl<T> Clone for Field<T> {
     #[inline]
     fn clone(&self) -> Self {

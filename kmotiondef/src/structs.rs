@@ -44,7 +44,7 @@ pub struct StructureField {
     pub doc: &'static str,
 }
 
-/// The C layout: the offset of a field that follows one ending at `end`.
+/// The offset of a field after one that ends at `end`, in C layout.
 const fn aligned(end: u32, align: u32) -> u32 {
     end.next_multiple_of(align)
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// One row by the names of its columns.
+/// A row, with its cells by the names of the columns.
 pub(crate) type Row = BTreeMap<String, String>;
 
 /// All rows of a table of `tests/data/api`.
@@ -11,7 +11,7 @@ pub(crate) fn table(name: &str) -> Vec<Row> {
     read(&Path::new("api").join(name))
 }
 
-/// All rows of a table about another board than the default one.
+/// All rows of a table for a board other than the default one.
 pub(crate) fn table_of(board: &str, name: &str) -> Vec<Row> {
     read(&Path::new("boards").join(board).join(name))
 }
@@ -24,7 +24,7 @@ fn read(name: &Path) -> Vec<Row> {
     lines.map(|cells| header.iter().cloned().zip(cells).collect()).collect()
 }
 
-/// The cells of one line; a cell with commas or quotes is in quotes.
+/// The cells of a line; cells that contain commas or quotes are quoted.
 fn cells(line: &str) -> Vec<String> {
     let mut cells = vec![String::new()];
     let mut is_quoted = false;

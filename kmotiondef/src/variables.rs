@@ -45,12 +45,12 @@ const fn axis(number: usize) -> GuestAddr {
     CHAN.element(number).address()
 }
 
-/// Axes of the tables, and those beyond.
+/// The number of axes in the tables, and of those beyond.
 const TABLE_AXES: usize = N_CHANNELS;
 const LATER_AXES: usize = Axes::MAX - TABLE_AXES;
 
-/// The structures of the axes from 8 on, and their profiles, which a KFLOP does not have: in the tables they are where
-/// no memory is, and [`moved_objects`](crate::boards::moved_objects) has their places on a board.
+/// The structures and profiles of the axes from 8 on, which a KFLOP does not have: in the tables they are outside
+/// memory, and [`moved_objects`](crate::boards::moved_objects) has their addresses on a board.
 pub(crate) const LATER_CHAN: Place<[Chan; LATER_AXES]> = Place::new(GuestAddr::new(0xE000_0000));
 pub(crate) const LATER_TRIP_COEFFS: Place<[[TripCoeff; 20]; LATER_AXES]> =
     Place::new(GuestAddr::new(0xE001_0000));
@@ -138,7 +138,7 @@ pub fn cell_name(address: GuestAddr, size: u32) -> String {
 /// The name of the array of axes.
 const CHAN_NAME: &str = "chan";
 
-/// The name of the field of an axis at a byte of the array of axes.
+/// The name of an axis field at a byte offset in the array of axes.
 fn field_of_axis(byte: u32) -> String {
     let (axis, offset) = (byte / Chan::STRUCTURE.size, byte % Chan::STRUCTURE.size);
     let is_around = |field: &&StructureField| (field.offset..field.offset + field.size).contains(&offset);

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::{BoardFacts, Header, StructureLayout};
 use crate::headers::EMBEDDED;
 
-/// The headers of a board of a kind, whose firmware has a version.
+/// The headers for a kind of board and a firmware version.
 pub(super) fn of_board(facts: &BoardFacts, version: (&str, &str)) -> Vec<Header> {
     let mut texts: Vec<String> =
         EMBEDDED.iter().map(|(_, text)| String::from_utf8_lossy(text).into_owned()).collect();
@@ -67,7 +67,7 @@ pub(super) fn defines(text: &[u8], name: &str) -> bool {
     str::from_utf8(text).is_ok_and(|text| definition(text, name).is_some())
 }
 
-/// The text by which the default headers define or declare a name.
+/// The definition or declaration of a name in the default headers.
 pub(super) fn stated(name: &str) -> Option<&'static str> {
     let texts = || EMBEDDED.iter().filter_map(|(_, text)| str::from_utf8(text).ok());
     let defined = texts().find_map(|text| {
@@ -83,12 +83,12 @@ pub(super) fn stated(name: &str) -> Option<&'static str> {
     })
 }
 
-/// The end of the line around a place.
+/// The end of the line that contains a position.
 fn line_end(text: &str, at: usize) -> usize {
     text[at..].find('\n').map_or(text.len(), |length| at + length + 1)
 }
 
-/// Replaces what is found in the first text that has it.
+/// Replaces the range found in the first text in which `find` succeeds.
 fn replace(texts: &mut [String], find: impl Fn(&str) -> Option<(usize, usize)>, by: &str) -> bool {
     for text in texts {
         if let Some((start, end)) = find(text) {
@@ -103,7 +103,7 @@ const fn is_word(byte: u8) -> bool {
     byte == b'_' || byte.is_ascii_alphanumeric()
 }
 
-/// The lines of a text with their places.
+/// The lines of a text with their positions.
 fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     text.split_inclusive('\n').scan(0, |at, line| {
         let start = *at;
@@ -112,7 +112,7 @@ fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     })
 }
 
-/// The place of `name` as a whole word in a line.
+/// The position of `name` as a whole word in a line.
 fn word_in(line: &str, name: &str) -> Option<usize> {
     let bytes = line.as_bytes();
     line.match_indices(name).map(|(at, _)| at).find(|at| {
@@ -121,12 +121,12 @@ fn word_in(line: &str, name: &str) -> Option<usize> {
     })
 }
 
-/// A piece of C up to its comment, without the blanks before that.
+/// The part of a piece of C before its comment, without trailing blanks.
 fn code(line: &str) -> &str {
     line.split("//").next().unwrap_or_default().trim_end()
 }
 
-/// `#define NAME …`, up to its comment.
+/// `#define NAME …`, up to the comment.
 fn definition(text: &str, name: &str) -> Option<(usize, usize)> {
     lines(text).find_map(|(start, line)| {
         let rest = line.strip_prefix("#define ")?.trim_start();
@@ -134,7 +134,7 @@ fn definition(text: &str, name: &str) -> Option<(usize, usize)> {
     })
 }
 
-/// `extern … NAME …;`, up to its comment.
+/// `extern … NAME …;`, up to the comment.
 fn variable_in(text: &str, name: &str) -> Option<(usize, usize)> {
     lines(text).find_map(|(start, line)| {
         let code = code(line);
@@ -149,7 +149,7 @@ fn structure_in(text: &str, name: &str) -> Option<(usize, usize)> {
     Some((text[..end].rfind("typedef struct {")?, end + end_line.len()))
 }
 
-/// The prototype of a function, over one or more lines, with the comment before it.
+/// The prototype of a function, on one or more lines, with the comment before it.
 fn function_in(text: &str, name: &str) -> Option<(usize, usize)> {
     let mut comment = None;
     lines(text).find_map(|(start, line)| {

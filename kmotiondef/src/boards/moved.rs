@@ -34,7 +34,7 @@ pub fn moved_objects(
     objects.chain(later_axes(&address, axes)).collect()
 }
 
-/// Structures and profiles of the axes that the tables lack; on a board they follow those of the others.
+/// Structures and profiles of the axes that the tables lack; on a board they follow those of the other axes.
 fn later_axes(address: &impl Fn(&str) -> Option<GuestAddr>, axes: Axes) -> impl Iterator<Item = MovedObject> {
     let count = axes.count().saturating_sub(N_CHANNELS) as u32;
     let arrays = [
@@ -48,7 +48,7 @@ fn later_axes(address: &impl Fn(&str) -> Option<GuestAddr>, axes: Axes) -> impl 
     objects.into_iter().flatten().filter(|object| object.size > 0)
 }
 
-/// Makes one object of each element of an array of words that has half words there.
+/// Splits an array of words into one object for each element, if the board has half words there.
 pub(super) fn halve(objects: &mut Vec<MovedObject>, table: GuestAddr) {
     let Some(at) = objects.iter().position(|object| object.table == table) else { return };
     let array = objects.remove(at);
@@ -59,7 +59,7 @@ pub(super) fn halve(objects: &mut Vec<MovedObject>, table: GuestAddr) {
     }));
 }
 
-/// The buffers and the heap of the tables, which are before the first variable after them, if a board has them elsewhere.
+/// The buffers and the heap in the tables, up to the first variable after them, if a board has them at other addresses.
 pub(super) fn buffers(objects: &[MovedObject], place: GuestAddr) -> Option<MovedObject> {
     let table = BUFFERS;
     let after = objects.iter().map(|object| object.table.get()).filter(|address| *address > table.get());

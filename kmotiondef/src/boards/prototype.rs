@@ -22,7 +22,7 @@ impl FunctionType {
         Self { result: row.result, params, is_variadic: row.is_variadic }
     }
 
-    /// Parses the type of a prototype; `None` if a type of it is not one of [`CType`].
+    /// Parses the type of a prototype; `None` if it contains a type that is not in [`CType`].
     pub(super) fn parse(prototype: &'static str) -> Option<Self> {
         let (head, params) = prototype.split_once('(')?;
         let params = params.strip_suffix(')')?;
@@ -36,7 +36,7 @@ impl FunctionType {
     }
 }
 
-/// The name that a declaration declares: the last word before its parameters or dimensions.
+/// The declared name: the last word before parameters or dimensions.
 pub(super) fn name(declaration: &'static str) -> &'static str {
     let head = declaration.split(['(', '[']).next().unwrap_or_default();
     head.rsplit(|c: char| c != '_' && !c.is_ascii_alphanumeric()).next().unwrap_or_default()
@@ -78,6 +78,6 @@ fn of_declaration(declaration: &'static str) -> Option<CType> {
     if is_const {
         ty = CType::Const(Box::leak(Box::new(ty)));
     }
-    // The types of the tables are constants; those of the few boards that are read live as long as the process.
+    // The types in the tables are constants; the types of the few boards that are read are never freed.
     Some((0..stars).fold(ty, |ty, _| CType::Pointer(Box::leak(Box::new(ty)))))
 }

@@ -76,7 +76,7 @@ fn structures_have_the_layout_of_the_specification() {
                 assert_eq!(structure.size.to_string(), row["size"], "{name}: {}", structure.name);
                 continue;
             }
-            // The fields of the structures and unions within are named after theirs.
+            // The fields of nested structures and unions have compound names.
             let Some(field) = structure.fields.iter().find(|field| field.name == row["field"]) else {
                 assert!(row["field"].contains('.') || row["field"].contains('('), "{name}: {}", row["field"]);
                 continue;
@@ -140,7 +140,8 @@ fn version_texts_become_version_stamps() {
     assert_eq!(stamp("KFLOP"), None);
 }
 
-/// Adding a firmware is a file of facts, which `cc67 firmware facts` prints: the next version, with every address moved.
+/// A firmware is added by a file of facts, which `cc67 firmware facts` prints: here for a next version, with every
+/// address moved.
 #[test]
 fn the_facts_of_a_made_up_version_are_a_board() {
     let known = board("kflop-5.3.2");

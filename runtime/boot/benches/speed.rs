@@ -1,10 +1,11 @@
-//! The speed of the processor's interpreter: millions of cycles and packets a second of the computer's processor time.
+//! The speed of the processor's interpreter: millions of cycles and packets per second of the computer's processor
+//! time.
 //!
-//! `kernel/integer`, `kernel/memory` and `kernel/double` are the loops of `c67x.md` 7 by hand, those of `cc67` what the
-//! compiler makes; `translated` are the same as code of the host. Goals: 150 million cycles a second interpreted, 600
-//! translated. Where `CC67_FIRMWARE`
-//! names a firmware file, `boot` is its start (goal: 0.3 s), `idle` a board second after it, `eight axes` one in which all
-//! move, and `seven threads` one in which seven threads wait besides (goal: 1 s each).
+//! `kernel/integer`, `kernel/memory` and `kernel/double` are the hand-written loops of `c67x.md` 7; those named `cc67`
+//! are the compiler's output for the same loops; `translated` runs them as host code. Goals: 150 million cycles per
+//! second interpreted, 600 translated. If `CC67_FIRMWARE` names a firmware file, `boot` is its start (goal: 0.3 s),
+//! `idle` a second of board time after it, `eight axes` a second in which all axes move, and `seven threads` a second
+//! in which seven threads wait as well (goal: 1 s each).
 //!
 //! ```sh
 //! CC67_FIRMWARE=DSPKFLOP.out cargo bench -p cc67-boot --features native
@@ -20,35 +21,35 @@ use vm::dsp::{Clock, Core, Halt, Memory};
 use vm::memory::GuestMemory;
 use vm::trap::{Access, TrapKind};
 
-/// The address of the kernels, and the one they return to.
+/// The address of the kernels, and their return address.
 const CODE: u32 = 0x8005_0000;
 const BACK: u32 = 0x0000_1000;
-/// Cycles of a measurement.
+/// The number of cycles of a measurement.
 const CYCLES: u64 = 100_000_000;
 
 /// `c67x.md` 7.1: one element in six cycles.
 const INTEGER: &str =
     "0013E05B 02800029 01900058 030C3665 20000191 2003E05A 00006000 0298A078 000C0362 02140058 00006000";
-/// `c67x.md` 7.3: products of doubles, three cycles for an element.
+/// `c67x.md` 7.3: products of doubles, three cycles per element.
 const DOUBLE: &str = "02901059 011839A3 04800029 021088C2 0108205B 04000029 0280002B 0318C4F8 01000029 0300002B 001084FB \
                       0018C4F8 01800029 0380002B 041084FA 00000000 04103765 00191701 60000010 03143766 03103765 00191702 \
                       04143767 01004318 010BE05A 0200831A 0000A000 02105318 000C0362 00008000";
-/// Copies words, one in six cycles, load and store beside each other.
+/// Copies words, one in six cycles, with load and store in parallel.
 const COPY: &str =
     "0013E05B 02800029 01900058 030C3665 20000191 2003E05A 00006000 030C0274 000C0362 02140058 00006000";
 
-/// The code that cc67 makes of `for (i = 0; i < n; i++) s = (s << 1) + (a[i] ^ i);` at `-O1`.
+/// The code that cc67 generates for `for (i = 0; i < n; i++) s = (s << 1) + (a[i] ^ i);` at `-O1`.
 const OWN_INTEGER: &str = "00100ADB 01800029 0280002A 30000912 00008000 02900941 00000001 00000000 03140267 030C2CA1 02948058 00006000 \
      0398ADFB 029421A2 0090AAFB 019CD078 4FFFFC12 00008000 020C0941 000C0362 00008000";
-/// Of `for (i = 0; i < n; i++) to[i] = from[i];`.
+/// The code for `for (i = 0; i < n; i++) to[i] = from[i];`.
 const OWN_COPY: &str = "00180AD9 01800028 D0000792 00008000 02900942 028C4CA1 018C2058 0390A078 00986AF9 031C0266 8FFFFE92 00004000 \
      031402F7 0294805A 00000000 000C0362 00008000";
-/// Of `for (i = 0; i < n; i++) s += a[i] * b[i];`, with doubles.
+/// The code for `for (i = 0; i < n; i++) s += a[i] * b[i];`, with doubles.
 const OWN_DOUBLE: &str = "00180AD9 04000029 0280002A 04800029 D0000A92 00008000 01900941 00000000 03146CA3 020C0365 0294205B 018D0058 \
      0390C07B 0114D8F8 001C03E4 00006000 02008700 0000E000 04110318 AFFFFC12 00008000 02200941 02A40059 000C0362 \
      00008000";
 
-/// Both RAMs and nothing else.
+/// Only the two RAMs.
 struct Ram(GuestMemory);
 
 fn absent(addr: u32, access: Access) -> TrapKind {
@@ -89,7 +90,7 @@ impl Memory for Ram {
     }
 }
 
-/// Processor time since the start of the process.
+/// The processor time since the start of the process.
 fn cpu() -> Duration {
     #[cfg(unix)]
     {
@@ -100,7 +101,7 @@ fn cpu() -> Duration {
     Duration::ZERO
 }
 
-/// Shows what a measurement came to.
+/// Shows the result of a measurement.
 fn show(name: &str, began: Duration, cycles: u64, packets: u64) {
     let seconds = (cpu() - began).as_secs_f64();
     let rate = |count: u64| count as f64 / seconds / 1e6;
@@ -134,7 +135,7 @@ fn kernel(name: &str, words: &str, arguments: &[(c67x::Reg, u32)]) {
     show(name, began, core.state.cycle(), core.packets());
 }
 
-/// Starts seven threads that wait for their next slice again and again.
+/// Starts seven threads that repeatedly wait for their next slice.
 fn start_waiting(board: &mut BootedBoard) {
     let wait = board.file().address("WaitNextTimeSlice").expect("it has the function").get();
     for thread in ThreadId::all() {
@@ -142,7 +143,7 @@ fn start_waiting(board: &mut BootedBoard) {
         let constant = |value: u32, reg: &str| {
             format!("MVK .S2 {},{reg}\nMVKH .S2 0x{value:08X},{reg}\n", i32::from(value as u16 as i16))
         };
-        // Eight words to the return address: two constants, the branch and its delay.
+        // Eight words up to the return address: two constants, the branch and its delay slots.
         let text = constant(wait, "B5") + &constant(start + 32, "B3") + "B .S2 B5\nNOP 5\nNOP 1\nNOP 1\n";
         let text = text + &format!("B .S1 0x{start:08X}\nNOP 5\n");
         for (at, line) in (start..).step_by(4).zip(text.lines()) {

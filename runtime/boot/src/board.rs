@@ -1,4 +1,4 @@
-//! The board in one time: processor, timer, link, programs.
+//! The board on a common time base: processor, timer, link, programs.
 
 mod followed;
 mod power;
@@ -27,17 +27,17 @@ use super::rom::RomFunction;
 use super::sent::{SentLine, SentLines};
 use super::window::{Window, bit, instant};
 
-/// Cycles of a second.
+/// Cycles per second.
 const SECOND: u64 = 200_000_000;
 /// Cycles from taking an interrupt to the first packet of its vector.
 const OVERHEAD: u64 = 11;
-/// Longest interrupt of a board without motion, with room.
+/// The duration of the longest interrupt on a board without motion, with a margin.
 const INTERRUPT: u64 = 8000;
-/// Longest time for which the timer's interrupt may wait.
+/// The longest time for which the timer's interrupt may be pending.
 const LONGEST_SHADOW: u64 = SECOND / 5;
-/// The bit of CSR that allows interrupts.
+/// The bit of CSR that enables interrupts.
 const GIE: u32 = 1;
-/// Begins a line for the console; begins a command without echo, with any byte after it.
+/// The byte before a console line; followed by any byte, it starts a command without echo.
 const ESCAPE: u8 = 0x1B;
 const NO_ECHO: u8 = 1;
 
@@ -46,16 +46,17 @@ const NO_ECHO: u8 = 1;
 pub struct ProcessorState {
     /// The address of the next packet.
     pub pc: u32,
-    /// The thread that has the processor, 0 for the firmware's own; `None` if the firmware does not show it.
+    /// The number of the thread that has the processor, 0 for the firmware's own; `None` if the firmware does not
+    /// provide it.
     pub thread: Option<u32>,
-    /// Interrupts are switched off, as they are in an interrupt.
+    /// True if interrupts are disabled, as they are during an interrupt.
     pub is_masked: bool,
 }
 
-/// The reason for which the board does not run.
+/// The reason why the board does not run.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Halted {
-    /// The firmware ran away.
+    /// The firmware crashed.
     #[error("{0}")]
     Crashed(Box<Crash>),
 }
@@ -66,21 +67,21 @@ pub struct BootedBoard<A = ()> {
     file: Arc<FirmwareFile>,
     core: Core,
     hardware: Hardware<A>,
-    /// The lines that it has sent.
+    /// The lines that the board has sent.
     sent: SentLines,
-    /// The cycle in which the timer's interrupt began to wait.
+    /// The cycle since which the timer's interrupt has been pending.
     waits_since: u64,
     /// The loads of the axes.
     loads: Loads,
-    /// True if waiting loops are skipped.
+    /// True if busy-waiting loops are skipped.
     skips: bool,
-    /// Packets that programs have executed, where they are kept.
+    /// The packets executed by programs, if they are recorded.
     packets: Option<Vec<ProgramPacket>>,
-    /// The end of it, if there was one.
+    /// The crash, if there was one.
     crash: Option<Box<Crash>>,
 }
 
-/// A [`BootedBoard`] as it was.
+/// A snapshot of a [`BootedBoard`].
 #[derive(Clone, Debug)]
 pub struct BootedSnapshot<A = ()> {
     board: BootedBoard<A>,
@@ -94,13 +95,13 @@ impl<A: ExternalHardware> BootedSnapshot<A> {
         self.board.cycle()
     }
 
-    /// Bytes of memory that this snapshot has besides those that it shares with `other`.
+    /// The bytes of guest memory in this snapshot that it does not share with `other`.
     #[must_use]
     pub fn bytes_beyond(&self, other: &Self) -> usize {
         self.memory.bytes_beyond(&other.memory)
     }
 
-    /// A board of its own that continues from here.
+    /// Creates an independent board that continues from here.
     #[must_use]
     pub fn board(&self) -> BootedBoard<A> {
         let mut board = self.board.clone();
@@ -110,36 +111,37 @@ impl<A: ExternalHardware> BootedSnapshot<A> {
 }
 
 impl<A: ExternalHardware> BootedBoard<A> {
-    /// Sets whether loops that wait are skipped in one step, which is the default; nothing observable changes.
+    /// Sets whether busy-waiting loops are skipped in one step, which is the default; nothing observable changes.
     pub const fn skip_waits(&mut self, whether: bool) {
         self.core.skip_waits(whether);
         self.skips = whether;
     }
 
-    /// Sets whether an unmapped address reads 0 and takes writes, as on a board; otherwise an access ends the run.
+    /// Sets whether an unmapped address reads as 0 and ignores writes, as on a board; otherwise an access ends the run.
     pub const fn forgive(&mut self, whether: bool) {
         self.hardware.forgives = whether;
     }
 
-    /// Sets how many cycles the processor waits for a register or for flash; none by default. The firmware programs the bus
-    /// of the FPGA and the flash so that a board waits 44 (`dsp-board.md` 11); recordings with waits count the timer, too.
+    /// Sets the number of cycles for which the processor waits at a register or at flash; 0 by default. The firmware
+    /// programs the bus of the FPGA and the flash so that a board waits for 44 (`dsp-board.md` 11); recordings with
+    /// waits include the timer.
     pub const fn set_register_waits(&mut self, cycles: u32) {
         self.hardware.register_waits = cycles;
     }
 
-    /// Cycles of waiting loops that were skipped.
+    /// The cycles of busy-waiting loops that were skipped.
     #[must_use]
     pub const fn skipped(&self) -> u64 {
         self.core.skipped()
     }
 
-    /// The file that it was made of.
+    /// The firmware file.
     #[must_use]
     pub fn file(&self) -> &FirmwareFile {
         &self.file
     }
 
-    /// The file that it was made of, for another board.
+    /// The firmware file, for another board.
     #[must_use]
     pub fn shared_file(&self) -> Arc<FirmwareFile> {
         self.file.clone()
@@ -151,13 +153,13 @@ impl<A: ExternalHardware> BootedBoard<A> {
         self.core.state.cycle()
     }
 
-    /// The cycle in which the firmware first looked for what the PC sends.
+    /// The cycle in which the firmware first polled the link to the PC.
     #[must_use]
     pub const fn ready_at(&self) -> Option<u64> {
         self.hardware.first_look
     }
 
-    /// Returns whether the firmware is starting or restarting, and does not poll the PC's bytes yet.
+    /// Returns whether the firmware is starting or restarting, and does not poll the link to the PC yet.
     #[must_use]
     pub const fn is_starting(&self) -> bool {
         self.hardware.first_look.is_none()
@@ -183,28 +185,28 @@ impl<A: ExternalHardware> BootedBoard<A> {
         ProcessorState { pc: self.core.state.pc(), thread, is_masked }
     }
 
-    /// Memory.
+    /// The memory.
     #[must_use]
     pub const fn memory(&self) -> &GuestMemory {
         &self.hardware.memory
     }
 
-    /// Memory, to change it from outside; code may be among it.
+    /// The memory, for changes from outside, which may include code.
     pub fn memory_mut(&mut self) -> &mut GuestMemory {
         self.core.forget_code();
         &mut self.hardware.memory
     }
 
-    /// Runs to the first packet from this cycle on.
+    /// Runs to the first packet at or after this cycle.
     ///
     /// # Errors
-    /// The firmware ran away; it stays so.
+    /// The firmware crashed; the board no longer runs.
     pub fn run_to(&mut self, cycle: u64) -> Result<(), Halted> {
         while self.run_to_stop(cycle)? == Ran::ToStop {}
         Ok(())
     }
 
-    /// Runs to `cycle`, to a stop, or to where a device asked to stop.
+    /// Runs to `cycle`, to a stop, or until a device requests a stop.
     fn run_events(&mut self, cycle: u64) -> Result<Ran, Halted> {
         if let Some(crash) = &self.crash {
             return Err(Halted::Crashed(crash.clone()));
@@ -245,8 +247,8 @@ impl<A: ExternalHardware> BootedBoard<A> {
         }
     }
 
-    /// Calls a function of the ROM. Where its interrupt would come, it has not begun: it is called again afterwards, and the
-    /// interrupt is on time.
+    /// Calls a function of the ROM. If an interrupt would occur during the call, the call is repeated after it, so that
+    /// the interrupt is on time.
     fn call_rom(&mut self, function: &RomFunction) {
         let Self { core, hardware, .. } = self;
         let left = hardware.timer.next_match().saturating_sub(core.state.cycle());
@@ -258,7 +260,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
         core.state.wait(function.cycles);
     }
 
-    /// The timer matches: what is connected moves, then the interrupt is requested.
+    /// Handles a match of the timer: connected hardware is updated, then the interrupt is requested.
     fn tick(&mut self) {
         let now = self.hardware.timer.next_match();
         let Hardware { memory, window, .. } = &mut self.hardware;
@@ -279,7 +281,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
         }
     }
 
-    /// Does not move from here on.
+    /// Records a crash: the board no longer runs.
     fn crash(&mut self, reason: String) -> Halted {
         let pc = self.core.state.pc();
         let thread = self.file.address("CurrentThread").map(|at| self.hardware.memory.peek::<u32>(at));
@@ -295,12 +297,12 @@ impl<A: ExternalHardware> BootedBoard<A> {
         Halted::Crashed(crash)
     }
 
-    /// The PC sends bytes.
+    /// Sends bytes from the PC.
     pub fn send(&mut self, bytes: &[u8]) {
         self.hardware.window.link.send(bytes);
     }
 
-    /// The PC sends a command, which is not echoed.
+    /// Sends a command from the PC, which is not echoed.
     pub fn send_line(&mut self, command: &[u8]) {
         self.send(&[&[ESCAPE, NO_ECHO], command, b"\r"].concat());
     }
@@ -311,19 +313,21 @@ impl<A: ExternalHardware> BootedBoard<A> {
         self.hardware.window.link.is_read()
     }
 
-    /// Returns how many times the firmware has polled for a byte of the PC; it does not poll while it executes a
+    /// Returns the number of times the firmware has polled for a byte from the PC; it does not poll while it executes a
     /// command.
     #[must_use]
     pub const fn looks(&self) -> u64 {
         self.hardware.window.link.looks()
     }
 
-    /// The bytes that the firmware sent since this or [`take_lines`](Self::take_lines) was last called, with their cycles.
+    /// The bytes sent by the firmware since the last call of this or of [`take_lines`](Self::take_lines), with their
+    /// cycles.
     pub fn take_bytes(&mut self) -> Vec<(u64, u8)> {
         self.hardware.window.link.take_sent()
     }
 
-    /// Keeps from now on the bytes that [`take_lines`](Self::take_lines) makes lines of, for a PC that is elsewhere.
+    /// From now on also keeps the bytes from which [`take_lines`](Self::take_lines) makes lines, for a PC outside this
+    /// process.
     pub fn tap_wire(&mut self) {
         self.sent.tap();
     }
@@ -333,15 +337,15 @@ impl<A: ExternalHardware> BootedBoard<A> {
         self.sent.take_wire()
     }
 
-    /// The lines that the firmware has completed since the last call.
+    /// The lines completed by the firmware since the last call.
     pub fn take_lines(&mut self) -> Vec<SentLine> {
         self.sent.take(self.hardware.window.link.take_sent())
     }
 
-    /// Puts the sections of a linked program into memory, as a download does, and sends the firmware its start address.
+    /// Copies the sections of a linked program to memory, as a download does, and sends the firmware its start address.
     ///
     /// # Errors
-    /// The bytes are not an image of this processor.
+    /// The bytes are not an image for this processor.
     pub fn load_program(&mut self, thread: ThreadId, image: &[u8]) -> Result<(), FirmwareError> {
         let image = Image::read(image).map_err(FirmwareError::NotAnImage)?;
         if image.target != coff::Target::C6000 {
@@ -366,10 +370,11 @@ impl<A: ExternalHardware> BootedBoard<A> {
         self.send_line(format!("Execute{thread}").as_bytes());
     }
 
-    /// Starts threads all at once: in the rotation after this tick none of them comes before it is ready.
+    /// Starts several threads together: all of them are ready before the first one runs in the rotation after this
+    /// tick.
     ///
     /// # Errors
-    /// The firmware ran away.
+    /// The firmware crashed.
     pub fn execute_together(&mut self, threads: &[ThreadId]) -> Result<(), Halted> {
         let Some(at) = self.file.address("ThreadActive") else {
             threads.iter().for_each(|thread| self.execute(*thread));
@@ -383,12 +388,12 @@ impl<A: ExternalHardware> BootedBoard<A> {
             while !is_begun(self) && self.cycle() < end {
                 self.run_to(self.cycle() + 20)?;
             }
-            // Held back until all are ready.
+            // The threads are held back until all are ready.
             let active: u32 = self.hardware.memory.peek(at);
             self.hardware.memory.poke(at, active & !(1 << thread.get()));
             started |= 1 << thread.get();
         }
-        // After the interrupt of a tick, so that the next one begins with the first of them.
+        // After the interrupt of a tick, so that the next tick begins with the first of them.
         self.run_to(self.next_tick())?;
         self.run_to(self.cycle() + INTERRUPT)?;
         let active: u32 = self.hardware.memory.peek(at);
@@ -411,13 +416,13 @@ impl<A: ExternalHardware> BootedBoard<A> {
         Some((at(Chan::DEST.offset()), at(Chan::POSITION.offset())))
     }
 
-    /// Steps that a generator has made, and steps a second.
+    /// The number of steps made by a generator, and its rate in steps per second.
     pub fn steps(&mut self, generator: usize) -> (f64, f64) {
         let now = self.cycle();
         self.hardware.window.steps(generator, now)
     }
 
-    /// Returns whether a pin is high, as an output or as it is driven.
+    /// Returns whether a pin is high: as an output, or as it is driven from outside.
     #[must_use]
     pub fn is_high(&self, pin: usize) -> bool {
         bit(pin).is_some_and(|bit| self.hardware.window.chips.pins.level(bit))
@@ -438,17 +443,17 @@ impl<A: ExternalHardware> BootedBoard<A> {
         }
     }
 
-    /// Keeps changes of pins from now on.
+    /// Records changes of pins from now on.
     pub fn keep_pin_changes(&mut self) {
         self.hardware.window.chips.pins.changes.switch_on(Vec::new());
     }
 
-    /// The changes of pins since the last call, if they are kept; their instants are cycles since power-up.
+    /// The changes of pins since the last call, if they are recorded; their times are cycles since power-up.
     pub fn take_pin_changes(&mut self) -> Vec<BitChange> {
         self.hardware.window.chips.pins.changes.take()
     }
 
-    /// Connects external hardware, which is shown the present state of the registers.
+    /// Connects external hardware, which is informed of the present state of the registers.
     #[must_use]
     pub fn connect<B: ExternalHardware>(self, external: Option<B>) -> BootedBoard<B> {
         let Self { file, core, hardware, sent, waits_since, loads, skips, packets, crash } = self;
@@ -456,13 +461,13 @@ impl<A: ExternalHardware> BootedBoard<A> {
         BootedBoard { file, core, hardware, sent, waits_since, loads, skips, packets, crash }
     }
 
-    /// Returns the surroundings that [were connected](Self::connect).
+    /// Returns the external hardware that [was connected](Self::connect).
     #[must_use]
     pub const fn external(&self) -> Option<&A> {
         self.hardware.window.external.as_ref()
     }
 
-    /// Returns the surroundings, to be changed, and the memory for data.
+    /// Returns the external hardware and the data memory, for changes.
     pub const fn external_and_memory(&mut self) -> (Option<&mut A>, &mut GuestMemory) {
         let Hardware { memory, window, .. } = &mut self.hardware;
         (window.external.as_mut(), memory)
@@ -474,12 +479,12 @@ impl<A: ExternalHardware> BootedBoard<A> {
         self.hardware.timer.next_match()
     }
 
-    /// Sets the count byte of a channel's encoder: the low eight bits of its counts.
+    /// Sets the count byte of a channel's encoder: the low eight bits of its count.
     pub fn show_encoder(&mut self, channel: usize, counts: u8) {
         self.hardware.window.chips.encoders.set(channel, counts);
     }
 
-    /// Everything that the board is.
+    /// Takes a snapshot of the whole board.
     pub fn snapshot(&mut self) -> BootedSnapshot<A> {
         let memory = self.hardware.memory.snapshot();
         let kept = std::mem::take(&mut self.hardware.memory);

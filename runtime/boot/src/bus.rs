@@ -13,11 +13,11 @@ use super::flash;
 use super::timer::Timer;
 use super::window::Window;
 
-/// The timer.
+/// The addresses of the timer.
 const TIMER: u32 = 0x4200_0000;
 const TIMER_SIZE: u32 = 0x100;
 
-/// Everything that the processor reaches.
+/// All devices that the processor can access.
 #[derive(Clone, Debug)]
 pub(super) struct Hardware<A = ()> {
     pub(super) memory: GuestMemory,
@@ -25,13 +25,13 @@ pub(super) struct Hardware<A = ()> {
     pub(super) window: Window<A>,
     pub(super) control: Control,
     pub(super) chip: Chip,
-    /// The cycle in which the firmware first looked whether the PC has sent something.
+    /// The cycle in which the firmware first polled the link to the PC.
     pub(super) first_look: Option<u64>,
-    /// True if an unmapped address reads 0 and takes writes, as on a board; otherwise an access ends the run.
+    /// True if an unmapped address reads as 0 and ignores writes, as on a board; otherwise an access ends the run.
     pub(super) forgives: bool,
-    /// Cycles that the processor waits at an access to anything but RAM, as in the recordings with waits.
+    /// The number of cycles for which the processor waits at an access outside RAM, as in the recordings with waits.
     pub(super) register_waits: u32,
-    /// Accesses of devices, but for looks at an empty link.
+    /// The number of device accesses, except polls of an empty link.
     pub(super) touches: u64,
 }
 
@@ -90,7 +90,7 @@ impl<A: ExternalHardware> Hardware<A> {
         }
     }
 
-    /// Reads a register of the FPGA. At the first look at the link the processor stops: the board is ready.
+    /// Reads a register of the FPGA. At the first poll of the link the processor stops: the board is ready.
     fn look(&mut self, offset: u32, bytes: u32, now: u64, clock: &mut Clock) -> u32 {
         let (looks, touches) = (self.window.link.looks(), self.window.touches());
         let value = self.window.read(offset, bytes, now);
@@ -124,7 +124,7 @@ impl<A: ExternalHardware> Hardware<A> {
         Ok(())
     }
 
-    /// A word of RAM, where code may be.
+    /// A word of RAM, which may contain code.
     pub(super) fn word(&self, addr: u32) -> Option<u32> {
         let is_ram = |region: &kmotiondef::map::Region| addr.wrapping_sub(region.base.get()) < region.size;
         (is_ram(&SDRAM) || is_ram(&IRAM)).then(|| self.memory.peek(GuestAddr::new(addr)))

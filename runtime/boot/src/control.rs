@@ -1,10 +1,10 @@
-//! Control registers that need nothing: memory controller, PLL, serial ports as pins, cache (`dsp-board.md` 3.1).
+//! Control registers without side effects: memory controller, PLL, serial ports as pins, cache (`dsp-board.md` 3.1).
 
 use std::collections::BTreeMap;
 
-/// The words of port 0 that carry the serial configuration: written a million times during a start.
+/// The registers of port 0 that carry the serial configuration: written a million times during a start.
 const PORT: u32 = 0x4400_0018;
-/// Says how many words of the code cache are still to be dropped: none.
+/// The register with the number of words still to be removed from the code cache: always 0.
 const CACHE_LEFT: u32 = 0x2000_0004;
 
 /// The written values.

@@ -4,20 +4,21 @@ use std::fmt;
 
 use vm::trap::Scene;
 
-/// The processor has stopped for good: why, when and where, its registers, and the code around the place.
+/// The processor has stopped permanently: the reason, the time and position, its registers, and the code around the
+/// position.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Crash {
-    /// The fault.
+    /// The reason.
     pub reason: String,
     /// Board time in cycles of 5 ns since power-up.
     pub cycle: u64,
-    /// The packet that did it, or that should have been next.
+    /// The faulting packet, or the one that would have been next.
     pub pc: u32,
-    /// The function of the firmware or of a program that it belongs to, and how far into it; if that is known.
+    /// The function of the firmware or of a program that contains the packet, and the offset in it, if known.
     pub function: Option<(String, u32)>,
-    /// The thread that was running, 0 for the firmware's own; `None` if the firmware has no such variable.
+    /// The number of the running thread, 0 for the firmware's own; `None` if the firmware has no such variable.
     pub thread: Option<u32>,
-    /// Registers and code around the place.
+    /// Registers and code around the position.
     pub scene: Scene,
 }
 

@@ -11,20 +11,20 @@ use vm::memory::places::Places;
 
 use super::rom::{self, RomFunction};
 
-/// Sections with one of these flags are not loaded; of these one must be there.
+/// Sections with one of these flags are not loaded; of the loaded ones there must be at least one.
 const LEFT_OUT: u32 = 0x12;
 const LOADED: u32 = 0xE0;
-/// The symbols that every firmware of this board has.
+/// The symbols that all firmware for this board has.
 const REQUIRED: [&str; 4] = ["c_int00", "main", "persist", "chan"];
 /// The symbol of the version text.
 const VERSION: &str = "VersionAndBuildTime";
-/// Longest such text.
+/// The maximum length of this text.
 const VERSION_LENGTH: usize = 80;
 
-/// The reason for which a file cannot be started.
+/// The reason why a file cannot be started.
 #[derive(Debug, thiserror::Error)]
 pub enum FirmwareError {
-    /// The bytes are not a TI COFF image, or end before it does.
+    /// The bytes are not a TI COFF image, or are incomplete.
     #[error("not a firmware file: {0}")]
     NotAnImage(coff::Error),
     /// It is for another processor.
@@ -46,22 +46,22 @@ pub enum FirmwareError {
         /// The address to which it would be loaded.
         address: u32,
     },
-    /// It is not a firmware.
+    /// A symbol that all firmware has is missing.
     #[error(
         "not a firmware file: it has no `{0}`; a user program runs on a firmware, as `cc67 run --boot FIRMWARE PROGRAM`"
     )]
     Missing(&'static str),
 }
 
-/// A section that is loaded.
+/// A loaded section.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Loaded {
     address: u32,
-    /// `None` for bytes that are filled with 0.
+    /// The bytes; `None` to fill it with 0.
     bytes: Option<Vec<u8>>,
 }
 
-/// A firmware that can be started.
+/// A firmware file that can be started.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FirmwareFile {
     entry: u32,
@@ -111,36 +111,36 @@ impl FirmwareFile {
         self.entry
     }
 
-    /// The address of a variable or function, as C writes its name; `None` if this version has none.
+    /// The address of a variable or function by its C name; `None` if this version does not have it.
     #[must_use]
     pub fn address(&self, name: &str) -> Option<GuestAddr> {
         self.symbols.get(name).copied().map(GuestAddr::new)
     }
 
-    /// The version in the firmware's own words; empty if it has none.
+    /// The version text of the firmware; empty if it has none.
     #[must_use]
     pub fn version(&self) -> String {
         version_text(&self.symbols, &self.sections)
     }
 
-    /// The function that an address belongs to, and how far into it.
+    /// The function that contains an address, and the offset in it.
     #[must_use]
     pub fn function_at(&self, address: u32) -> Option<(String, u32)> {
         let (start, name) = self.functions.range(..=address).next_back()?;
         Some((name.clone(), address - start))
     }
 
-    /// The function of the processor's ROM at an address, if the file names one there.
+    /// The function of the processor's ROM at an address, if the file has a symbol for it.
     pub(super) fn rom_function(&self, address: u32) -> Option<&'static RomFunction> {
         self.rom.get(&address).copied()
     }
 
-    /// Returns the addresses that this firmware gives to the variables of the tables.
+    /// Returns this firmware's addresses for the variables of the tables.
     pub(super) fn places(&self) -> Places {
         self.places.clone()
     }
 
-    /// Puts the sections into memory.
+    /// Copies the sections to memory.
     pub(super) fn load(&self, memory: &mut GuestMemory) {
         for section in &self.sections {
             if let Some(bytes) = &section.bytes {
@@ -155,7 +155,7 @@ fn holds(address: u32, bytes: &[u8], entry: u32) -> bool {
     (entry.wrapping_sub(address) as usize) < bytes.len()
 }
 
-/// Returns whether `size` bytes at `address` lie in a RAM.
+/// Returns whether `size` bytes at `address` are within a RAM region.
 fn is_inside(region: &Region, address: u32, size: u64) -> bool {
     let offset = u64::from(address.wrapping_sub(region.base.get()));
     offset + size <= u64::from(region.size)
@@ -197,7 +197,7 @@ fn symbols(image: &Image) -> BTreeMap<String, u32> {
     symbols
 }
 
-/// The version in a firmware's own words; empty if it has none.
+/// The version text of a firmware; empty if it has none.
 fn version_text(symbols: &BTreeMap<String, u32>, sections: &[Loaded]) -> String {
     let Some(at) = symbols.get(VERSION) else { return String::new() };
     let holder = sections.iter().find_map(|one| {
@@ -208,7 +208,8 @@ fn version_text(symbols: &BTreeMap<String, u32>, sections: &[Loaded]) -> String 
     text.map(|byte| char::from(*byte)).collect()
 }
 
-/// Returns the places of the firmware for the variables of the tables; an unknown version has the structures of the default board.
+/// Returns the firmware's addresses for the variables of the tables; an unknown version is assumed to have the
+/// structures of the default board.
 fn places(symbols: &BTreeMap<String, u32>, version: &str) -> Places {
     let board = TargetBoard::of_version(version.trim_ascii_end());
     let layouts = board.map_or(&[][..], TargetBoard::own_structures);
@@ -217,7 +218,7 @@ fn places(symbols: &BTreeMap<String, u32>, version: &str) -> Places {
     Places::new(objects.into_iter().map(|object| (object.table, object.size, object.place)))
 }
 
-/// Functions of the processor's ROM by address: absolute symbols inside of it.
+/// Functions of the processor's ROM by address: absolute symbols within it.
 fn rom_functions(image: &Image) -> BTreeMap<u32, &'static RomFunction> {
     let absolute = image.symbols.iter().filter(|one| {
         one.class == StorageClass::EXTERNAL && one.section == SectionNumber::ABSOLUTE && one.value < ROM_SIZE

@@ -1,16 +1,16 @@
-//! The flash chip on guest memory, which holds its bytes.
+//! The flash chip, whose bytes are in guest memory.
 
 use chips::flash::{BLOCK, Change, Chip, ERASED};
 use kmotiondef::map::FLASH;
 use kmotiondef::{Cycles, GuestAddr};
 use vm::memory::GuestMemory;
 
-/// The half word at an offset as the chip shows it.
+/// The half word that the chip returns at an offset.
 pub(super) fn read(chip: &mut Chip, offset: u32, memory: &GuestMemory, now: Cycles) -> u32 {
     chip.read(offset, memory.peek(at(offset)), now).into()
 }
 
-/// The firmware writes a half word.
+/// Handles a half word written by the firmware.
 pub(super) fn write(chip: &mut Chip, offset: u32, value: u16, memory: &mut GuestMemory, now: Cycles) {
     match chip.write(offset, value, now) {
         Some(Change::Program { offset, mask }) => {
@@ -25,7 +25,7 @@ pub(super) fn write(chip: &mut Chip, offset: u32, value: u16, memory: &mut Guest
     }
 }
 
-/// A place in the flash.
+/// An address in the flash.
 const fn at(offset: u32) -> GuestAddr {
     FLASH.base.offset(offset & (FLASH.size - 1))
 }

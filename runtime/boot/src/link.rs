@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-/// Bytes on their way to the firmware, and bytes that it sent with their cycle.
+/// The bytes on their way to the firmware, and the bytes that it sent, each with its cycle.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Link {
     received: VecDeque<u8>,
@@ -12,7 +12,7 @@ pub(super) struct Link {
 }
 
 impl Link {
-    /// The PC sends.
+    /// Sends bytes from the PC.
     pub(super) fn send(&mut self, bytes: &[u8]) {
         self.received.extend(bytes);
     }
@@ -22,7 +22,7 @@ impl Link {
         self.received.is_empty()
     }
 
-    /// Returns how many times the firmware has polled for a byte.
+    /// Returns the number of times the firmware has polled for a byte.
     pub(super) const fn looks(&self) -> u64 {
         self.looks
     }
@@ -32,7 +32,7 @@ impl Link {
         std::mem::take(&mut self.sent)
     }
 
-    /// 1 if a byte waits. Any other value would be taken for the byte.
+    /// Returns 1 if a byte is available. Any other value would be taken for the byte.
     pub(super) fn status(&mut self) -> u16 {
         self.looks += 1;
         u16::from(!self.received.is_empty())
@@ -43,7 +43,7 @@ impl Link {
         self.received.pop_front().map_or(0, u16::from)
     }
 
-    /// The firmware sends a byte.
+    /// Records a byte sent by the firmware.
     pub(super) fn put(&mut self, byte: u8, now: u64) {
         self.sent.push((now, byte));
     }

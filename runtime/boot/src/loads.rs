@@ -1,7 +1,8 @@
 //! The loads of the axes, which follow as on the modelled board without a machine file (`plant.md` 2, model `follow`).
 //!
-//! A closed loop's load goes to the axis' command with a lag of 0.5 ms while the axis is enabled; a step generator moves
-//! its load by its steps. Encoders count the loads. The axes are read from the firmware's memory, where it has them.
+//! The load of a closed loop follows the axis' command with a lag of 0.5 ms while the axis is enabled; a step generator
+//! moves its load by its steps. Encoders count the loads. The axes are read from the firmware's memory, at its
+//! addresses for them.
 
 use chips::stepgen::generator_of;
 use kmotiondef::limits::{N_CHANNELS, TIMEBASE};
@@ -13,19 +14,19 @@ use vm::memory::GuestMemory;
 use super::external::ExternalHardware;
 use super::window::Window;
 
-/// Lag of a closed loop, seconds.
+/// The lag of a closed loop in seconds.
 const LAG: f64 = 0.000_5;
-/// Counts in one tick that an 8-bit register can tell from going backwards, with some room.
+/// The maximum number of counts in a tick for which an 8-bit register shows the right direction, with a margin.
 const REACH: f64 = 120.0;
-/// A rest that counts as none.
+/// A distance that is treated as 0.
 const NEGLIGIBLE: f64 = 1e-9;
 
-/// One load, in position units, and what its encoder has counted.
+/// One load, in position units, with the state of its encoder.
 #[derive(Clone, Copy, Debug, Default)]
 struct Load {
     load: f64,
     counts: f64,
-    /// Steps of the generator when they were last looked at.
+    /// The steps of the generator at the last update.
     steps: Option<f64>,
 }
 
@@ -54,7 +55,7 @@ impl Axis<'_> {
 }
 
 impl Loads {
-    /// Moves all loads by what the last tick output, and shows them to the encoders.
+    /// Moves all loads by the output of the last tick, and updates the encoders.
     pub(super) fn tick<A: ExternalHardware>(
         &mut self,
         chan: GuestAddr,
@@ -96,7 +97,7 @@ impl Load {
         }
     }
 
-    /// By the steps that the generator has made since the last tick.
+    /// Moves the load by the generator's steps since the last tick.
     fn step<A: ExternalHardware>(&mut self, axis: &Axis<'_>, window: &mut Window<A>, now: u64) {
         let (steps, _) = window.steps(generator_of(axis.int(Chan::OUTPUT_CHAN0)), now);
         let made = steps - self.steps.replace(steps).unwrap_or(steps);
@@ -106,7 +107,7 @@ impl Load {
         }
     }
 
-    /// To the command, by what an encoder can count.
+    /// Moves the load towards the command, limited by the number of counts that an encoder can follow.
     fn follow(&mut self, axis: &Axis<'_>) {
         let rest = axis.double(Chan::DEST) - axis.double(Chan::POSITION);
         let step = if rest.abs() < NEGLIGIBLE { 0.0 } else { rest * (1.0 - libm::exp(-TIMEBASE / LAG)) };

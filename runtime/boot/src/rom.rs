@@ -1,17 +1,17 @@
 //! Functions in the processor's mask ROM: TI's fast mathematics.
 //!
-//! A firmware from version 5 on calls them there. Their code is in no file, so the processor leaves for an address
-//! without code, and the board computes the function, in the time that the same function takes in firmware 4.34.
-//! The addresses are those of absolute symbols of the firmware file.
+//! Firmware from version 5 on calls them there. Their code is not in any file, so the processor branches to an address
+//! without code, and the board computes the function, in the time that the same function takes in firmware 4.34. The
+//! addresses are absolute symbols in the firmware file.
 
 use c67x::Reg;
 use c67x::convention::{ARGUMENTS, LINK, RESULT};
 use vm::arith::{canonical_f32, canonical_f64};
 use vm::dsp::State;
 
-/// The value of a register that a function may have changed.
+/// The value assigned to registers that a function may have changed.
 const CHANGED: u32 = 0xC4A7_6ED0;
-/// Fraction bits of the processor's estimate of a reciprocal.
+/// The number of fraction bits in the processor's estimate of a reciprocal.
 const ESTIMATED_BITS: u32 = 8;
 
 /// The formula of a function.
@@ -28,15 +28,15 @@ enum Formula {
 pub(super) struct RomFunction {
     /// Its name in C.
     pub(super) name: &'static str,
-    /// Processor cycles of a call, from its first packet to the return.
+    /// The duration of a call in processor cycles, from its first packet to the return.
     pub(super) cycles: u64,
     formula: Formula,
 }
 
 macro_rules! functions {
     ($($name:literal $cycles:literal $kind:ident $formula:expr;)*) => {
-        /// All of them. Cycles are those of the function in 4.34; `rsqrt` and `rsqrtf`, which it lacks, have those of
-        /// the roots.
+        /// All functions. The cycles are those of the functions in 4.34; `rsqrt` and `rsqrtf`, which it lacks, have
+        /// those of the square roots.
         const FUNCTIONS: &[RomFunction] = &[$(
             RomFunction { name: $name, cycles: $cycles, formula: Formula::$kind($formula) },
         )*];
@@ -74,27 +74,27 @@ functions! {
     "expf" 72 Single libm::expf;
 }
 
-/// Quotient by an estimate of 8 bits and three of Newton's steps, as 4.34 computes it: not rounded correctly, and not a
-/// number when the divisor is 0 (`c67-subset.md` 7).
+/// A quotient by an 8-bit estimate and three of Newton's steps, as 4.34 computes it: not rounded correctly, and NaN if
+/// the divisor is 0 (`c67-subset.md` 7).
 fn divd(a: f64, b: f64) -> f64 {
     const ESTIMATED: u64 = !0 << (f64::MANTISSA_DIGITS - 1 - ESTIMATED_BITS);
     let estimate = f64::from_bits((1.0 / b).to_bits() & ESTIMATED);
     a * (0..3).fold(estimate, |value, _| value * (2.0 - b * value))
 }
 
-/// As [`divd`], with two steps.
+/// The quotient as in [`divd`], with two steps.
 fn divf(a: f32, b: f32) -> f32 {
     const ESTIMATED: u32 = !0 << (f32::MANTISSA_DIGITS - 1 - ESTIMATED_BITS);
     let estimate = f32::from_bits((1.0 / b).to_bits() & ESTIMATED);
     a * (0..2).fold(estimate, |value, _| value * (2.0 - b * value))
 }
 
-/// 1/√x; of 0 the largest number.
+/// 1/√x; for 0, the largest number.
 fn rsqrt(x: f64) -> f64 {
     if x == 0.0 { f64::MAX } else { 1.0 / libm::sqrt(x) }
 }
 
-/// 1/√x; of 0 the largest number.
+/// 1/√x; for 0, the largest number.
 fn rsqrtf(x: f32) -> f32 {
     if x == 0.0 { f32::MAX } else { 1.0 / libm::sqrtf(x) }
 }
@@ -113,7 +113,8 @@ pub(super) fn named(name: &str) -> Option<&'static RomFunction> {
 }
 
 impl RomFunction {
-    /// Calls the function: the processor is before its first packet, and then after its return, with nothing in flight.
+    /// Calls the function: the processor is at its first packet, and afterwards at its return address, with no results
+    /// in flight.
     pub(super) fn call(&self, state: &mut State) {
         state.settle();
         let [first, second, ..] = ARGUMENTS;
@@ -178,7 +179,7 @@ mod tests {
     fn doubles_come_and_go_in_pairs_and_singles_in_one_register() {
         for (name, a, b, expect) in [
             ("_divd", 1.0, 4.0, 0.25),
-            // As recorded: the quotient that is next to the correct one.
+            // As recorded: the number next to the correct quotient.
             ("_divd", 3.0, 10.0, f64::from_bits(0x3FD3_3333_3333_3334)),
             ("pow", 2.0, 10.0, 1024.0),
             ("atan2", 1.0, -1.0, 3.0 * std::f64::consts::FRAC_PI_4),

@@ -1,48 +1,47 @@
-//! The lines that a firmware has sent to the PC. Source: host-protocol.md sections 1 and 4.
+//! The lines sent by a firmware to the PC. Source: host-protocol.md sections 1 and 4.
 
-/// Begins a line for the console.
+/// The byte before a console line.
 const ESCAPE: u8 = 0x1B;
-/// The answer to an abort: the one line that ends with a carriage return alone. With a line feed after it, it is a
+/// The answer to an abort: the only line that ends with just a carriage return. With a line feed after it, it is a
 /// console line with the text `C`.
 const ABORTED: &[u8] = b"\x1bC\r";
 
-/// The kind of a line that the firmware sent.
+/// The kind of a sent line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sent {
     /// Console text.
     Console,
-    /// An answer to a command.
+    /// A reply to a command.
     Reply,
-    /// A request to the PC about files; the bytes begin with its number.
+    /// A request to the PC about files; the bytes begin with its code.
     Request,
     /// The answer to an abort, without text.
     Aborted,
 }
 
-/// A line that the firmware sent, without its line end.
+/// A sent line, without its line end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SentLine {
     /// The cycle of its first byte, since power-up.
     pub cycle: u64,
-    /// The kind.
     pub kind: Sent,
     /// Its text.
     pub text: Vec<u8>,
 }
 
-/// The bytes of a firmware on their way to become lines.
+/// Splits the bytes sent by a firmware into lines.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SentLines {
-    /// The cycle of the first byte of the line that is not complete.
+    /// The cycle of the first byte of the incomplete line.
     first: u64,
     unfinished: Vec<u8>,
     lines: Vec<SentLine>,
-    /// Bytes that a PC elsewhere has not been sent; `None` if there is none.
+    /// Bytes for a PC outside this process; `None` if there is none.
     wire: Option<Vec<u8>>,
 }
 
 impl SentLines {
-    /// Keeps from now on the bytes themselves, too.
+    /// From now on also keeps the bytes themselves.
     pub(crate) fn tap(&mut self) {
         self.wire.get_or_insert_default();
     }
@@ -54,7 +53,7 @@ impl SentLines {
 
     /// Takes bytes with their cycles and returns the lines that are complete.
     pub(crate) fn take(&mut self, bytes: Vec<(u64, u8)>) -> Vec<SentLine> {
-        // Nothing follows what looks like the answer to an abort.
+        // No byte follows what looks like the answer to an abort.
         if bytes.is_empty() && self.unfinished == ABORTED {
             self.end(Sent::Aborted, 0);
         }
@@ -85,7 +84,7 @@ impl SentLines {
         self.unfinished.push(byte);
     }
 
-    /// The line is complete; `from` is where its text begins.
+    /// Completes the line; `from` is the beginning of its text.
     fn end(&mut self, kind: Sent, from: usize) {
         let line = std::mem::take(&mut self.unfinished);
         let text = line.strip_suffix(b"\r").unwrap_or(&line);
@@ -98,7 +97,7 @@ impl SentLines {
 mod tests {
     use super::*;
 
-    /// The lines of a stream that comes in pieces of one size, and then no more.
+    /// The lines of a stream that arrives in chunks of one size and then ends.
     fn lines(stream: &[u8], size: usize) -> Vec<(Sent, String)> {
         let mut sent = SentLines::default();
         sent.tap();

@@ -1,4 +1,4 @@
-//! The recorded start of the real firmware, where there is one (`CC67_FIRMWARE`), and devices without it.
+//! The recorded start of the real firmware, if a file is available (`CC67_FIRMWARE`), and devices without it.
 
 mod exchanges;
 mod recorded;

@@ -1,6 +1,6 @@
-//! The RTI: two counters and the comparator whose match interrupts the processor (`dsp-board.md` 4.1).
+//! The RTI: two counters, and the comparator whose match interrupts the processor (`dsp-board.md` 4.1).
 //!
-//! A counter is not counted: it follows from the cycle in which it was started.
+//! A counter is not incremented: its value follows from the cycle in which it was started.
 
 /// Offsets of the registers.
 const GLOBAL: u32 = 0x00;
@@ -11,20 +11,20 @@ const UPDATE: u32 = 0x54;
 const ENABLE: u32 = 0x80;
 const DISABLE: u32 = 0x84;
 const FLAGS: u32 = 0x88;
-/// Registers of a counter, from its first.
+/// Offsets of a counter's registers from its first.
 const COUNT: u32 = 0;
 const PRESCALER: u32 = 4;
 const PRESCALE: u32 = 8;
-/// Bytes of registers.
+/// The size of the registers in bytes.
 const SIZE: usize = 0x100;
 
-/// A counter: its value at a cycle, and whether it runs from there.
+/// A counter: its value at a cycle, and whether it runs from there on.
 #[derive(Clone, Copy, Debug, Default)]
 struct Counter {
     value: u32,
     since: u64,
     runs: bool,
-    /// Cycles of one count.
+    /// The number of cycles per count.
     period: u64,
 }
 
@@ -36,13 +36,13 @@ impl Counter {
         self.value.wrapping_add((cycle.saturating_sub(self.since) / self.period) as u32)
     }
 
-    /// The same count from here on; what the prescaler has counted of the next one is lost.
+    /// Keeps the count, but restarts from this cycle; the prescaler's partial count is lost.
     fn rebase(&mut self, cycle: u64) {
         self.value = self.at(cycle);
         self.since = cycle;
     }
 
-    /// The cycle in which it reaches `count`, from `now` on.
+    /// The first cycle at or after `now` in which it reaches `count`.
     fn reaches(&self, count: u32, now: u64) -> Option<u64> {
         if !self.runs {
             return None;
@@ -65,7 +65,7 @@ pub(super) struct Timer {
     flag: bool,
     /// The values of registers that only store.
     stored: [u32; SIZE / 4],
-    /// The cycle of the next match; never, while the counter is stopped.
+    /// The cycle of the next match; never reached while the counter is stopped.
     next: u64,
 }
 
@@ -91,7 +91,7 @@ impl Timer {
         self.next
     }
 
-    /// The match has come; whether it interrupts.
+    /// Handles a match; returns whether it interrupts.
     pub(super) fn take_match(&mut self) -> bool {
         let now = self.next;
         self.flag = true;

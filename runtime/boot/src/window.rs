@@ -7,30 +7,30 @@ use kmotiondef::{AccessSize, Bit, Cycles};
 use super::external::ExternalHardware;
 use super::link::Link;
 
-/// Registers of the link: status and data. The transmitter (0x008, bit 0) is never full.
+/// Registers of the link: status and data. The transmitter (0x008, bit 0) is always ready.
 const LINK_STATUS: u32 = 0x004;
 const LINK_DATA: u32 = 0x005;
 /// The SnapAmps' bus, which reads 0: no SnapAmp is connected.
 const SNAP_BUS: [u32; 3] = [0x003, 0x00C, 0x00D];
-/// Registers whose settings matter to what is connected later: encoder filter, step pulses, port.
+/// Registers whose settings affect hardware that is connected later: encoder filter, step pulses, port.
 const SETTINGS: [u32; 3] = [0x005, 0x006, 0x0A0];
-/// Pins in groups of eight.
+/// Registers for pins in groups of eight.
 const SET: u32 = 0x100;
 const KEEP: u32 = 0x110;
 const DIRECT: u32 = 0x120;
 const READ: u32 = 0x130;
 const GROUPS: u32 = 6;
 
-/// The window and the chips that it shows.
+/// The window, and the chips accessible through it.
 #[derive(Clone, Debug)]
 pub(super) struct Window<A = ()> {
     pub(super) chips: Chips,
     pub(super) link: Link,
-    /// Inputs of a KStep, if there is one: a bit is set while current flows.
+    /// The inputs of a KStep, if there is one: a bit is set while current flows.
     pub(super) kstep: Option<u16>,
-    /// The connected surroundings, if there are any.
+    /// The connected external hardware, if there is any.
     pub(super) external: Option<A>,
-    /// The number of accesses to anything but the status of the link.
+    /// The number of accesses other than to the status of the link.
     touches: u64,
 }
 
@@ -40,7 +40,7 @@ impl<A> Default for Window<A> {
     }
 }
 
-/// A cycle since power-up.
+/// The time of a cycle since power-up.
 pub(super) const fn instant(cycle: u64) -> Cycles {
     Cycles::new(cycle.cast_signed())
 }
@@ -54,20 +54,20 @@ const fn size(bytes: u32) -> AccessSize {
     if bytes == 1 { AccessSize::Byte } else { AccessSize::Half }
 }
 
-/// The register that an access reaches; nothing answers words, or other bytes than a register's.
+/// The register of an access; word accesses, and bytes outside a register's, have none.
 fn reached(offset: u32, bytes: u32) -> Option<u32> {
     register_at(offset % (REGISTER_COUNT * 4)).filter(|_| bytes <= 2)
 }
 
 impl<A: ExternalHardware> Window<A> {
-    /// As at power-up, except for the link and what is connected.
+    /// Resets it to the state at power-up, except for the link and connected hardware.
     pub(super) fn reset(&mut self) {
         let old = std::mem::take(self);
         let chips = Chips { encoders: old.chips.encoders, ..Chips::at_power_up() };
         *self = Self { chips, link: old.link, kstep: old.kstep, external: old.external, touches: 0 };
     }
 
-    /// Connects external hardware, which finds directions and latches as they are.
+    /// Connects external hardware, which is informed of the present directions and latches.
     pub(super) fn connect<B: ExternalHardware>(self, mut external: Option<B>, now: u64) -> Window<B> {
         let Self { chips, link, kstep, touches, .. } = self;
         if let Some(external) = &mut external {
@@ -85,14 +85,14 @@ impl<A: ExternalHardware> Window<A> {
         Window { chips, link, kstep, external, touches }
     }
 
-    /// Steps that a generator has made up to a cycle, and steps a second.
+    /// The number of steps made by a generator up to a cycle, and its rate in steps per second.
     pub(super) fn steps(&mut self, generator: usize, now: u64) -> (f64, f64) {
         let stepgens = &mut self.chips.stepgens;
         stepgens.count(generator, instant(now));
         (stepgens.position(generator), stepgens.rate(generator))
     }
 
-    /// Returns the number of accesses to anything but the status of the link.
+    /// Returns the number of accesses other than to the status of the link.
     pub(super) const fn touches(&self) -> u64 {
         self.touches
     }
@@ -124,7 +124,7 @@ impl<A: ExternalHardware> Window<A> {
         fpga.read(chips, register_address(register), size) as u16
     }
 
-    /// Pins 0 to 7; a KStep turns four of them among its inputs as latches 2 and 3 select.
+    /// Pins 0 to 7; a KStep switches four of them among its inputs, selected by latches 2 and 3.
     fn with_kstep(&self, pins: u16) -> u16 {
         let Some(inputs) = self.kstep else { return pins };
         let select = pins >> 2 & 3;
@@ -143,7 +143,7 @@ impl<A: ExternalHardware> Window<A> {
             external.write(register as usize, bytes == 1, value, now);
         }
         let (fpga, chips) = self.chips.registers(instant(now));
-        // The firmware knows its registers: a notice concerns programs.
+        // The firmware knows its registers: a notice is only for programs.
         let _ = fpga.write(chips, register_address(register), size(bytes), value.into());
     }
 }

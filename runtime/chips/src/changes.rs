@@ -1,7 +1,7 @@
-//! Changes of bit levels: a list of changes with their times, kept only while it is read.
+//! Changes of bit levels, recorded with their times only while something reads them.
 //!
-//! Bits that live in guest memory are changed by plain stores too; those are found by comparing words at the next tick,
-//! which the owner of the memory hands over.
+//! Bits in guest memory can also be changed by plain stores; such changes are found by comparing words at the next
+//! tick, which the owner of the memory passes in.
 
 use kmotiondef::{Bit, Cycles};
 
@@ -12,7 +12,7 @@ const VIRTUAL_EX: u16 = 1024;
 /// A bit whose level has changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BitChange {
-    /// The instant, to the cycle; a plain store to a virtual bit counts at the next tick.
+    /// The time, exact to the cycle; a plain store to a virtual bit counts at the next tick.
     pub at: Cycles,
     /// The bit.
     pub bit: Bit,
@@ -25,34 +25,34 @@ pub struct BitChange {
 pub struct Changes {
     is_on: bool,
     list: Vec<BitChange>,
-    /// The number of changes that the devices have seen.
+    /// The number of changes that the devices have handled.
     seen: usize,
-    /// The virtual bits as they were last reported, the extended ones after.
+    /// The virtual bits as last reported, followed by the extended ones.
     words: Vec<u32>,
 }
 
 impl Changes {
-    /// Returns whether they are read.
+    /// Returns whether changes are recorded.
     #[inline]
     #[must_use]
     pub fn is_on(&self) -> bool {
         self.is_on
     }
 
-    /// Keeps changes from now on; `words` are the virtual bits as they are, the extended ones after.
+    /// Records changes from now on; `words` are the present virtual bits, followed by the extended ones.
     pub fn switch_on(&mut self, words: Vec<u32>) {
         self.is_on = true;
         self.words = words;
     }
 
-    /// A bit has got a level.
+    /// Records the level of a bit.
     pub fn note(&mut self, bit: Bit, level: bool, at: Cycles) {
         if self.is_on {
             self.list.push(BitChange { at, bit, level });
         }
     }
 
-    /// Those of the first 64 bits that are in `mask` have got the levels in `levels`.
+    /// Records the levels in `levels` for those of the first 64 bits that are in `mask`.
     pub fn note_mask(&mut self, mask: u64, levels: u64, at: Cycles) {
         self.note_bits(0, mask, levels, at);
     }
@@ -70,7 +70,7 @@ impl Changes {
         }
     }
 
-    /// Finds the virtual bits that have changed; `word` gives their present words by index.
+    /// Finds the virtual bits that have changed; `word` returns their present words by index.
     pub fn sweep(&mut self, word: impl Fn(usize) -> u32, at: Cycles) {
         if !self.is_on {
             return;
@@ -85,7 +85,7 @@ impl Changes {
         }
     }
 
-    /// The next change that no device has seen yet.
+    /// The next change that the devices have not handled yet.
     pub fn next_unseen(&mut self) -> Option<BitChange> {
         let change = self.list.get(self.seen).copied();
         self.seen += usize::from(change.is_some());

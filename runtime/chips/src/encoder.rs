@@ -1,49 +1,48 @@
-//! Encoder inputs: eight-bit counters, the phases on their pins, and the errors that noise has caused.
+//! Encoder inputs: eight-bit counters, the phases on their pins, and errors caused by noise.
 //!
-//! The counters are turned by the loads; here is what programs can see of them beside `Position`. An encoder that no
-//! axis reads shows nothing, so its pins are free for other inputs. Sources: io.md sections 5 and 7, devices.md
-//! section 5.
+//! The loads turn the counters; this module has what programs can observe besides `Position`. An encoder that no axis
+//! reads drives no pins, so they are free for other inputs. Sources: io.md sections 5 and 7, devices.md section 5.
 
 use kmotiondef::Cycles;
 
 use crate::pins::Pins;
 
-/// Channels: eight of the board, four of each SnapAmp.
+/// The number of channels: eight of the board, four of each SnapAmp.
 pub const CHANNELS: usize = 16;
-/// Those of the board, and those of a group whose pins move together.
+/// The number of channels on the board, and in a group whose pins move together.
 const ON_BOARD: usize = 8;
 const GROUP: usize = 4;
 
-/// First pins of channels 0 and 4: where they are at power-up, and where a bit of the filter's register moves them.
+/// The first pins of channels 0 and 4: at power-up, and after a bit of the filter register has moved them.
 const PINS: [[u16; 2]; 2] = [[0, 16], [36, 26]];
-/// The bits that do: JP4 in place of JP7, JP6 in place of JP5.
+/// The bits that move them: from JP7 to JP4, from JP5 to JP6.
 const MOVED: [u16; 2] = [1 << 9, 1 << 8];
 
-/// The error of encoder 0 in the register of errors.
+/// The bit for encoder 0 in the error register.
 const FIRST_ERROR: u32 = 4;
-/// The error in a SnapAmp's word.
+/// The error bit in a SnapAmp's word.
 const SNAP_ERROR: u16 = 1 << 15;
 
 /// All encoder inputs.
 #[derive(Clone, Debug)]
 pub struct Encoders {
     counts: [i8; CHANNELS],
-    /// First pin of each channel of the board.
+    /// The first pin of each channel on the board.
     pins: [u16; ON_BOARD],
-    /// Channels that an axis reads, channel 0 lowest.
+    /// The channels that an axis reads, channel 0 lowest.
     used: u16,
     errors: u16,
-    /// The register that filters them and selects their pins.
+    /// The register for the filter and the selection of pins.
     filter: u16,
 }
 
-/// The levels A and B of a count, A the lower bit: one edge for each step.
+/// The levels A and B for a count, A in the lower bit: one edge per step.
 fn phases(count: i8) -> u64 {
     let step = (count & 3) as u64;
     step ^ step >> 1
 }
 
-/// The first pin of each channel of the board.
+/// The first pin of each channel on the board.
 fn pins(filter: u16) -> [u16; ON_BOARD] {
     std::array::from_fn(|channel| {
         let group = channel / GROUP;
@@ -59,7 +58,7 @@ impl Default for Encoders {
 }
 
 impl Encoders {
-    /// A counter has a new value.
+    /// Sets the value of a counter.
     #[inline]
     pub fn count(&mut self, channel: usize, count: i8, pins: &mut Pins, now: Cycles) {
         if let Some(held) = self.counts.get_mut(channel) {
@@ -69,7 +68,7 @@ impl Encoders {
         }
     }
 
-    /// A counter has a new value, which its pins do not show.
+    /// Sets the value of a counter without changing its pins.
     pub fn set(&mut self, channel: usize, count: u8) {
         if let Some(held) = self.counts.get_mut(channel) {
             *held = count.cast_signed();
@@ -82,7 +81,7 @@ impl Encoders {
         self.counts.get(channel).copied().unwrap_or_default().cast_unsigned()
     }
 
-    /// Those of SnapAmps have no pins.
+    /// Sets the levels of a channel's pins; channels of SnapAmps have none.
     #[inline]
     fn show(&self, channel: usize, levels: u64, pins: &mut Pins, now: Cycles) {
         if let Some(&first) = self.pins.get(channel) {
@@ -90,7 +89,7 @@ impl Encoders {
         }
     }
 
-    /// Sets the filter; its upper bits move the inputs to other pins. The filter itself has nothing to do here.
+    /// Sets the filter register; its upper bits move the inputs to other pins. The filter itself is not modelled.
     pub fn set_filter(&mut self, filter: u16, pins: &mut Pins, now: Cycles) {
         if filter == self.filter {
             return;
@@ -106,35 +105,35 @@ impl Encoders {
         }
     }
 
-    /// Both phases of an input have changed at once.
+    /// Records an error: both phases of an input changed at once.
     pub fn fail(&mut self, channel: usize) {
         if channel < CHANNELS {
             self.errors |= 1 << channel;
         }
     }
 
-    /// The register of errors.
+    /// The error register.
     pub fn errors(&self) -> u8 {
         (self.errors << FIRST_ERROR) as u8
     }
 
-    /// Clears the errors in it.
+    /// Clears the error register.
     pub fn clear_errors(&mut self) {
         self.errors &= !0xf;
     }
 
-    /// First channel of a SnapAmp.
+    /// The first channel of a SnapAmp.
     fn of_snapamp(board: usize) -> usize {
         ON_BOARD + GROUP * board
     }
 
-    /// The word of one of a SnapAmp's encoders: count and error.
+    /// The word for an encoder of a SnapAmp: count and error.
     pub fn snap_word(&self, board: usize, encoder: usize) -> u16 {
         let channel = Self::of_snapamp(board) + encoder;
         u16::from(self.counter(channel)) | if self.errors >> channel & 1 != 0 { SNAP_ERROR } else { 0 }
     }
 
-    /// Levels of a SnapAmp's encoder inputs, A of the first one lowest.
+    /// The levels of a SnapAmp's encoder inputs, A of the first one lowest.
     pub fn snap_levels(&self, board: usize) -> u8 {
         let first = Self::of_snapamp(board);
         let levels = (first..first + GROUP)

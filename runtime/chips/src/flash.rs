@@ -1,28 +1,29 @@
 //! The flash chip: two megabytes, and the commands that change them.
 //!
-//! The bytes are in guest memory, whose owner carries out what the chip makes of a write. Source: dsp-board.md section 7.9.
+//! The bytes are in guest memory, whose owner applies the changes that result from a write to the chip. Source:
+//! dsp-board.md section 7.9.
 
 use kmotiondef::Cycles;
 use kmotiondef::map::FLASH;
 
-/// Bytes that are erased at once.
+/// The number of bytes erased at once.
 pub const BLOCK: u32 = 0x1_0000;
-/// The users' half, from this offset on; the first half is the system's.
+/// The offset of the users' half; the first half belongs to the system.
 pub const USER: u32 = 0x10_0000;
 /// The value of erased bytes.
 pub const ERASED: u8 = 0xFF;
-/// Offsets of the addresses that commands are written to.
+/// The offsets to which commands are written.
 pub const COMMANDS: [u32; 2] = [FIRST, SECOND];
 
 const FIRST: u32 = 0xAAAA;
 const SECOND: u32 = 0x5554;
-/// The chip's identity, and where it is read.
+/// The chip's identifier, and the offset at which it is read.
 const IDENTITY: u16 = 0x234B;
 const IDENTITY_AT: u32 = 2;
-/// Time that the chip takes to erase a block and to program a half word: 18 ms and 7 µs.
+/// The times for erasing a block and programming a half word: 18 ms and 7 µs.
 const ERASING: Cycles = Cycles::new(3_600_000);
 const PROGRAMMING: Cycles = Cycles::new(1_400);
-/// Bits of a busy chip: one turns from read to read, one is inverted.
+/// Status bits of a busy chip: one toggles with each read, one is inverted.
 const TOGGLE: u16 = 0x40;
 const INVERTED: u16 = 0x80;
 
@@ -30,11 +31,11 @@ const INVERTED: u16 = 0x80;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Change {
-    /// Bits of the half word at an offset are cleared where `mask` has zeros.
+    /// The half word at an offset is programmed: bits are cleared where `mask` has zeros.
     Program {
         /// The half word.
         offset: u32,
-        /// Bits that stay.
+        /// The bits that are kept.
         mask: u16,
     },
     /// The block at an offset is erased.
@@ -44,7 +45,7 @@ pub enum Change {
     },
 }
 
-/// The progress of a command.
+/// The progress of a command sequence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Heard {
     /// Nothing was written.
@@ -54,7 +55,7 @@ enum Heard {
     First,
     /// AA 55.
     Second,
-    /// AA 55 80: something should be erased.
+    /// AA 55 80: an erase command follows.
     Erase,
     /// AA 55 80 AA.
     EraseFirst,
@@ -74,7 +75,7 @@ pub struct Chip {
 }
 
 impl Chip {
-    /// The half word at an offset as the chip shows it, where `stored` is in its cells.
+    /// The half word that the chip returns at an offset, where `stored` is the content of its cells.
     pub fn read(&mut self, offset: u32, stored: u16, now: Cycles) -> u16 {
         if now < self.busy_until {
             self.toggle ^= TOGGLE;
@@ -83,7 +84,7 @@ impl Chip {
         if self.identifies && offset == IDENTITY_AT { IDENTITY } else { stored }
     }
 
-    /// Takes a half word that is written to an offset; the change of the cells that it completes, if any.
+    /// Handles a half word written to an offset; returns the resulting change of the cells, if there is one.
     pub fn write(&mut self, offset: u32, value: u16, now: Cycles) -> Option<Change> {
         let (step, change) = self.step(offset, value);
         self.step = step;
@@ -127,7 +128,7 @@ impl Chip {
 mod tests {
     use super::*;
 
-    /// Writes a command to the chip; the change that its last write makes.
+    /// Writes a command to the chip; returns the change that results from its last write.
     fn command(chip: &mut Chip, writes: &[(u16, u32)], now: Cycles) -> Option<Change> {
         writes.iter().fold(None, |_, (value, offset)| chip.write(*offset, *value, now))
     }

@@ -1,7 +1,7 @@
 //! Registers of the FPGA.
 //!
-//! Register r of eight bits is the byte at base + 4·r + 2; of 16 bits, the half word there. The registers below act;
-//! the rest is storage that reads back what was written.
+//! An eight-bit register r is the byte at base + 4·r + 2; a 16-bit register is the half word there. The registers below
+//! have effects; all others only store the written value.
 
 mod pwm;
 
@@ -15,25 +15,25 @@ use crate::pins::{PINS, Pins};
 use crate::stepgen::StepGenerators;
 use crate::uart::Uart;
 
-/// Registers.
+/// The number of registers.
 pub const REGISTER_COUNT: u32 = FPGA.size / STRIDE;
-/// Bytes between two registers.
+/// The distance of two registers in bytes.
 const STRIDE: u32 = 4;
-/// The offset of a register in its four bytes.
+/// The offset of a register within its four bytes.
 const LANE: u32 = 2;
-/// Groups of eight pins.
+/// The number of groups of eight pins.
 const GROUPS: u32 = PINS as u32 / 8;
 
-/// A range of registers: what reading and writing one of them does.
+/// A range of registers, with the effects of reading and writing one of them.
 struct Registers {
     first: u32,
     last: u32,
     reads: fn(&mut Fpga, &mut RegisterChips<'_>, RegisterAccess) -> u32,
-    /// A notice comes back where writing is in vain.
+    /// Returns a notice if the write is futile.
     writes: fn(&mut Fpga, &mut RegisterChips<'_>, RegisterAccess, u32) -> Option<Notice>,
 }
 
-/// An access of a register.
+/// An access to a register.
 #[derive(Clone, Copy, Debug)]
 struct RegisterAccess {
     address: GuestAddr,
@@ -54,7 +54,7 @@ macro_rules! registers {
     };
 }
 
-// First number, how many, what reads, what writes; `stored` and `store` are memory.
+// First number, count, read function, write function; `stored` and `store` only use the stored value.
 registers! {
     /// Filter and pins of the encoder inputs.
     ENCODER_FILTER, 1 => stored, set_encoder_filter;
@@ -105,31 +105,31 @@ registers! {
 /// Values at power-up: step pulses of 32 clocks, encoder filter 7.
 const START: [(u32, u8); 2] = [(0x06, 32), (ENCODER_FILTER, 7)];
 
-/// Registers that are read by what acts on them.
+/// Registers whose stored values are used elsewhere.
 const ENCODER_FILTER: u32 = 0x05;
 const STEP_RATE: u32 = 0x3c;
 
-/// The register that connects the port of the Kanalog and the UART to their pins, and its bits.
+/// The register that connects the port for the Kanalog and the UART to their pins, and its bits.
 const PORT_SELECT: u32 = 0xa0;
 const PORT_BYTE: usize = (PORT_SELECT * STRIDE + LANE) as usize;
 const KANALOG_ON: u8 = 1;
 const UART_ON: u8 = 2;
-/// PWM 0 on a pin of its own, for the analog output of KStep.
+/// The bit that connects PWM 0 to a separate pin, for the analog output of a KStep.
 const PWM_MOVED: u8 = 4;
 
-/// PWM generators, from this register on, and their prescaler.
+/// The first register of the PWM generators, their number, and their prescaler.
 const PWM: u32 = 0xd0;
 const PWMS: u32 = 8;
 const PRESCALE: u32 = 0x2f;
 
-/// The first outputs and the first inputs of Kanalog.
+/// The first output bits and the first input bits of Kanalog.
 const KANALOG_OUTPUTS: i32 = 144;
 const KANALOG_INPUTS: i32 = 128;
 
-/// Pins of JP7 that the interface of Kanalog occupies.
+/// The number of pins of JP7 occupied by the interface to Kanalog.
 const JP7_PINS: u16 = 16;
 
-/// The chips that the registers act on, and the instant of an access.
+/// The chips on which the registers act, and the time of an access.
 #[derive(Debug)]
 pub struct RegisterChips<'a> {
     /// Pins and option outputs.
@@ -142,22 +142,22 @@ pub struct RegisterChips<'a> {
     pub encoders: &'a mut Encoders,
     /// Step generators.
     pub stepgens: &'a mut StepGenerators,
-    /// The instant.
+    /// The time of the access.
     pub now: Cycles,
 }
 
-/// Something in vain that a program has done with a register.
+/// A futile action of a program on a register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Notice {
-    /// A pin of the Kanalog's interface becomes an output while a Kanalog is connected.
+    /// A pin of the Kanalog's interface is made an output while a Kanalog is connected.
     KanalogPin(Bit),
-    /// The serial port sends without being connected to its pins.
+    /// The serial port sends while it is not connected to its pins.
     UartUnconnected,
     /// The register with this number is unknown and only stores.
     UnknownRegister(u32),
 }
 
-/// The registers' memory.
+/// The registers' stored values.
 #[derive(Clone, Debug)]
 pub struct Fpga {
     bytes: Box<[u8]>,
@@ -182,34 +182,34 @@ pub const fn register_address(number: u32) -> GuestAddr {
     FPGA.base.offset(number * STRIDE + LANE)
 }
 
-/// The register whose byte or half word is at an offset from the first; nothing is in the other bytes.
+/// The register whose byte or half word is at an offset from the first register; `None` for the other bytes.
 #[must_use]
 pub const fn register_at(offset: u32) -> Option<u32> {
     if offset % STRIDE == LANE { Some(offset / STRIDE) } else { None }
 }
 
-/// This many bits from a number on.
+/// A number of bits, beginning with a given one.
 fn bits(first: i32, count: i32) -> impl Iterator<Item = Bit> {
     (first..first + count).filter_map(Bit::new)
 }
 
-/// Outputs of Kanalog that an access of a register reaches: 8 opto outputs and 8 drivers, or the 8 general ones.
+/// The outputs of Kanalog that a register access affects: 8 opto outputs and 8 drivers, or the 8 general ones.
 fn reached_outputs(index: u32, size: AccessSize) -> impl Iterator<Item = Bit> {
     let count = if index == 0 && size != AccessSize::Byte { 16 } else { 8 };
     bits(KANALOG_OUTPUTS + 16 * index as i32, count)
 }
 
-/// Levels as a word, the first one lowest.
+/// Levels as a word, the first level in the lowest bit.
 fn word(levels: impl Iterator<Item = bool>) -> u32 {
     (0..).zip(levels).fold(0, |word, (index, level)| word | u32::from(level) << index)
 }
 
-/// As much of a word as an access takes.
+/// The part of a word that fits the access size.
 fn cut(word: u32, size: AccessSize) -> u32 {
     if size == AccessSize::Byte { word & 0xff } else { word }
 }
 
-/// The register at an address, and what it does with its number within its range.
+/// The register at an address, with its range and its index there.
 fn register(address: GuestAddr) -> (u32, Option<(&'static Registers, u32)>) {
     let offset = address.get().wrapping_sub(FPGA.base.get());
     let number = offset / STRIDE;
@@ -217,7 +217,7 @@ fn register(address: GuestAddr) -> (u32, Option<(&'static Registers, u32)>) {
     (number, range.filter(|_| offset % STRIDE == LANE).map(|range| (range, number - range.first)))
 }
 
-/// A notice if a pin is of JP7, where a Kanalog is connected.
+/// A notice if a pin belongs to JP7, for use while a Kanalog is connected.
 #[must_use]
 pub fn kanalog_pin(bit: Bit) -> Option<Notice> {
     (bit.get() < JP7_PINS).then_some(Notice::KanalogPin(bit))
@@ -239,7 +239,7 @@ impl Fpga {
         }
     }
 
-    /// Writes a register; a notice comes back when that is in vain.
+    /// Writes a register; returns a notice if that is futile.
     pub fn write(
         &mut self,
         mut chips: RegisterChips<'_>,
@@ -448,12 +448,12 @@ impl Fpga {
         self.bytes[PORT_BYTE] |= UART_ON;
     }
 
-    /// Returns whether the port exchanges with Kanalog.
+    /// Returns whether the port exchanges data with Kanalog.
     pub fn serves_kanalog(&self) -> bool {
         self.bytes[PORT_BYTE] & KANALOG_ON != 0
     }
 
-    /// A register as it was last written.
+    /// The value last written to a register.
     #[must_use]
     pub fn cell(&self, register: u32) -> u16 {
         self.at(register_address(register), AccessSize::Half) as u16
@@ -489,7 +489,7 @@ impl Fpga {
 mod tests {
     use super::*;
 
-    /// Registers and what they act on.
+    /// Registers and the chips on which they act.
     #[derive(Default)]
     pub(super) struct Bench {
         pub(super) fpga: Fpga,
@@ -576,7 +576,7 @@ mod tests {
     #[test]
     fn a_step_generator_has_a_four_byte_rate_and_two_byte_position() {
         let mut bench = Bench::default();
-        // Generator 1, 0x800 units of 1.987 steps a second.
+        // Generator 1, 0x800 units of 1.987 steps per second.
         for (register, value) in [(0x3c, 0), (0x3d, 8), (0x3e, 0), (0x3f, 0x89)] {
             bench.write(register, AccessSize::Byte, value);
         }

@@ -1,7 +1,7 @@
 //! Kanalog: the conversions of its eight analog inputs.
 //!
-//! Its outputs are bits of [`Pins`](crate::pins::Pins) and `DAC_Buffer`, which nothing else has to copy. Source:
-//! devices.md section 2.
+//! Its outputs are bits of [`Pins`](crate::pins::Pins) and `DAC_Buffer`, so they need no state here. Source: devices.md
+//! section 2.
 
 /// Analog inputs.
 pub const ADC_CHANNELS: usize = 8;
@@ -11,9 +11,9 @@ pub const ZERO: i32 = 2048;
 /// The voltages on the inputs.
 #[derive(Clone, Debug)]
 pub struct Kanalog {
-    /// Set once something is connected; nothing has to be done before.
+    /// Set once something is connected; before that there is nothing to update.
     is_driven: bool,
-    /// The inputs that something drives, or will drive.
+    /// The inputs that are driven or will be driven.
     connected: [bool; ADC_CHANNELS],
     /// Conversions, 0 to 4095.
     levels: [i32; ADC_CHANNELS],
@@ -26,13 +26,13 @@ impl Default for Kanalog {
 }
 
 impl Kanalog {
-    /// No Kanalog: its registers read 0, by which a firmware finds that there is none.
+    /// No Kanalog: its registers read as 0, which tells the firmware that there is none.
     #[must_use]
     pub fn absent() -> Self {
         Self { levels: [0; ADC_CHANNELS], ..Self::default() }
     }
 
-    /// Puts a voltage on an input, as its conversion.
+    /// Sets the voltage at an input, given as its conversion.
     pub fn drive(&mut self, channel: usize, conversion: i32) {
         self.is_driven = true;
         self.connect(channel);
@@ -41,20 +41,20 @@ impl Kanalog {
         }
     }
 
-    /// Something will drive an input.
+    /// Notes that an input will be driven.
     pub fn connect(&mut self, channel: usize) {
         if let Some(connected) = self.connected.get_mut(channel) {
             *connected = true;
         }
     }
 
-    /// Returns whether something drives an input, or will.
+    /// Returns whether an input is driven or will be driven.
     #[must_use]
     pub fn is_connected(&self, channel: usize) -> bool {
         self.connected.get(channel).copied().unwrap_or_default()
     }
 
-    /// Returns whether anything drives one.
+    /// Returns whether any input is driven.
     #[inline]
     #[must_use]
     pub const fn is_driven(&self) -> bool {
@@ -74,7 +74,7 @@ impl Kanalog {
     }
 }
 
-/// The conversion of an analog input, 0 to 4095, at a value in counts.
+/// The conversion, 0 to 4095, for a value in counts.
 #[must_use]
 pub fn conversion(counts: f64) -> i32 {
     // A cast saturates, and NaN becomes 0.

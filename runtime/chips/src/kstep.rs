@@ -1,20 +1,21 @@
-//! The analog output of a KStep: PWM 0 through an opto coupler and a low pass of 10 ms.
+//! The analog output of a KStep: PWM 0 through an optocoupler and a low-pass filter of 10 ms.
 //!
-//! The coupler makes short pulses longer: the first counts of the duty give more than their share. The curve is that of
-//! the manual's correction table: its ratios for the counts 0 to 7 and for 240, straight lines between them.
+//! The coupler lengthens short pulses: the first counts of the duty cycle have a disproportionate effect. The curve
+//! follows the manual's correction table: its ratios for the counts 0 to 7 and for 240, with linear interpolation.
 
 use kmotiondef::Cycles;
 
-/// Ratio of the output to its supply for the first counts of duty.
+/// The ratio of the output to its supply for the first counts of the duty cycle.
 const FIRST: [f64; 8] = [0.001, 0.031, 0.044, 0.054, 0.062, 0.069, 0.074, 0.079];
-/// A point far up, where the curve is straight.
+/// A point on the linear part of the curve.
 const FAR: (f64, f64) = (240.0, 0.970);
-/// Counts of a full duty.
+/// The counts of a full duty cycle.
 const FULL: f64 = 255.0;
-/// Time constant of the low pass in seconds.
+/// The time constant of the low-pass filter in seconds.
 const CONSTANT: f64 = 0.01;
 
-/// The output, as part of its supply: exact between changes of the duty, so that nothing runs in between.
+/// The output as a fraction of its supply: computed exactly between changes of the duty cycle, so it needs no updates
+/// in between.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct AnalogOutput {
     level: f64,
@@ -22,7 +23,7 @@ pub struct AnalogOutput {
     at: Cycles,
 }
 
-/// Returns the output of the coupler at a duty in counts.
+/// Returns the output of the coupler for a duty cycle in counts.
 fn coupled(counts: f64) -> f64 {
     let last = FIRST.len() - 1;
     let below = libm::floor(counts).max(0.0) as usize;
@@ -35,20 +36,20 @@ fn coupled(counts: f64) -> f64 {
 }
 
 impl AnalogOutput {
-    /// The duty on the pin changes; `None` while there is no signal.
+    /// Sets the duty cycle at the pin; `None` while there is no signal.
     pub fn drive(&mut self, duty: Option<f64>, now: Cycles) {
         self.level = self.level(now);
         self.at = now;
         self.target = duty.map_or(0.0, |duty| coupled(duty * FULL));
     }
 
-    /// Returns the level at an instant, from 0 to 1.
+    /// Returns the level at a given time, from 0 to 1.
     pub fn level(&self, now: Cycles) -> f64 {
         let seconds = (now - self.at).get() as f64 / Cycles::PER_SECOND.get() as f64;
         self.target + (self.level - self.target) * libm::exp(-seconds / CONSTANT)
     }
 
-    /// Returns whether it stays where it is.
+    /// Returns whether the level is constant.
     pub fn is_settled(&self, now: Cycles) -> bool {
         self.level(now) == self.target
     }

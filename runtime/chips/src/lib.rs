@@ -1,8 +1,8 @@
-//! The chips of a KFLOP and of its Kanalog as a processor sees them, each once.
+//! The chips of a KFLOP and of its Kanalog as a processor sees them.
 //!
-//! The modelled board and the board around a real firmware are made of the same chips: one by its firmware functions, one
-//! by its instructions. Nothing here knows a processor, guest memory, an axis' servo or a firmware; whoever owns them
-//! hands over the instant of each access.
+//! The modelled board and the board around a real firmware use the same chips: one through its firmware functions, the
+//! other through its instructions. Nothing here depends on a processor, guest memory, an axis' servo or a firmware; the
+//! owner passes in the time of each access.
 //!
 //! | module | contents |
 //! |---|---|
@@ -16,8 +16,8 @@
 //!
 //! Invariants:
 //! - This crate depends on `kmotiondef` alone.
-//! - The state of a chip is a value that can be copied; an access is a function of the state and of its instant.
-//! - No access panics: registers, lines and offsets that do not exist read 0 and take writes.
+//! - The state of a chip is a value that can be copied; an access is a function of the state and of its time.
+//! - No access panics: registers, lines and offsets that do not exist read as 0 and ignore writes.
 
 #![forbid(unsafe_code)]
 
@@ -40,12 +40,12 @@ use crate::pins::Pins;
 use crate::stepgen::StepGenerators;
 use crate::uart::Uart;
 
-/// The chips that are reached by registers of the FPGA.
+/// The chips that are accessed through registers of the FPGA.
 ///
-/// By default they are as a firmware leaves them when it has started.
+/// By default they are in the state in which a firmware leaves them after its start.
 #[derive(Clone, Debug, Default)]
 pub struct Chips {
-    /// Registers that only store, and what is derived from them.
+    /// Registers that only store, and derived state.
     pub fpga: Fpga,
     /// Levels, latches and directions.
     pub pins: Pins,
@@ -60,7 +60,7 @@ pub struct Chips {
 }
 
 impl Chips {
-    /// The chips before a firmware has started, which drives all of them by their registers; without a Kanalog.
+    /// The chips before a firmware has started and accesses them through their registers; without a Kanalog.
     #[must_use]
     pub fn at_power_up() -> Self {
         Self {
@@ -73,7 +73,7 @@ impl Chips {
         }
     }
 
-    /// The registers, and the chips that they act on at an instant.
+    /// The registers, and the chips on which they act at a given time.
     pub fn registers(&mut self, now: Cycles) -> (&mut Fpga, RegisterChips<'_>) {
         let Self { fpga, pins, uart, kanalog, encoders, stepgens } = self;
         (fpga, RegisterChips { pins, uart, kanalog, encoders, stepgens, now })

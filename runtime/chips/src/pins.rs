@@ -1,20 +1,20 @@
 //! Levels of the digital inputs and outputs, on board and on option boards.
 //!
-//! A pin of the board has an output latch and a direction; what drives it from outside is a separate level, so that
-//! a latch written while the pin is an input appears when it becomes an output.
+//! A pin of the board has an output latch and a direction; its level from outside is stored separately, so that a latch
+//! written while the pin is an input appears when it becomes an output.
 //!
-//! Some pins carry signals that are far faster than a program looks: pulse widths, steps, the phases of encoders. What
-//! a program reads of them is one level a tick; their edges are made only for pins that somebody watches.
+//! Some pins carry signals that are much faster than a program's polling: pulse widths, steps, the phases of encoders.
+//! A program reads one level of them per tick; their edges are generated only for watched pins.
 
 use kmotiondef::{Bit, Cycles};
 
 use crate::changes::Changes;
 
-/// Pins of the FPGA, the two diodes included.
+/// The number of pins of the FPGA, including the two LEDs.
 pub const PINS: u16 = 48;
-/// The two diodes, outputs that are lit at power-up.
+/// The two LEDs, outputs that are lit at power-up.
 const LEDS: u64 = 0b11 << 46;
-/// Words of a set of all bits.
+/// The number of words in a set of all bits.
 const WORDS: usize = (Bit::MAX as usize + 1) / 64;
 
 /// A set of bit numbers.
@@ -38,20 +38,20 @@ impl BitSet {
 pub struct Pins {
     latch: u64,
     direction: u64,
-    /// Pins that a generator drives in place of their latch, and how.
+    /// Pins that a generator drives instead of their latches, and their levels.
     generated: u64,
     generated_level: u64,
     /// Outputs of option boards, as last written.
     written: BitSet,
-    /// Levels from outside.
+    /// The levels of inputs, set from outside.
     inputs: BitSet,
-    /// Inputs that something drives.
+    /// Inputs that are driven.
     driven: BitSet,
-    /// Inputs whose level is described for as long as nothing drives them.
+    /// Inputs with a defined level while nothing drives them.
     idle: BitSet,
     /// Inputs that carry the phases of an encoder.
     phases: u64,
-    /// Pins whose fast signals are reported edge by edge, and the levels last reported of them.
+    /// Pins whose fast signals are reported edge by edge, and their last reported levels.
     watched: u64,
     shown: u64,
     /// The changes of levels, recorded on request.
@@ -78,7 +78,7 @@ impl Default for Pins {
 }
 
 impl Pins {
-    /// The pins as they are before a firmware has started: all of them inputs, all latches low.
+    /// The pins before a firmware has started: all are inputs, all latches are low.
     #[must_use]
     pub fn at_power_up() -> Self {
         Self { latch: 0, direction: 0, ..Self::default() }
@@ -101,7 +101,7 @@ impl Pins {
         self.change(now, |pins| pins.latch = with(pins.latch, mask, level));
     }
 
-    /// A generator drives a pin of the board with this level, or leaves it to its latch.
+    /// Makes a generator drive a pin of the board with this level, or returns the pin to its latch.
     pub fn generate(&mut self, bit: Bit, level: Option<bool>, now: Cycles) {
         let mask = 1 << bit.get();
         self.change(now, |pins| {
@@ -110,7 +110,7 @@ impl Pins {
         });
     }
 
-    /// Changes what the pins of the board depend on, and notes the levels that differ.
+    /// Changes the inputs to the levels of the board's pins, and records the levels that differ.
     fn change(&mut self, now: Cycles, edit: impl FnOnce(&mut Self)) {
         let (before, fast) = (self.levels(), self.generated);
         edit(self);
@@ -132,12 +132,12 @@ impl Pins {
         }
     }
 
-    /// Returns whether the fast signals of any pin are reported.
+    /// Returns whether the fast signals of any pin are reported edge by edge.
     pub fn watches_any(&self) -> bool {
         self.watched != 0
     }
 
-    /// Returns whether those of a pin are.
+    /// Returns whether the fast signals of a pin are reported edge by edge.
     pub fn is_watched(&self, bit: Bit) -> bool {
         bit.get() < PINS && self.watched >> bit.get() & 1 != 0
     }
@@ -147,7 +147,7 @@ impl Pins {
         bit.get() < PINS && self.generated >> bit.get() & 1 != 0
     }
 
-    /// A watched pin has got a level at an instant.
+    /// Reports the level of a watched pin at a given time.
     pub fn show(&mut self, bit: Bit, level: bool, at: Cycles) {
         let mask = 1 << bit.get();
         if self.watched & mask != 0 && (self.shown & mask != 0) != level {
@@ -156,7 +156,8 @@ impl Pins {
         }
     }
 
-    /// An encoder gives its two inputs from `first` on the levels of two bits, unless something else is there.
+    /// Makes an encoder drive its two inputs from `first` on with the levels in two bits, unless something else drives
+    /// them.
     #[inline]
     pub fn show_phases(&mut self, first: u16, levels: u64, at: Cycles) {
         let mask = 0b11 << first & !self.driven.0[0];
@@ -201,12 +202,12 @@ impl Pins {
         }
     }
 
-    /// Something will drive an input: its level is not an accident.
+    /// Notes that an input will be driven: reading it is not an error.
     pub fn declare(&mut self, bit: Bit) {
         self.driven.set(bit, true);
     }
 
-    /// An input reads 1 as long as nothing drives it.
+    /// Makes an input read 1 while nothing drives it.
     pub fn idle_high(&mut self, bit: Bit) {
         self.idle.set(bit, true);
         if !self.is_driven(bit) {
@@ -214,12 +215,12 @@ impl Pins {
         }
     }
 
-    /// Returns whether something outside the board drives a bit or is going to.
+    /// Returns whether something outside the board drives a bit or will drive it.
     pub fn is_declared(&self, bit: Bit) -> bool {
         self.driven.contains(bit)
     }
 
-    /// Returns whether the level of an input is described for as long as nothing drives it.
+    /// Returns whether an input has a defined level while nothing drives it.
     pub fn is_described(&self, bit: Bit) -> bool {
         self.idle.contains(bit)
     }
@@ -242,7 +243,7 @@ impl Pins {
         }
     }
 
-    /// Eight directions as a register has them.
+    /// Eight directions in the format of a register.
     pub fn direction_group(&self, group: u32) -> u8 {
         (self.direction >> (8 * group)) as u8
     }
@@ -269,7 +270,7 @@ impl Pins {
         (self.latch >> (8 * group)) as u8
     }
 
-    /// Eight levels as a register has them.
+    /// Eight levels in the format of a register.
     pub fn level_group(&self, group: u32) -> u8 {
         (self.levels() >> (8 * group)) as u8
     }
@@ -293,7 +294,7 @@ mod tests {
         pins.set_latch(bit, true, at);
         pins.drive(bit, true, at);
         pins.set_output(bit, true, at);
-        // Signals of generators are not told unless somebody watches.
+        // Signals of generators are not reported unless the pin is watched.
         pins.generate(bit, Some(false), at);
         pins.generate(bit, None, at);
         pins.set_latch(bit, false, at);

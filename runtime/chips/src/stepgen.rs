@@ -1,65 +1,65 @@
-//! The eight step generators: how many steps each has made, and the pins it claims.
+//! The eight step generators: the number of steps that each has made, and the pins that it claims.
 //!
 //! An enabled axis in a step mode owns its generator; a program that writes the rate register drives one itself.
-//! Positions are kept per tick; the pulses of a tick are made only for pins that are watched, spread evenly over it. Beside
-//! a real firmware, which writes rates at any cycle, a position is the rate integrated over the cycles since it was written.
-//! Sources: io.md sections 5 and 6, axes-and-motion.md section 11, dsp-board.md section 7.3.
+//! Positions are updated once per tick; the pulses of a tick are generated only for watched pins, distributed evenly
+//! over it. With a real firmware, which writes rates at any cycle, a position is the rate integrated over the cycles
+//! since it was written. Sources: io.md sections 5 and 6, axes-and-motion.md section 11, dsp-board.md section 7.3.
 
 use kmotiondef::{AxisId, Bit, Cycles};
 
 use crate::pins::Pins;
 
-/// Generators.
+/// The number of generators.
 pub const GENERATORS: usize = 8;
 
-/// Step pins of the generators, and where a bit of the pulse register moves the first four; direction is the next pin.
+/// The step pins of the generators, and the pins to which a bit of the pulse register moves the first four; the
+/// direction pin is the next one.
 const STEP_PINS: [i32; GENERATORS] = [8, 10, 12, 14, 36, 38, 40, 42];
 const MOVED_PINS: [i32; 4] = [22, 24, 32, 34];
 
-/// Bits of the pulse register: length, other pins, other polarity.
+/// Bits of the pulse register: length, alternative pins, inverted polarity.
 const LENGTH: u8 = 0x3f;
 const MOVED: u8 = 0x40;
 const INVERTED: u8 = 0x80;
-/// Length at power-up, in clocks.
+/// The pulse length at power-up, in clocks.
 const START: u8 = 32;
 
-/// Bits of an axis' output channel: the generator, and two phases in place of step and direction.
+/// Bits of an axis' output channel: the generator, and quadrature instead of step and direction.
 const GENERATOR_BITS: i32 = 7;
 const QUADRATURE: i32 = 16;
 
-/// Clocks in a second, processor cycles of one, and the unit of the rate register.
+/// The clocks per second, the processor cycles per clock, and the unit of the rate register.
 const CLOCK: f64 = 50e6 / 3.0;
 const CLOCK_CYCLES: i64 = 12;
 const RATE_UNIT: f64 = CLOCK / (1 << 23) as f64;
-/// The unit of a rate, in steps a cycle.
+/// The unit of a rate, in steps per cycle.
 const RATE_UNIT_PER_CYCLE: f64 = 1.0 / CLOCK_CYCLES as f64 / (1 << 23) as f64;
-/// Fastest stepping, whatever the pulses' length.
+/// The maximum step rate, independent of the pulse length.
 const FASTEST: f64 = 2.5e6;
-/// The limit with the pulses of power-up, in steps a second.
+/// The maximum step rate with the pulses of power-up, in steps per second.
 const LIMIT: f64 = CLOCK / 2.0 / START as f64;
 
-/// Fields of the rate register: rate with a sign, an unused bit, generator, enable.
+/// Fields of the rate register: signed rate, an unused bit, generator, enable.
 const RATE_BITS: u32 = 23;
 const NUMBER_SHIFT: u32 = 24;
 const ENABLE: u32 = 1 << 31;
 
-/// Parts of a step in the position register.
+/// The number of fractions of a step in the position register.
 const FRACTIONS: f64 = 128.0;
 
-/// One generator.
 #[derive(Clone, Copy, Debug, Default)]
 struct Generator {
-    /// Steps made since power-up.
+    /// The number of steps made since power-up.
     position: f64,
-    /// Steps a second that a program has set.
+    /// The rate set by a program, in steps per second.
     rate: f64,
-    /// The rate as it was written, without a limit.
+    /// The rate as written, without the limit.
     units: i32,
-    /// The instant up to which `position` counts the rate, where it is counted exactly.
+    /// The time up to which `position` includes the rate, if steps are counted exactly.
     since: Cycles,
     /// The upper byte of the position when the lower one was last read.
     upper: u8,
-    /// The axis that owns it, and whether its pins are two phases.
+    /// The axis that owns it, and whether its pins carry quadrature.
     owner: Option<(AxisId, bool)>,
     goes_back: bool,
 }
@@ -68,31 +68,31 @@ struct Generator {
 #[derive(Clone, Debug)]
 pub struct StepGenerators {
     generators: [Generator; GENERATORS],
-    /// The output channel by which each axis owns one.
+    /// The output channel through which each axis owns a generator.
     channels: [Option<i32>; AxisId::MAX as usize + 1],
     settings: u8,
-    /// Steps a second at most.
+    /// The maximum step rate in steps per second.
     fastest: f64,
-    /// Set while a program drives any.
+    /// Set while a program drives a generator.
     is_driven: bool,
     counting: Counting,
 }
 
-/// The way in which the steps of a rate are counted.
+/// The method of counting the steps of a rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Counting {
-    /// Once a tick, by the owner of the board.
+    /// Once per tick, by the owner of the board.
     ByTick,
-    /// To the cycle of each access.
+    /// Exactly, to the cycle of each access.
     Exact,
 }
 
-/// Steps that the pulses of a generator allow.
+/// The step rate that the pulses of a generator allow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepLimit {
-    /// Steps a second.
+    /// The maximum step rate in steps per second.
     pub fastest: f64,
-    /// Length of a pulse in microseconds.
+    /// The length of a pulse in microseconds.
     pub length: f64,
 }
 
@@ -109,24 +109,24 @@ impl Default for StepGenerators {
     }
 }
 
-/// Steps a second at most: a pulse and a pause of its length.
+/// The maximum step rate in steps per second: a pulse is followed by a pause of its length.
 fn fastest(settings: u8) -> f64 {
     FASTEST.min(CLOCK / 2.0 / f64::from((settings & LENGTH).max(1)))
 }
 
-/// The generator that an output channel names.
+/// The generator of an output channel.
 pub fn generator_of(channel: i32) -> usize {
     (channel & GENERATOR_BITS) as usize
 }
 
 impl StepGenerators {
-    /// Generators that a firmware drives by their registers: steps are counted to the cycle, without a limit.
+    /// Generators that a firmware drives through their registers: steps are counted to the cycle, without a limit.
     #[must_use]
     pub fn exact() -> Self {
         Self { counting: Counting::Exact, ..Self::default() }
     }
 
-    /// An axis steps on an output channel, whose pins become outputs.
+    /// Assigns the generator of an output channel to an axis; its pins become outputs.
     #[inline]
     pub fn claim(&mut self, axis: AxisId, channel: i32, pins: &mut Pins, now: Cycles) {
         if self.channels[axis.index()] != Some(channel) {
@@ -139,7 +139,7 @@ impl StepGenerators {
         }
     }
 
-    /// An axis steps no longer.
+    /// Releases an axis' generator.
     #[inline]
     pub fn release(&mut self, axis: AxisId, pins: &mut Pins, now: Cycles) {
         if self.channels[axis.index()].is_some() {
@@ -156,13 +156,13 @@ impl StepGenerators {
         }
     }
 
-    /// Returns whether a generator that is in use makes its pulses on a pin.
+    /// Returns whether a generator in use has its pulses on a pin.
     pub fn makes(&self, bit: Bit) -> bool {
         let in_use = |generator: &usize| self.generators[*generator].owner.is_some();
         (0..self.generators.len()).filter(in_use).any(|generator| self.pins(generator).contains(&Some(bit)))
     }
 
-    /// Returns whether pulses have the length and polarity of power-up.
+    /// Returns whether pulses have the length and polarity that they have at power-up.
     pub fn has_start_pulses(&self) -> bool {
         self.settings & (LENGTH | INVERTED) == START
     }
@@ -174,7 +174,7 @@ impl StepGenerators {
         [Bit::new(step), Bit::new(step + 1)]
     }
 
-    /// Levels of both pins while no pulse is under way.
+    /// The levels of both pins between pulses.
     fn levels(&self, generator: usize) -> [bool; 2] {
         let Generator { position, owner, goes_back, .. } = self.generators[generator];
         let is_inverted = self.settings & INVERTED != 0;
@@ -185,7 +185,7 @@ impl StepGenerators {
         [!is_inverted, goes_back == is_inverted]
     }
 
-    /// Gives the pins the levels they have between pulses, or leaves them to their latches.
+    /// Sets the pins to their levels between pulses, or returns them to their latches.
     fn drive(&self, generator: usize, pins: &mut Pins, now: Cycles) {
         let Generator { owner, rate, .. } = self.generators[generator];
         let is_on = owner.is_some() || rate != 0.0;
@@ -198,14 +198,14 @@ impl StepGenerators {
         }
     }
 
-    /// An axis has stepped in the tick that ends now.
+    /// Adds an axis' steps of the tick that ends now.
     pub fn step(&mut self, axis: AxisId, steps: f64, pins: &mut Pins, now: Cycles) {
         if let Some(channel) = self.channels[axis.index()] {
             self.advance(generator_of(channel), steps, pins, now);
         }
     }
 
-    /// The generators of a board that counts for itself have made this many steps when a tick ends.
+    /// Takes the total steps of all generators at the end of a tick, from a board that counts them itself.
     pub fn follow(&mut self, made: [f64; GENERATORS], pins: &mut Pins, now: Cycles) {
         for (generator, made) in made.into_iter().enumerate() {
             let steps = made - self.generators[generator].position;
@@ -216,7 +216,7 @@ impl StepGenerators {
         }
     }
 
-    /// Adds the steps of a tick, and makes their pulses for who watches them.
+    /// Adds the steps of a tick, and generates their pulses for watched pins.
     fn advance(&mut self, generator: usize, steps: f64, pins: &mut Pins, now: Cycles) {
         let from = self.generators[generator].position;
         self.generators[generator].position += steps;
@@ -238,7 +238,7 @@ impl StepGenerators {
         }
     }
 
-    /// The edges of a tick's steps: one where the position passes the middle between two of them.
+    /// The edges for the steps of a tick: one at each time when the position passes the middle between two steps.
     fn pulse(
         &self,
         generator: usize,
@@ -272,7 +272,7 @@ impl StepGenerators {
         }
     }
 
-    /// Takes the settings of all generators: length and polarity of the pulses, and which pins they are on.
+    /// Applies the settings of all generators: length and polarity of the pulses, and the selection of pins.
     pub fn set_up(&mut self, settings: u8, pins: &mut Pins, now: Cycles) {
         if settings == self.settings {
             return;
@@ -292,7 +292,8 @@ impl StepGenerators {
         }
     }
 
-    /// A program sets the rate of a generator. One that an axis owns gets that axis' rate again in the next tick.
+    /// Sets the rate of a generator for a program. In the next tick, a generator owned by an axis returns to that axis'
+    /// rate.
     pub fn command(&mut self, word: u32, pins: &mut Pins, now: Cycles) {
         let generator = (word >> NUMBER_SHIFT & 7) as usize;
         if self.generators[generator].owner.is_some() {
@@ -313,26 +314,26 @@ impl StepGenerators {
         self.drive(generator, pins, now);
     }
 
-    /// Steps that an axis can make in a tick.
+    /// The maximum number of steps of an axis in a tick.
     #[inline]
     pub fn steps_per_tick(&self, axis: AxisId) -> f64 {
         let per_second = if self.channels[axis.index()].is_some() { self.fastest } else { LIMIT };
         per_second * (Cycles::PER_TICK.get() as f64 / Cycles::PER_SECOND.get() as f64)
     }
 
-    /// The limit of the generator that an axis owns.
+    /// The limit of an axis' generator.
     pub fn limit(&self, axis: AxisId) -> Option<StepLimit> {
         let length = f64::from((self.settings & LENGTH).max(1)) / CLOCK * 1e6;
         let has_generator = self.channels[axis.index()].is_some();
         has_generator.then_some(StepLimit { fastest: self.fastest, length })
     }
 
-    /// Returns whether a program drives any.
+    /// Returns whether a program drives a generator.
     pub const fn is_driven(&self) -> bool {
         self.is_driven
     }
 
-    /// Moves those that programs drive on by a tick; the steps of each.
+    /// Advances the generators driven by programs by a tick; returns the steps of each.
     pub fn run(&mut self, seconds: f64, pins: &mut Pins, now: Cycles) -> [f64; GENERATORS] {
         let mut moved = [0.0; GENERATORS];
         for (generator, moved) in moved.iter_mut().enumerate() {
@@ -345,17 +346,17 @@ impl StepGenerators {
         moved
     }
 
-    /// Steps made by a generator.
+    /// The number of steps made by a generator.
     pub fn position(&self, generator: usize) -> f64 {
         self.generators.get(generator).map_or(0.0, |generator| generator.position)
     }
 
-    /// Steps a second of a generator by its rate register.
+    /// The rate of a generator from its rate register, in steps per second.
     pub fn rate(&self, generator: usize) -> f64 {
         self.generators.get(generator).map_or(0.0, |generator| f64::from(generator.units) * RATE_UNIT)
     }
 
-    /// Counts the steps of a generator up to an instant, where they are counted exactly.
+    /// Counts the steps of a generator up to a given time, if they are counted exactly.
     pub fn count(&mut self, generator: usize, now: Cycles) {
         if self.counting == Counting::Exact
             && let Some(Generator { position, units, since, .. }) = self.generators.get_mut(generator)
@@ -365,8 +366,8 @@ impl StepGenerators {
         }
     }
 
-    /// The position as its register has it: nine bits of steps, seven of a fraction. Its upper byte is kept for
-    /// [`upper`](Self::upper).
+    /// The position in the format of its register: nine bits of steps, seven bits of fraction. Its upper byte is stored
+    /// for [`upper`](Self::upper).
     pub fn read(&mut self, generator: usize, now: Cycles) -> u16 {
         self.count(generator, now);
         let position = libm::floor(self.position(generator) * FRACTIONS) as i64 as u16;
@@ -376,7 +377,7 @@ impl StepGenerators {
         position
     }
 
-    /// The upper byte of the position when it was last [read](Self::read): both bytes are of one instant.
+    /// The upper byte of the position at the last [read](Self::read), so that both bytes belong to the same time.
     pub fn upper(&self, generator: usize) -> u8 {
         self.generators.get(generator).map_or(0, |generator| generator.upper)
     }
@@ -395,7 +396,7 @@ mod tests {
         Cycles::new(tick * Cycles::PER_TICK.get())
     }
 
-    /// Generators whose pins 8 and 9 are watched, with axis 0 on a channel.
+    /// Generators with pins 8 and 9 watched, and axis 0 on a channel.
     fn bench(channel: i32) -> (StepGenerators, Pins) {
         let (mut generators, mut pins) = (StepGenerators::default(), Pins::default());
         pins.changes.switch_on(Vec::new());
@@ -405,7 +406,7 @@ mod tests {
         (generators, pins)
     }
 
-    /// Changes since the last call: pin, level, nanoseconds since an instant.
+    /// The changes since the last call: pin, level, nanoseconds since a given time.
     fn told(pins: &mut Pins, since: Cycles) -> Vec<(u16, u8, i64)> {
         let changes = pins.changes.take();
         changes
@@ -454,7 +455,7 @@ mod tests {
     #[test]
     fn a_rate_register_runs_a_generator_that_no_axis_owns() {
         let (mut generators, mut pins) = (StepGenerators::default(), Pins::default());
-        // 1000 steps a second on generator 2, and as many back.
+        // 1000 steps per second on generator 2, and as many back.
         let rate = libm::round(1000.0 / RATE_UNIT) as u32;
         generators.command(ENABLE | 2 << 24 | rate, &mut pins, tick(1));
         assert!(generators.is_driven() && pins.is_output(bit(12)));
@@ -462,7 +463,7 @@ mod tests {
             generators.run(90e-6, &mut pins, tick(at));
         }
         assert!((generators.position(2) - 90.0).abs() < 0.1, "{}", generators.position(2));
-        // Bit 23 is not of the rate, and the firmware leaves it clear.
+        // Bit 23 is not part of the rate, and the firmware leaves it clear.
         let back = rate.wrapping_neg() & 0x7f_ffff;
         generators.command(ENABLE | 2 << 24 | back, &mut pins, tick(1002));
         for at in 1003..3003 {

@@ -1,21 +1,21 @@
-//! The UART: 8 data bits, no parity, 1 stop bit, a shift register and one buffered character each way.
+//! The UART: 8 data bits, no parity, 1 stop bit, a shift register and one buffered character in each direction.
 //!
-//! Nothing runs while it works: each access brings the state up to its own instant. Characters that are sent are kept
-//! with the instant of their last bit while somebody listens; those that come are put on the line from outside. Source:
+//! Nothing runs in the background: each access updates the state to its own time. Sent characters are recorded with the
+//! time of their last bit while there is a listener; received characters are put on the line from outside. Source:
 //! devices.md section 1.
 
 use std::collections::VecDeque;
 
 use kmotiondef::Cycles;
 
-/// Processor cycles of a bit for each step of the divisor: 16 clocks of 16.67 MHz.
+/// The processor cycles of a bit per unit of the divisor: 16 clocks of 16.67 MHz.
 const BIT_CYCLES: i64 = 16 * 12;
-/// Bits of a character on the line.
+/// The number of bits per character on the line.
 const FRAME_BITS: i64 = 10;
-/// Characters that wait for the program: the buffered one and the one in the shift register.
+/// The number of characters that can wait for the program: one in the buffer and one in the shift register.
 const RECEIVED_LIMIT: usize = 2;
 
-/// Status: a received character waits.
+/// Status: a received character is available.
 const DATA_READY: u8 = 0x01;
 /// Status: the buffered character is still to be sent.
 const TRANSMIT_FULL: u8 = 0x02;
@@ -24,40 +24,40 @@ const TRANSMIT_FULL: u8 = 0x02;
 #[derive(Clone, Debug, Default)]
 pub struct Uart {
     divisor: u8,
-    /// Set once the program has looked for characters; those that come before wait for it.
+    /// Set once the program has polled for characters; those that arrive earlier wait for that.
     is_attended: bool,
-    /// When the transmitter's shift register is through.
+    /// The time at which the transmitter's shift register is empty.
     sent: Cycles,
-    /// The character that waits after it.
+    /// The character in the buffer, which is sent after that.
     waiting: Option<u8>,
     /// Set while there is a listener, and the characters sent since the last call.
     is_heard: bool,
     out: VecDeque<(Cycles, u8)>,
-    /// Characters on the line, the first one complete at `arrival`.
+    /// The characters on the line; the first one is complete at `arrival`.
     line: VecDeque<u8>,
     arrival: Cycles,
     received: VecDeque<u8>,
 }
 
 impl Uart {
-    /// Sets the divisor; a character already under way keeps its speed.
+    /// Sets the divisor; a character in transmission keeps its speed.
     pub fn set_divisor(&mut self, divisor: u8) {
         self.divisor = divisor;
     }
 
-    /// The program looks for characters: the line begins to move.
+    /// Notes that the program polls for characters: from now on they arrive.
     fn attend(&mut self, now: Cycles) {
         if !std::mem::replace(&mut self.is_attended, true) {
             self.arrival = now + self.frame();
         }
     }
 
-    /// The time of a character.
+    /// The duration of a character.
     fn frame(&self) -> Cycles {
         Cycles::new(FRAME_BITS * BIT_CYCLES * (i64::from(self.divisor) + 1))
     }
 
-    /// Puts characters on the line, the first one from `now` on.
+    /// Puts characters on the line, the first one beginning at `now`.
     pub fn arrive(&mut self, bytes: &[u8], now: Cycles) {
         self.advance(now);
         if self.line.is_empty() {
@@ -66,17 +66,17 @@ impl Uart {
         self.line.extend(bytes);
     }
 
-    /// Characters on the line.
+    /// The number of characters on the line.
     pub fn backlog(&self) -> usize {
         self.line.len()
     }
 
-    /// Returns whether characters are still to come or to be read.
+    /// Returns whether characters are still to arrive or to be read.
     pub fn is_receiving(&self) -> bool {
         !self.line.is_empty() || !self.received.is_empty()
     }
 
-    /// Brings the state up to `now`.
+    /// Updates the state to `now`.
     fn advance(&mut self, now: Cycles) {
         if self.sent <= now
             && let Some(byte) = self.waiting.take()
@@ -114,7 +114,7 @@ impl Uart {
         self.received.pop_front()
     }
 
-    /// Sends a character; one that still waits is lost.
+    /// Sends a character; overwrites one that still waits in the buffer.
     pub fn send(&mut self, byte: u8, now: Cycles) {
         self.advance(now);
         if self.sent <= now {
@@ -125,19 +125,19 @@ impl Uart {
         }
     }
 
-    /// Keeps a character whose last bit is sent at `sent`.
+    /// Records a character whose last bit is sent at `sent`.
     fn note_sent(&mut self, byte: u8) {
         if self.is_heard {
             self.out.push_back((self.sent, byte));
         }
     }
 
-    /// Keeps the characters that are sent from now on.
+    /// Records the characters that are sent from now on.
     pub fn listen(&mut self) {
         self.is_heard = true;
     }
 
-    /// The next character that is through by `now`.
+    /// The next character that is completely sent by `now`.
     pub fn take_sent(&mut self, now: Cycles) -> Option<(Cycles, u8)> {
         if self.is_heard {
             self.advance(now);
@@ -160,7 +160,7 @@ impl Uart {
 mod tests {
     use super::*;
 
-    /// The divisor of 38400 baud, and the cycles of a character.
+    /// The divisor for 38400 baud, and the cycles of a character.
     const DIVISOR: u8 = 26;
     const FRAME: i64 = 51_840;
 

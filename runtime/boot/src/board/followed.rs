@@ -1,6 +1,6 @@
-//! The processor followed: to stops, from one call of a program to the next, packet by packet.
+//! Following the processor: to stops, from one call of a program to the next, packet by packet.
 //!
-//! What is executed, and when, is the same as in a run that nobody follows.
+//! Following changes neither the execution nor its timing.
 
 use c67x::Control;
 use c67x::convention::{ARGUMENTS, LINK, STACK};
@@ -12,59 +12,59 @@ use super::{BootedBoard, GIE, Halted, ProcessorState};
 use crate::bus::Hardware;
 use crate::external::ExternalHardware;
 
-/// Bytes from a call to its return address at most: six packets.
+/// The maximum distance from a call to its return address: six packets.
 const LONGEST_CALL: u32 = 6 * 32;
 
 /// The end of a run to a stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Ran {
-    /// To the requested cycle.
+    /// At the requested cycle.
     Through,
-    /// To one of the stops, which is executed next.
+    /// At a stop, whose packet is executed next.
     ToStop,
 }
 
-/// A packet of a program that was executed.
+/// An executed packet of a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ProgramPacket {
     /// The cycle in which it began, since power-up.
     pub cycle: u64,
-    /// Cycles that it took.
+    /// Its duration in cycles.
     pub cycles: i64,
     /// Its address.
     pub at: u32,
     /// The thread; `None` for the call-back.
     pub thread: Option<ThreadId>,
-    /// Its instructions, bars between them.
+    /// Its instructions, with bars between them.
     pub text: String,
 }
 
-/// The position of the processor, and the packets that led there.
+/// The position of the processor, and the preceding packets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reached {
     /// The next packet.
     pub pc: u32,
-    /// The user thread that has the processor, also while it is interrupted.
+    /// The user thread that has the processor, even while it is interrupted.
     pub thread: Option<ThreadId>,
-    /// Interrupts are switched off, as they are in an interrupt and so in the call-back.
+    /// True if interrupts are disabled, as they are during an interrupt, and therefore in the call-back.
     pub is_masked: bool,
-    /// The packet that has called, if the last branch but jumps of the linker was a call.
+    /// The packet of the call, if the last branch, apart from jumps inserted by the linker, was a call.
     pub call: Option<u32>,
-    /// B3: the return address, where a function begins.
+    /// B3, which contains the return address at the beginning of a function.
     pub back: u32,
     /// The stack pointer.
     pub stack: u32,
 }
 
-/// A program calls the firmware: the processor is before the first packet of the function.
+/// A call of the firmware by a program: the processor is before the first packet of the function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProgramCall {
     /// The function.
     pub function: u32,
     /// The thread; `None` for the call-back.
     pub thread: Option<ThreadId>,
-    /// The packet that calls.
+    /// The packet of the call.
     pub at: u32,
     /// Its first argument, if it is an integer.
     pub argument: i32,
@@ -76,10 +76,10 @@ impl<A: ExternalHardware> BootedBoard<A> {
         self.core.set_stops(addresses);
     }
 
-    /// Runs to the first packet from this cycle on, or to a stop; a run from a stop executes it.
+    /// Runs to the first packet at or after this cycle, or to a stop; a run that begins at a stop executes its packet.
     ///
     /// # Errors
-    /// The firmware ran away; it stays so.
+    /// The firmware crashed; the board no longer runs.
     pub fn run_to_stop(&mut self, cycle: u64) -> Result<Ran, Halted> {
         while self.cycle() < cycle {
             if self.run_events(cycle)? == Ran::ToStop {
@@ -89,7 +89,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
         Ok(Ran::Through)
     }
 
-    /// Returns the position of the processor, and the packets that led there.
+    /// Returns the position of the processor, and the preceding packets.
     #[must_use]
     pub fn reached(&self) -> Reached {
         let state = &self.core.state;
@@ -101,15 +101,15 @@ impl<A: ExternalHardware> BootedBoard<A> {
             pc,
             thread: thread.and_then(user_thread),
             is_masked,
-            // Where the linker put a jump in between, the branch before led to it.
+            // If the linker inserted a jump, the previous branch was the call.
             call: [before, last].into_iter().find(is_call),
             back,
             stack: state.reg(STACK),
         }
     }
 
-    /// The call that a program makes just now; `None` if the processor is not before the first packet of a function that a
-    /// program has called.
+    /// The firmware call that a program is just making; `None` if the processor is not before the first packet of a
+    /// function called by a program.
     #[must_use]
     pub fn program_call(&self) -> Option<ProgramCall> {
         let Reached { pc, thread, is_masked, call, .. } = self.reached();
@@ -118,18 +118,18 @@ impl<A: ExternalHardware> BootedBoard<A> {
         Some(ProgramCall { function: pc, thread: thread.filter(|_| !is_masked), at, argument })
     }
 
-    /// Keeps the packets of programs from now on, or does not any more; those of the firmware itself are never kept.
+    /// Sets whether packets of programs are recorded; those of the firmware itself are never recorded.
     pub fn keep_packets(&mut self, whether: bool) {
         self.packets = whether.then(Vec::new);
     }
 
-    /// The packets that programs have executed since the last call, if they are kept.
+    /// The packets executed by programs since the last call, if they are recorded.
     pub fn take_packets(&mut self) -> Vec<ProgramPacket> {
         self.packets.as_mut().map(std::mem::take).unwrap_or_default()
     }
 
-    /// Executes packets up to the first from this cycle on or to a stop; where the timer waits to interrupt, no further than
-    /// to where that is possible.
+    /// Executes packets up to the first one at or after this cycle or up to a stop; if the timer's interrupt is
+    /// pending, only up to the position where it can be taken.
     pub(super) fn execute_to(&mut self, until: u64) -> Halt {
         let timer_waits = self.core.state.has_timer_flag();
         let Self { core, hardware, packets, file, .. } = self;
@@ -162,12 +162,12 @@ impl<A: ExternalHardware> BootedBoard<A> {
     }
 }
 
-/// A user thread by the number that the firmware has for it.
+/// The user thread for the firmware's number of it.
 fn user_thread(number: u32) -> Option<ThreadId> {
     i32::try_from(number).ok().and_then(ThreadId::new)
 }
 
-/// Returns whether an address is in the part of memory that programs are linked for.
+/// Returns whether an address is in the part of memory for which programs are linked.
 fn is_of_program(at: u32) -> bool {
     (PROGRAM_BASE..PROGRAM_LIMIT).contains(&at)
 }

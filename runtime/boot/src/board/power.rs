@@ -1,7 +1,7 @@
-//! Power-up: from the file as a loader puts it into memory, or from what the flash holds; and the reset.
+//! Power-up, from a file whose sections a loader has copied to memory, or from the contents of the flash; and reset.
 //!
-//! The first block of a flash is of the factory, and `Flash` leaves it as it is: by it a flash is known to be of this
-//! firmware.
+//! The first block of a flash is written at the factory, and `Flash` leaves it unchanged: it identifies the firmware of
+//! a flash.
 
 use std::sync::Arc;
 
@@ -17,12 +17,12 @@ use crate::file::FirmwareFile;
 use crate::loads::Loads;
 use crate::sent::SentLines;
 
-/// The time limit for a start: many times that of any version.
+/// The time limit for a start: many times the duration for any version.
 const LONGEST_START: u64 = 3 * SECOND;
-/// The address at which a board with flash starts, and its stack there.
+/// The address at which a board starts from flash, and its stack pointer there.
 const FLASH_START: u32 = 0x1000_1000;
 const FLASH_STACK: u32 = 0x1000_0440;
-/// Flash content and where it is copied to when the board starts: offset, address, bytes.
+/// The parts of the flash that are copied to memory when the board starts: offset, address, bytes.
 const PIECES: [(u32, u32, u32); 4] = [
     (0, 0x1000_0000, 0x1000),
     (0x1000, 0x8000_0000, 0xF000),
@@ -31,22 +31,22 @@ const PIECES: [(u32, u32, u32); 4] = [
 ];
 /// The users' half of the flash, erased.
 const USER: u32 = 0x10_0000;
-/// Bytes of the flash that only the factory writes.
+/// The size of the part that only the factory writes.
 const FACTORY: u32 = 0x1_0000;
 
-/// The reason for which a board does not start from its flash.
+/// The reason why a board does not start from its flash.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FlashError {
-    /// The flash is of another firmware, or of the modelled board.
+    /// The flash belongs to another firmware, or to the modelled board.
     #[error("it belongs to the modelled board or to another firmware file")]
     OtherFirmware,
-    /// The firmware does not start with what the flash holds.
+    /// The firmware crashes when it starts from the contents of the flash.
     #[error(transparent)]
     Halted(#[from] Halted),
 }
 
 impl BootedBoard {
-    /// A board at power-up: the sections are in memory, the processor is before the entry.
+    /// Creates a board at power-up: the sections are in memory, and the processor is at the entry point.
     #[must_use]
     pub fn new(file: Arc<FirmwareFile>) -> Self {
         let mut hardware = Hardware::default();
@@ -59,20 +59,20 @@ impl BootedBoard {
         Self { file, core, hardware, sent, waits_since: 0, loads, skips: true, packets: None, crash: None }
     }
 
-    /// The board that a firmware file makes, when it first looks for what the PC sends.
+    /// Creates a board from a firmware file, and runs it until it first polls the link to the PC.
     ///
     /// # Errors
-    /// The firmware never comes to that.
+    /// The firmware never polls the link.
     pub fn booted(file: Arc<FirmwareFile>) -> Result<Self, Halted> {
         let mut board = Self::new(file);
         board.boot()?;
         Ok(board)
     }
 
-    /// Starts from the flash content of such a board, 2 MiB.
+    /// Starts from the flash contents of such a board, 2 MiB.
     ///
     /// # Errors
-    /// The flash is not of this firmware, or the firmware never comes to look for what the PC sends.
+    /// The flash does not belong to this firmware, or the firmware never polls the link to the PC.
     pub fn booted_from(file: Arc<FirmwareFile>, flash: &[u8]) -> Result<Self, FlashError> {
         let mut board = Self::new(file);
         let factory = FACTORY as usize;
@@ -89,10 +89,10 @@ impl BootedBoard {
 }
 
 impl<A: ExternalHardware> BootedBoard<A> {
-    /// Runs until the firmware first looks for what the PC sends.
+    /// Runs until the firmware first polls the link to the PC.
     ///
     /// # Errors
-    /// It never comes to that.
+    /// It never polls the link.
     pub fn boot(&mut self) -> Result<(), Halted> {
         while self.hardware.first_look.is_none() {
             if self.cycle() >= LONGEST_START {
@@ -110,7 +110,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
         self.memory().read_bytes(FLASH.base, FLASH.size).unwrap_or_default()
     }
 
-    /// A reset: everything but flash and link as at power-up.
+    /// Resets the board: everything except flash and link is as at power-up.
     pub(super) fn restart(&mut self) {
         let Hardware { memory, window, forgives, register_waits, .. } = std::mem::take(&mut self.hardware);
         self.hardware = Hardware { memory, window, forgives, register_waits, ..Hardware::default() };
@@ -131,14 +131,14 @@ impl<A: ExternalHardware> BootedBoard<A> {
     }
 }
 
-/// Copies bytes inside of guest memory; both places are mapped.
+/// Copies bytes within guest memory; both ranges are mapped.
 fn copy(memory: &mut GuestMemory, from: u32, to: u32, size: u32) {
     let bytes = memory.read_bytes(GuestAddr::new(from), size).map(<[u8]>::to_vec).unwrap_or_default();
     let stored = memory.poke_bytes(GuestAddr::new(to), &bytes);
     debug_assert!(stored.is_ok(), "{to:X} is mapped");
 }
 
-/// A board as it leaves the factory: the system's half as loaded, the users' half erased.
+/// Sets the flash as it leaves the factory: the system's half as loaded, the users' half erased.
 fn fill_flash(memory: &mut GuestMemory) {
     for (offset, address, size) in PIECES {
         copy(memory, address, FLASH.base.get() + offset, size);

@@ -1,19 +1,19 @@
-//! Recorded answers of the firmware, compared with those of the firmware file: 246 replies of one session, and every
-//! script command from a fresh start (2,684 exchanges). Without the file, the test says so.
+//! Recorded replies of the firmware, compared with those of the firmware file: 246 replies in one session, and every
+//! script command after a fresh start (2,684 exchanges). Without the file, the test reports that it is skipped.
 
 use serde_json::Value;
 
 use super::recorded::{all_rows, booted};
 use crate::BootedBoard;
 
-/// Cycles of a tick; longest time without a byte within an answer; longest answer.
+/// The cycles of a tick; the longest pause within a reply; the longest reply.
 const TICK: u64 = 18_000;
 const QUIET: u64 = 8;
 const LONGEST: u64 = 200_000;
-/// The address of the gather buffer and the length that commands show: the recorded boards had it cleared.
+/// The size of the part of the gather buffer that commands show: the recorded boards had it cleared.
 const GATHER: usize = 1 << 20;
 
-/// Answers that depend on when a line comes, or on what is in memory: the time it takes on the link was not recorded.
+/// Replies that depend on the time of a line, or on the contents of memory: the time on the link was not recorded.
 const BY_TIME: &[(&str, &str)] = &[
     ("GETSTATUS", "GETSTATUS"),
     // It shows a word after its array.
@@ -23,12 +23,12 @@ const BY_TIME: &[(&str, &str)] = &[
     ("buffer", "Dest0"),
 ];
 
-/// A board that has just booted, with nothing in its gather buffer.
+/// A board that has just booted, with a cleared gather buffer.
 fn with_empty_buffer() -> Option<BootedBoard> {
     let mut board = booted()?;
     let pointer = board.file().address("gather_buffer").expect("it gathers");
     let buffer = kmotiondef::GuestAddr::new(board.memory().peek(pointer));
-    // `GetVirtualBits` and `FPGA` write to places that no board has, and were answered all the same.
+    // `GetVirtualBits` and `FPGA` write to addresses outside any board, and were answered nevertheless.
     board.forgive(true);
     board.memory_mut().poke_bytes(buffer, &vec![0; GATHER]).expect("it is in RAM");
     Some(board)
@@ -38,8 +38,8 @@ fn text(json: &Value) -> &str {
     json.as_str().expect("a string")
 }
 
-/// Sends bytes and returns the answer. A firmware that a command has stopped is silent: the recorded one was silent
-/// from `ENABLED0=` and `GETVIRTUALBITS31 31` on.
+/// Sends bytes and returns the reply. A firmware stopped by a command is silent: the recorded one was silent from
+/// `ENABLED0=` and `GETVIRTUALBITS31 31` on.
 fn ask(board: &mut BootedBoard, bytes: &[u8]) -> String {
     board.send(bytes);
     let (mut answer, mut quiet, mut ticks) = (Vec::new(), 0, 0);
@@ -56,7 +56,7 @@ fn ask(board: &mut BootedBoard, bytes: &[u8]) -> String {
     String::from_utf8_lossy(&answer).into_owned()
 }
 
-/// Sends a recorded line, or does what is in its place in parentheses.
+/// Sends a recorded line, or executes the action that it contains in parentheses.
 pub(super) fn exchange(board: &mut BootedBoard, line: &str) -> String {
     let Some(action) = line.strip_prefix('(').and_then(|line| line.strip_suffix(')')) else {
         return ask(board, format!("\x1b\x01{line}\r").as_bytes());
@@ -72,7 +72,7 @@ pub(super) fn exchange(board: &mut BootedBoard, line: &str) -> String {
     String::new()
 }
 
-/// Returns whether an answer is the recorded one, or has its form where the values differ between runs.
+/// Returns whether a reply equals the recorded one, or only has its form where values differ between runs.
 fn agrees(name: &str, send: &str, found: &str, expect: &str) -> bool {
     let by_time = BY_TIME.iter().any(|(of, line)| *of == name && send.starts_with(line));
     found == expect || by_time && found.split_whitespace().count() == expect.split_whitespace().count()

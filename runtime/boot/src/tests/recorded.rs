@@ -1,4 +1,5 @@
-//! The start of the real firmware against what was recorded of it (`boot.jsonl`); without the file, the test says so.
+//! The start of the real firmware, compared with its recording (`boot.jsonl`); without the file, the test reports that
+//! it is skipped.
 
 use std::sync::{Arc, Mutex, OnceLock};
 use std::{env, fs};
@@ -15,7 +16,7 @@ pub(super) fn all_rows(name: &str) -> Vec<Value> {
     text.lines().map(|line| serde_json::from_str::<Value>(line).expect("a line of JSON")).collect()
 }
 
-/// The rows of the recorded start of a kind.
+/// The rows of one kind in the recorded start.
 fn rows(kind: &str) -> Vec<Value> {
     all_rows("boot.jsonl").into_iter().filter(|row| row["kind"] == kind).collect()
 }
@@ -24,7 +25,7 @@ fn row(kind: &str) -> Value {
     rows(kind).into_iter().next().expect("a row of that kind")
 }
 
-/// The firmware that `CC67_FIRMWARE` names.
+/// The firmware named by `CC67_FIRMWARE`.
 fn firmware() -> Option<Arc<FirmwareFile>> {
     let Some(path) = env::var_os("CC67_FIRMWARE") else {
         println!("not run: CC67_FIRMWARE names no firmware file");
@@ -43,13 +44,13 @@ pub(super) fn booted() -> Option<BootedBoard> {
     Some(board.lock().expect("no test holds it while it fails").clone())
 }
 
-/// Bytes of a row of `TripCoeffs`: twenty states of 48.
+/// The bytes of a row of `TripCoeffs`: twenty states of 48.
 const STATES: u32 = 20 * 48;
-/// The session whose answers depend on the tick, and the way of three ticks at its speed, rounded up.
+/// The session whose replies depend on the tick, and the distance of three ticks at its speed, rounded up.
 const MOVING: &str = "GetAllDestVelHex at rest and moving";
 const THREE_TICKS: f64 = 0.2701;
 
-/// Ticks for which a recorded session of firmware 5.3.2 ran after a command.
+/// The number of ticks for which a recorded session of firmware 5.3.2 ran after a command.
 fn pause(session: &str, line: &str) -> u64 {
     match (session, line) {
         (MOVING, "Jog0=1000") => 1017,
@@ -62,7 +63,7 @@ fn pause(session: &str, line: &str) -> u64 {
     }
 }
 
-/// The destination in an answer, and the words after it.
+/// The destination in a reply, and the words after it.
 fn destination(answer: &str) -> (f64, Vec<&str>) {
     let words: Vec<&str> = answer.split_whitespace().collect();
     if let [low, high, rest @ ..] = &words[..] {
@@ -72,7 +73,7 @@ fn destination(answer: &str) -> (f64, Vec<&str>) {
     (answer.trim().parse().unwrap_or_default(), Vec::new())
 }
 
-/// Returns whether an answer is the recorded one, except what depends on the tick of the request.
+/// Returns whether a reply equals the recorded one, except for values that depend on the tick of the request.
 fn agrees(session: &str, found: &str, expect: &str) -> bool {
     match session {
         "GetStatus" => status(found) == status(expect),
@@ -84,7 +85,7 @@ fn agrees(session: &str, found: &str, expect: &str) -> bool {
     }
 }
 
-/// A status with the words of its time left out.
+/// A status without its time words.
 fn status(text: &str) -> Vec<&str> {
     let words = text.split_whitespace().enumerate();
     words.filter(|(at, _)| !(162..164).contains(at)).map(|(_, word)| word).collect()
@@ -100,7 +101,7 @@ fn firmware_5_boots_and_answers_what_was_recorded_of_it() {
     let file = FirmwareFile::read(&bytes).unwrap_or_else(|error| panic!("{error}"));
     let mut fresh = BootedBoard::booted(Arc::new(file)).unwrap_or_else(|crash| panic!("{crash}"));
     println!("ready after {:.4} s", fresh.cycle() as f64 * 5e-9);
-    // The first jog after power-up finds what RAM held; the recorded board had it so.
+    // The first jog after power-up uses the initial contents of RAM; the recorded board had these.
     let states = fresh.file().address("TripCoeffs").expect("it moves axes");
     (0..8).for_each(|axis| fresh.memory_mut().poke(states.offset(axis * STATES), 1));
     let sessions: Vec<_> = all_rows("fw5.jsonl").into_iter().filter(|row| row["kind"] == "session").collect();
@@ -176,7 +177,7 @@ fn commands_are_answered_as_recorded() {
         board.send(send);
         board.run_to(sent_at + 400_000).expect("it runs");
         let mut lines = board.take_lines();
-        // The answer to an abort is known when nothing follows it.
+        // The answer to an abort is recognised only when nothing follows it.
         lines.append(&mut board.take_lines());
         let recorded = exchange["lines"].as_array().expect("lines");
         let texts: Vec<String> = lines.iter().map(text).collect();
@@ -189,14 +190,14 @@ fn commands_are_answered_as_recorded() {
     }
 }
 
-/// A servo interrupt that falls into an answer, seconds: where it falls was not recorded.
+/// The duration of a servo interrupt that occurs during a reply, in seconds: its position was not recorded.
 const INTERRUPT: f64 = 11e-6;
-/// The words of the status that are the time.
+/// The words of the status that contain the time.
 const TIME: std::ops::Range<usize> = 8..10;
-/// The line of the status that has them.
+/// The line of the status with these words.
 const TIME_LINE: &str = "00000001 00000000 00000000";
 
-/// A line as it was recorded; the time in the status depends on when it was asked.
+/// A line as it was recorded; the time in the status depends on the time of the request.
 fn text(line: &crate::SentLine) -> String {
     let escape = match line.kind {
         Sent::Reply => "",

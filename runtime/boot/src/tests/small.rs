@@ -1,5 +1,5 @@
-//! A firmware of our own, so small that it is written here: it starts, answers its timer, sends text, echoes what the PC
-//! sends, and moves a step generator.
+//! A firmware of our own, so small that it is contained in this file: it starts, handles its timer, sends text, echoes
+//! bytes from the PC, and moves a step generator.
 
 use std::sync::Arc;
 
@@ -10,20 +10,20 @@ use coff::{
 
 use crate::{BootedBoard, FirmwareError, FirmwareFile, FlashError, Halted, Sent};
 
-/// The address of the code, the interrupt's vector, and the code of the interrupt.
+/// The address of the code, the interrupt vector, and the code of the interrupt.
 const START: u32 = 0x8000_0000;
 const VECTOR: u32 = 0x1000_0080;
 const HANDLER: u32 = 0x8000_1000;
-/// The address at which a board with flash starts.
+/// The address at which a board starts from flash.
 const FROM_FLASH: u32 = 0x1000_1000;
 
 /// Two instructions that load a constant.
 fn constant(unit: &str, value: u32, reg: &str) -> String {
-    // The upper half is taken from the whole constant.
+    // MVKH takes the upper half of the whole constant.
     format!("MVK {unit} {},{reg}\nMVKH {unit} 0x{value:08X},{reg}\n", i32::from(value as u16 as i16))
 }
 
-/// Stores a word, half word or byte to an address.
+/// Stores a word, half word or byte at an address.
 fn store(op: &str, address: u32, value: u32) -> String {
     constant(".S1", address, "A20") + &constant(".S1", value, "A21") + &format!("{op} .D1T1 A21,*A20\n")
 }
@@ -41,12 +41,12 @@ fn code(text: &str, base: u32) -> Vec<u8> {
     bytes
 }
 
-/// Vectors, a timer of 90 µs, interrupts on, and then a loop that echoes.
+/// The start: vectors, a timer of 90 µs, enabled interrupts, and then a loop that echoes.
 fn start() -> String {
     start_at(START)
 }
 
-/// The same from this address on.
+/// The start code at this address.
 fn start_at(base: u32) -> String {
     let timer = |offset: u32, value: u32| store("STW", 0x4200_0000 + offset, value);
     let set = [(0x18, 1), (0x38, 1), (0x0C, 1), (0x50, 4500), (0x54, 4500), (0x80, 1), (0x00, 3)];
@@ -61,12 +61,12 @@ fn start_at(base: u32) -> String {
     text + &format!("B .S1 0x{echo:08X}\nNOP 5\n")
 }
 
-/// Clears the flag, counts the tick, sends a line at the third, and has a generator step from the fifth on.
+/// Clears the flag, counts the tick, sends a line at the third tick, and makes a generator step from the fifth on.
 fn handler() -> String {
     let mut text = store("STW", 0x4200_0088, 1) + "ADD .L1 1,A16,A16\n";
     for (tick, stores) in [
         (3, b"\x1bhi\r\n".iter().map(|byte| (0x9100_0012, u32::from(*byte))).collect::<Vec<_>>()),
-        // 2^20 / 2^23 of 200 MHz / 12 are 2,083,333 steps a second; generator 2.
+        // 2^20 / 2^23 of 200 MHz / 12 are 2,083,333 steps per second; generator 2.
         (5, vec![(0x9100_00F2, 0), (0x9100_00F6, 0), (0x9100_00FA, 0x10), (0x9100_00FE, 0x82)]),
     ] {
         text += &format!("CMPEQ .L1 {tick},A16,A2\n");
@@ -218,12 +218,12 @@ fn processor_activity_is_visible_inside_and_outside_the_interrupt() {
     assert!(board.looks() > looks, "it looks for the PC all the while");
 }
 
-/// A firmware that calls `sqrt` in the ROM without end, with 2.25 as argument, and counts the calls.
+/// A firmware that repeatedly calls `sqrt` in the ROM with the argument 2.25, and counts the calls.
 fn file_with_rom(address: u32) -> Arc<FirmwareFile> {
     let (low, high) = (2.25_f64.to_bits() as u32, (2.25_f64.to_bits() >> 32) as u32);
     let set = start_at(START);
     let set: Vec<&str> = set.lines().collect();
-    // Without the loop that echoes: one look at the link says that it is ready.
+    // Without the echo loop: a single poll of the link reports that it is ready.
     let looks = set.iter().position(|line| line.contains("LDBU")).expect("it looks") + 1;
     let mut text = set[..looks].join("\n") + "\nNOP 4\n";
     let turn = START + 4 * text.lines().count() as u32;
@@ -254,7 +254,7 @@ fn functions_in_rom_are_computed_and_interrupts_stay_on_time() {
     let registers = board.registers();
     let register = |name: &str| registers.iter().find(|one| one.0 == name).expect(name).1;
     assert_eq!(u64::from(register("A12")) << 32 | u64::from(register("A11")), 1.5_f64.to_bits());
-    // 379 cycles each, some forty around it, and what the interrupt takes.
+    // 379 cycles each, about forty around each call, and the time of the interrupts.
     assert!((700..950).contains(&register("A10")), "{} calls", register("A10"));
     for _ in 0..20 {
         board.run_to(board.next_tick() + 40).expect("it runs");
@@ -273,7 +273,7 @@ fn a_place_in_rom_without_a_function_ends_the_run_with_a_reason() {
     assert!(crash.to_string().contains("0x0002D464 in the processor's ROM"), "{crash}");
 }
 
-/// The text of the crash of a firmware that starts so.
+/// The text of the crash of a firmware with this start code.
 fn crash(start: &str) -> String {
     let Err(Halted::Crashed(crash)) = BootedBoard::booted(file(start)) else { panic!("it starts") };
     crash.to_string()

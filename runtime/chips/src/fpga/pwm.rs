@@ -1,6 +1,6 @@
-//! I/O PWM: its generators drive pins, and the analog output of a KStep.
+//! PWM generators, which drive pins and the analog output of a KStep.
 //!
-//! A program that reads such a pin sees one level; the edges are told for pins that somebody watches.
+//! A program that reads such a pin sees one level per tick; edges are reported only for watched pins.
 
 use std::ops::Range;
 
@@ -10,16 +10,16 @@ use super::{Fpga, PORT_BYTE, PRESCALE, PWM, PWM_MOVED, PWMS};
 use crate::kstep::AnalogOutput;
 use crate::pins::Pins;
 
-/// The pin of generator 0, and its output for KStep.
+/// The pin of generator 0, and its separate pin for a KStep.
 const PWM_PIN: i32 = 26;
 const PWM_MOVED_PIN: i32 = 44;
-/// Clocks of a PWM period, processor cycles of one, and clocks of a second.
+/// The PWM period in clocks, the processor cycles per clock, and the clocks per second.
 const PWM_PERIOD: f64 = 256.0;
 const CLOCK_CYCLES: i64 = 12;
 const CLOCK: f64 = 50e6 / 3.0;
 
 impl Fpga {
-    /// The duty of a PWM generator from 0 to 1 and its frequency, if it is on.
+    /// The duty cycle of a PWM generator, from 0 to 1, and its frequency, if it is on.
     pub fn pwm(&self, generator: u32) -> Option<(f64, f64)> {
         let value = PWM + 2 * generator;
         (self.byte(value + 1) & 1 != 0).then(|| {
@@ -28,13 +28,13 @@ impl Fpga {
         })
     }
 
-    /// The duty of generator 0 at the pin for KStep, from 0 to 1.
+    /// The duty cycle of generator 0 at the pin for a KStep, from 0 to 1.
     pub(super) fn moved_pwm(&self) -> Option<f64> {
         let (duty, _) = self.pwm(0)?;
         (self.bytes[PORT_BYTE] & PWM_MOVED != 0).then_some(duty)
     }
 
-    /// The analog output that a KStep makes of it.
+    /// The resulting analog output of a KStep.
     pub fn kstep_output(&self) -> &AnalogOutput {
         &self.kstep
     }
@@ -50,7 +50,7 @@ impl Fpga {
             && (0..PWMS).any(|generator| self.pwm(generator).is_some() && is_watched(generator))
     }
 
-    /// Tells the edges of watched pins up to an instant. All generators count one clock, from power-up on.
+    /// Reports the edges of watched pins up to a given time. All generators use one clock, which runs from power-up.
     pub fn tell_pwm(&mut self, pins: &mut Pins, now: Cycles) {
         let from = std::mem::replace(&mut self.told, now);
         if !pins.watches_any() {
@@ -71,7 +71,7 @@ impl Fpga {
         }
     }
 
-    /// Generators that are on drive their pins; read as a level, they are high from half duty on.
+    /// Makes the generators that are on drive their pins; read as a level, they are high from half duty on.
     pub(super) fn drive_pwm_pins(&self, pins: &mut Pins, now: Cycles) {
         let mut drive = |pin: i32, level| {
             if let Some(bit) = Bit::new(pin) {
@@ -87,7 +87,7 @@ impl Fpga {
     }
 }
 
-/// Tells the edges of a pin that is high at the beginning of each period, for this long.
+/// Reports the edges of a pin that is high at the beginning of each period, for `high` cycles.
 fn tell_train(pins: &mut Pins, bit: Bit, (period, high): (i64, i64), span: Range<Cycles>) {
     let mut at = span.start.get();
     while at <= span.end.get() {
@@ -126,7 +126,7 @@ mod tests {
         let bit = Bit::new(27).expect("a bit");
         bench.pins.changes.switch_on(Vec::new());
         bench.pins.watch(bit);
-        // 65.1 kHz: 3072 cycles, of which a fifth is high.
+        // 65.1 kHz: 3072 cycles, high for a fifth of them.
         for (register, value) in [(0xd2, 51), (0xd3, 1)] {
             bench.write(register, AccessSize::Byte, value);
         }
