@@ -1,4 +1,4 @@
-//! Runs every program of `filetests/`, each as a test of its own name, and holds it to what it states.
+//! Runs every program of `filetests/`, each as a test with its own name, and checks it against its directives.
 //!
 //! The directives are described in `harness/filetest.rs`. Files in a folder `parts` are not tests:
 //! programs include them. A `.txt` file is a test of one stage of the compiler (`harness/stages.rs`). With the feature `native` every program runs on both engines, which must agree.
@@ -10,7 +10,7 @@ use harness::filetest::FileTest;
 use harness::stages::{self, StageTest};
 use libtest_mimic::{Arguments, Failed, Trial};
 
-/// Options that must not change a byte of what a program prints.
+/// Options that must not change a byte of a program's output.
 const VARIANTS: &[&[&str]] = &[
     #[cfg(feature = "native")]
     &["--engine", "bytecode"],
@@ -73,8 +73,8 @@ fn check(path: &Path, is_blessed: bool) -> Result<(), Failed> {
     check_cycles(&test, is_blessed)
 }
 
-/// Checks the output of a program as code for the real processor, at every level; programs that end in a trap are for
-/// the other engines.
+/// Checks the output of a program as code for the real processor, at every level; programs that end in a trap are only
+/// for the other engines.
 fn check_code(test: &FileTest) -> Result<(), Failed> {
     let Some(expected) = test.stdout_of_code() else { return Ok(()) };
     for level in ["-O0", "-O1", "-O2"] {
@@ -92,7 +92,7 @@ fn check_code(test: &FileTest) -> Result<(), Failed> {
     Ok(())
 }
 
-/// A program that is executed states exactly what it spends.
+/// Checks that a program states the exact number of cycles that it spends.
 fn check_cycles(test: &FileTest, is_blessed: bool) -> Result<(), Failed> {
     let measured = if test.is_executed() { test.measured_cycles() } else { None };
     match (measured, test.cycles()) {
@@ -110,7 +110,7 @@ fn check_cycles(test: &FileTest, is_blessed: bool) -> Result<(), Failed> {
     }
 }
 
-/// Snapshots have their place beside the program that they belong to.
+/// Places snapshots next to the program to which they belong.
 fn snapshots_in(folder: &Path) -> insta::Settings {
     let mut settings = insta::Settings::clone_current();
     settings.set_snapshot_path(folder);

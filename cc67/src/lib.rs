@@ -7,12 +7,12 @@
 //!
 //! ```text
 //! main.rs           the process
-//! record.rs         the record of a compared run, which vectors share
+//! record.rs         the record of a compared run, shared with the vectors
 //! cli/commands/     one file for each subcommand: arguments in, work done, exit code out
-//! cli/session.rs    arguments → configuration → a session, on the engine that was requested
+//! cli/session.rs    arguments → configuration → a session, on the requested engine
 //! cli/compile/      files → programs, with the compiler's diagnostics
 //! cli/report/       the screen of a run, diagnostics, traces, plots, profiles
-//! cli/args/         options that commands share, one file for each subject
+//! cli/args/         options shared by commands, one file for each subject
 //! cli/io/           files, the terminal, the clock, exit codes
 //! ```
 //!

@@ -1,4 +1,4 @@
-//! The library for C programs: its header is the one its sources give, and a C program drives a board with it.
+//! The library for C programs: its header matches its sources, and a C program uses it to control a board.
 
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::ffi::OsStr;
@@ -26,7 +26,7 @@ const HEAD: &str = "\
    Made from the sources in cc67/capi/src; do not edit it. */
 ";
 
-/// The header as the sources give it.
+/// The header generated from the sources.
 fn header() -> String {
     let config = Config {
         language: Language::C,
@@ -73,7 +73,7 @@ fn the_header_matches_the_sources() {
     assert!(found == expect, "run this test with CC67_WRITE_HEADER=1 to rewrite the header:\n{found}");
 }
 
-/// The library that was built for these tests: it lies beside them.
+/// The library that was built for these tests, in their folder.
 fn library() -> PathBuf {
     let own = std::env::current_exe().expect("a test knows where it lies");
     own.with_file_name(format!("{DLL_PREFIX}cc67board{DLL_SUFFIX}"))
@@ -106,7 +106,7 @@ fn the_program_of_the_book_compiles() {
     }
 }
 
-/// Compiles a C program of the tests' inputs with the library; returns the executable.
+/// Compiles a C program from the test inputs with the library; returns the executable.
 fn host_program(scratch: &Scratch, source: &str) -> PathBuf {
     let library = library();
     let folder = library.parent().expect("a file has a folder");
@@ -127,7 +127,7 @@ fn host_program(scratch: &Scratch, source: &str) -> PathBuf {
 
 #[test]
 fn a_c_program_drives_a_board() {
-    // Naming it keeps the library among what is built for these tests.
+    // This use of the crate makes Cargo build the library for these tests.
     assert_eq!(cc67board::Outcome::Ok as i32, 0);
     if !has_compiler() {
         return;
@@ -160,7 +160,7 @@ fn a_c_program_drives_a_controller_at_a_link() {
     output.read_line(&mut line).expect("it is text");
     let place = line.trim_end().strip_prefix("cc67: a board is served on ").expect("it says where");
     let output = run_in(program.to_str().expect("a name"), scratch.path(), [place, "count.c"]);
-    // A server that has ended is as good.
+    // An error means that the server has already ended.
     let _ = server.kill();
     let _ = server.wait();
     let expect = "no address: `lpt1` is not a board\nnobody there: connection refused\nKFLOP 4.34 Build 16:07:06 Aug 14 2018\n\

@@ -1,7 +1,8 @@
-//! The 32 whole programs of `data/vectors/costs.jsonl`: what `Time_sec` says before and after them.
+//! The 32 complete programs of `data/vectors/costs.jsonl`: the readings of `Time_sec` before and after their work.
 //!
-//! The recorded times are those of the vendor's compiler on the released firmware, alone beside thread 0. Work that ends
-//! near the end of a slice falls in this or in the next one by a few cycles; then a whole rotation lies between.
+//! The recorded times belong to the vendor's compiler on the released firmware, with no other thread but thread 0. For
+//! work that ends near the end of a slice, a few cycles decide whether it ends in this slice or in the next, a whole
+//! rotation later.
 
 use std::fs;
 
@@ -12,11 +13,12 @@ use kmotiondef::timing::{Timing, WaitStates};
 use kmotiondef::{Cycles, ThreadId, Ticks};
 use serde_json::Value as Json;
 
-/// The time until a thread's next slice, beside thread 0: a tick and the servo interrupt of its own.
+/// The time until a thread's next slice, with no other thread but thread 0: a tick and the thread's own servo
+/// interrupt.
 const ROTATION: f64 = 18_000.0 + 2446.0;
 
-/// Programs that do little but read and set bits. What a call costs includes the wait states of the bus as the firmware
-/// programs it, so without any they take as long as with those.
+/// Programs that do little besides reading and setting bits. The cost of a call includes the wait states of the bus as
+/// set by the firmware, so without wait states they take the same time as with them.
 const OF_CALLS: &[&str] = &["bits", "io"];
 
 fn programs() -> Vec<Json> {
@@ -26,7 +28,7 @@ fn programs() -> Vec<Json> {
     lines.filter(|line| line["kind"] == "program").collect()
 }
 
-/// Cycles that a program's `work` takes by its own clock.
+/// The cycles that a program's `work` takes by its own clock.
 fn time(scratch: &Scratch, work: &str, level: Level, waits: WaitStates) -> f64 {
     let main = "double T;\nmain()\n{\n  double begin; WaitNextTimeSlice();\n  begin = Time_sec(); work(); \
                 T = Time_sec() - begin;\n}\n";

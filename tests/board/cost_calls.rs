@@ -1,8 +1,8 @@
-//! Charges of typical firmware calls, compared with their times on the board: `data/vectors/costs.jsonl`.
+//! Charges for typical firmware calls, compared with their times on the board: `data/vectors/costs.jsonl`.
 //!
-//! Compared is the second setting, with the wait states of the bus as the firmware programs it, for which the functions
-//! are charged. A call is what the profiling engine puts down to it, without the time that it waits. Of the recorded calls
-//! of a function those are compared that come nearest to its typical time.
+//! The comparison uses the second setting, with the wait states of the bus as set by the firmware, for which the
+//! functions are charged. The cost of a call is the amount that the profiling engine assigns to it, without waiting
+//! time. Of a function's recorded calls, those closest to its typical time are compared.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -17,10 +17,10 @@ use runtime::Board;
 use serde_json::Value as Json;
 use vm::profile::ProfilingEngine;
 
-/// The tolerance of a typical call, relative.
+/// The relative tolerance for a typical call.
 const LIMIT: f64 = 0.1;
 
-/// Functions that are not called here, and why.
+/// Functions that are not called here, each with the reason.
 const NOT_CALLED: &[(&str, &str)] = &[
     ("AddKonnect", WORDS),
     ("AddKonnect_Aux0", WORDS),
@@ -81,14 +81,14 @@ fn rows(kind: &str) -> Vec<Json> {
     lines.filter(|line| line["kind"] == kind).collect()
 }
 
-/// A recorded call: its words in the vectors, the call, and the cycles.
+/// A recorded call: its description in the vectors, the call, and the cycles.
 struct Case {
     words: String,
     call: String,
     recorded: f64,
 }
 
-/// The calls of a function that come nearest to its typical time.
+/// The calls of a function that are closest to its typical time.
 fn cases(row: &Json) -> Vec<Case> {
     let name = row["name"].as_str().expect("a name");
     let typical = row["io44"]["typical"].as_f64();
@@ -107,7 +107,7 @@ fn cases(row: &Json) -> Vec<Case> {
     cases
 }
 
-/// The call of a case; `None` if its words say more than arguments.
+/// The call of a case; `None` if its description contains more than arguments.
 fn call(name: &str, words: &str) -> Option<String> {
     let escaped = |text: &str| text.replace('\\', "\\\\").replace('"', "\\\"").replace('\n', "\\n");
     let bytes = || words.split_once(" bytes, ");
@@ -194,7 +194,7 @@ fn call(name: &str, words: &str) -> Option<String> {
     })
 }
 
-/// Places for the conversions of a format.
+/// Pointers for the conversions of a format.
 fn scanned(format: &str) -> String {
     let mut places = String::new();
     for part in format.split('%').skip(1) {
@@ -237,7 +237,7 @@ fn run(scratch: &Scratch, body: &str) -> Result<Session<Board<ProfilingEngine>>,
     if session.has_ended() { Ok(session) } else { Err("it does not end".to_owned()) }
 }
 
-/// The cycles of the calls of a function in `main`, in their order.
+/// The cycles of the calls of a function in `main`, in order.
 fn calls_of(session: &Session<Board<ProfilingEngine>>, name: &str) -> Vec<f64> {
     let mut calls = BTreeMap::new();
     for (site, spent) in session.target().machine().engine().profile().sites() {
@@ -249,8 +249,8 @@ fn calls_of(session: &Session<Board<ProfilingEngine>>, name: &str) -> Vec<f64> {
     calls.into_values().collect()
 }
 
-/// Returns the code that a case needs before it. The limits are those with which a move of 20,000 reaches its full
-/// speed and one of 1000 does not, as recorded. The functions of the coordinate system were recorded with five axes.
+/// Returns the code that a case needs before it. With these limits, a move of 20,000 reaches its full speed and one of
+/// 1000 does not, as in the recording. The functions of the coordinate system were recorded with five axes.
 fn before(case: &Case) -> &'static str {
     let of_axes = ["CheckDone", "GetNominal", "SetFRO", "SetRapidFRO"];
     if of_axes.iter().any(|name| case.call.starts_with(name)) {

@@ -1,11 +1,11 @@
-//! What calls cost, in cycles: the model against the released firmware.
+//! The cost of calls in cycles: the model compared with the released firmware.
 //!
-//! `data/vectors/call-costs.jsonl` is the one table: a call, the statements before it, and the cycles that the firmware
-//! took. The same image measures both boards: it reads `TIMER0` around the calls at the beginning of a slice of its own,
-//! and takes off what it measures around none. A booted firmware never waits for the bus, and the model does, so a row
-//! also has the accesses of a call to the FPGA: a ninth of the calls has some, which `costs.jsonl` recorded as the
-//! difference between its first two settings. The model needs no firmware; where `CC67_FIRMWARE` names one, it is
-//! measured again and must agree. `CC67_WRITE_CALL_COSTS=1` writes the cycles measured.
+//! `data/vectors/call-costs.jsonl` is the only table: a call, the statements before it, and the cycles that the
+//! firmware took. The same image measures both boards: it reads `TIMER0` around the calls at the beginning of a
+//! separate slice, and subtracts the measurement without a call. A booted firmware never waits for the bus, but the
+//! model does, so a row also has the number of a call's FPGA accesses: a ninth of the calls has some, recorded in
+//! `costs.jsonl` as the difference between its first two settings. The model needs no firmware; if `CC67_FIRMWARE`
+//! names one, it is measured again and must agree. `CC67_WRITE_CALL_COSTS=1` writes the measured cycles.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -21,18 +21,18 @@ use serde_json::Value as Json;
 
 /// The longest run: 20 s of board time.
 const LONGEST: Ticks = Ticks::new(222_223);
-/// Measurements of each call; the least counts.
+/// The number of measurements of each call; the minimum counts.
 const TIMES: usize = 3;
-/// Cycles of a count of `TIMER0`.
+/// Cycles per count of `TIMER0`.
 const CYCLES_PER_COUNT: f64 = 4.0;
-/// The tolerances of a call, of which one is enough: relative, and in cycles.
+/// The tolerances for a call, one of which must be met: relative, and in cycles.
 const RELATIVE: f64 = 0.1;
 const CYCLES: f64 = 12.0;
-/// Calls, and those that must be within the tolerances.
+/// The number of calls, and of those that must be within the tolerances.
 const CALLS: usize = 83;
 const WITHIN: usize = 81;
 
-/// The declarations before the calls. Arguments are volatile, so that no compiler computes a call.
+/// The declarations before the calls. Arguments are volatile, so that no compiler evaluates a call at compile time.
 const HEAD: &str = "#include \"KMotionDef.h\"
 #include <stdlib.h>
 #include <string.h>
@@ -52,11 +52,11 @@ struct Row {
     /// Statements before the calls.
     before: String,
     call: String,
-    /// Copies of the call in a measurement.
+    /// The number of copies of the call in a measurement.
     copies: usize,
-    /// Accesses of a call to the FPGA.
+    /// The number of FPGA accesses of a call.
     accesses: u32,
-    /// Cycles that the firmware took, without waits for the bus.
+    /// The cycles that the firmware took, without waits for the bus.
     cycles: Option<f64>,
 }
 
@@ -77,7 +77,7 @@ impl Row {
         row.to_string()
     }
 
-    /// The measurement with this number, which stores its counts.
+    /// The code of the measurement with this number, which stores its counts.
     fn code(&self, number: usize) -> String {
         let calls = format!("{}; ", self.call).repeat(self.copies);
         format!(
@@ -87,7 +87,7 @@ impl Row {
         )
     }
 
-    /// The cycles of a call on the board, with the wait states that the firmware programs into the bus.
+    /// The cycles of a call on the board, with the wait states of the bus as set by the firmware.
     fn on_board(&self) -> f64 {
         let cycles = self.cycles.expect("the firmware was measured");
         cycles + f64::from(self.accesses * WaitStates::REGISTERS.register)
@@ -104,7 +104,7 @@ fn rows() -> Vec<Row> {
     text.lines().map(Row::new).collect()
 }
 
-/// A program that measures all rows, after one of no call.
+/// A program that measures all rows, after a measurement without a call.
 fn program(rows: &[Row]) -> String {
     let none = Row { before: String::new(), call: String::new(), copies: 0, accesses: 0, cycles: None };
     let mut text = HEAD.to_owned();

@@ -1,7 +1,7 @@
-//! Charges of the statements of `data/vectors/costs.jsonl`, compared with the times of the vendor's code on the board.
+//! Charges for the statements of `data/vectors/costs.jsonl`, compared with the times of the vendor's code on the board.
 //!
-//! Every row is compared, for memory without wait states, with those of the bus, and with 20 cycles for SDRAM. A statement
-//! takes what a program with it takes longer than one without it, as the profiling engine counts.
+//! Every row is compared for memory without wait states, with those of the bus, and with 20 cycles for SDRAM. The cost
+//! of a statement is the difference between a program with it and one without it, as the profiling engine counts.
 
 use std::fs;
 
@@ -13,13 +13,13 @@ use kmotiondef::{ThreadId, Ticks};
 use serde_json::Value as Json;
 use vm::profile::ProfilingEngine;
 
-/// The tolerance of a statement, relative.
+/// The relative tolerance for a statement.
 const LIMIT: f64 = 0.1;
 
-/// Cycles that are less than the cost of one access.
+/// A number of cycles smaller than the cost of one access.
 const SLIGHT: f64 = 2.0;
 
-/// Statements that are further off, and why.
+/// Statements with larger deviations, each with the reason.
 const OTHERS: &[(&str, &str)] = &[
     ("li=*lp", TO_THE_STACK),
     ("*lp=li", TO_THE_STACK),
@@ -67,7 +67,7 @@ fn rows() -> Vec<Json> {
     lines.filter(|line| line["kind"] == "construct").collect()
 }
 
-/// Cycles that `main` with a statement takes.
+/// The cycles of `main` with a statement.
 fn spent(scratch: &Scratch, statement: &str, waits: WaitStates) -> f64 {
     scratch.write("work.c", format!("{GLOBALS}main()\n{{\n{LOCALS}{statement};\n}}\n"));
     let mut setup = Setup::default();

@@ -1,4 +1,4 @@
-//! Waits and delays of a thread beside six others that are busy, as `data/vectors/threads.jsonl` has them: within 10 %.
+//! Waits and delays of a thread while six others are busy, compared with `data/vectors/threads.jsonl`: within 10 %.
 //!
 //! They were recorded without wait states of memory, with the vendor's compiler, on the released firmware.
 
@@ -11,14 +11,14 @@ use kmotiondef::timing::{Timing, WaitStates};
 use kmotiondef::{ThreadId, Ticks};
 use serde_json::Value as Json;
 
-/// The tolerance of a duration, relative.
+/// The relative tolerance for a duration.
 const LIMIT: f64 = 0.1;
 
-/// Seconds that lie between two places of the same rotation: the first of a series begins wherever the code before it
-/// has ended.
+/// The possible difference in seconds between two positions in the same rotation: the first wait of a series begins
+/// where the code before it has ended.
 const BEGINNING: f64 = 10e-6;
 
-/// A reading of the clock within a slice, which is an instant and no duration: the calls before it are charged with the
+/// A reading of the clock within a slice, which is a time and not a duration: the calls before it are charged with the
 /// wait states of the bus, which the recorded ones do not have.
 const INSTANT: &str = "Time_sec after WaitNextTimeSlice minus ServoTick*TIMEBASE";
 const WITHIN: f64 = 1.5e-6;
@@ -31,7 +31,7 @@ fn vectors() -> Vec<Json> {
     lines.filter(|row| row["kind"] == "times" && is_of_seven(row)).collect()
 }
 
-/// Returns the first `count` values that `statements` in thread 1 leave in `g[]`, beside six busy threads.
+/// Returns the first `count` values that `statements` in thread 1 store in `g[]`, while six threads are busy.
 fn times(statements: &str, count: usize, level: Level) -> Vec<f64> {
     let scratch = Scratch::new("cost-threads");
     scratch.write(

@@ -1,10 +1,10 @@
-//! Devices as whole programs meet them: encoders, step generators, PWM, option boards, the PC's files.
+//! Devices, as used by complete programs: encoders, step generators, PWM, option boards, the PC's files.
 
 use std::fs;
 
 use harness::{Output, Scratch, cc67, no_such_file, root};
 
-/// Runs a program with options in a folder of its own, which holds further files.
+/// Runs a program with options in its own folder, with further files.
 fn run(name: &str, program: &str, files: &[(&str, &str)], options: &[&str]) -> (Output, Scratch) {
     let scratch = Scratch::new(&format!("devices-{name}"));
     scratch.write("a.c", format!("#include \"KMotionDef.h\"\n{program}"));
@@ -15,14 +15,14 @@ fn run(name: &str, program: &str, files: &[(&str, &str)], options: &[&str]) -> (
     (cc67(&scratch, arguments), scratch)
 }
 
-/// The console of a run that ends well and is silent otherwise.
+/// The console of a run that succeeds without other output.
 fn shows(name: &str, program: &str, files: &[(&str, &str)], options: &[&str]) -> String {
     let (output, _) = run(name, program, files, options);
     assert_eq!((output.code, output.stderr.as_str()), (0, ""), "{name}: {}", output.stdout);
     output.stdout
 }
 
-/// The columns of a table that a run has written.
+/// The columns of a table written by a run.
 fn table(scratch: &Scratch, name: &str) -> Vec<Vec<f64>> {
     let text = fs::read_to_string(scratch.path().join(name)).expect("it is written");
     let row = |line: &str| line.split(',').filter_map(|cell| cell.parse().ok()).collect();
@@ -107,7 +107,7 @@ main()
 
 #[test]
 fn a_step_generator_is_run_by_its_register() {
-    // 3000 steps a second are 0x5E6 in units of 1.987.
+    // 3000 steps per second are 0x5E6 in units of 1.987.
     let program = "
 void Rate(int Generator, int Rate)
 {
@@ -210,7 +210,7 @@ main()
     let (output, scratch) = run("kstep-analog", program, &[], &options);
     assert_eq!(output.code, 0, "{}", output.stderr);
     for row in table(&scratch, "a.csv") {
-        // Begun within the first two ticks, with 10 ms.
+        // It begins within the first two ticks, with a time constant of 10 ms.
         let follows = |begun: f64| 1.0 - libm::exp(-(row[0] - begun).max(0.0) / 0.01);
         assert!((follows(0.0003)..=follows(0.0)).contains(&row[1]), "{row:?}");
     }
@@ -236,13 +236,13 @@ main()
     let shown = shows("low-pass", program, &[], &["--stim", stimulus]);
     for (line, volts) in shown.lines().zip(0..) {
         let found: f64 = line.parse().expect("a number");
-        // A ripple of 986 Hz behind 50 ms is at most 0.025 V.
+        // A ripple of 986 Hz after a filter of 50 ms is at most 0.025 V.
         assert!((found - f64::from(volts)).abs() < 0.03, "{shown}");
     }
 }
 
-/// The program that makes a sine with two outputs of a Konnect board, what the board took and what came of it; `name` is
-/// the test's own.
+/// The program that generates a sine with two outputs of a Konnect board, the voltage that the board was given, and the
+/// result; `name` is that of the test.
 fn software_pwm(name: &str) -> Vec<Vec<f64>> {
     let scratch = Scratch::new(name);
     let folder = root().join("c-programs/konnect");
@@ -262,7 +262,7 @@ fn software_pwm(name: &str) -> Vec<Vec<f64>> {
     table(&scratch, "a.csv")
 }
 
-/// The circuit of that program: supply in volts, time constant in seconds, seconds of a tick.
+/// The circuit for that program: supply in volts, time constant in seconds, duration of a tick in seconds.
 const SUPPLY: f64 = 11.23;
 const CONSTANT: f64 = 100.0 * 290e-6;
 const TICK: f64 = 90e-6;
@@ -272,7 +272,7 @@ fn the_filter_matches_the_closed_form_of_a_low_pass() {
     let rows = software_pwm("devices-closed-form");
     let mut volts = 0.0;
     for pair in rows.windows(2) {
-        // The input shows the voltage at the end of the tick before.
+        // The input shows the voltage at the end of the previous tick.
         let counts = f64::round(volts * 204.8);
         assert!((pair[1][2] - counts).abs() <= 1.0, "{} for {counts} at {}", pair[1][2], pair[1][0]);
         let outputs = pair[0][1] as u32;
@@ -288,7 +288,7 @@ fn the_filter_matches_the_closed_form_of_a_low_pass() {
 #[test]
 fn the_filtered_sine_is_within_two_percent_of_the_wanted_one() {
     let rows = software_pwm("devices-sine");
-    // Four whole periods of 5 Hz, the capacitor charged before.
+    // Four whole periods of 5 Hz, after the capacitor is charged.
     let periods: Vec<_> = rows.iter().filter(|row| (0.2..1.0).contains(&row[0])).collect();
     let count = periods.len() as f64;
     let mean = |value: &dyn Fn(&[f64]) -> f64| periods.iter().map(|row| value(row)).sum::<f64>() / count;
@@ -428,7 +428,7 @@ main()
 }
 ";
     let machine = "[uart]\ninput = \"in.txt\"\noutput = \"out.txt\"\n";
-    // Names are those of the folder of the machine file.
+    // Names are relative to the folder of the machine file.
     let files = [("m/a.toml", machine), ("m/in.txt", "HAL.")];
     let (output, scratch) = run("uart", program, &files, &["--machine", "m/a.toml"]);
     assert_eq!((output.code, output.stderr.as_str()), (0, ""));
@@ -458,7 +458,7 @@ main()
     let text = "x".repeat(101);
     let shown = shows("baud", program, &[("in.txt", &text)], &["--uart-input", "in.txt"]);
     let seconds: f64 = shown.trim().parse().expect("a number");
-    // A character is 0.26 ms.
+    // A character takes 0.26 ms.
     assert!((seconds - 0.0260).abs() <= 0.000_26, "{seconds}");
 }
 
@@ -657,7 +657,7 @@ fn a_spindle_is_switched_by_two_bits() {
                    printf(\"%.1f \", speed());\n  SetBit(154);\n  printf(\"%.1f\\n\", speed());\n}\n";
     let machine = "[spindle]\naxis = 6\ncounts_per_rev = 1000\nbits = { cw = 154, ccw = 155 }\n\
                    full_scale_rps = 20\ntau_s = 0.05\n";
-    // Ten time constants later it runs at full speed; with both bits it stands.
+    // Ten time constants later it runs at full speed; with both bits it does not move.
     let options = ["--machine", "s.toml", "-R", "no-both-directions"];
     let shown = shows("spindle-bits", program, &[("s.toml", machine)], &options);
     assert_eq!(shown.replace("-0.0", "0.0"), "0.0 20.0 -20.0 0.0\n");

@@ -1,4 +1,4 @@
-//! Files on the PC: what goes over the link, as recorded from the released firmware, and what is on the disk then.
+//! Files on the PC: the data on the link, as recorded from the released firmware, and the resulting files on the disk.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,14 +10,14 @@ use kmotiondef::{ThreadId, Ticks};
 use runtime::{Board, Config, Directory, EventKind};
 use serde_json::Value as Json;
 
-/// Ticks that a program of a few lines needs at most.
+/// The maximum number of ticks for a program of a few lines.
 const LIMIT: u64 = 20_000;
 
-/// The recorded board's text from memory that was never written, and the one here: at the end of a file `fscanf`
-/// converts the contents of its buffer, which on the board is no longer the last line.
+/// The text from uninitialised memory on the recorded board, and the one here: at the end of a file `fscanf` converts
+/// the contents of its buffer, which on the board is no longer the last line.
 const LEFT_OVER: (&str, &str) = ("\u{1b}2 6 0 1\r\n", "\u{1b}2 5 6 1\r\n");
 
-/// A board with a program, recorded without a PC of its own.
+/// A board with a program, recorded without a PC.
 fn board(source: &str, config: Config) -> Board {
     let source = format!("#include \"KMotionDef.h\"\nchar zbuf[1000];\n{source}\n").into_bytes();
     let options = Options::default();
@@ -30,7 +30,7 @@ fn board(source: &str, config: Config) -> Board {
     board
 }
 
-/// A PC that does what the recorded one did: it answers requests for files from texts.
+/// A PC that acts like the recorded one: it answers requests for files from texts.
 #[derive(Default)]
 struct Pc {
     files: BTreeMap<String, String>,
@@ -38,7 +38,7 @@ struct Pc {
 }
 
 impl Pc {
-    /// The answer to a request that has one.
+    /// The answer to a request, if it has one.
     fn answer(&mut self, line: &str) -> Option<String> {
         let text = |code: char| line.strip_prefix(code);
         if let Some(name) = text('\u{4}') {
@@ -96,7 +96,7 @@ fn file_requests_match_the_released_firmware() {
     }
 }
 
-/// Runs a program on a board whose PC has a disk; what it prints, and the remarks.
+/// Runs a program on a board whose PC has a disk; returns the console, and the remarks.
 fn run(scratch: &Scratch, source: &str) -> (Vec<String>, Vec<String>) {
     let files = Box::new(Directory::new(scratch.path().join("disk")));
     let mut board = board(source, Config { files, ..Config::default() });
@@ -193,8 +193,8 @@ fn the_command_does_not_follow_links() {
     assert_eq!(fs::read_to_string(scratch.path().join("secret.txt")).expect("it is there"), "secret");
 }
 
-/// Each line that is read asks for the next. If the file is closed before the answer, the next `fopen` takes it for its
-/// own, as on the board.
+/// Each line that is read requests the next one. If the file is closed before the answer arrives, the next `fopen`
+/// takes the answer for its own, as on the board.
 #[test]
 fn an_answer_about_the_file_before_is_remarked_when_the_next_is_opened() {
     let scratch = Scratch::new("old-file-answer");

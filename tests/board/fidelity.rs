@@ -1,9 +1,9 @@
-//! Whole programs against what the released firmware did with them: `data/vectors/fidelity.jsonl`.
+//! Complete programs, compared with the recorded behaviour of the released firmware: `data/vectors/fidelity.jsonl`.
 //!
-//! A recorded row holds what is in memory when the servo interrupt of its tick ends; a trace of the board samples there
-//! too. Tick 0 is the one in whose slice the program stored 1 in `persist.UserData[0]`. Rows are compared in every
-//! column. The last line is not a program: it says what the gather buffer holds at power-up, 72,668 bytes of the vendor's
-//! data for the FPGA, which cc67 does not have; there it is zero.
+//! A recorded row contains the state of memory at the end of the servo interrupt of its tick, where a trace of the
+//! board also samples. Tick 0 is the tick in whose slice the program stored 1 in `persist.UserData[0]`. Rows are
+//! compared in every column. The last line is not a program: it describes the contents of the gather buffer at
+//! power-up, 72,668 bytes of the vendor's data for the FPGA, which cc67 does not have; here the buffer contains zeros.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -16,19 +16,19 @@ use runtime::trace::{Record, TraceRequest};
 use runtime::{Event, EventKind};
 use serde_json::Value as Json;
 
-/// Ticks of a run without rows.
+/// The length in ticks of a run without rows.
 const SHORT_RUN: u64 = 1500;
 
-/// Ticks after the last row in which programs print what they have seen.
+/// The number of ticks after the last row in which programs print their results.
 const TO_THE_END: u64 = 3000;
 
-/// Ticks in which a program must begin.
+/// The number of ticks in which a program must begin.
 const MOST_BEFORE: u64 = 2000;
 
-/// The tolerance of a position, relative to the larger of it and 1.
+/// The tolerance of a position, relative to its size but at least absolute.
 const PRECISION: f64 = 1e-8;
 
-/// Beginnings of the names of recordings that cc67 does not follow, each with the reason.
+/// Prefixes of the names of recordings that cc67 does not reproduce, each with the reason.
 const DIFFERENT: &[(&str, &str)] = &[
     ("address of a parameter: store through &first", VENDOR),
     ("address of a parameter: read through &first", VENDOR),
@@ -45,10 +45,10 @@ const DIFFERENT: &[(&str, &str)] = &[
     ),
 ];
 
-/// An error of the vendor's compiler; cc67 compiles C.
+/// An error of the vendor's compiler; cc67 compiles standard C.
 const VENDOR: &str = "the vendor's compiler takes a wrong address";
 
-/// Returns a column as an expression of a program; `None` for values that no program can see.
+/// Returns a column as an expression of a program; `None` for values that are not visible to programs.
 fn expression(column: &str, name: &str, checks: &mut usize) -> Option<String> {
     Some(match column {
         "CS0_t" => "CS0_t".to_owned(),
@@ -56,7 +56,7 @@ fn expression(column: &str, name: &str, checks: &mut usize) -> Option<String> {
         "CoordSystem0 set" => "CoordSystem0 != 0".to_owned(),
         "LastCoordSystem0 set" => "LastCoordSystem0 != 0".to_owned(),
         "StoppingState" => "CS0_StoppingState".to_owned(),
-        // The place of the servo's message is the board's own.
+        // The address of the servo's message is private to the board.
         "message pending" | "its axis" => return None,
         "mark set by the program" => "persist.UserData[2]".to_owned(),
         _ if column.starts_with("CheckDone") => {
@@ -93,7 +93,7 @@ fn programs(line: &Json) -> BTreeMap<i32, String> {
 #[derive(Default)]
 struct Shown {
     console: String,
-    /// The values of each tick in which some changed.
+    /// The values of each tick in which any of them changed.
     samples: BTreeMap<u64, Vec<f64>>,
 }
 
@@ -113,13 +113,13 @@ impl Shown {
         }
     }
 
-    /// The values in a tick.
+    /// The values at a tick.
     fn at(&self, tick: u64) -> &[f64] {
         self.samples.range(..=tick).next_back().map(|(_, values)| values.as_slice()).unwrap_or_default()
     }
 }
 
-/// The board of a line with its programs running, after the commands in advance.
+/// Creates the board of a line with its programs running, after the initial commands.
 fn begin(line: &Json, scratch: &Scratch, shown: &mut Shown) -> Session {
     let mut setup = Setup::default();
     setup.options.timing = Timing::VENDOR;
@@ -150,13 +150,13 @@ fn is_near(found: f64, recorded: &Json) -> bool {
     (found - recorded).abs() <= PRECISION * recorded.abs().max(1.0)
 }
 
-/// A line that was run to its last row.
+/// A line that was run up to its last row.
 struct Run<'l> {
     line: &'l Json,
-    /// The columns after the tick, each with what it is in the words of a program.
+    /// The columns after the tick, each with its expression in the program.
     columns: Vec<(&'l str, Option<String>)>,
     session: Session,
-    /// The sources, which expressions are read with.
+    /// The folder of the sources, with which expressions are compiled.
     _scratch: Scratch,
     shown: Shown,
     /// The tick in whose slice the program began.
@@ -254,7 +254,7 @@ impl<'l> Run<'l> {
     }
 }
 
-/// Runs a line; where it differs.
+/// Runs a line; returns the differences.
 fn differences(line: &Json, index: usize) -> Vec<String> {
     let mut run = Run::new(line, index);
     let mut found = Vec::new();

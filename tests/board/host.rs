@@ -1,4 +1,4 @@
-//! The host interface as programs that embed a board use it.
+//! The host interface, as used by programs that embed a board.
 
 use std::sync::mpsc;
 use std::thread;
@@ -11,7 +11,7 @@ use kmotiondef::structs::MainStatus;
 const COUNTER: &str =
     "#include \"KMotionDef.h\"\nmain()\n{\n  for (;;) { WaitNextTimeSlice(); persist.UserData[9]++; }\n}\n";
 
-/// A board that runs `source` in thread 1, and the folder of its file.
+/// A board that runs `source` in thread 1, and the folder of the source.
 fn board(name: &str, source: &str) -> (Board, Scratch) {
     let scratch = Scratch::new(name);
     scratch.write("a.c", source);
@@ -86,7 +86,7 @@ fn a_client_that_dies_loses_the_token() {
         assert_eq!(second.kmotion_lock(), Lock::Locked);
         sender.send(()).expect("it is awaited");
         thread::sleep(Duration::from_millis(20));
-        // Whatever ends a client, it is dropped.
+        // However a client ends, it is dropped.
         panic!("the client fails while it holds the token");
     });
     held.recv().expect("the token is taken");
@@ -106,8 +106,8 @@ fn a_reader_that_does_not_read_makes_the_program_wait() {
     let printed = number(&mut board, "GetPersistDec 9");
     board.run_for(5.0);
     assert_eq!(number(&mut board, "GetPersistDec 9"), printed, "the program goes on printing");
-    // 1000 lines wait at the PC, 255 on the board, and one cannot be put there. In the slice that fills the PC's list the
-    // board sends as many lines as it has time for: 16 of four digits.
+    // 1000 lines wait at the PC, 255 on the board, and one does not fit there. In the slice that fills the PC's list
+    // the board sends as many lines as it has time for: 16 of four digits.
     assert!((1256..=1272).contains(&printed), "{printed}");
     for line in 0..100 {
         assert_eq!(board.service_console(), Some(line.to_string()));
@@ -121,14 +121,14 @@ fn a_reader_that_does_not_read_makes_the_program_wait() {
 fn replies_that_nobody_reads_take_limited_memory() -> Result<(), HostError> {
     let mut board = Board::new();
     let mut remarks = Vec::new();
-    // Each is 1000 lines of 72 bytes.
+    // Each reply is 1000 lines of 72 bytes.
     for _ in 0..40 {
         board.write_line("GetGatherHex 0 8000")?;
         board.run_for(1.0);
         remarks.extend(board.take_remark());
     }
     assert_eq!(remarks, ["1048576 bytes of replies have not been read; further replies are lost"]);
-    // What came first is there.
+    // The first lines are still there.
     assert_eq!(board.read_line_timeout(0)?, ["00000000"; 8].join(" ") + "\r\n");
     Ok(())
 }

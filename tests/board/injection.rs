@@ -1,9 +1,9 @@
-//! `Inject` and `GetInject`: what the PC's Bode screen gets, against what the released firmware sent.
+//! `Inject` and `GetInject`: the data for the PC's Bode screen, compared with those sent by the released firmware.
 
 use cc67_host::Setup;
 use runtime::{Event, EventKind};
 
-/// An axis that is held: P = 2, Dest 100, Position 7. At this frequency the filter of the noise passes all of it on.
+/// An axis that holds its position: P = 2, Dest 100, Position 7. At this frequency the noise filter passes everything.
 const COMMANDS: [&str; 7] = [
     "InputMode0=4",
     "OutputMode0=0",
@@ -14,10 +14,10 @@ const COMMANDS: [&str; 7] = [
     "Inject0 3536.776513 1",
 ];
 
-/// Samples of a recording.
+/// The number of samples of a recording.
 const SAMPLES: usize = 2048;
 
-/// The first samples as the released firmware sent them: stimulus, Position - Dest, Output, as bits of singles.
+/// The first samples sent by the released firmware: stimulus, Position - Dest, Output, as bits of floats.
 const FIRST: [[u32; 3]; 6] = [
     [0x3C63_41C0, 0xC2BA_0000, 0x433A_0000],
     [0xBEA6_074C, 0xC2BA_0000, 0x433A_071A],
@@ -27,7 +27,7 @@ const FIRST: [[u32; 3]; 6] = [
     [0xBEA8_1350, 0xC2BA_0000, 0x433A_E530],
 ];
 
-/// Those of a second recording: its noise continues the first one's.
+/// The first samples of a second recording: its noise continues that of the first one.
 const SECOND: [[u32; 3]; 2] =
     [[0x3C8C_A120, 0xC2BA_0000, 0x433A_0000], [0x3E3B_8578, 0xC2BA_0000, 0x433A_08CA]];
 

@@ -1,4 +1,4 @@
-//! The simulated board: its threads, devices, files and script commands, from programs and from the PC.
+//! The simulated board: its threads, devices, files and script commands, used by programs and by the PC.
 
 mod c_interface;
 mod cost;

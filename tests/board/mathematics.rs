@@ -1,7 +1,7 @@
-//! The functions of mathematics, to the last bit: the same program on the modelled board and on the released firmware.
+//! Mathematical functions, compared exactly: the same program on the modelled board and on the released firmware.
 //!
-//! Needs the file of the firmware in `CC67_FIRMWARE`. [`FUNCTIONS`] has the least number of 10,000 arguments for which both give the
-//! same bits; a better function raises it.
+//! Needs a firmware file in `CC67_FIRMWARE`. [`FUNCTIONS`] contains the minimum number of arguments, of 10,000, for
+//! which both give the same bits; a better function raises it.
 
 use std::fmt::Write as _;
 
@@ -11,12 +11,12 @@ use kmotiondef::timing::Timing;
 use kmotiondef::variables::GATHER_BUFFER;
 use kmotiondef::{GuestAddr, ThreadId, Ticks};
 
-/// Arguments of a function.
+/// The number of arguments for each function.
 const ARGUMENTS: u32 = 10_000;
 /// The longest run: 60 s of board time.
 const LONGEST: Ticks = Ticks::new(666_667);
 
-/// Numbers that are drawn: those of `2^first` up to `2^(first + spread)`, where the spread is a power of two.
+/// Random numbers between `2^first` and `2^(first + spread)`, where the spread is a power of two.
 #[derive(Clone, Copy)]
 struct Drawn {
     first: i32,
@@ -35,7 +35,7 @@ const BELOW_ONE: Drawn = drawn(-8, 8, true);
 const POWER: Drawn = drawn(-4, 8, true);
 const BASE: Drawn = drawn(-4, 8, false);
 
-/// A function as C calls it, its arguments, and the least number of equal results.
+/// A function call in C, its arguments, and the minimum number of equal results.
 type Tried = (&'static str, Drawn, u32);
 
 const FUNCTIONS: &[Tried] = &[
@@ -74,12 +74,13 @@ const FUNCTIONS: &[Tried] = &[
     ("_divf(x, y)", ANY, 10_000),
 ];
 
-/// Functions that multiply with what their caller has left in register A8, where a fifth argument is.
+/// Functions that multiply by the value that their caller has left in register A8, in which a fifth argument would be
+/// passed.
 ///
-/// Their first product is issued before the conversion of its factor has reached the low register of the pair.
+/// Their first product is issued before the converted factor has reached the low register of the pair.
 const WITH_A8: [&str; 3] = ["logf", "log2f", "log10f"];
 
-/// A call as the program of a board makes it: on the firmware with 0 in A8.
+/// A call in the program for a board: on the firmware with 0 in A8.
 fn call_on(call: &str, is_firmware: bool) -> String {
     match call.split_once('(') {
         Some((name, _)) if is_firmware && WITH_A8.contains(&name) => {

@@ -1,7 +1,7 @@
-//! Programs that wait by polling do the same with and without shortcuts: what they print and when, remarks, traces,
-//! memory and threads, on both engines, in both modes of preemption, and from a snapshot on.
+//! Programs that wait by polling do the same with and without shortcuts: output with its times, remarks, traces, memory
+//! and threads, on both engines, in both modes of preemption, and from a snapshot on.
 //!
-//! An ordinary run takes a few programs. `CC67_PROGRAMS=1000` takes this many, `CC67_SEED=n` begins at another seed.
+//! A normal run takes a few programs. `CC67_PROGRAMS=1000` takes that many, `CC67_SEED=n` begins with another seed.
 
 use std::path::Path;
 use std::thread;
@@ -18,23 +18,23 @@ use vm::interp::BytecodeEngine;
 use vm::machine::Config as MachineConfig;
 use vm::thread::ThreadState;
 
-/// Programs of an ordinary run, and the most of a long one.
+/// The number of programs in a normal run, and the maximum in a long one.
 const FEW: u64 = 5;
 const MOST: u64 = 1000;
 
-/// Programs that have shown a difference: a function of mathematics ended a wait on one engine and not on the other.
+/// Programs that have shown a difference: a mathematical function ended a wait on only one of the engines.
 const FOUND: &[u64] = &[205];
 
-/// Board time of a run: 90 ms.
+/// The board time of a run: 90 ms.
 const LIMIT: Ticks = Ticks::new(1000);
-/// The instant of the snapshot.
+/// The time of the snapshot.
 const HALF: Ticks = Ticks::new(450);
 
 fn number(variable: &str, default: u64) -> u64 {
     std::env::var(variable).ok().and_then(|text| text.parse().ok()).unwrap_or(default)
 }
 
-/// Everything that can be seen of a run.
+/// All observations of a run.
 #[derive(Debug, PartialEq)]
 struct Seen {
     events: Vec<Event>,
@@ -72,7 +72,7 @@ fn finish<E: Engine>(mut events: Vec<Event>, board: &mut Board<E>) -> Seen {
     Seen { threads: threads.collect(), memory: checksum(board), events }
 }
 
-/// A checksum of on-chip RAM and of the SDRAM that programs use (FNV-1a by words).
+/// A checksum of on-chip RAM and of the SDRAM for programs (FNV-1a by words).
 fn checksum<E: Engine>(board: &Board<E>) -> u64 {
     let words = (0x1000_0000..0x1004_0000_u32).chain(0x8000_0000..0x8010_0000).step_by(4);
     words.fold(0xcbf2_9ce4_8422_2325, |sum, address| {
@@ -81,8 +81,8 @@ fn checksum<E: Engine>(board: &Board<E>) -> u64 {
     })
 }
 
-/// Runs the programs on one engine with and without shortcuts; returns what was seen, and the cycles that were executed
-/// with them and without.
+/// Runs the programs on one engine with and without shortcuts; returns the observations, and the executed cycles with
+/// and without them.
 fn run<E: Engine>(seed: u64, images: &[Vec<u8>], preemption: Preemption) -> (Seen, [u64; 2]) {
     let mut plain = board::<E>(images, false, preemption);
     let expected = finish(Vec::new(), &mut plain);
@@ -109,7 +109,7 @@ fn assert_same(seed: u64, expected: &Seen, seen: &Seen, preemption: Preemption, 
     assert!(expected.memory == seen.memory, "seed {seed}, {preemption:?}, {what}: memory differs");
 }
 
-/// Compares the programs `seeds`; returns the cycles that were executed with shortcuts and without.
+/// Compares the programs for `seeds`; returns the executed cycles with and without shortcuts.
 fn compare(seeds: &[u64]) -> [u64; 2] {
     let mut all = [0; 2];
     for seed in seeds {
@@ -167,7 +167,7 @@ fn waits_in_few_cycles<E: Engine>(condition: &str) {
     board.run(Ticks::new(30_000), &mut |event| events.push(event));
     let done = EventKind::ConsoleLine(b"done".to_vec());
     assert!(events.iter().any(|event| event.kind == done), "{condition}: the wait does not end");
-    // All that passes is 400 million cycles; 22,000 ticks count as 500 each.
+    // The elapsed time is 400 million cycles; 22,000 ticks count as 500 each.
     let work = board.machine().work();
     assert!(work < 25_000_000, "{condition}: {work} cycles");
 }

@@ -1,4 +1,4 @@
-//! The session: a board under control, on both engines, and what was done by hand done again.
+//! The session: a board under control, on both engines, and the repetition of manual actions.
 
 use cc67_host::{End, Session, Setup, Until, UserProgram, WatchError};
 use harness::Scratch;
@@ -9,7 +9,7 @@ use vm::engine::Engine;
 use vm::interp::BytecodeEngine;
 use vm::native::NativeEngine;
 
-/// Two threads: one counts ticks in which a switch is on, one prints what it finds in UserData.
+/// Two threads: one counts ticks in which a switch is on, the other prints the values in UserData.
 const COUNTER: &str = "\
 #include \"KMotionDef.h\"
 int count, ticks;
@@ -76,14 +76,14 @@ fn lines(kept: &mut Vec<(Cycles, String)>) -> impl FnMut(Event) {
     }
 }
 
-/// All of the memory in which programs and their data are.
+/// All memory that contains programs and their data.
 fn memory<E: Engine>(session: &Session<Board<E>>) -> Vec<u8> {
     let (base, size) = (kmotiondef::map::PROGRAM_BASE, 7 * kmotiondef::map::PROGRAM_SIZE);
     let bytes = session.target().memory().read_bytes(kmotiondef::GuestAddr::new(base), size);
     bytes.expect("it is there").to_vec()
 }
 
-/// Does things by hand at many instants; what was shown, and the recording.
+/// Makes manual actions at many times; returns the output, and the recording.
 fn by_hand<E: Engine>(mut session: Session<Board<E>>) -> (Shown, String) {
     let mut kept = Vec::new();
     let mut hear = lines(&mut kept);
@@ -242,7 +242,7 @@ fn a_run_can_be_interrupted_from_another_thread() {
     let (mut session, _scratch) = session("session-interrupt");
     let interrupter = session.interrupter();
     let beside = std::thread::spawn(move || interrupter.interrupt());
-    // Its programs never end.
+    // The programs never end.
     assert_eq!(session.run(Ticks::new(u64::MAX), &mut |_| ()), End::Interrupted);
     beside.join().expect("it interrupts");
     assert!(session.thread(thread(1)).is_active());

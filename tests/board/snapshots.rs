@@ -1,4 +1,4 @@
-//! A board goes back to any instant and continues from there as it continued then, on all engines.
+//! A board can return to any time, and continues from there as it did then, on all engines.
 
 use std::fs;
 use std::path::Path;
@@ -16,8 +16,8 @@ use vm::interp::BytecodeEngine;
 use vm::memory::GuestMemory;
 use vm::native::NativeEngine;
 
-/// Programs of `c-programs/`; together they have motors, switches, a gantry, a spindle, option boards, the serial
-/// port, a call-back, several threads, flash, recordings and a path of the coordinate system.
+/// Programs of `c-programs/`; together they use motors, switches, a gantry, a spindle, option boards, the serial port,
+/// a call-back, several threads, flash, recordings and a path of the coordinate system.
 const PROGRAMS: [&str; 21] = [
     "flash/start_up",
     "gather/log",
@@ -42,13 +42,13 @@ const PROGRAMS: [&str; 21] = [
     "util/recover",
 ];
 
-/// Instants of a program: random ones between power-up and the tick in which it has ended.
+/// The number of snapshot times in a program: random ones between power-up and the tick of its end.
 const INSTANTS: usize = 10;
 
-/// Most ticks of a program: 1.8 s.
+/// The maximum number of ticks for a program: 1.8 s.
 const LONGEST: u64 = 20_000;
 
-/// A program with what is beside it, and with those that its first line names for other threads.
+/// A program with its associated files, and with the programs that its first line names for other threads.
 fn setup(name: &str, target: Target) -> Setup {
     let path = root().join("c-programs").join(name).with_extension("c");
     let beside = |suffix: &str| fs::read_to_string(path.with_extension(suffix)).ok();
@@ -99,7 +99,7 @@ fn seen<E: Engine>(session: &Session<Board<E>>) -> Seen {
     }
 }
 
-/// A run from its beginning or from an instant on: every event with its time, and the end.
+/// A run from its beginning or from a snapshot on: every event with its time, and the end.
 struct Run {
     events: Vec<Event>,
     end: Seen,
@@ -112,7 +112,7 @@ impl Run {
         Self { events, end: seen(session) }
     }
 
-    /// Checks another that has gone the last part of this one's way.
+    /// Checks that another run equals the last part of this one.
     fn check(&self, other: &Self, what: &str) {
         let first = self.events.len().checked_sub(other.events.len());
         let events = first.map(|first| &self.events[first..]);
@@ -124,7 +124,7 @@ impl Run {
     }
 }
 
-/// Runs a program straight on, then with snapshots at random instants, and then from each of them.
+/// Runs a program without interruption, then with snapshots at random times, and then from each of them.
 fn check<E: Engine>(name: &str, target: Target, random: &mut Random) {
     let session = || setup(name, target).session_on(E::default()).expect(name);
     let mut straight = session();
@@ -153,7 +153,7 @@ fn check<E: Engine>(name: &str, target: Target, random: &mut Random) {
         let what = format!("{name} from tick {}", snapshot.tick().get());
         session.restore(snapshot).expect("it is of this board");
         assert_eq!(session.tick(), snapshot.tick());
-        // Some way on, and again from the same instant.
+        // Runs for some ticks, and again from the same snapshot.
         let way = session.tick().get() + random.draw() % 50;
         session.advance(Ticks::new(way.min(end.get())), &mut |_| ());
         session.restore(snapshot).expect("it is of this board");
@@ -208,7 +208,7 @@ fn a_snapshot_of_a_board_takes_little_time_and_memory() {
     let begin = Instant::now();
     session.restore(&first).expect("it is of this board");
     println!("snapshot {taken:?}, back {:?}, {} bytes changed", begin.elapsed(), second.bytes_beyond(&first));
-    // Many times what it takes, for a computer that has other things to do.
+    // Many times the expected duration, for a busy computer.
     assert!(taken < Duration::from_millis(200), "{taken:?}");
     assert!(second.bytes_beyond(&first) < 0x10_0000);
 }

@@ -1,8 +1,8 @@
-//! The machine around the board: encoders that are turned from outside, inputs that a stimulus takes, amplifiers.
+//! The machine around the board: encoders turned from outside, inputs controlled by a stimulus, amplifiers.
 
 use harness::{Scratch, cc67};
 
-/// Runs a program with a machine file and a stimulus; its console, and its remarks.
+/// Runs a program with a machine file and a stimulus; returns its console, and its remarks.
 fn said(name: &str, program: &str, machine: &str, stimulus: &str) -> (String, String) {
     let scratch = Scratch::new(&format!("surroundings-{name}"));
     scratch.write("a.c", format!("#include \"KMotionDef.h\"\n{program}"));
@@ -46,7 +46,7 @@ fn counts_of_an_encoder_are_scaled_once_whatever_describes_it() {
     }
 }
 
-/// A hand wheel on encoder input 0, which axis 3 reads, moves a stepper on axis 0.
+/// A handwheel on encoder input 0, which axis 3 reads, moves a stepper on axis 0.
 const HAND_WHEEL: &str = "
 main()
 {
@@ -158,7 +158,7 @@ main()
         ("bounce bit 136 for 3ms", "10\n", " for 3 ms"),
         ("pulse bit 136 for 3ms", "10\n", " for 3 ms"),
         ("set bit 136", "11\n", ", until `release bit 136`"),
-        // The input is the stimulus' already, and remains so: the bounce inverts its level.
+        // The stimulus already controls the input, and continues to: the bounce inverts its level.
         ("set bit 136; once axis 0 load > 1600 bounce bit 136 for 3ms", "00\n", ", until `release bit 136`"),
     ] {
         let stimulus = format!("once axis 0 load > 1500 {action}");

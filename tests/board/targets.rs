@@ -1,8 +1,8 @@
-//! One trial of everything that can be controlled: the model on each engine, and the firmware files that
-//! `CC67_FIRMWARE` and `CC67_FIRMWARE_5` name.
+//! A common test of all targets: the model on each engine, and the firmware files named by `CC67_FIRMWARE` and
+//! `CC67_FIRMWARE_5`.
 //!
-//! The same two programs run on each. Their console lines agree among all of them; on each, the past that is reached
-//! again is the past that was, and what follows from it is what followed.
+//! The same two programs run on each. The console lines must be the same on all; on each, the restored past must equal
+//! the original, and so must the continuation.
 
 use std::collections::BTreeMap;
 use std::env;
@@ -18,7 +18,7 @@ use runtime::{Event, EventKind};
 use vm::interp::BytecodeEngine;
 use vm::native::NativeEngine;
 
-/// Moves an axis and answers what the other thread asks.
+/// Moves an axis and answers requests of the other thread.
 const MOVER: &str = "\
 #include \"KMotionDef.h\"
 int answered;
@@ -43,7 +43,7 @@ main()
     }
 }
 ";
-/// Counts slices, calls a library function of the firmware and ends when the first thread has moved three times.
+/// Counts slices, calls a library function of the firmware, and ends when the first thread has moved three times.
 const ASKER: &str = "\
 #include \"KMotionDef.h\"
 double sum;
@@ -63,9 +63,9 @@ main()
 }
 ";
 
-/// The end of the trial: 0.27 s.
+/// The end of the test: 0.27 s.
 const END: u64 = 3000;
-/// Instants that are reached again.
+/// The number of times that are restored.
 const INSTANTS: usize = 200;
 /// Lines of both programs.
 const LINES: [&str; 4] = ["asked often", "at 250.0, 1 asked", "at 500.0, 1 asked", "at 750.0, 1 asked"];
@@ -82,7 +82,7 @@ fn setup(scratch: &Scratch, options: compiler::Options) -> Setup {
     setup
 }
 
-/// A target at an instant: the memory of both programs, what they share, an axis, and the time.
+/// The state of a target at one time: the memory of both programs, their shared data, an axis, and the time.
 #[derive(Debug, PartialEq)]
 struct Seen {
     memory: Vec<u8>,
@@ -102,7 +102,7 @@ fn seen<T: Target>(session: &Session<T>) -> Seen {
     }
 }
 
-/// Random ticks of the trial.
+/// Random ticks of the test.
 fn instants() -> Vec<Ticks> {
     let mut random = Random::new(0x5EED);
     (0..INSTANTS).map(|_| Ticks::new(1 + random.draw() % (END - 1))).collect()
@@ -117,7 +117,7 @@ fn console(lines: &mut Vec<(Cycles, String)>) -> impl FnMut(Event) {
     }
 }
 
-/// The trial of one target; its console lines, in the order of the alphabet.
+/// Tests one target; returns its console lines in alphabetical order.
 fn trial<T: Target>(name: &str, mut session: Session<T>) -> Vec<String> {
     let mut timeline = Timeline::new(&mut session).expect(name);
     let order = instants();
@@ -139,7 +139,7 @@ fn trial<T: Target>(name: &str, mut session: Session<T>) -> Vec<String> {
             at.get()
         );
     }
-    // What follows from the past is what followed.
+    // The continuation must be the same.
     for at in order.iter().take(5) {
         timeline.go_to(&mut session, *at).expect(name);
         let (from, mut again) = (session.now(), Vec::new());

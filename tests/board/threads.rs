@@ -1,8 +1,7 @@
-//! Rotation, slices and time functions against measurements of the released firmware.
+//! Rotation, slices and time functions, compared with measurements of the released firmware.
 //!
-//! `data/vectors/threads.jsonl` is a copy of those measurements. Times there include the cost
-//! of single instructions, which the simulated board chooses differently; they are compared
-//! with a tolerance of 2 µs, tick counts and orders exactly.
+//! `data/vectors/threads.jsonl` is a copy of those measurements. Times include the cost of single instructions, which
+//! differs on the simulated board; they are compared with a tolerance of 2 µs, tick counts and orders exactly.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -10,17 +9,17 @@ use std::fs;
 use harness::{Output, Scratch, cc67};
 use serde_json::Value;
 
-/// Difference allowed between a measured and a simulated duration.
+/// The allowed difference between a measured and a simulated duration.
 const TOLERANCE: f64 = 2e-6;
 
 /// A servo sample.
 const TICK: f64 = 90e-6;
 
-/// The same for the first of a series, which begins wherever the code before it ended.
+/// The allowed difference for the first time of a series, which begins where the code before it has ended.
 const FIRST_TOLERANCE: f64 = 10e-6;
 
-/// A reading just after thread 0 had the processor. Its slice is as long there as the firmware's work, and always the
-/// same here: 13.3 µs after the tick on the board, 9.9 µs here.
+/// A reading directly after a slice of thread 0. On the board the length of that slice is the firmware's work; here it
+/// is constant: the reading comes 13.3 µs after the tick on the board, 9.9 µs here.
 const AFTER_THREAD_0: &str = "Time_sec after WaitNextTimeSlice minus ServoTick*TIMEBASE";
 const THREAD_0_TOLERANCE: f64 = 4e-6;
 
@@ -37,10 +36,10 @@ fn run(scratch: &Scratch, arguments: &[String]) -> Output {
     cc67(scratch, all)
 }
 
-/// The program that keeps a thread busy without end.
+/// A program that keeps a thread busy forever.
 const BUSY: &str = "main() { for (;;) ; }\n";
 
-/// Runs `statements` in thread 1 beside busy threads; they fill `g[]`, whose first `count` values are printed.
+/// Runs `statements` in thread 1 while other threads are busy; they fill `g[]`, whose first `count` values are printed.
 fn times(statements: &str, others: &[u64], count: usize) -> Vec<f64> {
     let name: String =
         statements.bytes().map(u32::from).fold(0u32, |a, b| a.wrapping_mul(31) + b).to_string();
@@ -49,7 +48,7 @@ fn times(statements: &str, others: &[u64], count: usize) -> Vec<f64> {
         "#include \"KMotionDef.h\"\ndouble g[200];\nmain()\n{{\n  int i, t0; double T;\n  \
          {statements}\n  for (i = 0; i < {count}; i++) printf(\"%.9f\\n\", g[i]);\n  persist.UserData[9] = 1;\n}}\n"
     );
-    // The others end with thread 1, so that the run ends by itself.
+    // The other threads end with thread 1, so that the run ends by itself.
     let busy = "#include \"KMotionDef.h\"\nmain() { while (!persist.UserData[9]) ; }\n";
     scratch.write("a.c", source).write("busy.c", busy);
     let mut arguments = vec!["1:a.c".to_owned()];
@@ -81,7 +80,7 @@ fn slices_rotate_as_on_the_board() {
         source.push_str(
             "    if (last >= 1000) gather_buffer[(int)last - 1000] = CurrentThread; else n = 0; }\n",
         );
-        // One thread prints: an end of line from another would end its line too.
+        // Only one thread prints: a newline from another thread would also end its line.
         source.push_str("  Delay_sec(1.0); if (CurrentThread != FIRST) return; for (n = 0; n < 40; n++)\n");
         source.push_str("    printf(\"%d\", (int)gather_buffer[10 + n]);\n  printf(\"\\n\");\n}\n");
         scratch.write("a.c", source);
@@ -89,7 +88,7 @@ fn slices_rotate_as_on_the_board() {
         arguments.extend(active.iter().map(|thread| format!("{thread}:a.c")));
         let output = run(&scratch, &arguments);
         let seen = output.stdout.lines().find(|line| !line.is_empty()).unwrap_or_default();
-        // The measurement starts anywhere in the rotation; so does ours.
+        // The measurement begins anywhere in the rotation; so does this one.
         let period = active.len() + 1;
         let matches =
             (0..period).any(|shift| seen.get(shift..shift + 30).is_some_and(|part| expect.starts_with(part)));
@@ -121,7 +120,7 @@ fn waits_and_delays_take_the_measured_times() {
             (measured, simulated)
         };
         for (index, (measured, simulated)) in measured.iter().zip(&simulated).enumerate() {
-            // When a busy loop loses the processor depends on what its instructions cost.
+            // The time at which a busy loop loses the processor depends on the cost of its instructions.
             if name.starts_with("consecutive") && (*measured > TICK || *simulated > TICK) {
                 continue;
             }
@@ -151,7 +150,7 @@ fn scaled(values: &[f64], factor: f64) -> Vec<f64> {
     values.iter().map(|value| value * factor).collect()
 }
 
-/// The program of thread 2 in the measured scenarios: it counts starts in a global and a static, then counts endlessly.
+/// The program of thread 2 in the measured scenarios: it counts starts in a global and a static, then counts forever.
 const SECOND: &str = "#include \"KMotionDef.h\"\nint g = 5; int s = 7;\nmain()\n{\n  g++; s++;\n  \
     persist.UserData[20] = g; persist.UserData[21] = s; persist.UserData[22] = 0;\n  persist.UserData[23]++;\n";
 
@@ -170,7 +169,7 @@ fn start_pause_resume_and_locks_behave_as_measured() {
         };
         let mut report = String::new();
         let expected = vector["UserData"].as_object().expect("an object");
-        // The length of a busy counter depends on instruction costs; the board's own figure cannot be ours.
+        // The value of a busy counter depends on instruction costs, so it cannot be the same here.
         let compared: Vec<_> =
             expected.iter().filter(|(_, value)| value.as_i64().is_some_and(|v| v < 20_000)).collect();
         for (index, _) in &compared {
@@ -186,7 +185,7 @@ fn start_pause_resume_and_locks_behave_as_measured() {
         for (index, value) in compared {
             let _ = writeln!(expect, "{index}={value}");
         }
-        // The board stops, so nobody reports.
+        // The board stops, so no thread reports.
         if name.contains("never ran") {
             assert!(output.stderr.contains("the released firmware stops"), "{name}: {output:?}");
             expect.clear();

@@ -1,21 +1,21 @@
-//! A transcript for every script command: what is sent, what the board answers, what it has done.
+//! A transcript for every script command: the input, the board's reply, and the effect.
 //!
-//! Transcripts are the files of `data/commands`, each section on a freshly booted board. Most answers agree with what
-//! the released firmware was recorded to say, which the tests of `runtime` replay byte for byte; commands that were
-//! not recorded (programs, flash, uploads of recorded samples, `ReadDiskData`) answer as the specification says.
+//! Transcripts are the files of `data/commands`; each section begins with a freshly booted board. Most replies agree
+//! with those recorded from the released firmware, which the tests of `runtime` replay byte for byte; commands that
+//! were not recorded (programs, flash, uploads of recorded samples, `ReadDiskData`) answer as the specification says.
 //!
 //! | line | meaning |
 //! |---|---|
-//! | `== NAME NAME` | begins a section: the commands it is a transcript of |
+//! | `== NAME NAME` | begins a section: the commands that it covers |
 //! | `> TEXT` | a line for the board, or a data line of the command in progress |
 //! | `M> TEXT` | the same, an example of both of the manual's command references; `M1>`, `M2>` of only one |
 //! | `program N: SOURCE` | loads a program into thread N |
-//! | `wait SECONDS`, `drive BIT LEVEL` | board time passes; an input is driven from outside |
-//! | `? ITEM` | asks for an effect: an item of `--trace-items`, `thread N`, or `hex`, `int`, `float`, `double`, `text` of a firmware variable |
+//! | `wait SECONDS`, `drive BIT LEVEL` | lets board time pass; drives an input from outside |
+//! | `? ITEM` | requests an effect: an item of `--trace-items`, `thread N`, or `hex`, `int`, `float`, `double`, `text` of a firmware variable |
 //! | `# TEXT` | a remark |
 //!
-//! Whatever else is in the files is what comes back: replies as they are, console lines after `| `, remarks of
-//! the simulation after `cc67: `, effects after `= `. `CC67_WRITE_TRANSCRIPTS=1` writes what comes back, for review.
+//! All other lines of the files are outputs: replies unchanged, console lines after `| `, remarks of the simulation
+//! after `cc67: `, effects after `= `. `CC67_WRITE_TRANSCRIPTS=1` writes the present outputs, for review.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -28,19 +28,19 @@ use runtime::commands::{COMMANDS, command_at};
 use runtime::trace::Item;
 use runtime::{Board, Config, Event, EventKind, Severity};
 
-/// Ticks that a line and its answer take on the wire, as recorded.
+/// The number of ticks that a line and its reply take on the wire, as recorded.
 const EXCHANGE: u64 = 28;
-/// Seconds of a tick.
+/// The length of a tick in seconds.
 const TIMEBASE: f64 = 90e-6;
-/// Longer answers are shown by their first lines and a sum over all.
+/// The number of lines from which a reply is shown by its first lines and a checksum of all.
 const LONGEST: usize = 16;
-/// The number of those lines that are shown.
+/// The number of lines shown of such a reply.
 const SHOWN: usize = 3;
 
-/// Prompts, and the references whose examples come after them.
+/// Prompts, and the command references from which the examples after them are taken.
 const PROMPTS: [(&str, &[usize]); 4] = [("> ", &[]), ("M> ", &[0, 1]), ("M1> ", &[0]), ("M2> ", &[1])];
 
-/// The line after a prompt, and the references it is an example of.
+/// The line after a prompt, and the references from which it is taken.
 fn sent(line: &str) -> Option<(&str, &'static [usize])> {
     PROMPTS.iter().find_map(|(prompt, of)| line.strip_prefix(prompt).map(|text| (text, *of)))
 }
@@ -160,10 +160,10 @@ impl Player {
         }
     }
 
-    /// An effect.
+    /// The value of an effect.
     fn value(&self, text: &str) -> String {
         if let Ok(item) = Item::new(text) {
-            // What is behind the sixth decimal is the business of the tests of motion.
+            // Decimals beyond the sixth are compared by the tests of motion.
             return ((self.board.value(item) * 1e6).round() / 1e6).to_string();
         }
         let (kind, place) = text.split_once(' ').expect(text);
@@ -186,7 +186,7 @@ impl Player {
     }
 }
 
-/// Returns the transcript of playing the inputs of a transcript.
+/// Replays the inputs of a transcript, and returns the resulting transcript.
 fn replay(text: &str) -> String {
     let mut player = Player::new();
     for line in text.lines().filter(|line| is_input(line)) {
@@ -203,7 +203,7 @@ fn transcripts() -> Vec<(PathBuf, String)> {
     files.into_iter().map(|path| (path.clone(), fs::read_to_string(path).expect("it is text"))).collect()
 }
 
-/// The first line that differs, with what was expected.
+/// The first line that differs, with the expected one.
 fn difference(path: &Path, found: &str, expect: &str) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let mut lines = (1..).zip(found.lines().chain([""]).zip(expect.lines().chain([""])));

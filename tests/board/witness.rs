@@ -1,7 +1,7 @@
-//! Programs of `data/firmware` print on the modelled board what they printed on the released firmware, executed.
+//! Programs of `data/firmware` print on the modelled board the same as on the released firmware.
 //!
-//! Each is a difference that `cc67 compare` has found. `NAME.console` is what `cc67 run --boot` showed, and is made
-//! again, with it alone: a firmware is not needed here.
+//! Each of them showed a difference found by `cc67 compare`. `NAME.console` is the output of `cc67 run --boot`, and is
+//! regenerated only with it: no firmware is needed here.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! The world around the board: stimulus, serial port, operator, and what is wrong with them.
+//! The world around the board: stimulus, serial port, operator, and errors in their descriptions.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 
 use harness::{Output, Scratch, cc67, no_such_file, root};
 
-/// A program that sends back what it receives, with a mark after, up to a full stop.
+/// A program that sends back each received character, followed by a mark, up to a full stop.
 const ECHO: &str = "#include \"KMotionDef.h\"
 main()
 {
@@ -27,7 +27,7 @@ main()
 }
 ";
 
-/// Runs a program with options in a folder of its own, which holds further files.
+/// Runs a program with options in its own folder, with further files.
 fn run(name: &str, program: &str, files: &[(&str, &[u8])], options: &[&str]) -> (Output, Scratch) {
     let scratch = Scratch::new(&format!("world-{name}"));
     fs::write(scratch.path().join("a.c"), program).expect("it is ours");
@@ -52,7 +52,7 @@ fn a_hundred_characters_at_38400_baud_take_26_ms() {
     let sent: Vec<f64> =
         marks.filter(|mark| mark["name"] == "A").filter_map(|mark| mark["ts"].as_f64()).collect();
     assert_eq!(sent.len(), 100);
-    // From the first bit of the first one to the last bit of the last one.
+    // From the first bit of the first character to the last bit of the last one.
     let character = (sent[99] - sent[0]) / 99.0;
     let whole = (sent[99] - sent[0] + character) / 1000.0;
     assert!((whole - 26.0).abs() < 0.26, "{whole} ms");
@@ -71,7 +71,7 @@ fn files_are_the_other_end_of_the_line() {
 fn an_echo_sends_back_what_it_gets() {
     let stimulus = "device echo; at 1ms uart \"x\"; at 50ms uart \".\"";
     let (output, _) = run("echo", ECHO, &[], &["--stim", stimulus]);
-    // Each character comes back for ever; the full stop ends it.
+    // Each character is sent back forever; the full stop ends it.
     assert_eq!((output.code, output.stdout.as_str()), (0, "done\n"), "{}", output.stderr);
 }
 
@@ -286,7 +286,7 @@ fn one_program_runs_after_the_other() {
             "once thread 1 ends after 1s bit 1050 = 1; once bit 1050 rises run thread 1 \"second.c\"",
             "first\nsecond\n",
         ),
-        // It cannot come about any more.
+        // It can no longer happen.
         ("once thread 3 ends run thread 2 \"second.c\"", "first\n"),
         ("once thread 3 ends run thread 2 \"second.c\"; every 1s toggle bit 1050", "first\n"),
     ] {

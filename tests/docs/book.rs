@@ -1,6 +1,6 @@
-//! The book: its programs do what it says, its links lead somewhere, its lists are those of the tables.
+//! The book: its programs behave as described, its links are valid, its lists match the tables.
 //!
-//! Chapters that are lists are made from the tables; `CC67_WRITE_BOOK=1 cargo test --test docs` rewrites them.
+//! Chapters that are lists are generated from the tables; `CC67_WRITE_BOOK=1 cargo test --test docs` rewrites them.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -25,7 +25,7 @@ fn read(name: &str) -> String {
     fs::read_to_string(source().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// The fenced blocks of a chapter: what follows the fence, and the text.
+/// The fenced blocks of a chapter: the text after the fence, and the contents.
 fn blocks(text: &str) -> Vec<(String, String)> {
     let mut blocks = Vec::new();
     let mut open: Option<(String, String)> = None;
@@ -73,12 +73,12 @@ fn programs_do_what_the_book_says() {
     assert!(count >= 3, "only {count} programs");
 }
 
-/// Returns whether a build without the default features has no such command.
+/// Returns whether a build without the default features lacks a command.
 fn is_left_out(command: &str) -> bool {
     command == "live" && !cfg!(feature = "live")
 }
 
-/// The command lines of `cc67` in a text: the words of each, without what the shell makes of them.
+/// The command lines of `cc67` in a text: the words of each, without the parts interpreted by the shell.
 fn command_lines(text: &str) -> Vec<Vec<&str>> {
     const BEGINNINGS: [&str; 3] = ["cc67 ", "target/release/cc67 ", "cargo run --release -- "];
     let lines = text.lines().filter_map(|line| BEGINNINGS.iter().find_map(|start| line.strip_prefix(start)));
@@ -103,7 +103,7 @@ fn commands_and_options_in_the_book_exist() {
                 continue;
             }
             assert_eq!(help.code, 0, "{}: cc67 {words:?}", page.display());
-            // What follows `--` are options of another command.
+            // Options after `--` belong to another command.
             let own = options.iter().take_while(|word| **word != "--");
             for option in own.filter(|word| word.starts_with("--")) {
                 let name = option.split('=').next().unwrap_or_default();
@@ -137,7 +137,7 @@ fn prose(path: &Path) -> String {
     prose
 }
 
-/// The places that links to a page can name: its headings, as the book and code hosts spell them.
+/// The anchors that links to a page can use: its headings, as the book and code hosts convert them.
 fn anchors(prose: &str) -> BTreeSet<String> {
     let headings = prose.lines().filter(|line| line.starts_with('#'));
     let spell = |line: &str| {
@@ -148,7 +148,7 @@ fn anchors(prose: &str) -> BTreeSet<String> {
     headings.map(spell).collect()
 }
 
-/// Every link of a page leads to a file, and to a heading of it.
+/// Checks that every link of a page leads to a file, and to a heading in it.
 fn check_links(page: &Path) {
     let text = prose(page);
     for link in behind(&text, "](", ')').into_iter().filter(|link| !link.contains("://")) {
@@ -190,7 +190,7 @@ fn heading_anchors_match_the_form_of_links() {
     assert_eq!(anchors.into_iter().collect::<Vec<_>>(), ["a-b-c-d_e", "f-g"]);
 }
 
-/// A chapter is what the tables say.
+/// Checks that a chapter matches the tables.
 pub(crate) fn check_list(name: &str, text: &str) {
     if std::env::var_os("CC67_WRITE_BOOK").is_some() {
         fs::write(source().join(name), text).expect("the book can be written");
@@ -213,7 +213,7 @@ fn the_chapters_of_machine_file_and_stimulus_are_the_pages_of_the_command() {
     }
 }
 
-/// Readers of the book in the repository see its sources: nothing may be included only when it is built.
+/// Readers of the book in the repository see its sources: nothing may be included only during the build.
 #[test]
 fn every_chapter_is_whole_in_the_repository() {
     for chapter in files(&source(), "md") {
@@ -306,7 +306,7 @@ fn messages_of_the_filetests_are_in_the_chapter() {
                 continue;
             }
             count += 1;
-            // Of an error of the linker the file comes first.
+            // In an error of the linker, the file comes first.
             let without_file = shown.split_once(".c: ").map_or(shown, |(_, text)| text);
             let is_there = found.iter().any(|message| is_of(without_file, &message.text));
             assert!(is_there, "{}: no message of the chapter is `{shown}`", file.display());
@@ -378,10 +378,10 @@ fn the_chapter_of_console_commands_lists_every_command() {
     check_list("commands.md", &text);
 }
 
-/// Folders that a path in the book begins with.
+/// Folders with which a path in the book may begin.
 const FOLDERS: [&str; 7] = ["kmotiondef/", "coff/", "vm/", "runtime/", "cc67/", "tests/", "c-programs/"];
 
-/// The paths of the repository that a page names between backquotes, outside blocks.
+/// The paths of the repository that a page names in backquotes, outside blocks.
 fn paths(page: &str) -> Vec<&str> {
     let mut is_code = false;
     let mut found = Vec::new();

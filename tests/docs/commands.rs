@@ -1,8 +1,8 @@
-//! The commands that the README and the book show are run, and print what is below them.
+//! The commands shown in the README and in the book are run, and must print the text shown below them.
 //!
-//! A page is read from the top in a folder of its own. A block `LANGUAGE file=NAME` is written to that file. The lines of
-//! a block `sh run` are executed; `exit=N` after it is the exit code that is not 0. A block `text` right after it is what
-//! they print, standard output before standard error. `CC67_WRITE_BOOK=1` rewrites those blocks.
+//! Each page is executed from the top in its own folder. A block `LANGUAGE file=NAME` is written to that file. The
+//! lines of a block `sh run` are executed; `exit=N` after it is the expected exit code if it is not 0. A block `text`
+//! directly after it is their output, standard output before standard error. `CC67_WRITE_BOOK=1` rewrites those blocks.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use harness::{Output, Scratch, cc67_with_input, files, root};
 enum Part {
     /// Lines outside blocks.
     Prose(String),
-    /// A fenced block: what follows the fence, and its lines.
+    /// A fenced block: the text after the fence, and its lines.
     Block(String, String),
 }
 
@@ -36,7 +36,7 @@ fn parts(text: &str) -> Vec<Part> {
     parts
 }
 
-/// The words of a command line, with quotes taken as a shell takes them; `#` begins a comment.
+/// The words of a command line, with quotes interpreted as by a shell; `#` begins a comment.
 fn words(line: &str) -> Vec<String> {
     let mut words = Vec::new();
     let mut word: Option<String> = None;
@@ -57,7 +57,7 @@ fn words(line: &str) -> Vec<String> {
     words
 }
 
-/// Runs `cc67 …`, also with `printf 'TEXT' |` before it or `> FILE` after it.
+/// Runs `cc67 …`, optionally with `printf 'TEXT' |` before it or `> FILE` after it.
 fn run(line: &str, folder: &Path) -> Output {
     let piped = line.strip_prefix("printf '").and_then(|rest| rest.split_once("' | "));
     let (input, line) = piped.unwrap_or(("", line));
@@ -84,7 +84,7 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// Runs the commands of a block and returns what they print.
+/// Runs the commands of a block and returns their output.
 fn run_block(page: &str, info: &str, body: &str, folder: &mut PathBuf) -> String {
     let code = info.split_whitespace().find_map(|word| word.strip_prefix("exit=")).unwrap_or("0");
     let mut printed = String::new();
@@ -102,7 +102,7 @@ fn run_block(page: &str, info: &str, body: &str, folder: &mut PathBuf) -> String
     if shown.is_empty() { String::new() } else { format!("{shown}\n") }
 }
 
-/// Runs a page. Returns it with what its commands print now, and how many blocks of commands it has.
+/// Runs the commands of a page. Returns the page with their present output, and the number of blocks of commands.
 fn replay(page: &str, text: &str) -> (String, usize) {
     let scratch = Scratch::new("page");
     let mut folder = scratch.path().to_owned();

@@ -1,4 +1,4 @@
-//! Tests of the texts that people read: the book and the programs do what they say.
+//! Tests of the texts for users: the book and the programs do what they describe.
 
 mod book;
 mod commands;

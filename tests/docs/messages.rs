@@ -1,8 +1,8 @@
 //! The messages of the compiler, found in its sources, as a chapter of the book.
 //!
-//! A message is the last argument of `Diagnostic::error` or a similar function: a text, a format, a variable that is
-//! one of several texts, or a parameter, whose texts are in the calls of that function. Texts of lints and of
-//! preprocessor and linker errors are kept in values of their own, with a field `message` or an attribute `error`.
+//! A message is the last argument of `Diagnostic::error` or a similar function: a text, a format, a variable with one
+//! of several texts, or a parameter, whose texts are in the calls of that function. Texts of lints and of preprocessor
+//! and linker errors are stored in separate values, with a field `message` or an attribute `error`.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,7 +10,7 @@ use std::path::Path;
 
 use harness::tokens::{Token, closing, tokens};
 
-/// The constructors of a diagnostic, and the kind that each makes.
+/// The constructors of a diagnostic, and the kind that each creates.
 const KINDS: &[(&str, &str)] = &[
     ("error", "error"),
     ("global_error", "error"),
@@ -27,17 +27,17 @@ pub(crate) struct Message {
     pub(crate) text: String,
     /// `error`, `warning` or `note`.
     pub(crate) kind: &'static str,
-    /// The part of the compiler that makes it: a folder of its sources.
+    /// The part of the compiler that reports it: a folder of its sources.
     pub(crate) part: String,
 }
 
-/// A source file: its path below the compiler's folder, and its tokens.
+/// A source file: its path relative to the compiler's folder, and its tokens.
 pub(crate) struct Source {
     path: String,
     tokens: Vec<Token>,
 }
 
-/// The sources of the compiler without those of tests.
+/// The sources of the compiler, except those of tests.
 pub(crate) fn sources(folder: &Path) -> Vec<Source> {
     let files = harness::files(folder, "rs").into_iter();
     files
@@ -51,10 +51,10 @@ pub(crate) fn sources(folder: &Path) -> Vec<Source> {
         .collect()
 }
 
-/// Every message, and the places of those whose texts were not found.
+/// All messages, and the positions of those whose texts were not found.
 pub(crate) fn messages(sources: &[Source]) -> (BTreeSet<Message>, Vec<String>) {
     let (mut found, mut unknown) = (BTreeSet::new(), Vec::new());
-    // What makes a diagnostic of any message has none of its own.
+    // Code that creates a diagnostic for any message has none of its own.
     for source in sources.iter().filter(|source| !source.path.starts_with("diag/")) {
         let part = source.path.split(['/', '.']).next().unwrap_or_default().to_owned();
         for (at, kind) in constructors(&source.tokens) {
@@ -79,8 +79,8 @@ pub(crate) fn messages(sources: &[Source]) -> (BTreeSet<Message>, Vec<String>) {
     (found, unknown)
 }
 
-/// The texts of values that have a message, which becomes a diagnostic elsewhere: those of an attribute `error`, and in
-/// files whose structures have a field `message` what that is given.
+/// The texts of values whose message becomes a diagnostic elsewhere: those in an attribute `error`, and, in files whose
+/// structures have a field `message`, the values of that field.
 fn kept(sources: &[Source], source: &Source) -> Vec<(&'static str, String)> {
     let tokens = &source.tokens;
     let is = |at: usize, text: &str| tokens.get(at).is_some_and(|token| token.text == text);
@@ -134,7 +134,7 @@ fn constructors(tokens: &[Token]) -> Vec<(usize, &'static str)> {
         .collect()
 }
 
-/// The arguments between the parenthesis at `at` and the one that closes it.
+/// The arguments between the parenthesis at `at` and its closing one.
 fn arguments(tokens: &[Token], at: usize) -> Vec<Vec<Token>> {
     let inside = &tokens[at + 1..closing(tokens, at) - 1];
     let (mut parts, mut depth): (Vec<Vec<Token>>, usize) = (vec![Vec::new()], 0);
@@ -162,7 +162,7 @@ fn is_kept_elsewhere(argument: &[Token]) -> bool {
     matches!(words[..], [_, ".", "message"] | ["self", ".", "to_string", "(", ")"])
 }
 
-/// The texts that an argument may be.
+/// The possible texts of an argument.
 fn texts(sources: &[Source], source: &Source, at: usize, argument: &[Token], depth: usize) -> Vec<String> {
     const DEEPEST: usize = 4;
     let own = strings(argument);
@@ -189,7 +189,7 @@ fn texts(sources: &[Source], source: &Source, at: usize, argument: &[Token], dep
     }
 }
 
-/// The name of the function that begins at `begin`, and which of its parameters has a name, `self` not counted.
+/// The name of the function that begins at `begin`, and the index of its parameter with a name, not counting `self`.
 fn parameter<'a>(tokens: &'a [Token], begin: usize, name: &str) -> Option<(&'a str, usize)> {
     let function = tokens.get(begin + 1)?;
     let open = begin + tokens[begin..].iter().position(|token| token.text == "(")?;
@@ -210,7 +210,7 @@ fn of_constant(sources: &[Source], name: &str) -> Vec<String> {
     sources.iter().find_map(of).unwrap_or_default()
 }
 
-/// The strings of some tokens that read like a sentence.
+/// The strings in some tokens that read like a sentence.
 fn strings(tokens: &[Token]) -> Vec<String> {
     let strings = tokens.iter().filter(|token| token.text == "\"");
     strings.map(|token| unescaped(&token.inside)).filter(|text| text.trim().contains(' ')).collect()
@@ -234,7 +234,7 @@ fn unescaped(text: &str) -> String {
     plain + rest
 }
 
-/// Returns the index of the `fn` of the function that a token is in.
+/// Returns the index of the `fn` of the function that contains a token.
 fn function_start(tokens: &[Token], at: usize) -> usize {
     tokens[..at].iter().rposition(|token| token.text == "fn").unwrap_or(0)
 }
@@ -249,7 +249,7 @@ fn of_variable(
     depth: usize,
 ) -> Option<Vec<String>> {
     let tokens = &source.tokens;
-    // Several branches may have a variable of this name.
+    // Several branches may have a variable with this name.
     let is_named = |index: &usize| tokens[*index + 1].text == name && tokens[*index + 2].text == "=";
     let lets = (begin..at).rev().filter(|index| tokens[*index].text == "let");
     let own = lets.clone().filter(is_named);
@@ -276,7 +276,7 @@ fn of_variable(
     None
 }
 
-/// The position of the `;` or of the `else` that ends the statement whose value begins at `at`.
+/// The position of the `;` or `else` that ends the statement whose value begins at `at`.
 fn statement_end(tokens: &[Token], mut at: usize) -> usize {
     while at < tokens.len() {
         match tokens[at].text.as_str() {
@@ -306,7 +306,7 @@ fn of_function(sources: &[Source], source: &Source, function: &str, depth: usize
     Vec::new()
 }
 
-/// The texts that the calls of a function pass as the argument of an index.
+/// The texts that calls of a function pass as the argument with an index.
 fn of_calls(sources: &[Source], function: &str, index: usize, depth: usize) -> Vec<String> {
     let mut found = Vec::new();
     for source in sources {
@@ -325,7 +325,7 @@ fn of_calls(sources: &[Source], function: &str, index: usize, depth: usize) -> V
     found
 }
 
-/// Returns whether a message that was shown is one of a text with arguments in braces.
+/// Returns whether a message that was shown matches a text with arguments in braces.
 pub(crate) fn is_of(shown: &str, text: &str) -> bool {
     let mut rest = shown;
     let mut parts = text.split('{').enumerate().map(|(index, part)| match index {

@@ -1,4 +1,4 @@
-//! The chapter of mistakes is made of the tests of mistakes: each program with its messages.
+//! The chapter on mistakes is generated from the tests of mistakes: each program with its messages.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -13,7 +13,7 @@ These programs compile, but do not do what was meant. Each is shown with the mes
 No program in `c-programs/` gets any of these messages, and neither do correct programs like them, which are tests as well.
 ";
 
-/// Those that come to light in the servo interrupt or on the PC, where nobody knows a line, or in another program.
+/// Mistakes that are detected in the servo interrupt or on the PC, where no line is known, or in another program.
 const WITHOUT_LINE: &[&str] = &[
     "address_of_a_text_in_a_request",
     "analog_input_of_a_machine_in_volts",
@@ -45,7 +45,7 @@ const WITHOUT_LINE: &[&str] = &[
     "yes_no_box_of_a_function_compared_with_1",
 ];
 
-/// A mistake as its file has it.
+/// A mistake, as described in its file.
 struct Mistake {
     name: String,
     /// The arguments before the name of the file.
@@ -74,7 +74,7 @@ impl Mistake {
         Self { name, command, program, says }
     }
 
-    /// As a section of the chapter.
+    /// The mistake as a section of the chapter.
     fn section(&self) -> String {
         let words = self.name.replace('_', " ");
         let title: String =
@@ -88,7 +88,7 @@ impl Mistake {
     }
 }
 
-/// The messages, with the lines that the program has without its directives.
+/// The messages, with the line numbers of the program without its directives.
 fn without_directives(said: &str, name: &str, directives: usize) -> String {
     let file = format!("{name}.c:");
     let mut parts = said.split(file.as_str());

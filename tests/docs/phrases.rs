@@ -1,7 +1,7 @@
-//! No text of the repository has a phrase of the list of worn phrases, `worn-phrases.tsv`.
+//! No text of the repository contains a phrase in the list of worn phrases, `worn-phrases.tsv`.
 //!
-//! Checked are the pages, and the strings and doc comments of the sources. Blocks of code and what is between backquotes
-//! is left out.
+//! The pages are checked, and the strings and doc comments of the sources. Blocks of code and text in backquotes are
+//! ignored.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -11,13 +11,13 @@ use harness::{files, relative, root};
 
 /// A phrase of the list.
 struct Phrase {
-    /// For each word what it may be; empty for any.
+    /// The alternatives for each word; empty for any word.
     words: Vec<Vec<String>>,
     /// The usual words.
     usual: String,
-    /// After one of these words it is fine.
+    /// Words after which the phrase is allowed.
     after: Vec<String>,
-    /// Before one of these words it is fine.
+    /// Words before which the phrase is allowed.
     before: Vec<String>,
 }
 
@@ -38,7 +38,7 @@ impl Phrase {
         }
     }
 
-    /// Returns whether it begins at a position of a text.
+    /// Returns whether the phrase is at a position of a text.
     fn is_at(&self, text: &[Word], at: usize) -> bool {
         let Some(found) = text.get(at..at + self.words.len()) else { return false };
         let has = |list: &[String], word: Option<&Word>| word.is_some_and(|word| list.contains(&word.text));
@@ -48,13 +48,13 @@ impl Phrase {
     }
 }
 
-/// A word or a mark of a text.
+/// A word or punctuation mark of a text.
 struct Word {
     text: String,
     line: usize,
 }
 
-/// The words of a page in lower case, without code; marks are words, and a heading begins with `#`.
+/// The words of a page in lower case, without code; punctuation marks are words, and a heading begins with `#`.
 fn words(page: &str) -> Vec<Word> {
     let mut words = Vec::new();
     let mut is_code = false;
@@ -105,7 +105,7 @@ fn by_first_word(phrases: &[Phrase]) -> BTreeMap<&str, Vec<&Phrase>> {
     map
 }
 
-/// The phrases of a text, each with its line and what to write.
+/// The phrases in a text, each with its line and the usual words.
 fn found(phrases: &BTreeMap<&str, Vec<&Phrase>>, path: &str, first: usize, text: &str) -> Vec<String> {
     let words = words(text);
     let mut found = Vec::new();
@@ -142,7 +142,7 @@ fn no_source_has_a_worn_phrase_in_a_string_or_a_doc_comment() {
     let mut all = Vec::new();
     for file in files(root(), "rs") {
         let path = relative(&file);
-        // Its test has some.
+        // Its tests contain some.
         if path == "tests/docs/phrases.rs" {
             continue;
         }
@@ -154,8 +154,8 @@ fn no_source_has_a_worn_phrase_in_a_string_or_a_doc_comment() {
     assert!(all.is_empty(), "{} worn phrases:\n{}", all.len(), all.join("\n"));
 }
 
-/// A text whose lines are without the blank after the marks of a comment, and in which an escaped newline ends a word
-/// and the arguments of a format are left out.
+/// A text whose lines lack the blank after comment markers, and in which an escaped newline ends a word and the
+/// arguments of a format are left out.
 fn unindented(text: &str) -> String {
     let lines = text.lines().map(|line| line.strip_prefix(' ').unwrap_or(line));
     let text = lines.collect::<Vec<_>>().join("\n").replace("\\n", " . ");

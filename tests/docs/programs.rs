@@ -1,10 +1,10 @@
-//! Every program of `c-programs/` compiles without messages and shows its golden console, on all engines.
+//! Every program of `c-programs/` compiles without messages and produces its expected output, on all engines.
 
 use std::fs;
 
 use harness::{cc67, files};
 
-/// Options that must not change a byte of what a program shows.
+/// Options that must not change a byte of a program's output.
 const VARIANTS: &[&[&str]] = &[&[], &["--", "--no-shortcuts"]];
 
 #[test]
@@ -23,8 +23,8 @@ fn every_program_shows_its_golden_console() {
     }
 }
 
-/// Programs that show something else as real code: one prints how long its own code takes, and a remark of the other
-/// has no line, because the call goes through a jump of the linker, which has none.
+/// Programs whose output differs as real code: one prints the duration of its own code, and a remark of the other has
+/// no line, because the call goes through a jump inserted by the linker, which has none.
 const OTHERWISE: &[&str] = &["io/thermocouple:", "io/digital:"];
 
 #[test]
@@ -81,14 +81,14 @@ fn every_program_compiles_without_messages() {
     }
 }
 
-/// Returns the position of a move from rest over 20 units, by the textbook: 200 units/s, 2000 units/s², 100000
+/// Returns the position in a move from rest over 20 units, by the textbook: 200 units/s, 2000 units/s², 100000
 /// units/s³.
 fn textbook(time: f64) -> f64 {
     const A: f64 = 2000.0;
     const J: f64 = 100_000.0;
     const LENGTH: f64 = 20.0;
     let ramp = A / J;
-    // The peak is below 200: 12 units are needed to reach that and 12 to stop.
+    // The peak is below 200: 12 units are needed to reach that speed and 12 to stop.
     let peak = A / 2.0 * ((ramp * ramp + 4.0 * LENGTH / A).sqrt() - ramp);
     let constant = peak / A - ramp;
     let (mut x, mut v, mut a, mut left) = (0.0, 0.0, 0.0, time.max(0.0));
@@ -117,11 +117,11 @@ fn recorded_coils_follow_the_recorded_move_which_follows_the_textbook() {
     for (index, &[sample, sine, cosine, position]) in rows.iter().enumerate() {
         assert_eq!(sample, 10.0 * index as f64);
         let angle = std::f64::consts::TAU * position;
-        // Positions are printed with four digits, coils are whole counts.
+        // Positions are printed with four digits, coil outputs are whole counts.
         assert!((sine - 200.0 * libm::sin(angle)).abs() < 0.6, "sample {sample}");
         assert!((cosine - 200.0 * libm::cos(angle)).abs() < 0.6, "sample {sample}");
     }
-    // The move begins a few ticks behind the recording.
+    // The move begins a few ticks after the recording.
     let follows = |late: f64| {
         rows.iter().all(|&[sample, .., position]| (textbook((sample - late) * TICK) - position).abs() < 6e-5)
     };

@@ -1,6 +1,6 @@
-//! A sequence of bytes as a sequence of decisions: how inputs of tests are made from what a fuzzer offers.
+//! A sequence of bytes as a sequence of decisions: converts the bytes of a fuzzer to test inputs.
 
-/// Decisions, one byte after another; when they are used up, each is 0.
+/// Decisions, one byte after another; when all bytes are used, each decision is 0.
 #[derive(Clone, Debug)]
 pub struct Choices<'a>(&'a [u8]);
 
@@ -36,7 +36,7 @@ impl<'a> Choices<'a> {
     }
 }
 
-/// Bytes that look random and are the same on every host.
+/// Pseudo-random bytes that are the same on every host.
 #[must_use]
 pub fn random_bytes(seed: u64, count: usize) -> Vec<u8> {
     let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;

@@ -1,4 +1,4 @@
-//! The `cc67` command under a name that tests of this package can start.
+//! The `cc67` command under a name with which tests of this package can start it.
 
 fn main() -> std::process::ExitCode {
     cc67::cli::main(std::env::args_os())

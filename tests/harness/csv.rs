@@ -1,13 +1,13 @@
-//! Tables of comma-separated values, as the interface tables are kept.
+//! Tables of comma-separated values, the format of the interface tables.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// One row: column name to field.
+/// A row: column name to field.
 pub type Row = BTreeMap<String, String>;
 
-/// Reads a table whose first line names the columns.
+/// Reads a table whose first line contains the column names.
 #[must_use]
 pub fn read(path: &Path) -> Vec<Row> {
     let text = fs::read_to_string(path).expect("the table is there");
@@ -16,7 +16,7 @@ pub fn read(path: &Path) -> Vec<Row> {
     rows.map(|fields| columns.iter().cloned().zip(fields).collect()).collect()
 }
 
-/// Splits text into records of fields; a quoted field may hold commas and doubled quotes.
+/// Splits text into records of fields; a quoted field may contain commas and doubled quotes.
 fn records(text: &str) -> Vec<Vec<String>> {
     let mut records = vec![vec![String::new()]];
     let mut quoted = false;

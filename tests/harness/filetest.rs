@@ -1,4 +1,4 @@
-//! Test programs that say in their own text what must become of them.
+//! Test programs that state their expected results in directives.
 //!
 //! A directive is a line `//@ name: value`:
 //!
@@ -7,20 +7,19 @@
 //! | `args: …` | arguments before the file's name (`check` instead of `run` as the first word is possible) |
 //! | `prints: …` | the next line of stdout; together these lines are all of stdout |
 //! | `exit: n` | exit code, 0 if not stated |
-//! | `cycles: n` | what the program spends, exactly, on every engine; its last line, which `--bless` writes |
-//! | `says: …` | stderr contains this |
-//! | `snapshot` | stderr as a whole is the snapshot of the file's name, beside the file |
-//! | `byte: c 0d 0a` | the character `c` in the text stands for these bytes (hexadecimal, none possible) |
-//! | `scratch` | it is executed in a folder of its own, as it writes files |
-//! | `no-final-newline` | the newline at the end of the file is cut off |
-//! | `processor: WHY` | as code for the real processor the program does something else, for this reason |
-//! | `uses: FILE` | the annotations of this included file count, too |
+//! | `cycles: n` | the exact number of cycles that the program spends, on every engine; its last line, which `--bless` writes |
+//! | `says: …` | stderr contains this text |
+//! | `snapshot` | stderr as a whole is the snapshot with the file's name, next to the file |
+//! | `byte: c 0d 0a` | the character `c` in the text is replaced by these bytes (hexadecimal, possibly none) |
+//! | `scratch` | it is executed in its own folder, as it writes files |
+//! | `no-final-newline` | the newline at the end of the file is removed |
+//! | `processor: WHY` | as code for the real processor the program behaves differently, for this reason |
+//! | `uses: FILE` | the annotations in this included file are also checked |
 //!
-//! An annotation `//~ what` after a line is a diagnostic expected there: the name of a warning's
-//! switch, or `error`; `what: text` asks for that text in its message. `//~^` means the line
-//! above, `//~^^` the one above that. With `-if-case-matters` after `what` it is expected only where names of files are
-//! told apart by upper and lower case. A file with annotations has no other diagnostics than these.
-//! Without `says`, `snapshot` or annotations, stderr must be empty.
+//! An annotation `//~ what` after a line is a diagnostic expected there: the name of a warning's switch, or `error`;
+//! `what: text` requires that text in its message. `//~^` refers to the line above, `//~^^` to the one before that.
+//! With `-if-case-matters` after `what` it is expected only if file names are case-sensitive. A file with annotations
+//! must have no other diagnostics than these. Without `says`, `snapshot` or annotations, stderr must be empty.
 
 use std::borrow::Cow;
 use std::fs;
@@ -33,7 +32,7 @@ use crate::{Output, Scratch, cc67, measure};
 struct Remark {
     file: String,
     line: usize,
-    /// The switch of a warning, or the severity of what has none.
+    /// The switch of a warning, or otherwise the severity.
     what: String,
     /// The message, or a part of it.
     text: String,
@@ -50,7 +49,7 @@ impl Remark {
     }
 }
 
-/// One test program and what it demands.
+/// A test program and its requirements.
 #[derive(Debug, Default)]
 pub struct FileTest {
     path: PathBuf,
@@ -68,7 +67,7 @@ pub struct FileTest {
 }
 
 impl FileTest {
-    /// Reads the demands of the program at `path`.
+    /// Reads the directives of the program at `path`.
     #[must_use]
     pub fn read(path: &Path) -> Self {
         let text = text_of(path);
@@ -117,8 +116,8 @@ impl FileTest {
         self.is_snapshot
     }
 
-    /// Returns its expected output as code for the real processor; `None` if it does something else there, or ends in a
-    /// trap, which that has not.
+    /// Returns its expected output as code for the real processor; `None` if it behaves differently there, or ends in a
+    /// trap, which does not exist there.
     #[must_use]
     pub fn stdout_of_code(&self) -> Option<&str> {
         let is_same = self.is_executed() && self.exit == 0 && !self.differs_on_processor;
@@ -131,7 +130,7 @@ impl FileTest {
         self.arguments.first().is_none_or(|word| word != "check")
     }
 
-    /// The cycles that the file states.
+    /// The cycles stated in the file.
     #[must_use]
     pub fn cycles(&self) -> Option<i64> {
         self.cycles
@@ -195,7 +194,7 @@ impl FileTest {
         }
     }
 
-    /// The source with the bytes that its text only stands for; `None` if it is what it looks like.
+    /// The source with its `byte` characters replaced; `None` if there are none.
     fn rewritten(&self) -> Option<Vec<u8>> {
         if self.bytes.is_empty() && !self.cuts_final_newline && !self.is_apart {
             return None;
@@ -221,7 +220,7 @@ impl FileTest {
         }
     }
 
-    /// Returns the failure of a run, snapshots apart; `None` if there is none.
+    /// Returns the failure of a run, except for snapshots; `None` if there is none.
     #[must_use]
     pub fn complaint(&self, output: &Output) -> Option<String> {
         let complain = |what: &str| Some(format!("{}: {what}\n{}", self.path.display(), output.render()));
@@ -265,7 +264,7 @@ fn name_of(path: &Path) -> String {
     path.file_name().expect("a file has a name").to_string_lossy().into_owned()
 }
 
-/// The value of a `byte` directive: a character and the bytes it stands for.
+/// The value of a `byte` directive: a character and the bytes that replace it.
 fn stand_in(value: &str) -> (String, Vec<u8>) {
     let mut words = value.split_whitespace();
     let character = words.next().expect("`byte` names a character").to_owned();
@@ -273,7 +272,7 @@ fn stand_in(value: &str) -> (String, Vec<u8>) {
     (character, bytes.collect())
 }
 
-/// The diagnostics that a file's annotations ask for.
+/// The diagnostics expected by a file's annotations.
 fn annotations(file: &str, text: &str) -> Vec<Remark> {
     let mut remarks = Vec::new();
     for (index, line) in text.split('\n').enumerate() {
@@ -297,17 +296,17 @@ fn annotations(file: &str, text: &str) -> Vec<Remark> {
     remarks
 }
 
-/// Returns whether names of files are told apart by upper and lower case here.
+/// Returns whether file names are case-sensitive here.
 fn does_case_matter() -> bool {
     !crate::root().join("CARGO.TOML").exists()
 }
 
-/// The diagnostics in rendered text that name a place.
+/// The diagnostics with positions in rendered text.
 fn diagnostics(stderr: &str) -> Vec<Remark> {
     let mut lines = stderr.lines().peekable();
     let mut found = Vec::new();
     while let Some(head) = lines.next() {
-        // Further places of the same diagnostic follow its text.
+        // Further positions of the same diagnostic follow its text.
         if head.starts_with(' ') {
             continue;
         }

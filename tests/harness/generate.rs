@@ -1,13 +1,13 @@
-//! Random C programs whose behaviour is defined, so that every compiler must agree on what they print.
+//! Random C programs with defined behaviour, whose output must be the same with every compiler.
 //!
-//! What the C standard leaves open does not occur: expressions have no side effects, a call is the only thing on
-//! the right of its assignment and can change nothing on the left, shift counts and indices are masked, divisors
-//! are at least 2, a double becomes an integer only where it fits, everything is initialised. Integers wrap
-//! (`gcc -fwrapv`), `char` is signed, and no type is used whose size differs between the board and a PC: no
-//! `long`, no sizes of pointers. Dividing by 1 is defined, but GCC computes `-(a / b)` as `a / -b`, and then a
-//! processor refuses to divide the least integer by -1.
+//! Unspecified behaviour does not occur: expressions have no side effects, a call is the whole right-hand side of its
+//! assignment and cannot change the left-hand side, shift counts and indices are masked, divisors are at least 2, a
+//! double is converted to an integer only if it fits, everything is initialised. Integers wrap (`gcc -fwrapv`), `char`
+//! is signed, and no type is used whose size differs between the board and a PC: no `long`, no sizes of pointers.
+//! Dividing by 1 is defined, but GCC computes `-(a / b)` as `a / -b`, and the processor then refuses to divide the
+//! least integer by -1.
 //!
-//! A program ends: loops count to a constant, and a function calls only those before it, a few times.
+//! A program ends: loops count to a constant, and a function calls only earlier ones, a few times.
 
 use std::fmt::Write as _;
 
@@ -28,15 +28,15 @@ const TYPES: &[(&str, bool)] = &[
     ("double", true),
 ];
 
-/// Elements of every array, a power of two.
+/// The number of elements of every array, a power of two.
 const ELEMENTS: usize = 8;
 
 /// The maximum nesting of loops, and of expressions.
 const LOOPS: usize = 2;
 const DEPTH: usize = 4;
 
-/// A random program; `prefix` begins all its names, and its entry is `int PREFIXmain(void)`, which returns nothing
-/// of interest and prints lines that begin with `label`.
+/// A random program; all its names begin with `prefix`, its entry is `int PREFIXmain(void)`, whose result is
+/// meaningless, and its lines of output begin with `label`.
 #[must_use]
 pub fn program(seed: u64, prefix: &str, label: &str) -> String {
     let mut writer = Writer::new(seed, prefix);
@@ -48,10 +48,10 @@ pub fn program(seed: u64, prefix: &str, label: &str) -> String {
     writer.text
 }
 
-/// Something that can be read and, unless it counts a loop, assigned.
+/// A variable that can be read and, unless it is a loop counter, assigned.
 #[derive(Clone, Debug)]
 struct Variable {
-    /// Its C expression; `@` stands for an index.
+    /// The C expression for the variable; `@` is a placeholder for an index.
     place: String,
     is_float: bool,
     is_wide: bool,
@@ -64,16 +64,16 @@ struct Writer {
     indent: usize,
     globals: Vec<Variable>,
     locals: Vec<Variable>,
-    /// Counters of the loops that are open.
+    /// The counters of the enclosing loops.
     counters: Vec<String>,
-    /// Results of the functions so far: whether each is floating.
+    /// The results of the functions so far: whether each is floating.
     functions: Vec<bool>,
     calls_left: usize,
 }
 
 impl Writer {
     fn new(seed: u64, prefix: &str) -> Self {
-        // Neighbouring seeds must not give similar programs.
+        // Adjacent seeds must not give similar programs.
         Self {
             random: Random::of_seed(seed),
             prefix: prefix.to_owned(),
@@ -160,7 +160,7 @@ impl Writer {
         self.functions.push(is_float);
     }
 
-    /// Locals, all of them initialised: plain ones, and an array that a pointer goes through.
+    /// Declares locals, all of them initialised: plain ones, and an array accessed through a pointer.
     fn declarations(&mut self) {
         for number in 0..3 {
             let (ty, is_float) = TYPES[self.below(TYPES.len())];
@@ -258,11 +258,11 @@ impl Writer {
         self.line("}");
     }
 
-    /// A call of a function before this one, directly or through a pointer.
+    /// A call of an earlier function, directly or through a pointer.
     fn call(&mut self) {
         self.calls_left -= 1;
         let number = self.below(self.functions.len());
-        // Its index could come before the call or behind it, so it is a number.
+        // Its index could be evaluated before or after the call, so it is a constant.
         let place = self.leaf(self.functions[number]);
         let (p, q, r) = (self.integer(2), self.float(2), self.integer(1));
         let pointer = if self.below(3) == 0 { "*&" } else { "" };
@@ -298,7 +298,7 @@ impl Writer {
         }
     }
 
-    /// A variable of the kind, to read or to assign.
+    /// A variable of the kind, for reading or assigning.
     fn place(&mut self, is_float: bool) -> String {
         let fits = |variable: &&Variable| variable.is_float == is_float;
         let all: Vec<_> = self.locals.iter().chain(&self.globals).filter(fits).cloned().collect();
@@ -306,7 +306,7 @@ impl Writer {
         if found.contains('@') { found.replace('@', &self.index()) } else { found }
     }
 
-    /// An index of an array.
+    /// An index for an array.
     fn index(&mut self) -> String {
         match (self.below(4), self.counters.last()) {
             (0 | 1, Some(counter)) => format!("{counter} & 7"),
@@ -315,7 +315,7 @@ impl Writer {
         }
     }
 
-    /// An expression to be assigned to a variable of the kind: integers become floating ones, not the reverse.
+    /// An expression for assignment to a variable of the kind: integers are converted to floating, not the reverse.
     fn typed(&mut self, is_float: bool) -> String {
         if is_float { self.float(DEPTH) } else { self.integer(DEPTH) }
     }
@@ -374,7 +374,7 @@ impl Writer {
         }
     }
 
-    /// A variable of the kind, without an expression for an index: expressions do not grow by them.
+    /// A variable of the kind, with a constant as its index, so that expressions stay small.
     fn leaf(&mut self, is_float: bool) -> String {
         let fits = |variable: &&Variable| variable.is_float == is_float;
         let all: Vec<_> = self.locals.iter().chain(&self.globals).filter(fits).cloned().collect();
@@ -386,7 +386,7 @@ impl Writer {
         }
     }
 
-    /// Calls everything and prints everything.
+    /// The function that calls and prints everything.
     fn main(&mut self, label: &str) {
         let prefix = self.prefix.clone();
         self.line(&format!("int {prefix}main(void)"));

@@ -31,20 +31,20 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package lies in the workspace")
 }
 
-/// Returns a path from the root of the workspace, with `/` between its parts.
+/// Returns a path relative to the root of the workspace, with `/` as separator.
 #[must_use]
 pub fn relative(path: &Path) -> String {
     path.strip_prefix(root()).expect("the path lies in the workspace").to_string_lossy().replace('\\', "/")
 }
 
-/// Returns whether tests that have a long form take it: where `CC67_LONG` is in the environment.
+/// Returns whether tests should take their long form: if `CC67_LONG` is set in the environment.
 #[must_use]
 pub fn is_long() -> bool {
     std::env::var_os("CC67_LONG").is_some()
 }
 
-/// The folder of npm's packages if it has one of this name. A test that needs it is skipped with a message if this is
-/// `None`. `.ci/node/install` fills `target/node`.
+/// The folder of npm packages, if it contains one with this name. A test that needs it is skipped with a message if
+/// this is `None`. `.ci/node/install` fills `target/node`.
 #[must_use]
 pub fn node_modules(package: &str) -> Option<PathBuf> {
     let modules = root().join("target/node/node_modules");
@@ -60,7 +60,7 @@ pub fn node_modules(package: &str) -> Option<PathBuf> {
 /// The result of a run of the command.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Output {
-    /// Exit code; -1 when a signal ended it.
+    /// The exit code; -1 if a signal ended it.
     pub code: i32,
     /// The output of the programs.
     pub stdout: String,
@@ -82,10 +82,10 @@ impl Output {
     }
 }
 
-/// The file of the command under test.
+/// The path of the command under test.
 ///
 /// # Panics
-/// If it has not been built, which `cargo test` does before the tests of this package run.
+/// The command has not been built; `cargo test` builds it before the tests of this package.
 #[must_use]
 pub fn command() -> &'static str {
     static COMMAND: LazyLock<String> = LazyLock::new(|| {
@@ -97,20 +97,20 @@ pub fn command() -> &'static str {
     &COMMAND
 }
 
-/// Returns the folder to which Cargo writes commands: one above the tests.
+/// Returns the folder to which Cargo writes commands: the parent of the tests' folder.
 fn beside_this_process() -> PathBuf {
     let test = std::env::current_exe().expect("a running process has a file");
     let folder = test.parent().and_then(Path::parent).expect("tests are two folders below the target folder");
     folder.join(format!("cc67-under-test{}", std::env::consts::EXE_SUFFIX))
 }
 
-/// Gives the command under test another place or name: a hard link, or a copy where that is on another file system.
+/// Makes the command under test available under another path: by a hard link, or by a copy on another file system.
 ///
-/// The copy is written by a process of its own. A file that this process wrote cannot be executed as long as a child that
-/// another test starts at this moment still holds the writer's descriptor ("text file busy").
+/// The copy is written by a separate process. A file written by this process cannot be executed while a child that
+/// another test starts at the same time still holds the writer's descriptor ("text file busy").
 ///
 /// # Panics
-/// If the file cannot be made.
+/// The file cannot be created.
 pub fn place_command(at: &Path) {
     if std::fs::hard_link(command(), at).is_ok() {
         return;
@@ -123,10 +123,10 @@ pub fn place_command(at: &Path) {
     }
 }
 
-/// Returns the system's words for a file that is missing.
+/// Returns the operating system's message for a missing file.
 ///
 /// # Panics
-/// If there is a file with an impossible name.
+/// There is a file with an impossible name.
 #[must_use]
 pub fn no_such_file() -> String {
     let error = std::fs::read("a file that is missing").expect_err("there is none").to_string();
@@ -136,7 +136,7 @@ pub fn no_such_file() -> String {
 /// Runs cc67 in a folder.
 ///
 /// # Panics
-/// If the command does not start.
+/// The command does not start.
 #[must_use]
 pub fn cc67<A: AsRef<OsStr>>(folder: impl AsRef<Path>, arguments: impl IntoIterator<Item = A>) -> Output {
     cc67_with_input(folder, arguments, "")
@@ -145,7 +145,7 @@ pub fn cc67<A: AsRef<OsStr>>(folder: impl AsRef<Path>, arguments: impl IntoItera
 /// Runs cc67 in a folder, with a text on its standard input.
 ///
 /// # Panics
-/// If the command does not start.
+/// The command does not start.
 #[must_use]
 pub fn cc67_with_input<A: AsRef<OsStr>>(
     folder: impl AsRef<Path>,
@@ -155,10 +155,10 @@ pub fn cc67_with_input<A: AsRef<OsStr>>(
     execute(command(), folder.as_ref(), arguments, input)
 }
 
-/// Runs another command than cc67 in a folder.
+/// Runs a command other than cc67 in a folder.
 ///
 /// # Panics
-/// If the command does not start.
+/// The command does not start.
 #[must_use]
 pub fn run_in<A: AsRef<OsStr>>(
     binary: &str,
@@ -183,7 +183,7 @@ fn execute<A: AsRef<OsStr>>(
         .stderr(Stdio::piped())
         .spawn()
         .expect("the command under test starts");
-    // A command that does not read its input is no failure of the test.
+    // A command that does not read its input is not a failure of the test.
     let _ = child.stdin.take().expect("it is piped").write_all(input.as_bytes());
     let output = child.wait_with_output().expect("the command under test ends");
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).replace("\r\n", "\n");
@@ -194,21 +194,21 @@ fn execute<A: AsRef<OsStr>>(
     }
 }
 
-/// A path as this system writes it, from one with slashes.
+/// Converts a path with slashes to this system's notation.
 #[must_use]
 pub fn native(path: &str) -> String {
     path.replace('/', std::path::MAIN_SEPARATOR_STR)
 }
 
-/// A folder of its own for one test, removed when it goes out of scope.
+/// A folder for one test, removed on drop.
 #[derive(Debug)]
 pub struct Scratch(PathBuf);
 
 impl Scratch {
-    /// Makes the folder; `name` tells a person who finds it which test it belongs to.
+    /// Creates the folder; `name` shows which test it belongs to.
     ///
     /// # Panics
-    /// If there is no room for temporary files.
+    /// There is no space for temporary files.
     #[must_use]
     pub fn new(name: &str) -> Self {
         static MADE: AtomicU32 = AtomicU32::new(0);
@@ -241,12 +241,12 @@ impl AsRef<Path> for Scratch {
 
 impl Drop for Scratch {
     fn drop(&mut self) {
-        // A leftover folder is untidy, not wrong.
+        // A folder that remains does no harm.
         let _ = fs::remove_dir_all(&self.0);
     }
 }
 
-/// Returns every file below a folder with the extension, sorted; hidden folders and `target` are left out.
+/// Returns all files with the extension in a folder and its subfolders, sorted, except in hidden folders and `target`.
 #[must_use]
 pub fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();

@@ -1,4 +1,4 @@
-//! The cycles that a program spends, by the account of the profiling engine; the other engines must agree.
+//! The cycles that a program spends, as counted by the profiling engine; the other engines must agree.
 
 use std::path::Path;
 
@@ -9,10 +9,10 @@ use vm::profile::ProfilingEngine;
 
 use crate::oracles::{counting, execute, execute_everywhere};
 
-/// Board time that a program gets: a minute.
+/// The board time for a program: a minute.
 const LIMIT: Ticks = Ticks::new(666_667);
 
-/// The cycles that the program computes for in thread 1, firmware functions included; `None` if it does not compile.
+/// The cycles for which the program computes in thread 1, including firmware functions; `None` if it does not compile.
 pub(crate) fn cycles(path: &Path, source: Vec<u8>) -> Option<i64> {
     let options = Options { timing: Timing::Fast, ..Options::default() };
     let mut compilation = compiler::compile(path, source, &options, &pp::Disk);

@@ -1,22 +1,22 @@
-//! Random programs that move axes, for two boards to agree on: where every motion ends.
+//! Random programs that move axes, whose final positions must be the same on two boards.
 //!
-//! The same code costs a few microseconds more or less on the two boards, so what a program does must not depend on
-//! them: a group of motions begins with a slice when everything is at rest, those after the first of it begin with
-//! a later one, and the next group waits until everything has ended. Nothing comes into a path of several axes: the
-//! tick in which it begins follows from what its planning costs, on which the boards agree within a tenth.
+//! The same code takes a few microseconds more or less on the two boards, so the motions must not depend on its timing:
+//! a group of motions begins with a slice when everything is at rest, each further motion of the group begins with a
+//! later slice, and the next group waits until everything has ended. Nothing interrupts a path of several axes: the
+//! tick in which it begins follows from the cost of its planning, on which the boards agree within a tenth.
 
 use std::fmt::Write as _;
 
 use crate::random::Random;
 
-/// Axes of the board.
+/// The number of axes.
 const AXES: u64 = 8;
-/// From one slice of a thread that is alone to the next, in µs.
+/// The interval between slices of a thread that runs alone, in µs.
 const SLICE: u64 = 180;
-/// Slices that no call of a motion takes.
+/// The number of slices that is never exceeded by the call of a motion.
 const FEW: u64 = 5;
 
-/// Waits until nothing moves, 2 s at most: no motion takes longer, but some are never said to be done.
+/// Waits until nothing moves, at most 2 s: no motion takes longer, but some never report that they are done.
 const HEAD: &str = "\
 #include \"KMotionDef.h\"
 
@@ -41,7 +41,7 @@ main()
 
 ";
 
-/// The program of a number.
+/// The program for a seed.
 #[must_use]
 pub fn program(seed: u64) -> String {
     let mut writer = MotionWriter::new(seed);
@@ -52,7 +52,7 @@ pub fn program(seed: u64) -> String {
     writer.text + "}\n"
 }
 
-/// The moving part.
+/// The object of a motion.
 #[derive(PartialEq, Eq)]
 enum Moved {
     /// One axis.
@@ -63,10 +63,10 @@ enum Moved {
 
 struct MotionWriter {
     random: Random,
-    /// The first axis, and the one after the last.
+    /// The first axis, and the end of the range.
     first: u64,
     end: u64,
-    /// Slices since the group has begun.
+    /// The number of slices since the beginning of the group.
     slices: u64,
     text: String,
 }
@@ -75,7 +75,7 @@ impl MotionWriter {
     fn new(seed: u64) -> Self {
         let random = Random::new((seed * 2 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
         let mut writer = Self { random, first: 0, end: 0, slices: 0, text: HEAD.to_owned() };
-        // Neighbouring seeds begin alike.
+        // Adjacent seeds begin with similar numbers.
         for _ in 0..8 {
             writer.below(2);
         }
@@ -103,7 +103,7 @@ impl MotionWriter {
         self.first + self.below(self.end - self.first)
     }
 
-    /// One to three axes of steps, together a coordinate system.
+    /// One to three axes in step modes, which form a coordinate system.
     fn axes(&mut self) {
         let count = 1 + self.below(3);
         self.first = self.below(AXES - count + 1);
@@ -126,7 +126,7 @@ impl MotionWriter {
         self.line(&format!("DefineCoordSystem({});", system.join(", ")));
     }
 
-    /// Up to three motions, each in the midst of the one before; then a line for each axis.
+    /// Up to three motions, each of which may interrupt the previous one; then a line for each axis.
     fn group(&mut self, group: u64) {
         self.line("WaitNextTimeSlice();");
         self.line("t = Time_sec();");
@@ -152,8 +152,8 @@ impl MotionWriter {
         }
     }
 
-    /// Waits for a slice after the next few: for a moment at which thread 0 has the processor, counted from the
-    /// beginning of the group, so that no microsecond decides anything.
+    /// Waits for one of the next few slices: for a time at which thread 0 has the processor, counted from the beginning
+    /// of the group, so that microseconds do not matter.
     fn wait(&mut self, most: u64) {
         self.slices += FEW + self.below(most);
         let microseconds = SLICE * self.slices + SLICE * 3 / 4;

@@ -1,8 +1,8 @@
-//! Properties that must hold for any bytes: the common ground of the fuzz targets, of the inputs that every test run
-//! makes, and of the replay of earlier failures.
+//! Properties that must hold for all bytes: shared by the fuzz targets, by the random inputs of every test run, and by
+//! the replay of earlier failures.
 //!
-//! A target turns bytes into an input and panics if that does harm: a crash, engines that differ, a message without
-//! words. Running too long and taking too much memory are found by who calls it.
+//! A target converts bytes to an input and panics if the input does harm: a crash, engines that differ, an empty
+//! message. The caller detects runs that take too long or too much memory.
 
 use std::path::Path;
 use std::sync::LazyLock;
@@ -30,13 +30,13 @@ use crate::{kinds, vendor, views};
 /// A kind of input.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
-    /// Its name: that of the fuzz target, and of the folder of cases that once failed.
+    /// Its name: that of the fuzz target, and of the folder with inputs that once failed.
     pub name: &'static str,
-    /// Tries the input that bytes stand for.
+    /// Tries the input for some bytes.
     pub run: fn(&[u8]),
 }
 
-/// All of them.
+/// All targets.
 pub const TARGETS: &[Target] = &[
     Target { name: "source", run: source },
     Target { name: "tokens", run: tokens },
@@ -55,9 +55,9 @@ pub const TARGETS: &[Target] = &[
     Target { name: "wire", run: views::wire },
 ];
 
-/// The board time that a program of unknown intentions gets.
+/// The board time for an arbitrary program.
 const SHORT: Ticks = Ticks::new(40);
-/// The board time of one that is tried very often.
+/// The board time for a program that is tried very often.
 const FEW: Ticks = Ticks::new(3);
 
 fn thread_1() -> ThreadId {
@@ -69,17 +69,17 @@ fn thread_1() -> ThreadId {
 pub struct Seen {
     /// The events, with board times.
     pub events: Vec<Event>,
-    /// The reason for which it ended.
+    /// The reason why it ended.
     pub end: RunEnd,
 }
 
 /// Runs an image in thread 1 up to a board time.
 ///
 /// # Errors
-/// Why it cannot be loaded.
+/// The image cannot be loaded.
 ///
 /// # Panics
-/// If a loaded program cannot be started.
+/// A loaded program cannot be started.
 pub fn execute<E: Engine>(image: &[u8], limit: Ticks, config: Config) -> Result<(Seen, Board<E>), LoadError> {
     let mut board = Board::<E>::new(config);
     board.load(thread_1(), image)?;
@@ -89,13 +89,13 @@ pub fn execute<E: Engine>(image: &[u8], limit: Ticks, config: Config) -> Result<
     Ok((Seen { events, end }, board))
 }
 
-/// Runs an image on every engine there is; what was seen must not depend on the engine, nor must memory.
+/// Runs an image on every available engine; neither the observations nor memory may depend on the engine.
 ///
 /// # Errors
-/// Why it cannot be loaded.
+/// The image cannot be loaded.
 ///
 /// # Panics
-/// If the engines differ.
+/// The engines differ.
 pub fn execute_everywhere(image: &[u8], limit: Ticks) -> Result<Seen, LoadError> {
     let (seen, board) = execute::<BytecodeEngine>(image, limit, counting())?;
     #[cfg(feature = "native")]
@@ -110,8 +110,8 @@ pub fn execute_everywhere(image: &[u8], limit: Ticks) -> Result<Seen, LoadError>
     Ok(seen)
 }
 
-/// A board whose time counts what is executed, not what the vendor's code would take: an engine that counts wrongly
-/// shows at once.
+/// A configuration whose time counts the executed code, not the duration of the vendor's code: an engine that counts
+/// wrongly is detected at once.
 pub(crate) fn counting() -> Config {
     Config { timing: Timing::Fast, ..Config::default() }
 }
@@ -121,7 +121,7 @@ fn build(text: &[u8], level: Level) -> Option<Vec<u8>> {
     build_for(Options::default().target, text, level)
 }
 
-/// The same for a target.
+/// Compiles and links for a target; `None` after errors.
 fn build_for(target: compiler::target::Target, text: &[u8], level: Level) -> Option<Vec<u8>> {
     let options = Options { target, level, ..Options::default() };
     let files = MemoryFiles::new();
@@ -133,7 +133,7 @@ fn build_for(target: compiler::target::Target, text: &[u8], level: Level) -> Opt
     linked.and_then(|linked| image::write(&linked).ok())
 }
 
-/// Any text through the compiler; what it accepts does the same on every engine.
+/// Compiles any text; an accepted program must do the same on every engine.
 pub fn source(bytes: &[u8]) {
     for level in [Level::Full, Level::None] {
         if let Some(image) = build(bytes, level) {
@@ -142,7 +142,7 @@ pub fn source(bytes: &[u8]) {
     }
 }
 
-/// Pieces of C that nearly make programs.
+/// Fragments of C from which programs can be assembled.
 const PIECES: &[&str] = &[
     "int ",
     "char ",
@@ -267,7 +267,7 @@ const PIECES: &[&str] = &[
     "`",
 ];
 
-/// Text made of pieces of C, which comes further than any text does.
+/// Compiles text made of fragments of C, which gets further than arbitrary text.
 pub fn tokens(bytes: &[u8]) {
     let mut choices = Choices::new(bytes);
     let mut text = String::new();
@@ -277,10 +277,10 @@ pub fn tokens(bytes: &[u8]) {
     source(text.as_bytes());
 }
 
-/// An image and an object of a small program, an image of the vendor's, a piece of firmware.
+/// An image and an object of a small program, an image of the vendor's compiler, a piece of firmware.
 ///
 /// # Panics
-/// If the compiler has lost its mind.
+/// The compiler does not compile it.
 #[must_use]
 pub fn valid_files() -> Vec<Vec<u8>> {
     let text = b"#include \"KMotionDef.h\"\nint table[3] = { 1, 2, 3 };\nstatic int n;\nint f(int x) { return x + table[1]; }\n\
@@ -294,10 +294,10 @@ pub fn valid_files() -> Vec<Vec<u8>> {
     vec![image::write(&linked).expect("it fits"), object, vendor::image(), firmware]
 }
 
-/// Puts bytes through everything that reads files; whether they are an image that loads.
+/// Passes bytes to all readers of files; returns whether they are an image that loads.
 ///
 /// # Panics
-/// If a refusal does not say why, or readers disagree.
+/// A rejection has no reason, or readers disagree.
 #[must_use]
 pub fn read_file(bytes: &[u8]) -> bool {
     let read = Image::read(bytes);
@@ -319,7 +319,7 @@ pub fn read_file(bytes: &[u8]) -> bool {
             gc: false,
             addresses: compiler::link::SectionAddresses::default(),
         };
-        // What links need not be a program that the machine accepts.
+        // Code that links need not be a program that the machine accepts.
         let _ = compiler::link::link(std::slice::from_ref(&object), &options);
     }
     let prepared = prepare(bytes, thread_1(), &ModelledBoard::default(), |_| false);
@@ -331,7 +331,7 @@ pub fn read_file(bytes: &[u8]) -> bool {
     prepared.is_ok()
 }
 
-/// Puts bytes into places of `file`, most of them in its headers.
+/// Writes bytes to positions in `file`, most of them in its headers.
 fn change(file: &mut [u8], choices: &mut Choices<'_>) {
     while !choices.is_empty() {
         let range = if choices.byte().is_multiple_of(3) { file.len() } else { file.len().min(200) };
@@ -340,7 +340,7 @@ fn change(file: &mut [u8], choices: &mut Choices<'_>) {
     }
 }
 
-/// A file that was changed in some places, or bytes as they come, through every reader.
+/// Passes a file with a few changes, or arbitrary bytes, to all readers.
 pub fn changed_file(bytes: &[u8]) {
     static FILES: LazyLock<Vec<Vec<u8>>> = LazyLock::new(valid_files);
     let _ = read_file(bytes);
@@ -350,7 +350,7 @@ pub fn changed_file(bytes: &[u8]) {
     let _ = read_file(&file);
 }
 
-/// Loops, calls, memory, floating point and printing: something of everything to break.
+/// Loops, calls, memory, floating point and printing: a program with many features that can be broken.
 pub const VICTIM: &str = r#"#include "KMotionDef.h"
 int table[16];
 double sum;
@@ -378,13 +378,13 @@ main()
 /// The image of [`VICTIM`].
 ///
 /// # Panics
-/// If it does not compile.
+/// It does not compile.
 #[must_use]
 pub fn victim() -> Vec<u8> {
     build(VICTIM.as_bytes(), Level::Full).expect("it is a program")
 }
 
-/// A program whose image was changed in some bits: it is refused, or does the same on every engine.
+/// A program whose image was changed in some bits: it is rejected, or does the same on every engine.
 pub fn changed_program(bytes: &[u8]) {
     static IMAGE: LazyLock<Vec<u8>> = LazyLock::new(victim);
     let mut image = IMAGE.clone();
@@ -396,7 +396,7 @@ pub fn changed_program(bytes: &[u8]) {
     let _ = execute_everywhere(&image, SHORT);
 }
 
-/// The image of [`VICTIM`] for the processor, its loop with this many turns.
+/// The image of [`VICTIM`] for the processor, with this number of iterations of its loop.
 fn victim_code(turns: u32) -> Vec<u8> {
     let text = VICTIM.replace("i < 40", &format!("i < {turns}"));
     build_for(compiler::target::Target::C67x, text.as_bytes(), Level::Full).expect("it is a program")
@@ -413,10 +413,10 @@ fn with_changed_bits(image: &[u8], bytes: &[u8]) -> Vec<u8> {
     image
 }
 
-/// A program for the processor whose image was changed in some bits: it is refused, or interpreted, the same with and
-/// without shortcuts.
+/// A program for the processor whose image was changed in some bits: it is rejected, or interpreted, with the same
+/// result with and without shortcuts.
 ///
-/// A fuzzer tries very many of them, so each has few cycles and nothing looks at all of memory.
+/// A fuzzer tries very many of them, so each has few cycles, and memory is not compared as a whole.
 pub fn changed_code(bytes: &[u8]) {
     static IMAGE: LazyLock<Vec<u8>> = LazyLock::new(|| victim_code(40));
     let image = with_changed_bits(&IMAGE, bytes);
@@ -428,14 +428,14 @@ pub fn changed_code(bytes: &[u8]) {
     assert_eq!(with, without, "shortcuts change what is seen");
 }
 
-/// A longer program for the processor whose image was changed in some bits: it is refused, or does the same whether its
-/// code is interpreted or translated.
+/// A longer program for the processor whose image was changed in some bits: it is rejected, or does the same
+/// interpreted and translated.
 pub fn translated_code(bytes: &[u8]) {
     static IMAGE: LazyLock<Vec<u8>> = LazyLock::new(|| victim_code(2000));
     let _ = execute_everywhere(&with_changed_bits(&IMAGE, bytes), SHORT);
 }
 
-/// A generated program of defined behaviour, optimised and not, on every engine.
+/// A generated program with defined behaviour, optimised and not, on every engine.
 pub fn program(bytes: &[u8]) {
     let mut seed = [0; 8];
     let len = bytes.len().min(8);
@@ -453,7 +453,7 @@ pub fn program(bytes: &[u8]) {
     assert_eq!(lines(Level::Full), lines(Level::None), "optimised and not");
 }
 
-/// The program beside which worlds are tried: it moves an axis and looks at inputs.
+/// The program with which worlds are tried: it moves an axis and reads inputs.
 fn mover() -> Vec<u8> {
     let text = b"#include \"KMotionDef.h\"\nmain() { EnableAxis(0); MoveRel(0, 100); while (!CheckDone(0)) persist.UserData[0] += ReadBit(46) + ADC(0); }\n";
     build(text, Level::Full).expect("it is a program")
@@ -461,7 +461,7 @@ fn mover() -> Vec<u8> {
 
 static MOVER: LazyLock<Vec<u8>> = LazyLock::new(mover);
 
-/// Any machine file: refused with words, or a board runs on it.
+/// Any machine file: it is rejected with a message, or a board runs with it.
 pub fn machine_file(bytes: &[u8]) {
     let lines = assemble(bytes, MACHINE_PIECES);
     match MachineFile::parse(&lines) {
@@ -535,7 +535,7 @@ const MACHINE_PIECES: &[&str] = &[
     "\u{e9}",
 ];
 
-/// Any stimulus: refused with words, or a board is played to.
+/// Any stimulus: it is rejected with a message, or a board runs with it.
 pub fn stimulus(bytes: &[u8]) {
     match Stimulus::parse(&assemble(bytes, STIMULUS_PIECES), "input.stim") {
         Ok(stimulus) => {
@@ -549,8 +549,8 @@ pub fn stimulus(bytes: &[u8]) {
     }
 }
 
-/// A machine file and a stimulus together, of the example programs and with some words changed: refused with words, or
-/// a board runs with both.
+/// A machine file and a stimulus together, from the example programs and with some words changed: rejected with a
+/// message, or a board runs with both.
 pub fn world(bytes: &[u8]) {
     static MACHINES: LazyLock<Vec<String>> = LazyLock::new(|| examples("toml"));
     static STIMULI: LazyLock<Vec<String>> = LazyLock::new(|| examples("stim"));
@@ -584,7 +584,7 @@ fn examples(extension: &str) -> Vec<String> {
     files.iter().map(|path| std::fs::read_to_string(path).expect("it is text")).collect()
 }
 
-/// A text in which a piece stands for a word.
+/// A text with one word replaced by a piece.
 fn with_changed_word(text: &str, pieces: &[&str], choices: &mut Choices<'_>) -> String {
     let words: Vec<&str> = text.split_inclusive([' ', '\n', '=', ',']).collect();
     let at = choices.below(words.len().clamp(1, 65_536));
@@ -600,7 +600,7 @@ const STIMULUS_PIECES: &[&str] = &[
     "persist.", "run.", "host", "stop", "\n", "\n", "\n", ",", ";", "(", ")", "1e300", "nan", "#", "\u{e9}",
 ];
 
-/// A text: most bytes stand for a piece, every eighth for itself.
+/// A text from bytes: most bytes select a piece, every eighth is taken literally.
 fn assemble(bytes: &[u8], pieces: &[&str]) -> String {
     let mut choices = Choices::new(bytes);
     let mut text = String::new();
@@ -613,7 +613,7 @@ fn assemble(bytes: &[u8], pieces: &[&str]) -> String {
     text
 }
 
-/// Lines from the PC: whatever they are, the next valid command is answered.
+/// Lines from the PC: after any lines, the next valid command is answered.
 pub fn commands(bytes: &[u8]) {
     let mut board = Board::<BytecodeEngine>::new(Config::default());
     let names = COMMANDS.iter().map(|command| command.name);
@@ -629,17 +629,17 @@ pub fn commands(bytes: &[u8]) {
                 matches!(&event.kind, EventKind::Remark(remark) if remark.message.code() == "firmware-stops");
             false
         });
-        // What stops the released firmware stops this one too: such a board is switched off and on.
+        // Input that stops the released firmware also stops this one: such a board is switched off and on.
         if has_stopped {
             board = Board::new(Config::default());
         }
     }
-    // A command may wait for data lines, and replies may go to the UART: both are left first.
+    // A command may wait for data lines, and replies may go to the UART: both states are left first.
     answer(&mut board, b"\x03\x1b\x01USB\r");
     assert!(answer(&mut board, b"\x1b\x01Version\r").is_some_and(|line| line.starts_with(b"KFLOP 4.34")));
 }
 
-/// Arguments of commands.
+/// Fragments of command arguments.
 const ARGUMENT_PIECES: &[&str] = &[
     "0", "1", "7", "8", "-1", "99", "1e9", "0.5", "nan", "FFFFFFFF", "80050000", " ", " ", " ", "=", "=",
     ";", "\n", "\n", "\n",
@@ -710,7 +710,7 @@ const FORMAT_PIECES: &[&str] = &[
     "\\n",
 ];
 
-/// Formats for `printf` and `sscanf`: any of them, on every engine.
+/// Any format for `printf` and `sscanf`, on every engine.
 pub fn format(bytes: &[u8]) {
     let mut choices = Choices::new(bytes);
     let mut take = |count: usize| {

@@ -1,13 +1,15 @@
-//! Random programs that wait by polling: loops of every form and condition, in several threads that wait for one another,
-//! for motions, for inputs and for the time.
+//! Random programs that wait by polling: loops of every form and condition, in several threads that wait for one
+//! another, for motions, for inputs and for times.
 //!
-//! They need not end, and often wait for what never comes: what matters is that two ways to run them see the same.
+//! They need not end, and often wait for events that never occur: two ways of running them must give the same
+//! observations.
 
 use std::fmt::Write as _;
 
 use crate::random::Random;
 
-/// The machine and its surroundings for all programs: a switch that axis 0 closes, and inputs that change by themselves.
+/// The machine and its surroundings for all programs: a switch that axis 0 closes, and inputs that change by
+/// themselves.
 pub const MACHINE: &str = "\
 [[switch]]
 bit = 28
@@ -60,7 +62,7 @@ main()
     DefineCoordSystem(0, 1, -1, -1);
 ";
 
-/// The programs of a number, for threads 1, 2 and so on.
+/// The programs for a seed, for threads 1, 2 and so on.
 #[must_use]
 pub fn programs(seed: u64) -> Vec<String> {
     let mut writer = Writer { random: Random::of_seed(seed), text: String::new() };
@@ -100,7 +102,7 @@ impl Writer {
         std::mem::take(&mut self.text) + "}\n"
     }
 
-    /// Something that others may wait for.
+    /// An action for which other threads may wait.
     fn action(&mut self) {
         let (axis, bit, cell) = (self.below(2), self.bit(), self.below(4));
         let number = self.below(400);
@@ -121,7 +123,7 @@ impl Writer {
         self.pick(&["26", "27", "28", "29", "1000", "1010", "1020", "1030", "x", "46"])
     }
 
-    /// A condition that may change some time.
+    /// A condition that may change at some time.
     fn condition(&mut self) -> String {
         let (axis, bit, cell) = (self.below(2), self.bit(), self.below(4));
         let number = self.below(400);
@@ -143,7 +145,7 @@ impl Writer {
         if self.below(2) == 0 { format!("({condition})") } else { format!("!({condition})") }
     }
 
-    /// A condition that ends some time, most often.
+    /// A condition that usually ends at some time.
     fn limited(&mut self) -> String {
         let condition = self.condition();
         match self.below(4) {

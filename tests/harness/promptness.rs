@@ -1,19 +1,19 @@
-//! Servers that answer at once, tried on machines that may be busy.
+//! Servers that must answer at once, tested on machines that may be busy.
 
 use std::time::{Duration, Instant};
 
-/// The time in which a server answers a new client.
+/// The time limit for a server to answer a new client.
 const AT_ONCE: Duration = Duration::from_secs(1);
 
-/// The number of trials: a busy machine delays some of them, a server that lets clients wait delays all.
+/// The number of trials: a busy machine delays some of them, a server that makes clients wait delays all.
 const TRIALS: usize = 3;
 
 /// Asserts that one of several trials takes at most a second. Each starts its own server, and returns the time that
-/// [`timed`] took for the answer.
+/// [`timed`] measured for the answer.
 ///
 /// # Panics
 ///
-/// If all took longer.
+/// All trials took longer.
 pub fn answers_at_once(what: &str, mut trial: impl FnMut() -> Duration) {
     let mut times = Vec::new();
     while times.len() < TRIALS {

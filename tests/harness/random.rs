@@ -1,17 +1,17 @@
 //! Random numbers for tests: the same sequence on every host.
 
-/// A generator (Marsaglia's xorshift).
+/// A random number generator (Marsaglia's xorshift).
 #[derive(Clone, Debug)]
 pub struct Random(u64);
 
 impl Random {
-    /// The generator that begins with a state, which must not be 0.
+    /// Creates a generator with a state, which must not be 0.
     #[must_use]
     pub const fn new(state: u64) -> Self {
         Self(state)
     }
 
-    /// The generator of a seed; neighbouring seeds have different sequences.
+    /// Creates a generator with a seed; adjacent seeds have different sequences.
     #[must_use]
     pub const fn of_seed(seed: u64) -> Self {
         Self((seed + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15))
@@ -25,7 +25,7 @@ impl Random {
         self.0
     }
 
-    /// Returns a number below `end`, of the upper half of the bits, which is the better one.
+    /// Returns a number below `end`, taken from the upper half of the bits, which is more random.
     pub const fn below(&mut self, end: usize) -> usize {
         (self.draw() >> 33) as usize % end
     }

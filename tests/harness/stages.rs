@@ -1,15 +1,15 @@
-//! Tests of the compiler's inner stages: a text goes in, and what a stage makes of it is compared.
+//! Tests of the compiler's internal stages: an input text, and the expected output of a stage.
 //!
-//! A file holds both, with a line of hyphens between them; comments in front say what the stage is to do. What goes in
-//! is C for `lower/` and IR for `passes/NAME/`, `legalize/` and `bytecode/`; what comes out is IR, for `bytecode/` its
-//! words. `cargo test --test filetests -- --bless` writes down what comes out.
+//! A file contains both, separated by a line of hyphens; comments at the beginning describe the test. The input is C
+//! for `lower/` and IR for `passes/NAME/`, `legalize/` and `bytecode/`; the output is IR, for `bytecode/` its
+//! instructions. `cargo test --test filetests -- --bless` writes the present output.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use compiler::{passes, pp, stages};
 
-/// The line between what goes in and what comes out.
+/// The line between input and output.
 const BETWEEN: &str = "\n----\n";
 
 /// A test of one stage.
@@ -23,10 +23,10 @@ pub struct StageTest {
 }
 
 impl StageTest {
-    /// Reads the test at `path`, below the folder of all filetests.
+    /// Reads the test at `path`, in the folder of all filetests.
     ///
     /// # Panics
-    /// If the file is not UTF-8.
+    /// The file is not UTF-8.
     #[must_use]
     pub fn read(folder: &Path, path: &Path) -> Self {
         let text = fs::read_to_string(path).expect("tests are UTF-8");
@@ -55,13 +55,13 @@ impl StageTest {
         made.unwrap_or_else(|error| format!("error: {error}\n"))
     }
 
-    /// Compares; or writes down what comes out, where that is wanted.
+    /// Compares the output; or writes it, if `is_blessed` is set.
     ///
     /// # Errors
     /// Both texts, if they differ.
     ///
     /// # Panics
-    /// If the file cannot be written.
+    /// The file cannot be written.
     pub fn check(&self, is_blessed: bool) -> Result<(), String> {
         let found = self.run();
         if found == self.expected {
@@ -76,7 +76,7 @@ impl StageTest {
     }
 }
 
-/// The stages that have a folder of their own, each with the least number of its tests.
+/// The stages with folders, each with the minimum number of its tests.
 #[must_use]
 pub fn folders() -> Vec<(String, usize)> {
     let passes = passes::ALL.iter().map(|(name, _)| (format!("passes/{name}"), 5));

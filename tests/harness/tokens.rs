@@ -1,11 +1,11 @@
-//! Rust sources as flat lists of tokens, and the texts in them that people read.
+//! Rust sources as flat lists of tokens, and the texts in them that are read by people.
 
 use proc_macro2::{Delimiter, Spacing, Span, TokenStream, TokenTree};
 
-/// A token, and the line that it is in, from 1.
+/// A token, and its line, counted from 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Token {
-    /// Its text; `"` for a string, `'` for a character. `::`, `->` and `=>` are one token.
+    /// Its text; `"` for a string, `'` for a character. `::`, `->` and `=>` are single tokens.
     pub text: String,
     /// Its line.
     pub line: usize,
@@ -21,7 +21,7 @@ pub fn tokens(source: &str) -> Vec<Token> {
     found
 }
 
-/// Returns the strings and the doc comments of a source, those of tests included, each with its first line.
+/// Returns the strings and the doc comments of a source, including those of tests, each with its first line.
 ///
 /// Consecutive lines of a doc comment are one text.
 #[must_use]
@@ -66,14 +66,14 @@ pub fn closing(tokens: &[Token], at: usize) -> usize {
     tokens.len()
 }
 
-/// The text of the token of a line of a doc comment.
+/// The text of the token for a line of a doc comment.
 const DOC: &str = "///";
 
 fn parsed(source: &str) -> TokenStream {
     source.parse().expect("sources are Rust")
 }
 
-/// Adds the tokens of a stream; with everything, doc comments and the items of tests are among them.
+/// Adds the tokens of a stream; with `everything`, including doc comments and test items.
 fn flatten(stream: TokenStream, everything: bool, found: &mut Vec<Token>) {
     let trees: Vec<TokenTree> = stream.into_iter().collect();
     let mut at = 0;
@@ -101,7 +101,7 @@ fn flatten(stream: TokenStream, everything: bool, found: &mut Vec<Token>) {
     }
 }
 
-/// Returns the sign of two characters at the beginning of some trees, where they arrive one by one.
+/// Returns the two-character sign at the beginning of some trees, whose characters are separate tokens.
 fn joined(trees: &[TokenTree]) -> Option<&'static str> {
     let [TokenTree::Punct(first), TokenTree::Punct(second), ..] = trees else { return None };
     let is_joint = first.spacing() == Spacing::Joint;

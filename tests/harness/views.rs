@@ -1,6 +1,7 @@
-//! Properties of what speaks with a board from outside: whatever arrives, nothing panics, and a refusal has words.
+//! Properties of the interfaces to a board from outside: for any data received, nothing panics, and a rejection has a
+//! message.
 //!
-//! Editors and pages send JSON, mostly of known requests with wrong arguments; a controller sends bytes.
+//! Editors and pages send JSON, usually known requests with wrong arguments; a controller sends bytes.
 
 use std::io::{self, Cursor};
 use std::path::{Path, PathBuf};
@@ -15,7 +16,7 @@ use runtime::MachineFile;
 
 use crate::choices::Choices;
 
-/// A program that ends soon, with something of everything to look at.
+/// A program that ends soon, with something of every kind to inspect.
 const PROGRAM: &str = "#include \"KMotionDef.h\"
 int n, row[3] = { 10, -1, 255 };
 struct { double x; char name[8]; } s = { 1.5, \"abc\" };
@@ -23,7 +24,7 @@ void count(int by) { n += by; s.x *= 0.5; row[n & 1]++; }
 main() { for (n = 0; n < 9; n++) { count(0); WaitNextTimeSlice(); } printf(\"%d\\n\", n); }
 ";
 
-/// Ticks after which a run is over.
+/// The number of ticks after which a run ends.
 const LIMIT: Ticks = Ticks::new(400);
 
 /// A session with the program.
@@ -38,7 +39,7 @@ fn session() -> Session {
     setup.session().expect("the default board exists")
 }
 
-/// Requests of editors, and of pages.
+/// Requests of editors.
 const COMMANDS: &[&str] = &[
     "initialize",
     "attach",
@@ -170,7 +171,7 @@ const VALUES: &[&str] = &[
     "\"SetPersistDec 1 2\"",
 ];
 
-/// An object of a command with some arguments; `nested` names the member that they are in.
+/// An object for a command with some arguments; `nested` is the name of the member that contains them.
 fn message(choices: &mut Choices<'_>, (kind, all): (&str, &[&str]), nested: Option<&str>) -> String {
     let command = choices.pick(all);
     let count = choices.below(5);
@@ -186,7 +187,7 @@ fn message(choices: &mut Choices<'_>, (kind, all): (&str, &[&str]), nested: Opti
     }
 }
 
-/// A message with a byte that is something else, now and then.
+/// A message, occasionally with one byte changed.
 fn damaged(choices: &mut Choices<'_>, message: String) -> Vec<u8> {
     let mut bytes = message.into_bytes();
     if choices.byte() < 24 {
@@ -199,7 +200,7 @@ fn damaged(choices: &mut Choices<'_>, message: String) -> Vec<u8> {
 /// Messages of an editor to the debug adapter.
 ///
 /// # Panics
-/// If a buffer does not take what is sent.
+/// A buffer does not accept the written data.
 pub fn debug_adapter(bytes: &[u8]) {
     let mut choices = Choices::new(bytes);
     let mut input = Vec::new();
@@ -209,7 +210,7 @@ pub fn debug_adapter(bytes: &[u8]) {
     };
     put(br#"{"seq": 1, "type": "request", "command": "launch", "arguments": {"program": "a.c"}}"#);
     while !choices.is_empty() {
-        // It would connect to somewhere.
+        // It would connect to a server.
         let text = message(&mut choices, ("command", COMMANDS), Some("arguments"));
         let body = damaged(&mut choices, text.replace("\"attach\"", "\"launch\""));
         put(&body);
@@ -222,7 +223,7 @@ pub fn debug_adapter(bytes: &[u8]) {
 /// Messages of a page.
 ///
 /// # Panics
-/// If a refusal has no words.
+/// A rejection has no message.
 pub fn page(bytes: &[u8]) {
     let mut choices = Choices::new(bytes);
     let mut texts = Vec::new();
@@ -230,7 +231,7 @@ pub fn page(bytes: &[u8]) {
         let text = message(&mut choices, ("do", REQUESTS), None);
         texts.push(String::from_utf8_lossy(&damaged(&mut choices, text)).into_owned());
     }
-    // Those that save files are not tried.
+    // Requests that save files are not tried.
     let messages: Vec<&str> =
         texts.iter().map(String::as_str).filter(|text| !text.contains("save")).collect();
     let refused = cc67_live::obey(&mut session(), show(), &messages);
@@ -254,10 +255,10 @@ fn show() -> Show {
     }
 }
 
-/// Bytes of a controller: the lines in them do not depend on how they arrive.
+/// Bytes from a controller: the lines in them do not depend on the chunks in which they arrive.
 ///
 /// # Panics
-/// If they do.
+/// The lines differ.
 pub fn wire(bytes: &[u8]) {
     let mut choices = Choices::new(bytes);
     let mut stream = Vec::new();
@@ -276,7 +277,7 @@ pub fn wire(bytes: &[u8]) {
     assert!(data.len() <= stream.len());
 }
 
-/// The items of a stream that arrives in pieces with these ends.
+/// The items of a stream that arrives in chunks with these ends.
 fn lines(stream: &[u8], ends: &[usize]) -> Vec<Incoming> {
     let mut decoder = Decoder::default();
     let mut items = Vec::new();

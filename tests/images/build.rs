@@ -1,11 +1,11 @@
-//! Building, linking and running images as users do it.
+//! Building, linking and running images, as users do it.
 
 use std::fs;
 
 use harness::{Scratch, cc67, vendor};
 use kmotiondef::boards::TargetBoard;
 
-/// Runs the command, which must succeed, and returns what it printed.
+/// Runs the command, which must succeed, and returns its output.
 #[track_caller]
 fn succeed(scratch: &Scratch, arguments: &[&str]) -> String {
     let output = cc67(scratch, arguments);
@@ -15,7 +15,7 @@ fn succeed(scratch: &Scratch, arguments: &[&str]) -> String {
 
 const HELLO: &str = "#include \"KMotionDef.h\"\nmain()\n{\n  printf(\"hello\\n\");\n}\n";
 
-/// Three sources and one that becomes an object; each has a `count` of its own.
+/// Three sources and one that becomes an object; each has its own `count`.
 fn four_files(name: &str) -> Scratch {
     let scratch = Scratch::new(name);
     scratch
@@ -285,7 +285,7 @@ fn an_image_of_another_build_of_the_firmware_is_refused() {
     scratch.write("a.c", HELLO);
     succeed(&scratch, &["build", "--target", "sim", "a.c"]);
     let mut bytes = fs::read(scratch.path().join("a(1).out")).expect("it was built");
-    // The time stamp of the file header.
+    // The time stamp in the file header.
     bytes[4..8].copy_from_slice(&1_534_288_031_u32.to_le_bytes());
     scratch.write("a(1).out", bytes);
     let output = cc67(&scratch, ["run", "a(1).out"]);
@@ -312,7 +312,7 @@ fn the_facts_of_the_next_firmware_come_from_its_file() {
     };
     let expect = fs::read_to_string(file).expect("the file is there").replace("5.3.2", "5.3.3");
     assert_eq!(facts_of(&facts), facts_of(&expect));
-    // Until the file of facts is part of cc67, programs are linked by the symbols, with a warning.
+    // Until the file of facts is part of cc67, programs are linked with the symbols, with a warning.
     scratch.write("a.c", HELLO);
     let output = cc67(&scratch, ["build", "--firmware", "next.out", "a.c"]);
     assert_eq!(output.code, 0, "{}", output.stderr);

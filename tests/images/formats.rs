@@ -1,4 +1,4 @@
-//! Promises about files: read and write again, another reader's opinion, downloads, speed.
+//! Properties of files: writing and reading back, comparison with another reader, downloads, speed.
 
 use std::fs;
 use std::path::Path;
@@ -58,7 +58,7 @@ fn other_reader(folder: &Path, names: &[String]) -> Option<Vec<String>> {
     Some(text.split("== ").skip(1).map(str::to_owned).collect())
 }
 
-/// Numbers and names as our reader has them, in the order of the other reader.
+/// Numbers and names from our reader, in the order of the other reader.
 fn our_reader(bytes: &[u8]) -> Vec<String> {
     let image = Image::read(bytes).expect("the image is good");
     let mut rows = Vec::new();
@@ -107,7 +107,7 @@ fn rows(text: &str) -> Vec<String> {
             [number, name, physical, address, size, ..] if part == "sections" => {
                 rows.push(format!("{number} {name} {physical} {address} {size}"));
             }
-            // A symbol without a name has its class in the last place.
+            // A symbol without a name has its class in the last column.
             [index, value, .., last] if part == "symbols" => {
                 let name = if line.ends_with(' ') { "" } else { last };
                 let name = line
@@ -140,7 +140,7 @@ fn an_independent_reader_sees_the_same_in_every_image() {
         scratch.write(name, bytes);
     }
     let names: Vec<_> = files.iter().map(|(name, _)| name.clone()).collect();
-    // Without Python there is no second opinion to be had.
+    // Without Python there is no other reader.
     let Some(texts) = other_reader(scratch.path(), &names) else { return };
     assert_eq!(texts.len(), files.len());
     for ((name, bytes), text) in files.iter().zip(&texts) {
@@ -203,7 +203,7 @@ fn a_firmware_file_is_read_and_linked_against_in_two_milliseconds() {
         assert_eq!(linked.firmware.imports.len(), 3);
     }
     println!("firmware file of {} bytes: {:.3} ms", bytes.len(), best * 1e3);
-    // Unoptimised code has some room; the promise is for a release build.
+    // Unoptimised code has a larger limit; the promise applies to a release build.
     let limit = if cfg!(debug_assertions) { 20e-3 } else { 2e-3 };
     assert!(best < limit, "{best} s");
 }
@@ -234,7 +234,7 @@ fn a_replayed_download_leaves_the_same_memory_as_a_load() {
             .poke_bytes(entry, &download.entry.get().to_le_bytes())
             .expect("it lies in memory");
         assert!(contents(&loaded) == contents(&replayed), "{name}");
-        // An image made of the lines alone loads as well.
+        // An image made only from the lines loads as well.
         let image = download.to_image(image.program.expect("it has one").version_stamp);
         let mut again: Board = Board::new(Config::default());
         again

@@ -1,4 +1,4 @@
-//! `cc67 inspect`, `diff` and `firmware` as users read them.
+//! The output of `cc67 inspect`, `diff` and `firmware`.
 
 use harness::{Scratch, cc67, vendor};
 

@@ -1,4 +1,4 @@
-//! Images for Kogna: both forms that its loader takes, and code that its processor executes.
+//! Images for Kogna: both formats that its loader accepts, and code that its processor executes.
 
 use std::fs;
 
@@ -21,7 +21,7 @@ static int half(int n) { return n / table[1]; }
 main() { ch8->Dest = half(zeros[7]); SetBit(250); printf(\"%d %f\\n\", half(9), sin(0.5)); }
 ";
 
-/// The note about what nobody has compared.
+/// The note about properties that were never compared.
 const NOTE: &str = "cc67: kogna-5.3.2 is known from its header, manual and firmware file, and was never compared with a board\n";
 
 #[track_caller]
@@ -52,7 +52,7 @@ fn an_elf_image_has_what_the_loader_of_the_board_reads() {
         .filter(|header| u64::from(SHF_ALLOC) & header.sh_flags != 0)
         .map(|header| (&elf.shdr_strtab[header.sh_name], header.sh_type, header.sh_addr, header.sh_size))
         .collect();
-    // The loader takes PROGBITS alone and clears nothing.
+    // The loader accepts only PROGBITS and clears nothing.
     assert!(elf.section_headers.iter().all(|header| header.sh_type != SHT_NOBITS));
     let names: Vec<_> = loaded.iter().map(|(name, ..)| *name).collect();
     assert_eq!(names, [".text", ".data", ".bss"]);
@@ -133,7 +133,7 @@ fn the_firmware_file_of_kogna_is_elf_and_links_as_the_table_does() {
     assert_eq!(bytes("file.out"), bytes("table.out"));
 }
 
-/// The released file, which `CC67_FIRMWARE_KOGNA` names, where there is one.
+/// Uses the released file if `CC67_FIRMWARE_KOGNA` names one.
 #[test]
 fn the_released_firmware_of_kogna_links_as_the_table_does() {
     let Some(path) = std::env::var_os("CC67_FIRMWARE_KOGNA") else {
@@ -150,8 +150,8 @@ fn the_released_firmware_of_kogna_links_as_the_table_does() {
     assert_eq!(symbols, known);
 }
 
-/// A fetch packet whose last word begins with bits 1110 holds compact instructions for a C674x, and a program space whose
-/// first word is 0 holds no program for its firmware.
+/// A fetch packet whose last word begins with the bits 1110 contains compact instructions on a C674x, and a program
+/// space whose first word is 0 contains no program for its firmware.
 #[test]
 fn programs_have_no_word_that_the_processor_of_kogna_takes_for_something_else() {
     let options = |level| Options {

@@ -1,4 +1,4 @@
-//! Images that a board refuses to load, keeping the program it had.
+//! Images that a board refuses to load, keeping its previous program.
 
 use std::path::Path;
 
@@ -24,7 +24,7 @@ fn build(source: &str, number: i32) -> Vec<u8> {
 
 const COUNTER: &str = "int start = 5;\nint count;\nmain() { printf(\"%d %d\\n\", start++, count++); }\n";
 
-/// Runs what is loaded in thread 1 and returns what it prints.
+/// Runs the program in thread 1 and returns its output.
 fn execute(board: &mut Board) -> String {
     board.start(thread(1)).expect("a program is loaded");
     let mut text = Vec::new();
@@ -42,7 +42,7 @@ fn memory(board: &Board) -> Vec<u8> {
     board.memory().read_bytes(region.base, region.size).expect("it is memory").to_vec()
 }
 
-/// Loads the image of [`COUNTER`] after a change into a board that holds another program.
+/// Loads a modified image of [`COUNTER`] into a board that contains another program.
 #[track_caller]
 fn refused(change: impl FnOnce(&mut Image), expect: &str) {
     let mut image = Image::read(&build(COUNTER, 1)).expect("the image is good");
@@ -119,7 +119,7 @@ fn code_that_the_machine_cannot_run_is_refused() {
     refused(text(Vec::clear), "the code is refused: ");
 }
 
-/// A loader that does not look at the target would have the processor execute bytecode.
+/// A loader that ignored the target would make the processor execute bytecode.
 #[test]
 fn a_processor_that_is_given_bytecode_returns_at_once() {
     let mut image = Image::read(&build(COUNTER, 1)).expect("the image is good");

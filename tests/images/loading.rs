@@ -1,4 +1,4 @@
-//! The memory that a load writes and that a second execution finds, section 1.6 of the dialect.
+//! The memory that a load writes and that a second execution finds: section 1.6 of the dialect.
 
 use std::path::Path;
 
@@ -31,7 +31,7 @@ fn load(board: &mut Board, image: &[u8]) {
     board.load(first_thread(), image).expect("the image is loaded");
 }
 
-/// Executes the loaded program and returns the line that it prints.
+/// Executes the loaded program and returns its line of output.
 fn execute(board: &mut Board) -> String {
     let mut lines = Vec::new();
     board.start(first_thread()).expect("a program is loaded");
@@ -76,7 +76,7 @@ fn a_machine_file_can_reset_globals_at_each_start() {
 
 #[test]
 fn a_machine_file_says_how_fast_programs_run() {
-    // Turns of a loop without a call in a millisecond.
+    // Iterations of a loop without a call in a millisecond.
     let source = "#include \"KMotionDef.h\"\nmain()\n{\n  int n = 0;\n  double end = ServoTick + 11;\n  \
                   while (ServoTick < end) n++;\n  printf(\"%d\\n\", n);\n}\n";
     let image = image_of(source);

@@ -1,4 +1,4 @@
-//! Images: how they are built, written, read, shown, and loaded.
+//! Images: building, writing, reading, showing and loading them.
 
 mod build;
 mod formats;

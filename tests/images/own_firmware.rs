@@ -1,5 +1,6 @@
-//! A firmware of our own, written in C and compiled for the real processor, on the board that boots firmware files. What
-//! no C says is assembled: the start, the interrupt's vector, and what keeps the registers around the C function.
+//! A firmware of our own, written in C and compiled for the real processor, on the board that boots firmware files. The
+//! parts that C cannot express are assembled: the start, the interrupt vector, and the code that saves the registers
+//! around the C function.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -15,14 +16,14 @@ use kmotiondef::ThreadId;
 use kmotiondef::map::{IRAM, SDRAM};
 
 const SOURCE: &str = include_str!("own_firmware.c");
-/// A function that the C calls with the number of each tick; it goes back at once.
+/// A function that the C code calls with the number of each tick; it returns at once.
 const SERVICE: u32 = 0x8000_2000;
 /// The addresses of the assembled parts, and the end of the stack.
 const START: u32 = 0x8000_0000;
 const HANDLER: u32 = 0x8000_1000;
 const VECTOR: u32 = 0x1000_0080;
 const STACK: u32 = 0x8007_FFF0;
-/// Bytes that the registers take, a multiple of 8.
+/// The size of the saved registers in bytes, a multiple of 8.
 const KEPT: u32 = 64 * 4 + 8;
 /// Cycles of a tick.
 const TICK: u64 = 18_000;
@@ -31,7 +32,7 @@ fn constant(value: u32, reg: &str) -> String {
     format!("MVK .S2 {},{reg}\nMVKH .S2 0x{value:08X},{reg}\n", i32::from(value as u16 as i16))
 }
 
-/// The words of a text, an instruction a packet.
+/// The words of a text, one instruction per packet.
 fn code(text: &str, base: u32) -> Vec<u8> {
     let words = text.lines().zip((base..).step_by(4)).map(|(line, at)| {
         c67x::assemble(line, at).unwrap_or_else(|error| panic!("{line}: {error}")).inst.encode(false)
@@ -39,14 +40,14 @@ fn code(text: &str, base: u32) -> Vec<u8> {
     words.flat_map(u32::to_le_bytes).collect()
 }
 
-/// The stack, the vectors and the interrupts; then C.
+/// Sets up the stack, the vectors and the interrupts; then calls C.
 fn start(main: u32) -> String {
     let control = |value: u32, name: &str| constant(value, "B20") + &format!("MVC .S2 B20,{name}\n");
     let set = control(0x1000_0000, "ISTP") + &control(0x13, "IER") + &control(0x103, "CSR");
     constant(STACK, "B15") + &set + &constant(main, "B20") + "B .S2 B20\nNOP 5\n"
 }
 
-/// Keeps all registers, calls C, and goes back.
+/// Saves all registers, calls C, and returns.
 fn handler(tick: u32) -> String {
     let registers = || (0..32).flat_map(|number| [('A', number), ('B', number)]);
     let each = |op: &str| {
@@ -79,7 +80,7 @@ fn section(name: &str, address: u32, text: &str) -> Section {
     }
 }
 
-/// The C, linked as a program of thread 1.
+/// The C code, linked as a program for thread 1.
 fn compiled() -> Image {
     let options = Options { target: Target::C67x, ..Options::default() };
     let mut compilation = compile(Path::new("own_firmware.c"), SOURCE.into(), &options, &MemoryFiles::new());
@@ -144,20 +145,20 @@ fn a_firmware_in_c_echoes_while_it_is_interrupted() {
         board.run_to(board.cycle() + TICK / 2).unwrap_or_else(|halted| panic!("{halted}"));
     }
     let bytes: Vec<u8> = board.take_bytes().into_iter().map(|(_, byte)| byte).collect();
-    // What the interrupt prints comes at any place in between.
+    // Text printed by the interrupt appears at any position in between.
     let all = String::from_utf8(bytes).expect("it is text");
     let (one, rest) = all.split_once("\x1btick 10\r\n").expect("a tenth tick");
     assert_eq!(one.to_owned() + rest, String::from_utf8_lossy(&text));
 }
 
-/// Everything that can be seen of a board, and what it has sent since the last call.
+/// The whole observable state of a board, and the bytes that it has sent since the last call.
 fn seen(board: &mut BootedBoard) -> impl PartialEq + std::fmt::Debug + use<> {
     let bytes = board.take_bytes();
     let place = (board.cycle(), board.packets(), board.registers(), board.steps(2));
     let changes = board.take_pin_changes();
     let memory = board.memory();
     let ram = [IRAM, SDRAM].map(|region| memory.read_bytes(region.base, region.size).expect("it is RAM"));
-    // As a number: memory is too large to be printed.
+    // As a hash, since memory is too large to be printed.
     let mut hash = std::hash::DefaultHasher::new();
     std::hash::Hash::hash(&ram, &mut hash);
     (bytes, place, changes, std::hash::Hasher::finish(&hash))
@@ -170,7 +171,7 @@ fn run_to(board: &mut BootedBoard, cycle: u64) {
 #[test]
 fn a_board_restored_from_a_snapshot_continues_as_before() {
     let mut board = booted();
-    // Between ticks, in the interrupt of one, and while it prints.
+    // Between ticks, within the interrupt of one, and while it prints.
     for at in [3 * TICK + 7777, 5 * TICK + 300, 10 * TICK + 450, 10 * TICK + 455] {
         run_to(&mut board, at);
         board.send(b"in flight");
@@ -184,7 +185,7 @@ fn a_board_restored_from_a_snapshot_continues_as_before() {
         run_to(&mut board, end);
         assert_eq!(seen(&mut board), once, "from cycle {at}");
         let mut other = snapshot.board();
-        // In parts, which no run may show.
+        // In parts, which must not make a difference.
         (at..end).step_by(997).for_each(|cycle| run_to(&mut other, cycle));
         run_to(&mut other, end);
         assert_eq!(seen(&mut other), once, "from cycle {at}, in parts");
@@ -232,7 +233,7 @@ fn packets_of_programs_are_recorded_as_they_are_executed() {
     assert!(packets.len() > 5000 && packets.iter().all(is_program), "{}", packets.len());
     let follows = |pair: &[ProgramPacket]| pair[0].cycle + pair[0].cycles as u64 <= pair[1].cycle;
     assert!(packets.windows(2).all(follows));
-    // Nothing but the start, the vector, the interrupt's registers and the function that it calls comes between them.
+    // Only the start, the vector, the saving of registers and the called function are outside these packets.
     let own: i64 = packets.iter().map(|packet| packet.cycles).sum();
     assert!(own > 2 * TICK as i64 && own < 3 * TICK as i64, "{own}");
     let first = packets.iter().find(|packet| packet.text.contains("LDB")).expect("it reads registers");

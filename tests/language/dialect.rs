@@ -1,9 +1,9 @@
 //! Every statement of the dialect has a test, and every test of the dialect names its statement.
 //!
-//! `data/dialect/rows.csv` lists the statements by section. The tests of `2.1/crlf-lines` are the
-//! programs `filetests/dialect/2.1/crlf-lines.c` and `crlf-lines.*.c`, so a failing test names the
-//! statement it breaks. What a program alone cannot show names its test in the column `tested_by`:
-//! a function as `tests/command/run.rs::name`, or a program elsewhere as `filetests/board/bits`.
+//! `data/dialect/rows.csv` lists the statements by section. The tests of `2.1/crlf-lines` are the programs
+//! `filetests/dialect/2.1/crlf-lines.c` and `crlf-lines.*.c`, so a failing test names the violated statement. A
+//! statement that a program alone cannot test names its test in the column `tested_by`: a function as
+//! `tests/command/run.rs::name`, or a program elsewhere as `filetests/board/bits`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -32,7 +32,7 @@ fn programs() -> BTreeMap<String, usize> {
     programs
 }
 
-/// Returns whether a test that `tested_by` names exists.
+/// Returns whether a test named in `tested_by` exists.
 fn exists(test: &str) -> bool {
     match test.split_once("::") {
         None => harness::root().join("tests").join(test).with_extension("c").is_file(),

@@ -1,9 +1,9 @@
-//! Generated programs: what they print, how long they take and what they leave in memory is the same on both
-//! engines, and what they print is the same as code for the real processor, at every level of optimisation and by `gcc`,
-//! where that is installed. Seven at a time run in seven threads, which interrupt each other anywhere; so they do on the
-//! released firmware, where `CC67_FIRMWARE` names its file.
+//! Generated programs: their output, duration and final memory are the same on both engines, and their output is the
+//! same as code for the real processor, at every level of optimisation, and with `gcc` if it is installed. Up to seven
+//! programs also run together in seven threads, which interrupt each other anywhere; they do so on the released
+//! firmware, too, if `CC67_FIRMWARE` names its file.
 //!
-//! An ordinary run takes a few programs. `CC67_PROGRAMS=20000` takes this many, `CC67_SEED=n` begins at another seed.
+//! A normal run takes a few programs. `CC67_PROGRAMS=20000` takes that many, `CC67_SEED=n` begins with another seed.
 
 use std::fs;
 use std::path::Path;
@@ -23,10 +23,10 @@ use kmotiondef::{ThreadId, Ticks};
 use runtime::{Board, Config, EventKind, RunEnd};
 use vm::interp::BytecodeEngine;
 
-/// Programs of an ordinary run.
+/// The number of programs in a normal run.
 const PROGRAMS: u64 = 14;
 
-/// Programs that `gcc` compiles in one go.
+/// The number of programs that `gcc` compiles at once.
 const BATCH: usize = 42;
 
 const LEVELS: &[Level] = &[Level::None, Level::Full, Level::Fast, Level::Small];
@@ -34,10 +34,10 @@ const LEVELS: &[Level] = &[Level::None, Level::Full, Level::Fast, Level::Small];
 /// Cycles of a tick on a board.
 const TICK: u64 = 18_000;
 
-/// Board time after which a program has gone wrong: a minute.
+/// The board time after which a program has failed: a minute.
 const LIMIT: Ticks = Ticks::new(666_667);
 
-/// A program; its line says of which seed it is.
+/// The program for a seed; its line of output contains the seed.
 fn source(seed: u64, prefix: &str) -> String {
     kinds::of_any_kind(seed, prefix, &format!("{seed}: "))
 }
@@ -64,7 +64,7 @@ fn thread(number: usize) -> ThreadId {
     ThreadId::new(i32::try_from(number).expect("small")).expect("a thread")
 }
 
-/// Runs an image on every engine there is, which must not differ in anything, and yields the console.
+/// Runs an image on every available engine, between which there must be no difference, and returns the console.
 fn run(seed: u64, image: &[u8]) -> String {
     console(seed, execute_everywhere(image, LIMIT).expect("what the compiler makes can be loaded"))
 }
@@ -88,14 +88,15 @@ fn console(seed: u64, seen: Seen) -> String {
     text
 }
 
-/// Lines in the order of their texts: threads print when they come to it.
+/// The lines in alphabetical order, since threads print at any time.
 fn sorted(text: &str) -> Vec<&str> {
     let mut lines: Vec<_> = text.lines().collect();
     lines.sort_unstable();
     lines
 }
 
-/// Runs images in threads 1, 2, … at the same time, for the time that code takes on a board, and yields the console.
+/// Runs images in threads 1, 2, … at the same time, for the duration that their code has on a board, and returns the
+/// console.
 fn run_together(seeds: &[u64], images: &[Vec<u8>]) -> String {
     let mut board = Board::<BytecodeEngine>::new(Config::default());
     for (index, image) in images.iter().enumerate() {
@@ -107,7 +108,7 @@ fn run_together(seeds: &[u64], images: &[Vec<u8>]) -> String {
     console(seeds[0], Seen { events, end })
 }
 
-/// A board that has booted the released firmware, and its symbols; `None` where there is no file of it.
+/// A board that has booted the released firmware, and its symbols; `None` without a firmware file.
 fn released() -> Option<(BootedBoard, Firmware)> {
     static BOOTED: LazyLock<Option<(Mutex<BootedSnapshot>, Firmware)>> = LazyLock::new(|| {
         let bytes = fs::read(std::env::var_os("CC67_FIRMWARE")?).expect("CC67_FIRMWARE names a file");
@@ -142,7 +143,7 @@ fn run_released(seeds: &[u64], mut board: BootedBoard, images: &[Vec<u8>]) -> St
     text
 }
 
-/// Up to seven programs in as many threads, at every level, must print what each prints alone.
+/// Up to seven programs in as many threads, at every level, must have the same output as each alone.
 fn compare_together(seeds: &[u64], expected: &str) {
     let images = |options: &Options| -> Vec<_> {
         let numbered = seeds.iter().enumerate();
@@ -160,16 +161,17 @@ fn compare_together(seeds: &[u64], expected: &str) {
     }
 }
 
-/// The statement with which `gcc` counts tiny numbers as zero, as the controller's processor does, where the host's can.
+/// The statement with which `gcc` flushes denormals to zero, as the controller's processor does, on hosts that support
+/// it.
 const WITHOUT_TINY: Option<&str> =
     if cfg!(target_arch = "x86_64") { Some("__builtin_ia32_ldmxcsr(0x9fc0);") } else { None };
 
-/// Returns the outputs of the programs `seeds` when compiled by `gcc`; `None` where that is not installed.
+/// Returns the output of the programs for `seeds` when compiled by `gcc`; `None` if it is not installed.
 fn gcc(seeds: &[u64], level: &str) -> Option<Vec<String>> {
     gcc_after("", seeds, level)
 }
 
-/// Does what [`gcc`] does, with `first` as the first statement of `main`.
+/// Does the same as [`gcc`], with `first` as the first statement of `main`.
 fn gcc_after(first: &str, seeds: &[u64], level: &str) -> Option<Vec<String>> {
     let scratch = Scratch::new(&format!("differential-{}", seeds[0]));
     let mut text = String::new();
@@ -180,9 +182,9 @@ fn gcc_after(first: &str, seeds: &[u64], level: &str) -> Option<Vec<String>> {
     }
     scratch.write("all.c", format!("{text}\n{main}    return 0;\n}}\n"));
     let program = scratch.path().join("all");
-    // GCC 12 takes `x >= x` for true where x is a NaN and it follows a jump to there
-    // (tests/filetests/language/nan_compared_with_itself.c at -O1), so it may not follow jumps. Vectorised at -O2, program
-    // 373 prints something else than at -O0, at -O1, and checked by its sanitizers.
+    // GCC 12 evaluates `x >= x` as true if x is a NaN and jump threading applies
+    // (tests/filetests/language/nan_compared_with_itself.c at -O1), so jump threading is disabled. Vectorised at -O2,
+    // the output of program 373 differs from that at -O0, at -O1, and with its sanitizers.
     let compiler = Command::new("gcc")
         .args(["-w", level, "-fno-thread-jumps", "-fno-tree-vectorize"])
         .args(["-fwrapv", "-fsigned-char", "-ffp-contract=off", "-o"])
@@ -197,7 +199,7 @@ fn gcc_after(first: &str, seeds: &[u64], level: &str) -> Option<Vec<String>> {
     Some(text.lines().map(|line| format!("{line}\n")).collect())
 }
 
-/// Asserts that programs print the same; keeps those that do not in `target/found`.
+/// Asserts that programs have the same output; stores those that do not in `target/found`.
 fn agree(seeds: &[u64], what: &str, found: &str, expected: &str) {
     let (found, expected) = (sorted(found), sorted(expected));
     if found == expected {
@@ -222,11 +224,11 @@ fn agree(seeds: &[u64], what: &str, found: &str, expected: &str) {
 struct Alone {
     /// As bytecode.
     plain: String,
-    /// As code for the processor: the same, but for programs that compute with tiny numbers, which it counts as zero.
+    /// As code for the processor: the same, except for programs that compute with denormals, which it flushes to zero.
     code: String,
 }
 
-/// Compares what a program prints alone, on every engine and at every level.
+/// Compares the output of a program that runs alone, on every engine and at every level.
 fn compare_alone(seed: u64) -> Alone {
     let image = |level, target| compile(seed, &source(seed, ""), thread(1), &options(level, target));
     let plain = run(seed, &image(Level::None, Target::Sim));
@@ -248,7 +250,7 @@ fn compare_alone(seed: u64) -> Alone {
     Alone { plain, code }
 }
 
-/// Compares the programs `seeds`; returns how many were compared with `gcc`.
+/// Compares the programs for `seeds`; returns how many were compared with `gcc`.
 fn compare(seeds: &[u64]) -> usize {
     let mut compared = 0;
     for batch in seeds.chunks(BATCH) {
@@ -268,7 +270,7 @@ fn compare(seeds: &[u64]) -> usize {
     compared / 3
 }
 
-/// A program in which a sum becomes smaller than any normal number.
+/// A program in which a sum becomes a denormal.
 #[test]
 fn a_program_with_tiny_numbers_is_compared_with_a_compiler_that_counts_them_as_zero() {
     let seed = 8_000_080;

@@ -1,7 +1,7 @@
-//! The headers in `kmotiondef/include` say what the interface tables say.
+//! The headers in `kmotiondef/include` agree with the interface tables.
 //!
-//! A C program of static assertions is made of the tables and compiled by cc67, so that names,
-//! types, values, layouts and macros are compared as a program would see them.
+//! A C program of static assertions is generated from the tables and compiled by cc67, so that names, types, values,
+//! layouts and macros are compared as a program would see them.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -14,7 +14,7 @@ use harness::csv::{self, Row};
 use kmotiondef::boards::TargetBoard;
 use kmotiondef::structs::{STRUCTURES, StructureField};
 
-/// The rows of a table about a board.
+/// The rows of a table for a board.
 fn table(board: &TargetBoard, name: &str) -> Vec<Row> {
     let folder = match board.is_default() {
         true => "api".to_owned(),
@@ -23,15 +23,15 @@ fn table(board: &TargetBoard, name: &str) -> Vec<Row> {
     csv::read(&harness::root().join("tests/data").join(folder).join(name))
 }
 
-/// Every board with a count of rows that is expected for it.
+/// Every board with its expected number of rows.
 fn boards(counts: [usize; 3]) -> impl Iterator<Item = (&'static TargetBoard, usize)> {
     let names = ["kflop-4.34", "kflop-5.3.2", "kogna-5.3.2"];
     names.map(|name| TargetBoard::named(name).expect(name)).into_iter().zip(counts)
 }
 
-/// Compiles and links the header, `checks` and a `main` of the given body; returns the errors.
+/// Compiles and links the header, `checks` and a `main` with the given body; returns the errors.
 ///
-/// The linker looks only at what `main` reaches.
+/// The linker checks only the symbols that are reachable from `main`.
 fn errors(board: &'static TargetBoard, checks: &str, body: &str) -> String {
     let text = format!("#include \"KMotionDef.h\"\n{checks}\nint main(void) {{ {body} }}\n");
     let options = compiler::Options { firmware: Firmware::Board(board), ..compiler::Options::default() };
@@ -111,7 +111,7 @@ fn declares(line: &str, field: &str) -> bool {
     names.rsplit(|c: char| !c.is_alphanumeric() && c != '_').next() == Some(field)
 }
 
-/// The line of a field, its comment below that of the line before it.
+/// The line of a field, with its comment aligned to that of the previous line.
 fn line_of(field: &StructureField, before: &str) -> String {
     let declaration = format!("    {};", field.ty.declare(field.name));
     let column = before.find("//").unwrap_or_default().max(declaration.len() + 1);
@@ -120,13 +120,13 @@ fn line_of(field: &StructureField, before: &str) -> String {
     format!("{declaration:<column$}// {doc}")
 }
 
-/// The header with a line for each field that has a row and no line.
+/// The header with a line added for each field that has a row and no line.
 fn completed(header: &str) -> String {
     let mut lines: Vec<String> = header.split('\n').map(str::to_owned).collect();
     for structure in STRUCTURES {
         let end = format!("}} {};", structure.name);
         let is_end = |line: &String| *line == end;
-        // Else it is one of the other header.
+        // Otherwise it belongs to the other header.
         let Some(last) = lines.iter().position(is_end) else { continue };
         let mut at =
             lines[..last].iter().rposition(|line| line.starts_with("typedef struct")).expect("it begins");
@@ -267,7 +267,7 @@ fn macros_are_all_defined() {
     }
 }
 
-/// The text by which the headers of a board define a macro, without blanks.
+/// The text of a macro in the headers of a board, without blanks.
 fn expansion(board: &TargetBoard, name: &str) -> Option<String> {
     let (_, rest) = board.headers().iter().find_map(|(_, text)| {
         let text = str::from_utf8(text).expect("headers are UTF-8");
@@ -287,7 +287,7 @@ fn expansion(board: &TargetBoard, name: &str) -> Option<String> {
 #[test]
 fn macros_expand_to_what_the_tables_have() {
     for (board, count) in boards([16, 19, 36]) {
-        // The tables describe the macros for texts of modes in words.
+        // The tables describe the macros for mode names in words.
         let rows = table(board, "macros.csv").into_iter();
         let rows: Vec<_> = rows.filter(|row| !row["expansion"].starts_with("string by")).collect();
         assert_eq!(rows.len(), count, "{}", board.name);

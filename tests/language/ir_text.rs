@@ -1,4 +1,4 @@
-//! The text form of the IR: what is printed of a program is read back and prints the same, after every pass.
+//! The text form of the IR: the printed text of a program is read back and prints the same, after every pass.
 
 use std::fs;
 
@@ -11,7 +11,7 @@ fn the_ir_of_every_program_is_read_back_after_every_pass() {
     for folder in ["c-programs", "tests/filetests"] {
         for path in files(&harness::root().join(folder), "c") {
             let source = fs::read(&path).expect("the program is readable");
-            // Programs with errors on purpose have no IR.
+            // Programs with deliberate errors have no IR.
             let Ok(mut text) = stages::lower(&path, source, &pp::Disk) else { continue };
             let name = path.display();
             assert_eq!(stages::reprint(&text).as_ref(), Ok(&text), "{name}");

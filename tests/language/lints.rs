@@ -1,9 +1,8 @@
-//! Every warning has a page, and the programs of the page do what the page says.
+//! Every warning has a page, and the programs of the page behave as the page says.
 //!
-//! A page is `cc67/compiler/src/lints/pages/<name>.md`. A block of C marked `fires` is a program in
-//! which this lint, and no other, is reported when it is switched on; a block marked `clean`
-//! one that compiles and links without messages. A block marked with a file name is a file
-//! beside all of them.
+//! A page is `cc67/compiler/src/lints/pages/<name>.md`. A block of C marked `fires` is a program in which this lint,
+//! and no other, is reported when it is enabled; a block marked `clean` is one that compiles and links without
+//! messages. A block marked with a file name is an additional file for all of them.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -33,7 +32,7 @@ fn blocks(page: &str) -> Vec<Block> {
     blocks
 }
 
-/// The messages about a program, one finding a line, and the names of the lints that say it.
+/// The messages about a program, one finding per line, and the names of their lints.
 fn compile(lint: Lint, text: &str, page: &[Block]) -> (Vec<String>, BTreeSet<&'static str>) {
     let mut files = MemoryFiles::new();
     for file in page.iter().filter(|block| block.mark.contains('.')) {

@@ -1,4 +1,5 @@
-//! The C that the compiler takes: the statements of the dialect, the headers, the warnings, and what programs compute.
+//! The C accepted by the compiler: the statements of the dialect, the headers, the warnings, and the results of
+//! programs.
 
 mod dialect;
 mod differential;

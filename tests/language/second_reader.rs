@@ -1,8 +1,9 @@
-//! `lang-c`, a parser of other people, reads along: of every program that it accepts it gives the same declarations,
-//! expressions and statements as ours, which the release keeps for its speed and its several messages.
+//! `lang-c`, an independent parser, reads the same programs: for every program that it accepts, it must return the same
+//! declarations, expressions and statements as our parser, which is used for its speed and because it reports several
+//! errors.
 //!
-//! Both read the same tokens, ours; the trees are compared in their printed form, item by item. `lang-c` reads
-//! standard C, so an `int` that the old style leaves out is written for it.
+//! Both read the same tokens, produced by our lexer; the trees are compared in their printed form, item by item.
+//! `lang-c` reads standard C, so an implicit `int` is made explicit for it.
 
 mod print;
 
@@ -28,7 +29,7 @@ const DIFFERENCES: &[(&str, &str)] = &[
     ("tests/filetests/dialect/1.1/pointers.c", "in a cast, `lang-c` does not tell `()` from `(void)`"),
 ];
 
-/// Programs that `lang-c` cannot read, each with what stops it; it must accept every other one.
+/// Programs that `lang-c` cannot read, each with the reason; it must accept all others.
 const NOT_READ: &[(&str, &str)] = &[
     ("tests/filetests/diagnostics/path_that_looks_like_unicode.c", "an unknown escape"),
     ("tests/filetests/diagnostics/windows_path_in_string.c", "an unknown escape"),
@@ -56,31 +57,31 @@ const NOT_READ: &[(&str, &str)] = &[
     ("tests/filetests/lints/waiting_is_silent.c", "locals without a type"),
 ];
 
-/// The declarations that our parser has built in; their line is left out.
+/// The declarations that are built into our parser; their line is left out.
 const PRELUDE: &str = "typedef char *va_list; ";
 
-/// Stack for trees of any depth.
+/// The stack size for trees of any depth.
 const STACK: usize = 256 << 20;
 
-/// The result of reading a program.
+/// The result of reading a program with both parsers.
 #[derive(Debug, PartialEq)]
 enum Reading {
     /// Our parser finds errors: nothing is compared.
     Wrong,
-    /// Not accepted by `lang-c`: the text from where it stops.
+    /// `lang-c` rejects it: the text from the position of its error.
     Refused(String),
     /// The first item that differs, as printed by ours and by `lang-c`.
     Differs(String, String),
-    /// This many items are the same.
+    /// The number of items, all of which are the same.
     Same(usize),
 }
 
-/// Returns whether the specifiers leave `int` out.
+/// Returns whether an `int` is implicit in the specifiers.
 fn leaves_int_out(specifiers: &Specifiers) -> bool {
     specifiers.ty.is_none()
 }
 
-/// Before which declarators an `int` belongs.
+/// The positions of implicit `int`s: before these declarators.
 fn left_out(unit: &TranslationUnit) -> Vec<Span> {
     let mut found = Vec::new();
     for item in &unit.items {
@@ -114,7 +115,7 @@ fn text(tokens: &[Token], unit: &TranslationUnit, sources: &SourceMap) -> Option
     Some(text)
 }
 
-/// Our form, with the `int`s that are left out, and with the name of the type that our parser knows by itself.
+/// Our form, with implicit `int`s made explicit, and with the name of the type that is built into our parser.
 fn completed(line: &str) -> String {
     line.replace("(typeof char *)", "va_list")
         .split(' ')

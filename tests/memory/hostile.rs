@@ -1,8 +1,7 @@
-//! Mutated and random bytes through everything that reads them: no panic, little memory, and
-//! every refusal says why.
+//! Mutated and random bytes through all readers: no panic, little memory, and a reason for every rejection.
 //!
-//! `cargo test` tries 50,000 of each kind; with `CC67_LONG=1` in the environment it is a million,
-//! for which a release build is advisable.
+//! `cargo test` tries 50,000 of each kind; with `CC67_LONG=1` in the environment a million, for which a release build
+//! is advisable.
 
 use harness::is_long;
 use harness::oracles::{read_file, valid_files};
@@ -10,10 +9,10 @@ use harness::random::Random;
 
 use crate::{MEMORY, alone};
 
-/// Most bytes that reading one file may take.
+/// The maximum number of bytes that reading one file may take.
 const LIMIT: usize = 64 << 20;
 
-/// Changes a few bytes, mostly of the headers, to values that are often awkward; may cut the end off.
+/// Changes a few bytes, most of them in the headers, to values that often cause errors; may truncate the end.
 fn mutate(bytes: &mut Vec<u8>, numbers: &mut Random) {
     const AWKWARD: [u8; 8] = [0, 1, 2, 0x7f, 0x80, 0xfe, 0xff, 0x10];
     for _ in 0..=numbers.below(6) {
@@ -31,7 +30,7 @@ fn mutate(bytes: &mut Vec<u8>, numbers: &mut Random) {
 
 fn random(numbers: &mut Random) -> Vec<u8> {
     let mut bytes: Vec<u8> = (0..numbers.below(400)).map(|_| numbers.draw() as u8).collect();
-    // Most of what does not begin like an image is refused at once.
+    // Most data that do not begin like an image are rejected at once.
     if numbers.below(2) == 0 {
         bytes.splice(..bytes.len().min(2), [0xC2, 0]);
     }

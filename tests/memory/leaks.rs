@@ -1,5 +1,5 @@
-//! Threads that trap deep inside calls, call-backs that trap, and threads that are killed leave nothing behind: neither
-//! memory nor native stacks.
+//! Threads that trap deep inside calls, call-backs that trap, and threads that are killed leave nothing allocated:
+//! neither memory nor native stacks.
 
 use std::fs;
 use std::path::Path;
@@ -12,7 +12,7 @@ use vm::interp::BytecodeEngine;
 
 use crate::{MEMORY, alone};
 
-/// Programs that end badly, or not at all; each runs for some ticks and is then killed where it is.
+/// Programs that end with an error, or not at all; each runs for some ticks and is then killed.
 const PROGRAMS: [(&str, &str); 5] = [
     (
         "overflow",
@@ -45,13 +45,13 @@ fn thread() -> ThreadId {
     ThreadId::new(1).expect("there is a thread 1")
 }
 
-/// Bytes allocated, and ranges of memory mapped, where the system tells.
+/// The number of allocated bytes, and of mapped memory ranges if the operating system reports them.
 fn held() -> (usize, usize) {
     let maps = fs::read_to_string("/proc/self/maps").map_or(0, |maps| maps.lines().count());
     (MEMORY.current_usage(), maps)
 }
 
-/// Runs each program `times` times on one board; returns what is held after that, and how many traps there were.
+/// Runs each program `times` times on one board; returns the allocations after that, and the number of traps.
 fn run<E: Engine>(board: &mut Board<E>, images: &[Vec<u8>], times: u32) -> (usize, usize, usize) {
     let mut traps = 0;
     for _ in 0..times {

@@ -1,6 +1,6 @@
-//! Memory of a process: a test binary of its own, because it counts every allocation of its process.
+//! The memory of a process: a separate test binary, because it counts every allocation of its process.
 //!
-//! Its tests run one at a time, so that each counts only its own.
+//! Its tests run one at a time, so that each counts only its own allocations.
 
 mod host;
 mod hostile;
@@ -10,14 +10,14 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use peak_alloc::PeakAlloc;
 
-/// Every allocation of this process.
+/// The counter of all allocations in this process.
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
 static ALONE: Mutex<()> = Mutex::new(());
 
-/// Waits until no other test runs, and holds the others off until the guard is dropped.
+/// Waits until no other test runs, and blocks the others until the guard is dropped.
 fn alone() -> MutexGuard<'static, ()> {
-    // A test that failed has left nothing that the next one reads.
+    // A failed test leaves nothing that the next one uses.
     ALONE.lock().unwrap_or_else(PoisonError::into_inner)
 }

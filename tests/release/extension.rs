@@ -1,4 +1,4 @@
-//! The extension for VS Code: its snippets, settings and files are what the book says of them.
+//! The extension for VS Code: its snippets, settings and files match the book's description.
 
 use std::fs;
 
@@ -21,7 +21,7 @@ fn snippets_are_programs_for_the_board() {
     let prefixes = values(&text, "prefix");
     assert!(prefixes.len() >= 5 && prefixes.iter().all(|prefix| prefix.starts_with("kflop")), "{prefixes:?}");
     assert_eq!(values(&text, "description").len(), prefixes.len());
-    // Each call is one of the firmware.
+    // Each call is a call of a firmware function.
     let header =
         fs::read_to_string(root().join("kmotiondef/include/KMotionDef.h")).expect("the header is there");
     let calls = text.split('(').filter_map(|before| {
@@ -42,7 +42,7 @@ fn the_manifest_names_files_that_are_packed() {
     let files = files.split(']').next().unwrap_or_default();
     for name in ["extension.js", "snippets.json", "README.md", "LICENSE.txt"] {
         assert!(files.contains(&format!("\"{name}\"")), "{name} is not packed");
-        // The licence is put there when the extension is packed.
+        // The licence is added when the extension is packaged.
         assert!(name == "LICENSE.txt" || !read(name).is_empty());
     }
     assert_eq!(values(&manifest, "main"), ["./extension.js"]);

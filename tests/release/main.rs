@@ -1,4 +1,4 @@
-//! Releases: packages, notices of third parties, workflows, the extension for VS Code, promises of the pages.
+//! Releases: packages, third-party notices, workflows, the extension for VS Code, promises of the pages.
 
 mod extension;
 mod notices;

@@ -1,7 +1,7 @@
-//! The notices of third parties are those of the crates that the executables contain.
+//! The third-party notices cover the crates that the executables contain.
 //!
-//! `cc67/THIRD-PARTY.txt` goes into every package, archive and wheel. It has the licence of each crate that the command, the
-//! C interface or the Python package is linked with, on any system, and the texts as the crates have them;
+//! `cc67/THIRD-PARTY.txt` is part of every package, archive and wheel. It contains the licence of each crate with which
+//! the command, the C interface or the Python package is linked, on any system, and the texts from the crates;
 //! `CC67_WRITE_NOTICES=1 cargo test --test release notices` writes it.
 
 use std::collections::BTreeMap;
@@ -12,10 +12,10 @@ use std::{env, fs};
 
 use crate::root;
 
-/// A crate of somebody else: name and version.
+/// A third-party crate: name and version.
 type Package = (String, String);
 
-/// The crates of others that a package is linked with, each with its licence.
+/// The third-party crates with which a package is linked, each with its licence.
 fn linked(manifest: &str, packages: &[&str]) -> BTreeMap<Package, String> {
     let output = Command::new(env!("CARGO"))
         .args(["tree", "--locked", "--edges", "normal,no-proc-macro", "--target", "all", "--prefix", "none"])
@@ -30,13 +30,13 @@ fn linked(manifest: &str, packages: &[&str]) -> BTreeMap<Package, String> {
     let rows = text.lines().filter_map(|line| {
         let (package, licence) = line.split_once('|')?;
         let (name, version) = package.split_once(" v")?;
-        // Ours have a place in the source tree after the version.
+        // Our crates have a path in the source tree after the version.
         (!version.contains('(')).then(|| ((name.to_owned(), version.to_owned()), licence.to_owned()))
     });
     rows.collect()
 }
 
-/// The folder to which cargo has unpacked a crate.
+/// The folder to which Cargo has unpacked a crate.
 fn unpacked((name, version): &Package) -> PathBuf {
     let home = env::var_os("CARGO_HOME").map(PathBuf::from);
     let home = home.or_else(|| env::home_dir().map(|home| home.join(".cargo"))).expect("cargo has a home");
@@ -48,14 +48,14 @@ fn unpacked((name, version): &Package) -> PathBuf {
         .unwrap_or_else(|| panic!("{folder} is not there: `cargo fetch --locked` gets it"))
 }
 
-/// Returns whether a file holds a licence, by its name.
+/// Returns whether a file contains a licence, judged by its name.
 fn is_licence(name: &str) -> bool {
     const BEGINNINGS: &[&str] = &["licen", "copying", "notice", "unlicense", "copyright", "ofl", "ufl"];
     let name = name.to_lowercase();
     BEGINNINGS.iter().any(|start| name.starts_with(start)) && !name.ends_with(".rs")
 }
 
-/// The files of a folder that hold licences.
+/// The files with licences in a folder.
 fn licences(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten();
     let paths = entries.map(|entry| entry.expect("the entry is readable").path());
@@ -66,7 +66,7 @@ fn licences(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// The licence texts of a crate; of several to choose from only MIT's, which all of them allow and which is the shortest.
+/// The licence texts of a crate; if there is a choice, only MIT's, which is always among them and is the shortest.
 fn texts(folder: &Path, licence: &str) -> Vec<String> {
     let mut files = licences(folder);
     files.extend(licences(&folder.join("fonts")));
@@ -87,7 +87,7 @@ fn texts(folder: &Path, licence: &str) -> Vec<String> {
     files.iter().map(read).filter(|text| !text.is_empty()).collect()
 }
 
-/// The whole file.
+/// The contents of the whole file.
 fn notices() -> String {
     let mut packages = linked("Cargo.toml", &["cc67", "cc67-capi"]);
     packages.extend(linked("cc67/python/Cargo.toml", &[]));

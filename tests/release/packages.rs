@@ -1,6 +1,7 @@
-//! Packages are whole: what a crate reads is in it, its licence too, and a build script that cannot read a file fails.
+//! Packages are complete: each contains the files that its crate reads, and its licence, and a build script that cannot
+//! read a file fails.
 //!
-//! `.ci/packages` packs the crates, builds the command from nothing but the packages, and takes the README's tour with it.
+//! `.ci/packages` packages the crates, builds the command from only the packages, and runs the README's tour with it.
 
 use std::fs;
 use std::path::{Component, Path, PathBuf};
@@ -54,13 +55,13 @@ fn published_crates_have_what_their_pages_show() {
         assert!(page.is_file(), "{} is not there", page.display());
         for licence in ["LICENSE-MIT", "LICENSE-APACHE"] {
             let own = read(&format!("{folder}/{licence}"));
-            // A link, or a file that holds its target where git makes no links.
+            // A link, or, if git creates no links, a file that contains its target.
             assert!(own == read(licence) || own.ends_with(licence), "{folder}/{licence} is another text");
         }
     }
 }
 
-/// Crates of different releases do not work with each other, and internal ones promise nothing.
+/// Crates of different releases do not work together, and internal ones have no stable interface.
 #[test]
 fn our_crates_ask_for_exactly_the_same_release() {
     let text = read("Cargo.toml");
@@ -89,7 +90,7 @@ fn every_manifest_has_the_same_version() {
     }
 }
 
-/// A workspace of its own with other profiles would build every dependency a second time.
+/// A separate workspace with other profiles would build every dependency a second time.
 #[test]
 fn the_python_package_is_built_with_the_same_profiles() {
     let sections = |name: &str| {
@@ -100,20 +101,20 @@ fn the_python_package_is_built_with_the_same_profiles() {
     assert_eq!(sections("cc67/python/Cargo.toml"), sections("Cargo.toml"));
 }
 
-/// The statements of a source that reach files, each up to its `;` or `{`.
+/// The statements of a source that access files, each up to its `;` or `{`.
 fn file_statements(code: &str) -> impl Iterator<Item = &str> {
     let statements = code.split([';', '{', '}']).map(str::trim);
     statements
         .filter(|text| !text.starts_with("use ") && (text.contains("fs::") || text.contains("read_dir(")))
 }
 
-/// Returns the statements of a build script that swallow errors: errors of files that it passes over.
+/// Returns the statements of a build script that ignore file errors.
 fn swallowed(code: &str) -> Vec<String> {
     let mut found: Vec<_> = file_statements(code)
         .filter(|text| !text.contains('?') || text.contains(".ok()") || text.contains("unwrap_or"))
         .map(str::to_owned)
         .collect();
-    // Of a folder, entries that cannot be read.
+    // For a folder, entries that cannot be read.
     found.extend(code.contains(".flatten()").then(|| ".flatten()".to_owned()));
     found
 }
@@ -144,7 +145,7 @@ fn plain(path: &Path) -> PathBuf {
     plain
 }
 
-/// The paths that a source names for its compiler: included files, and modules elsewhere.
+/// The paths named in a source for the compiler: included files, and modules with a path.
 fn included(code: &str) -> Vec<&str> {
     const MARKS: &[&str] = &["include_str!(", "include_bytes!(", "include!(", "#[path = "];
     let after = MARKS.iter().flat_map(|mark| code.split(mark).skip(1));
@@ -184,7 +185,7 @@ fn packages_read_nothing_outside_of_themselves() {
                 continue;
             }
             let text = code(&file);
-            // Tests within a file, and the book's programs as tests of the documentation.
+            // Tests within a file, and the book's programs as documentation tests.
             let text = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
             let text = text.split("#[cfg(doctest)]").next().unwrap_or_default();
             let here = file.parent().unwrap_or(&package);
@@ -201,13 +202,13 @@ fn packages_read_nothing_outside_of_themselves() {
     }
 }
 
-/// Source text without line comments, so that prose may mention what code may not.
+/// Source text without line comments, so that comments may mention names that code may not.
 fn code(path: &Path) -> String {
     let text = fs::read_to_string(path).expect("sources are UTF-8");
     text.lines().map(|line| line.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n")
 }
 
-/// The crates that a package needs to be built, of ours and of others.
+/// The crates needed to build a package, ours and others.
 fn needed_by(package: &str) -> Vec<String> {
     let output = Command::new(env!("CARGO"))
         .args(["tree", "--offline", "--locked", "--edges", "normal", "--prefix", "none", "--format", "{p}"])

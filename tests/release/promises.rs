@@ -1,7 +1,7 @@
-//! Each promise of the READMEs and the book about installing, editors and packages has a test that keeps it.
+//! Each promise in the READMEs and the book about installation, editors and packages has a test.
 //!
-//! `promises.tsv` has a row for each: the page, the words, and what keeps it. That is a test (`FILE::FUNCTION`), or a script with the
-//! words in it that do the work (`SCRIPT: WORDS`), which `.ci/run` or a workflow runs.
+//! `promises.tsv` has a row for each: the page, the words, and the test. The test is a function (`FILE::FUNCTION`), or
+//! a script with the words in it that do the work (`SCRIPT: WORDS`), which `.ci/run` or a workflow runs.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -35,7 +35,7 @@ const WORDS: &[&str] = &[
     "nippets",
 ];
 
-/// Lines that have such a word and promise nothing of the kind.
+/// Lines with such a word that are not promises of this kind.
 const OTHER: &[(&str, &str)] = &[
     ("debugging.md", "gdb's commands, with completion and history"),
     ("editors.md", "clangd provides completion"),
@@ -63,7 +63,7 @@ fn promises() -> Vec<Promise> {
     rows.collect()
 }
 
-/// The READMEs that users read: of the repository, the extension, the Python package and a new project.
+/// The READMEs for users: of the repository, the extension, the Python package and a new project.
 const READMES: &[&str] = &[
     "README.md",
     "cc67/editors/README.md",
@@ -72,7 +72,7 @@ const READMES: &[&str] = &[
     "cc67/src/cli/commands/init/project/README.md",
 ];
 
-/// The pages for users: READMEs, and the chapters that are neither made from tables nor for contributors.
+/// The pages for users: READMEs, and the chapters that are neither generated from tables nor for contributors.
 fn pages() -> Vec<(String, String)> {
     const OTHERS: &[&str] =
         &["contributing.md", "architecture.md", "messages.md", "warnings.md", "SUMMARY.md"];
@@ -83,8 +83,8 @@ fn pages() -> Vec<(String, String)> {
     paths.map(|path| (relative(&path), fs::read_to_string(&path).expect("pages are UTF-8"))).collect()
 }
 
-/// The lines of a page that a row or a test must answer for: those with one of the words, and commands for the user that no test of
-/// the book runs.
+/// The lines of a page that need a row or a test: those with one of the words, and commands for the user that no test
+/// of the book runs.
 fn lines_of_promises(text: &str) -> Vec<&str> {
     let mut found = Vec::new();
     let mut block: Option<&str> = None;
@@ -134,7 +134,7 @@ fn every_row_is_a_promise_of_its_page() {
     }
 }
 
-/// The texts of what runs scripts: the check of every commit, the workflows, and scripts that these run.
+/// The texts that run scripts: the check of every commit, the workflows, and scripts that these run.
 fn runners() -> String {
     let workflows = files(&root().join(".github/workflows"), "yml").into_iter();
     let scripts = ["run", "dry-run", "archive", "packages"].map(|name| root().join(".ci").join(name));

@@ -1,4 +1,4 @@
-//! Workflows run where they say they run: labels of runners that exist, no assumption of root, pinned actions.
+//! Workflows are valid: runner labels that exist, no assumption of root, pinned actions.
 //!
 //! `.ci/workflows` also checks them with actionlint and zizmor; the rules here need neither.
 
@@ -31,7 +31,7 @@ const LABELS: &[&str] = &[
     "windows-11-vs2026-arm",
 ];
 
-/// The workflows of the repository, and those that `cc67 init` writes, with their texts.
+/// The workflows of the repository, and those written by `cc67 init`, with their texts.
 fn workflows() -> Vec<(String, String)> {
     let folders = [".github/workflows", "cc67/src/cli/commands/init/project/.github/workflows"];
     let paths: Vec<_> = folders.iter().flat_map(|folder| files(&root().join(folder), "yml")).collect();
@@ -42,7 +42,7 @@ fn workflows() -> Vec<(String, String)> {
         .collect()
 }
 
-/// The runner labels of a line: of `runs-on: LABEL`, of `os: [A, B]`, and of `{ os: A, … }`.
+/// The runner labels in a line: in `runs-on: LABEL`, in `os: [A, B]`, and in `{ os: A, … }`.
 fn labels(line: &str) -> Vec<&str> {
     let value = |mark: &str| line.split_once(mark).map(|(_, rest)| rest.trim());
     let Some(value) = value("runs-on: ").or_else(|| value("os: ")) else { return Vec::new() };
@@ -127,7 +127,7 @@ fn manifests_and_the_workflow_name_the_same_archives() {
     assert_eq!(built, named.collect::<Vec<_>>());
 }
 
-/// A release is made by these jobs in this order.
+/// A release is made by these jobs, in this order.
 #[test]
 fn every_job_of_a_release_follows_the_check_of_its_version() {
     let text = fs::read_to_string(root().join(".github/workflows/release.yml")).expect("it is there");

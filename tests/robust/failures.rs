@@ -1,7 +1,7 @@
-//! Failures outside: full disks, folders that cannot be written, readers that go away, names that are not text, and a
-//! command that is killed.
+//! External failures: full disks, folders that cannot be written, readers that close early, names that are not UTF-8,
+//! and a command that is killed.
 //!
-//! One message, the right code, and never half a file under its final name.
+//! There is one message, the correct exit code, and never an incomplete file under its final name.
 
 #![cfg(unix)]
 
@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 
 use harness::{Output, Scratch, cc67, is_long, run_in};
 
-/// Prints a few thousand lines and moves an axis, so that there is something to lose.
+/// Prints a few thousand lines and moves an axis, so that there are data to lose.
 const PROGRAM: &str = r#"#include "KMotionDef.h"
 main()
 {
@@ -34,7 +34,7 @@ main()
 }
 "#;
 
-/// Writes into the user's half of flash memory.
+/// Writes to the users' half of flash memory.
 const FLASHING: &str = r#"#include "KMotionDef.h"
 double table[2] = { 1.5, -2.5 };
 main()
@@ -50,13 +50,13 @@ fn with_program(name: &str) -> Scratch {
     scratch
 }
 
-/// Runs through a shell that changes the surroundings first; `"$@"` in `script` is the command.
+/// Runs the command through a shell that changes the environment first; `"$@"` in `script` is the command.
 fn run_shell(folder: &Path, script: &str, arguments: &[&str]) -> Output {
     let all = ["-c", script, "sh", harness::command()].into_iter().chain(arguments.iter().copied());
     run_in("sh", folder, all)
 }
 
-/// One message, for people.
+/// Asserts that there is one readable message.
 #[track_caller]
 fn assert_one_message(output: &Output, code: i32, expect: &str) {
     assert_eq!(output.code, code, "{output:?}");
@@ -69,7 +69,7 @@ fn assert_one_message(output: &Output, code: i32, expect: &str) {
 
 #[test]
 fn a_full_disk_gives_one_message_and_keeps_the_old_file() {
-    // A limit on the size of files that does not kill makes a disk full after the first kilobyte.
+    // A limit on the size of files that does not kill the process makes the disk appear full after the first kilobyte.
     const FULL: &str = "trap '' XFSZ; ulimit -f 1; exec \"$@\"";
     let scratch = with_program("full-disk");
     for (arguments, file) in [
@@ -110,7 +110,7 @@ fn a_full_standard_output_gives_one_message() {
         let output = run_shell(scratch.path(), "exec \"$@\" >/dev/full", arguments);
         assert_one_message(&output, 2, "cannot write to standard output: ");
     }
-    // Nobody is left to be told; the code still is right.
+    // No message can be written; the exit code is still correct.
     let output = run_shell(scratch.path(), "exec \"$@\" 2>/dev/full", &["check", "nosuch.c"]);
     assert_eq!(output.code, 2, "{output:?}");
 }
@@ -118,7 +118,7 @@ fn a_full_standard_output_gives_one_message() {
 #[test]
 fn an_unwritable_folder_gives_one_message() {
     let scratch = with_program("read-only");
-    // No user may create files in /dev/null, not even root, whom permissions do not stop.
+    // No user can create files in /dev/null, not even root, whom permissions do not stop.
     for arguments in [
         &["build", "-o", "/dev/null/a.out", "a.c"][..],
         &["run", "--trace", "/dev/null/a.vcd", "a.c"],
@@ -179,10 +179,10 @@ fn file_names_that_are_not_utf_8_are_accepted() {
 fn limits_of_the_system_are_messages() {
     let scratch = with_program("host-limits");
     scratch.write("b.c", "#include \"KMotionDef.h\"\nmain() { printf(\"here\\n\"); }\n");
-    // The stack of the process may be small: the command takes one of its own.
+    // The stack of the process may be small: the command uses its own.
     let output = run_shell(scratch.path(), "ulimit -s 128; exec \"$@\"", &["run", "b.c"]);
     assert_eq!((output.code, output.stdout.as_str()), (0, "here\n"), "{output:?}");
-    // Memory for the stack of the compiler may not be there.
+    // Memory for the compiler's stack may not be available.
     let output = run_shell(scratch.path(), "ulimit -v 500000; exec \"$@\"", &["run", "b.c"]);
     assert_eq!(output.code, 1, "{output:?}");
     assert!(output.stderr.contains("the system starts no thread with a stack of 512 MiB"), "{output:?}");
@@ -233,17 +233,18 @@ fn kill_after(folder: &Path, arguments: &[&str], delay: Duration) {
         .spawn()
         .expect("the command under test starts");
     thread::sleep(delay);
-    // It may have ended already.
+    // An error means that it has already ended.
     let _ = child.kill();
     child.wait().expect("it ends");
 }
 
-/// Number of kills of each command: a dozen, or a hundred in long runs.
+/// The number of kills of each command: a dozen, or a hundred in long runs.
 fn kills() -> u32 {
     if is_long() { 100 } else { 12 }
 }
 
-/// Kills a command at moments spread over its run, in a random order and a little beyond its end, and looks after each.
+/// Kills a command at times distributed over its run, in random order and a little beyond its end, and checks the files
+/// after each.
 #[expect(clippy::disallowed_methods, reason = "the process is killed at moments of the host's time")]
 fn kill_at_moments(
     scratch: &Scratch,
@@ -259,12 +260,12 @@ fn kill_at_moments(
     for round in 0..kills() {
         random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         before();
-        // The first is killed at once.
+        // The first one is killed at once.
         let part = if round == 0 { 0 } else { random >> 16 };
         kill_after(scratch.path(), arguments, duration * part / 52_000);
         after(round);
     }
-    // The next run of the same output removes what killed ones have left.
+    // The next run with the same output removes files left by killed runs.
     let output = cc67(scratch, arguments);
     assert_eq!(output.code, 0, "{output:?}");
     let names = fs::read_dir(scratch.path()).expect("it is there");
@@ -275,9 +276,9 @@ fn kill_at_moments(
     assert!(left.is_empty(), "left behind: {left:?}");
 }
 
-/// Kills the command that writes `file` at many moments.
+/// Kills the command that writes `file` at many times.
 ///
-/// Whatever the moment, the file is what was there before or what the whole run writes.
+/// At any time, the file has its previous contents or those that the complete run writes.
 fn assert_whole(name: &str, arguments: &[&str], file: &str, before: &[u8]) {
     let scratch = with_program(name);
     let path = scratch.path().join(file);
@@ -345,7 +346,7 @@ fn pictures_tables_and_maps_that_are_killed_are_the_old_or_the_new() {
 /// The values that a console has acknowledged as saved, and those that it was given.
 struct Flashing {
     acknowledged: usize,
-    /// The number that is saved first; each further one is one more.
+    /// The number that is saved first; each further number is one higher.
     first: usize,
 }
 
@@ -373,7 +374,7 @@ fn kill_flashing_console(scratch: &Scratch, first: usize, delay: Duration) -> Fl
     // A console that is killed early reads nothing.
     let _ = input.write_all(commands.as_bytes());
     thread::sleep(delay);
-    // It may have ended already.
+    // An error means that it has already ended.
     let _ = child.kill();
     child.wait().expect("it ends");
     let text = reader.join().expect("it does not panic");
@@ -383,7 +384,7 @@ fn kill_flashing_console(scratch: &Scratch, first: usize, delay: Duration) -> Fl
     }
 }
 
-/// The numbers that each console saves.
+/// The number of values that each console saves.
 const SAVES: usize = 20;
 
 #[test]
@@ -417,7 +418,7 @@ fn golden_output_that_is_killed_is_the_old_or_the_new() {
     assert_whole("kill-golden", &["test", "--bless", "--force", "a.c"], "a.expected", b"old\n");
 }
 
-/// Writes lines to a file of the PC, and prints after each that it is written.
+/// Writes lines to a file of the PC, and prints a confirmation after each.
 const LINES: &str = r#"#include "KMotionDef.h"
 main()
 {

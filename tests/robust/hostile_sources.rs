@@ -1,7 +1,7 @@
-//! Hostile source text: whatever it is, the compiler ends soon, in little memory, with words.
+//! Hostile source text: the compiler always ends soon, with little memory, and with messages.
 //!
-//! The inputs are made here, the same in each run. Most are compiled in this process; the heaviest
-//! go through the command under a limit of memory and processor time.
+//! The inputs are generated here, the same in each run. Most are compiled in this process; the heaviest are passed to
+//! the command under a limit of memory and processor time.
 
 use std::path::Path;
 use std::process::Command;
@@ -18,22 +18,22 @@ use harness::{Scratch, cc67};
 
 use crate::inputs::{self, Input};
 
-/// The longest that one input may take, on a computer that does much else at the same time.
+/// The time limit for one input, on a computer that may be busy.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// The same for the command's own time on the processor, in seconds.
+/// The limit of the command's processor time, in seconds.
 const PROCESSOR_TIME: u32 = 60;
 
-/// More diagnostics than this do not help anybody.
+/// The number of diagnostics beyond which they are no longer helpful.
 const MOST_ERRORS: usize = 25;
 
-/// The longest text that the diagnostics of one input may have.
+/// The maximum length of the diagnostics for one input.
 const MOST_TEXT: usize = 1 << 20;
 
-/// Address space of the command in KiB: 1 GiB, and the 512 MiB that the stack may grow to.
+/// The address space of the command in KiB: 1 GiB, plus the 512 MiB to which the stack may grow.
 const ADDRESS_SPACE: u32 = (1 << 20) + (1 << 19);
 
-/// Returns a complaint about the compiler's treatment of an input; `None` if all is well.
+/// Returns a complaint about the compiler's behaviour for an input; `None` if it is correct.
 fn complaint(input: &Input) -> Option<String> {
     #[expect(clippy::disallowed_methods, reason = "the test is about time")]
     let start = Instant::now();

@@ -1,4 +1,4 @@
-//! Time that the levels of optimisation take: -O2 tries functions in several ways, within a budget.
+//! The compilation times of the optimisation levels: -O2 tries functions in several ways, within a budget.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -8,13 +8,13 @@ use compiler::passes::Level;
 use compiler::target::Target;
 use compiler::{Options, pp};
 
-/// The most that -O2 may take, in times of -O1.
+/// The maximum factor between the times of -O2 and -O1.
 const MOST: u32 = 5;
-/// Programs of each kind, and functions of a program.
+/// The number of programs of each kind, and of functions in a program.
 const PROGRAMS: u32 = 5;
 const FUNCTIONS: u32 = 12;
 
-/// A program of filters: loops over samples with some sections each, as for vibrations and tool paths.
+/// A program of filters: loops over samples with several sections each, as for vibrations and tool paths.
 fn filters(seed: u32) -> String {
     let mut random = seed.wrapping_mul(2_654_435_761) | 1;
     let mut next = |below: u32| {
@@ -69,7 +69,7 @@ fn time(source: &str, level: Level) -> Duration {
 #[test]
 fn the_second_level_takes_at_most_five_times_the_first() {
     let programs: Vec<String> = (1..=PROGRAMS).map(filters).collect();
-    // Other tests use the processor, too: the best of some rounds counts.
+    // Other tests use the processor, too: the best of several rounds counts.
     let best = |level| {
         let all = |_| programs.iter().map(|source| time(source, level)).sum::<Duration>();
         (0..3).map(all).min().expect("there are rounds")

@@ -1,10 +1,10 @@
-//! Every limit of the compiler that a source can reach: the message says its number.
+//! Every limit of the compiler that a source can reach: the message contains its number.
 
 use cc67::limits::{COMPILER, Limit};
 use compiler::files::FILE_BYTES;
 use harness::{Output, Scratch, cc67};
 
-/// A source that goes beyond one limit.
+/// A source that exceeds one limit.
 struct Case {
     /// The beginning of the limit's description.
     what: &'static str,
@@ -84,7 +84,7 @@ fn messages_state_the_limit() {
 
 #[test]
 fn every_limit_has_a_source_or_a_reason() {
-    // Half a gigabyte of source for each is too much for a test of every day.
+    // Half a gigabyte of source for each is too much for a normal run.
     const TOO_LARGE: [&str; 4] = [
         "files included by one compilation, counting each inclusion",
         "bytes of one source file",
@@ -97,7 +97,7 @@ fn every_limit_has_a_source_or_a_reason() {
     }
 }
 
-/// A file that is too large and takes no place on the disk.
+/// Writes a sparse file that is too large but takes no space on the disk.
 fn write_large(scratch: &Scratch, name: &str) {
     let file = std::fs::File::create(scratch.path().join(name)).expect("the folder is writable");
     file.set_len(FILE_BYTES + 1).expect("the disk can");
@@ -174,7 +174,7 @@ fn the_command_lists_the_same_limits_as_the_book() {
     }
 }
 
-/// The cells of a row of a table that begins with a number.
+/// The cells of a table row that begins with a number.
 fn row(line: &str) -> Option<Vec<&str>> {
     let cells: Vec<_> = line.strip_prefix("| ")?.strip_suffix(" |")?.split(" | ").collect();
     cells[0].starts_with(|first: char| first.is_ascii_digit()).then_some(cells)

@@ -1,7 +1,7 @@
-//! Runs that are long: they take no more memory than short ones, and do not become slower.
+//! Long runs: they take no more memory than short ones, and do not become slower.
 //!
-//! An ordinary test run takes a small part of the length. The whole length, with the figures:
-//! `CC67_LONG=1 cargo test --release -p cc67-tests --test robust --test command -- --nocapture`.
+//! A normal test run takes a small part of the length. For the whole length, with the measurements: `CC67_LONG=1 cargo
+//! test --release -p cc67-tests --test robust --test command -- --nocapture`.
 
 #![cfg(target_os = "linux")]
 
@@ -13,13 +13,13 @@ use std::time::Duration;
 use harness::usage::Usage;
 use harness::{Scratch, is_long};
 
-/// The most kilobytes that a run of programs of ordinary size may take, traced or not.
+/// The memory limit in kilobytes for a run of programs of normal size, traced or not.
 const MEMORY: u64 = 64 * 1024;
 
-/// The most that any run may take, as the chapter of limits says.
+/// The memory limit for any run, as stated in the chapter on limits.
 const MOST: u64 = 512 * 1024;
 
-/// The fluctuation that is allowed between two measurements of a process, in kilobytes.
+/// The allowed fluctuation between two measurements of a process, in kilobytes.
 const BREATH: u64 = 1024;
 
 fn start(scratch: &Scratch, arguments: &[&str]) -> Child {
@@ -50,7 +50,7 @@ fn a_million_lines_on_the_console_take_no_more_memory_than_a_few() {
             line.expect("it is text"),
             format!("line {index} of a console that nobody can read to its end")
         );
-        // What is left does not fit into a pipe, so the process is there.
+        // The remaining lines do not fit in a pipe, so the process still runs.
         if (index + 1) % (count / 10) == 0 && index < count / 10 * 8 {
             last = Some(Usage::of(child.id()));
             first = first.or(last);
@@ -63,7 +63,7 @@ fn a_million_lines_on_the_console_take_no_more_memory_than_a_few() {
     assert!(last.peak <= first.peak + BREATH, "{first:?}, {last:?}");
 }
 
-/// Three programs that serve a machine forever: one looks at a door in every slice, one blinks, one counts seconds.
+/// Three programs that serve a machine forever: one checks a door in every slice, one blinks, one counts seconds.
 const SERVICES: [(&str, &str); 3] = [
     (
         "door.c",
@@ -79,7 +79,7 @@ const SERVICES: [(&str, &str); 3] = [
     ),
 ];
 
-/// Speaks with a console: a line, and the line that comes back.
+/// A conversation with a console: a line, and the line that it answers.
 struct Conversation {
     child: Child,
     answers: BufReader<ChildStdout>,
@@ -112,13 +112,13 @@ fn three_service_programs_serve_for_a_day_without_growing_or_slowing_down() {
         }
         usages.push(Usage::of(console.child.id()));
     }
-    // Each has done its work to the end.
+    // Each has done all its work.
     let seconds = 24 * hour;
     let count = |answer: String| answer.parse::<i32>().unwrap_or_else(|_| panic!("{answer}"));
     assert!((count(console.ask("GetPersistDec 11")) - seconds / 10).abs() <= 1);
     assert!((count(console.ask("GetPersistDec 10")) - seconds * 2).abs() <= seconds / 50 + 2);
     drop(console.child.stdin.take());
-    // The programs never end: the console says so, and stops.
+    // The programs never end: the console reports it, and stops.
     console.child.kill().expect("it runs");
     console.child.wait().expect("it ends");
 
@@ -127,7 +127,7 @@ fn three_service_programs_serve_for_a_day_without_growing_or_slowing_down() {
     println!("processor time of the first {:?}, of the last {:?}", cost(1), cost(24));
     assert!(usages[24].peak < MEMORY, "{usages:?}");
     assert!(usages[24].peak <= usages[1].peak + BREATH, "{usages:?}");
-    // Another process may slow down a short time.
+    // Another process may slow down a short period.
     let halves = [1..13, 13..25].map(|half| half.map(cost).sum::<Duration>());
     assert!(halves[1] < 2 * halves[0], "{halves:?}");
 }
@@ -137,7 +137,7 @@ struct Heavy {
     name: &'static str,
     source: String,
     options: &'static [&'static str],
-    /// Kilobytes.
+    /// The limit in kilobytes.
     most: u64,
 }
 

@@ -1,6 +1,7 @@
-//! Whatever the bytes: every oracle over random inputs, the same in each run, and over all that ever failed.
+//! Properties for any bytes: every oracle with random inputs, the same in each run, and with all inputs that ever
+//! failed.
 //!
-//! An input that fails, here or in `tests/fuzz`, goes into `tests/data/failed/TARGET/` under any name, and is tried
+//! An input that fails, here or in `tests/fuzz`, is stored in `tests/data/failed/TARGET/` under any name, and is tried
 //! in every run from then on.
 
 use std::fs;
@@ -10,10 +11,10 @@ use harness::choices::random_bytes;
 use harness::is_long;
 use harness::oracles::{TARGETS, Target};
 
-/// Inputs of each target in an ordinary run; with `CC67_LONG=1` in the environment a hundred times as many.
+/// The number of inputs for each target in a normal run; with `CC67_LONG=1` in the environment a hundred times as many.
 const INPUTS: u64 = 20;
 
-/// For each named oracle the tests that it withstands random inputs and all that ever failed.
+/// For each named oracle, tests with random inputs and with all inputs that ever failed.
 macro_rules! oracles {
     ($($name:ident)+) => {
         const NAMES: &[&str] = &[$(stringify!($name)),+];
@@ -71,7 +72,7 @@ fn failed(target: &Target) {
     }
 }
 
-/// Tries an input; a failure names it.
+/// Tries an input; names it in case of a failure.
 fn attempt(target: &Target, input: &[u8], what: &str) {
     let outcome = catch_unwind(AssertUnwindSafe(|| (target.run)(input)));
     if let Err(panic) = outcome {

@@ -1,4 +1,4 @@
-//! The book's promises about programs and images from strangers.
+//! The book's promises about programs and images from untrusted sources.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,7 +10,7 @@ use harness::oracles::{execute_everywhere, victim};
 use harness::{Scratch, cc67, files, is_long};
 use kmotiondef::Ticks;
 
-/// The board time that a changed program gets.
+/// The board time for a changed program.
 const LIMIT: Ticks = Ticks::new(100);
 
 /// The number of changed images that are tried; with `CC67_LONG=1` in the environment a hundred times as many.
@@ -68,7 +68,7 @@ fn addresses_outside_guest_memory_trap() {
     let scratch = Scratch::new("security-addresses");
     scratch.write("a.c", PROBE);
     assert_eq!(cc67(&scratch, ["build", "--target", "sim", "a.c"]).code, 0);
-    // Everywhere in four gigabytes; what lies at the mapped ones is the board's.
+    // All over four gigabytes; mapped addresses belong to the board.
     for page in 0..64_u32 {
         let setting = format!("persist.0={:#x}", (page << 26) | 0x3F_FFF8);
         for engine in ["bytecode", "native"] {

@@ -1,13 +1,13 @@
-//! Imports inside a crate point downwards in `layers.txt`, and there are no cycles.
+//! Imports within a crate point downwards in `layers.txt`, and there are no cycles.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::imports::{self, Imports};
 
-/// Files that may reach each other: two that describe one thing, and one that joins them.
+/// The maximum number of files that may import each other: two that describe one subject, and one that joins them.
 const MAX_FILES_IN_A_CYCLE: usize = 3;
 
-/// The layers of a crate, from top to bottom: the name of each, and its rooms.
+/// The layers of a crate, from top to bottom: the name of each, and its modules.
 struct Layers {
     krate: &'static str,
     rows: Vec<(&'static str, Vec<&'static str>)>,
@@ -27,7 +27,7 @@ fn layers() -> Vec<Layers> {
     all
 }
 
-/// The number of the row of a file; the longest path of a room that fits counts.
+/// The row of a file; the longest matching path counts.
 fn row_of(layers: &Layers, file: &str) -> Option<usize> {
     let stem = file.strip_suffix(".rs").unwrap_or(file);
     let fits =
@@ -65,7 +65,7 @@ fn imports_inside_a_crate_point_downwards() {
 
 type Graph = BTreeMap<String, BTreeSet<String>>;
 
-/// The graph of rooms: what is directly in `src`.
+/// The graph of the modules directly in `src`.
 fn rooms(imports: &Imports) -> Graph {
     let room = |file: &str| file.split('/').next().unwrap_or(file).trim_end_matches(".rs").to_owned();
     let mut graph = Graph::new();
@@ -79,7 +79,7 @@ fn rooms(imports: &Imports) -> Graph {
     graph
 }
 
-/// The nodes that a node leads to.
+/// The nodes reachable from a node.
 fn reached<'a>(graph: &'a Graph, from: &'a str) -> BTreeSet<&'a str> {
     let mut found = BTreeSet::new();
     let mut pending = vec![from];

@@ -1,4 +1,4 @@
-//! Every page and section of the book that a comment cites exists.
+//! Every page and section of the book cited in a comment exists.
 //!
 //! Comments cite pages of `cc67/book/src/board` by file name and section number, as in "io.md sections 5 and 6".
 
@@ -7,7 +7,7 @@ use std::fs;
 
 use crate::{files, relative, root};
 
-/// The comments of a source file, those of adjacent lines joined by a blank.
+/// The comments of a source file; those on adjacent lines are joined by a blank.
 fn comments(text: &str) -> String {
     let mut found = String::new();
     for line in text.lines() {
@@ -19,7 +19,7 @@ fn comments(text: &str) -> String {
     found
 }
 
-/// The number of a section at the beginning of a text, such as `7`, `4.2` or `D4`, and what follows it.
+/// The number of a section at the beginning of a text, such as `7`, `4.2` or `D4`, and the rest of the text.
 fn section(text: &str) -> Option<(&str, &str)> {
     let digits = text.strip_prefix('D').unwrap_or(text);
     if !digits.starts_with(|c: char| c.is_ascii_digit()) {
@@ -46,7 +46,7 @@ fn sections(after: &str) -> Vec<&str> {
     found
 }
 
-/// Every page that a text cites, with the sections that follow its name.
+/// Every page cited in a text, with the sections after its name.
 fn citations(text: &str) -> Vec<(&str, Vec<&str>)> {
     let is_name = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_');
     let mut found = Vec::new();

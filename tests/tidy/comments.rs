@@ -4,10 +4,10 @@ use std::fs;
 
 use crate::{files, root};
 
-/// The first words of noun clauses, which name a thing only by a question about it.
+/// The first words of noun clauses, which name a subject only by a question about it.
 const QUESTIONS: [&str; 7] = ["What", "Where", "Whether", "How", "Who", "Why", "Which"];
 
-/// The allowed share of doc comments that begin so: one in this many.
+/// The allowed share of such doc comments: one in this many.
 const ONE_IN: usize = 50;
 
 /// The marker and the text of a line of a doc comment.

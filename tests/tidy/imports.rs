@@ -1,8 +1,8 @@
-//! Imports inside a crate, file by file.
+//! Imports within a crate, file by file.
 //!
-//! An arrow is a `use` or a path in the code that begins with `crate`, `super` or the crate's own name. A name that is
-//! imported again on the way is followed to the file that defines it. That a module names its own children is not an
-//! arrow; tests are left out.
+//! An arrow is a `use` or a path in the code that begins with `crate`, `super` or the crate's own name. A re-exported
+//! name is followed to the file that defines it. A module's references to its own children are not arrows; tests are
+//! ignored.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -13,20 +13,20 @@ use syn::{Attribute, File, Item, ItemMacro, ItemUse, Macro, Path, UseTree};
 
 use crate::{files, root};
 
-/// The files of a crate and the arrows between them; files are named from `src` on.
+/// The files of a crate and the arrows between them; file names are relative to `src`.
 #[derive(Debug, Default)]
 pub(crate) struct Imports {
-    /// The files that each file names, and the line of the first place.
+    /// The files referenced by each file, with the line of the first reference.
     pub(crate) arrows: BTreeMap<String, BTreeMap<String, usize>>,
     /// Every file.
     pub(crate) files: BTreeSet<String>,
 }
 
-/// One file as a module.
+/// A file as a module.
 #[derive(Debug, Default)]
 struct Module {
     file: String,
-    /// The path of each name that is imported.
+    /// The path of each imported name.
     uses: BTreeMap<String, Vec<String>>,
     /// Every path that is imported or written out, with its line.
     paths: Vec<(Vec<String>, usize)>,
@@ -66,12 +66,12 @@ pub(crate) fn read(folder: &str) -> Imports {
     imports
 }
 
-/// Returns whether a file holds only tests, or tools of tests.
+/// Returns whether a file contains only tests, or tools for tests.
 pub(crate) fn is_test(file: &str) -> bool {
     file.split('/').any(|part| matches!(part, "tests" | "tests.rs" | "testing" | "testing.rs"))
 }
 
-/// The path of the module that a file holds; empty for the root of the crate.
+/// The path of the module in a file; empty for the root of the crate.
 fn module_path(file: &str) -> Vec<String> {
     let stem = file.strip_suffix(".rs").unwrap_or(file);
     let mut parts: Vec<String> = stem.split('/').map(str::to_owned).collect();
@@ -121,7 +121,7 @@ impl<'ast> Visit<'ast> for Module {
     }
 
     fn visit_visibility(&mut self, _: &'ast syn::Visibility) {
-        // Who sees an item is no arrow.
+        // Visibility is not an arrow.
     }
 
     fn visit_path(&mut self, path: &'ast Path) {
@@ -134,7 +134,7 @@ impl<'ast> Visit<'ast> for Module {
 }
 
 impl Module {
-    /// Reads what is between `use` and `;`.
+    /// Reads the tree between `use` and `;`.
     fn tree(&mut self, tree: &UseTree, head: &mut Vec<String>) {
         let (name, line) = match tree {
             UseTree::Path(path) => {
@@ -198,7 +198,7 @@ struct Resolver<'a> {
 }
 
 impl Resolver<'_> {
-    /// The file that a path of the module `at` leads to; none for paths that are not arrows.
+    /// The file to which a path in the module `at` leads; `None` for paths that are not arrows.
     fn resolve(&self, at: &[String], path: &[String], depth: usize) -> Option<String> {
         let (first, mut rest) = path.split_first()?;
         let start = match first.as_str() {
@@ -240,7 +240,7 @@ impl Resolver<'_> {
         self.modules.get(&at).map(|module| module.file.clone())
     }
 
-    /// Returns the file that defines a name that the module `at` imports; its own children count here.
+    /// Returns the file that defines a name imported by the module `at`; its own children count here.
     fn reexport(&self, at: &[String], path: &[String], depth: usize) -> Option<String> {
         self.resolve(at, path, depth).or_else(|| {
             let mut child = at.to_vec();

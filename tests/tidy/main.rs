@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 use harness::{files, relative, root};
 
-/// Every source file: its path from the root of the workspace, and its text.
+/// Every source file: its path relative to the root of the workspace, and its text.
 fn sources() -> impl Iterator<Item = (String, String)> {
     let read = |path: PathBuf| (relative(&path), fs::read_to_string(&path).expect("sources are UTF-8"));
     files(root(), "rs").into_iter().map(read)
@@ -86,8 +86,8 @@ fn every_source_file_starts_with_a_module_doc() {
 
 #[test]
 fn unsafe_code_exists_only_in_the_native_engine_the_c_interface_and_a_driver() {
-    // The workspace denies it. Compiled code is unsafe to run, what a C program hands over is unsafe to look at, and so are
-    // the functions of a library that is loaded at run time.
+    // The workspace denies it. Executing compiled code is unsafe, and so are accesses to a C program's pointers and
+    // calls of a library loaded at run time.
     let driver = "cc67/wire/src/transport/d2xx.rs";
     let folders = ["vm/src/native/", "cc67/capi/src/", driver, "tests/tidy/main.rs"];
     for (path, text) in sources().filter(|(path, _)| !folders.iter().any(|folder| path.starts_with(folder))) {

@@ -1,4 +1,4 @@
-//! Each list exists once, and each row of a table is used.
+//! Each list exists only once, and each row of a table is used.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -12,7 +12,7 @@ use crate::{files, relative, root};
 /// The table of firmware functions.
 const FUNCTIONS: &str = "kmotiondef/src/firmware.rs";
 
-/// Files whose words belong to another language that shares names with C, and that language.
+/// Files whose words belong to another language that shares names with C, each with that language.
 const OTHER_LANGUAGES: &[(&str, &str)] = &[
     ("runtime/src/commands/", "script commands"),
     ("runtime/src/pc/", "G code, and the buttons of the PC's boxes"),
@@ -28,7 +28,7 @@ const OTHER_LANGUAGES: &[(&str, &str)] = &[
     ("cc67/live/src/board/mod.rs", "messages of the page"),
 ];
 
-/// The tokens of every source file but those of tests.
+/// The tokens of every source file except those of tests.
 fn sources() -> Vec<(String, Vec<Token>)> {
     let all = files(root(), "rs").into_iter().map(|path| (relative(&path), path));
     let sources =
@@ -38,7 +38,7 @@ fn sources() -> Vec<(String, Vec<Token>)> {
         .collect()
 }
 
-/// The names of modules in files of their own, those of tests left out.
+/// The names of modules in separate files, except those of tests.
 fn modules(all: &[(String, Vec<Token>)]) -> BTreeSet<&str> {
     let declared = |tokens: &'_ [Token]| tokens[0].text == "mod" && tokens[2].text == ";";
     let rows = all.iter().flat_map(|(_, tokens)| tokens.windows(3).filter(|row| declared(row)));

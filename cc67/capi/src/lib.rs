@@ -7,7 +7,7 @@
 //!
 //! ```text
 //! client, console, lines, programs, time, token   the functions, by subject
-//! handle                                          the box behind a client's pointer
+//! handle                                          the box to which a client points
 //! border                                          pointers to references, panics and errors to results
 //! ```
 //!

@@ -5,21 +5,21 @@
 //! neither stop nor go back in time, and no command of its firmware reads memory other than `persist.UserData`.
 //!
 //! ```text
-//! connection  a controller that answers, before it is given programs
+//! connection  a connected controller, before programs are loaded
 //! saving      saving to flash
 //! controller  the target: load, start, stop, status
-//! bench       a stimulus without a model: what a person and the PC do
-//! commands    what a PC does for the requests of programs
-//! monitor     a program in a free thread, for what no command does
+//! bench       a stimulus without a model: actions of a person and of the PC
+//! commands    actions of the PC for requests of programs
+//! monitor     a program in a free thread, for requests without a command
 //! files       files of the PC, for programs on the controller
 //! terms       the terms on which programs are loaded
-//! image       from a program to what is downloaded
+//! image       the conversion of a program to a download
 //! recording   variables in each servo tick, by the board's data recorder
 //! sampler     a program in a free thread that samples variables for a scope
 //! resident    loading programs of cc67
-//! threads     what is known of the board's threads
-//! seen        memory as the status record shows it
-//! clock       the time of a board, which passes by itself
+//! threads     the known state of the board's threads
+//! seen        the known contents of memory
+//! clock       board time, which passes by itself
 //! ```
 //!
 //! # The monitor

@@ -9,9 +9,9 @@
 //! ```text
 //! dap        the Debug Adapter Protocol: requests in, responses and events out
 //! shell      gdb's commands
-//! words      their names, and how their lines are read
+//! words      their names, and the parsing of their lines
 //! debugger   breakpoints, runs, steps, values
-//!   travel     the same, back in time
+//!   travel     runs and steps back in time
 //! early      lines that the board has not sent yet
 //! programs   debug information of the programs in the threads
 //! ```

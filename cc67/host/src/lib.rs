@@ -9,11 +9,11 @@
 //!
 //! ```text
 //! client     Board: one of several clients, with the token and the calls of the vendor's library
-//! state      shared by the clients: the session, replies and console lines not taken yet
+//! state      shared by the clients: the session, replies and console lines that wait
 //! session/   Session: setup, control of time, expressions, signals, manual actions, snapshots
-//! remark     events of the board in words
-//! message    texts in buffers of a caller
-//! error      why a call failed
+//! remark     text for events of the board
+//! message    texts in a caller's buffers
+//! error      errors of calls
 //! seats      connections of a server: a new one always gets a place
 //! ```
 //!

@@ -16,6 +16,7 @@ use vm::engine::{Observed, Preemption};
 
 use crate::{HostError, Setup};
 
+/// The offsets and switches of a run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Schedule {
     /// The delay of each thread's start, in ticks.

@@ -53,6 +53,7 @@ pub struct Seat {
 /// The seat of a new connection.
 #[derive(Debug)]
 pub struct Admission {
+    /// The seat of the connection.
     pub seat: Seat,
     /// True if another connection was closed for this one.
     pub has_closed_another: bool,

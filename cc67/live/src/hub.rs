@@ -15,7 +15,7 @@ use crate::request::PageRequest;
 
 /// The maximum number of requests waiting for the board.
 const REQUESTS: usize = 256;
-/// The maximum number of messages waiting for a page; a page that falls further behind is disconnected.
+/// The maximum number of messages waiting for a page; a page with more is disconnected.
 const MESSAGES: usize = 4000;
 
 /// The number of a page.

@@ -7,10 +7,10 @@
 //! ```text
 //! server/    connections: the files of the page, access checks, sockets
 //! board/     the session under the clock: frames, signals, threads, messages
-//! control    what pages may do to the board and its time
+//! control    the rights of pages over the board and its time
 //! hub       shared by connections and the board: requests in, messages and frames out
 //! request    the requests of a page
-//! names      the programs' names of bits
+//! names      the programs' names for bits
 //! ```
 //!
 //! Invariants:
@@ -39,6 +39,7 @@ use cc67_host::{Session, Target, UserProgram};
 use kmotiondef::ThreadId;
 use runtime::{Event, MachineFile};
 
+/// A program of the board.
 #[derive(Clone, Debug)]
 pub struct Program {
     /// The thread in which it is loaded.

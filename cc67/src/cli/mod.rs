@@ -7,11 +7,11 @@
 //! The modules are layers, each of which uses only those below it:
 //!
 //! ```text
-//! commands   a file a subcommand: arguments in, work done, exit code out
-//! session    arguments → configuration → a loaded board, on the engine that was requested
+//! commands   one file for each subcommand: arguments in, work done, exit code out
+//! session    arguments → configuration → a loaded board, on the requested engine
 //! compile    files → images, with the compiler's messages
 //! report     output: the screen of a run, diagnostics, traces, plots, profiles
-//! args       options shared by commands, and the meaning of their values
+//! args       options shared by commands, and the parsing of their values
 //! io         files, the terminal, the clock, exit codes
 //! ```
 

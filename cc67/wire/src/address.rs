@@ -25,6 +25,7 @@ pub enum Address {
     Tcp {
         /// Name or address of the computer.
         host: String,
+        /// The TCP port.
         port: u16,
     },
 }

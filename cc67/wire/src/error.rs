@@ -97,6 +97,7 @@ pub enum WireError {
         "{place}: the board does not answer (5 attempts of 1 s); if it has just been switched on, wait 3 s, else unplug it and plug it in again"
     )]
     Silent {
+        /// The board.
         place: String,
     },
     /// A command was not answered in time.

@@ -1,15 +1,15 @@
 //! The link to a controller: transports, and a client of the board's byte protocol.
 //!
 //! ```text
-//! address    names of boards: usb, serial:PATH, server, kogna, tcp:HOST:PORT
-//! transport  opens the link that an address names
-//! boards     lists the boards that are connected
+//! address    addresses of boards: usb, serial:PATH, server, kogna, tcp:HOST:PORT
+//! transport  opens the link to the board at an address
+//! boards     lists the connected boards
 //! queue      several users of one board, in turn
-//! client     connects, asks, loads programs, reads the console and the status
+//! client     connects, executes commands, loads programs, reads the console and the status
 //! disk       answers the file requests of programs
 //! lines      replies, console lines and requests in the received bytes
 //! link       a stream of bytes in both directions that never blocks its user
-//! error      errors, each with the place of the board
+//! error      errors, each with the location of the board
 //! ```
 //!
 //! Invariants:

@@ -24,6 +24,7 @@ pub enum Sent {
 pub struct SentLine {
     /// The cycle of its first byte, since power-up.
     pub cycle: u64,
+    /// The kind of line.
     pub kind: Sent,
     /// Its text.
     pub text: Vec<u8>,

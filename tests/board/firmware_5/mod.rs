@@ -1,7 +1,8 @@
-//! The modelled board at the level of firmware 5.3.2 against what the released firmware did: `data/vectors/fw5.jsonl`.
+//! The modelled board with firmware 5.3.2, compared with the recorded behaviour of the released firmware:
+//! `data/vectors/fw5.jsonl`.
 //!
-//! The same rows are asked of the firmware itself in `released/firmware_5`. The texts of `fw5-text.jsonl` are compared
-//! beside the formatter.
+//! `released/firmware_5` compares the same rows with the firmware itself. The texts of `fw5-text.jsonl` are compared in
+//! the tests of the formatter.
 
 mod moves;
 mod programs;
@@ -20,10 +21,10 @@ use kmotiondef::{CType, GuestAddr, ThreadId};
 use runtime::{Board, Config, EventKind, ModelledBoard};
 use serde_json::Value as Json;
 
-/// Ticks after which a line that was sent has been carried out and answered.
+/// The number of ticks after which a line has been executed and answered.
 const ANSWER: u32 = 40;
 
-/// The board that rows are about.
+/// The board of the rows.
 fn target() -> &'static TargetBoard {
     TargetBoard::named("kflop-5.3.2").expect("it is known")
 }
@@ -52,7 +53,7 @@ fn thread(number: i32) -> ThreadId {
     ThreadId::new(number).expect("a thread")
 }
 
-/// Compares rows on boards of their own; fails with all that differ.
+/// Compares rows, each on a new board; fails with all differences.
 fn compare(kinds: &[&str], differences: impl Fn(&Json) -> Vec<String>) {
     let (rows, mut wrong) = (rows(kinds), Vec::new());
     for (index, row) in &rows {
@@ -64,7 +65,7 @@ fn compare(kinds: &[&str], differences: impl Fn(&Json) -> Vec<String>) {
     assert!(wrong.is_empty(), "{} of {} rows:\n{}", wrong.len(), rows.len(), wrong.join("\n"));
 }
 
-/// A program, for the places of its variables.
+/// A program, for the addresses of its variables.
 struct Program(Image);
 
 impl Program {
@@ -103,7 +104,7 @@ impl Model {
         }
     }
 
-    /// Sends a line; the answer to it.
+    /// Sends a line; returns the reply.
     fn command(&mut self, line: &str) -> String {
         self.said.clear();
         self.board.receive(format!("\u{1b}\u{1}{line}\r").as_bytes());
@@ -136,7 +137,7 @@ impl Model {
         memory.peek(memory.place_of(PERSIST.field(Persist::USER_DATA).element(index).address()))
     }
 
-    /// The place of a field of axis 0, and its type.
+    /// The address of a field of axis 0, and its type.
     fn field(&self, name: &str) -> (GuestAddr, CType) {
         let field = Chan::STRUCTURE.fields.iter().find(|field| field.name == name).expect(name);
         (self.board.memory().place_of(CHAN.address().offset(field.offset)), field.ty)

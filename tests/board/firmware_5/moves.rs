@@ -1,15 +1,15 @@
-//! Moves and jogs: the axis at ticks counted from the end of the calls.
+//! Moves and jogs: the state of the axis in ticks counted from the end of the calls.
 
 use kmotiondef::variables::TRIP_COEFFS;
 use serde_json::Value as Json;
 
 use super::{Model, compare, list, number, text, thread};
 
-/// The soft limit of rows about one.
+/// The soft limit in rows about soft limits.
 const SOFT_LIMIT: f64 = 60.0;
-/// Ticks that the calls of a row take at most.
+/// The maximum number of ticks for the calls of a row.
 const LONGEST: u32 = 4000;
-/// Difference of a place, and of a speed, from the recorded one.
+/// The tolerances of a position and of a speed.
 const PLACE: f64 = 1e-8;
 const SPEED: f64 = 1e-3;
 fn differences(row: &Json) -> Vec<String> {
@@ -42,7 +42,7 @@ fn differences(row: &Json) -> Vec<String> {
     follow(row, &mut board)
 }
 
-/// Compares the axis at the recorded ticks, and when it was done.
+/// Compares the state of the axis in the recorded ticks, and the time at which it was done.
 fn follow(row: &Json, board: &mut Model) -> Vec<String> {
     let (mut found, mut done, mut tick) = (Vec::new(), None, 0);
     for sample in list(&row["result"]["samples"]) {
@@ -61,7 +61,7 @@ fn follow(row: &Json, board: &mut Model) -> Vec<String> {
             return found;
         }
     }
-    // The recorder looks for the end from tick 2 on.
+    // The recorder checks for the end from tick 2 on.
     let done = done.map(|tick: u64| tick.max(2));
     if done != row["result"]["done_tick"].as_u64() {
         found.push(format!("done in {done:?}, recorded {}", row["result"]["done_tick"]));

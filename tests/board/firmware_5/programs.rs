@@ -4,9 +4,9 @@ use serde_json::Value as Json;
 
 use super::{Model, Program, compare, list, number, target, text, thread};
 
-/// Ticks after which a program that has not ended waits forever.
+/// The number of ticks after which a program that has not ended waits forever.
 const FOREVER: u32 = 2000;
-/// The time that the work of a program and of its calls may take more or less than on the board, seconds.
+/// The tolerance in seconds for the code of a program and of its calls.
 const CODE: f64 = 15e-6;
 
 fn source(statements: &str) -> String {

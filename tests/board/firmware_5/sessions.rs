@@ -1,4 +1,4 @@
-//! Sessions: lines from the PC and what the board answers.
+//! Sessions: lines from the PC and the board's replies.
 
 use std::ops::Range;
 
@@ -6,13 +6,13 @@ use serde_json::Value as Json;
 
 use super::{Model, compare, list, text};
 
-/// The session whose answers depend on the tick.
+/// The session whose replies depend on the tick.
 const MOVING: &str = "GetAllDestVelHex at rest and moving";
-/// Words of the status that depend on the time or, the readings of the converters, on what RAM held.
+/// Words of the status that depend on the time, or, for the converters' readings, on the initial contents of RAM.
 const TIME: Range<usize> = 162..164;
 const CONVERTERS: Range<usize> = 1..9;
 
-/// Ticks for which a session ran after a command.
+/// The number of ticks for which a session ran after a command.
 fn pause(session: &str, line: &str) -> u32 {
     match (session, line) {
         (MOVING, "Jog0=1000") => 1017,
@@ -25,12 +25,12 @@ fn pause(session: &str, line: &str) -> u32 {
     }
 }
 
-/// The words of an answer without those that cannot be compared.
+/// The words of a reply without those that cannot be compared.
 fn words<'a>(session: &str, line: &str, answer: &'a str) -> Vec<&'a str> {
     let words = answer.split_whitespace().enumerate();
     let is_compared = |at: usize| match (session, line) {
         ("GetStatus", _) => !TIME.contains(&at) && !CONVERTERS.contains(&at),
-        // Destinations while the axis moves; speeds stay.
+        // Destinations while the axis moves; speeds are compared.
         (MOVING, "Dest0") => false,
         (MOVING, _) => at > 1,
         _ => true,

@@ -1,7 +1,7 @@
-//! Scenarios that were found by chance and reduced, against what the released firmware did: `data/vectors/fidelity-2.jsonl` and
-//! `fidelity-3.jsonl`.
+//! Randomly generated and reduced scenarios, compared with the recorded behaviour of the released firmware:
+//! `data/vectors/fidelity-2.jsonl` and `fidelity-3.jsonl`.
 //!
-//! The same rows are asked of the model, in every run, and of the firmware itself where `CC67_FIRMWARE` names its file.
+//! The rows are compared with the model in every run, and with the firmware itself if `CC67_FIRMWARE` names its file.
 //! There are four kinds of rows:
 //!
 //! | row | holds |
@@ -28,15 +28,16 @@ use serde_json::Value as Json;
 
 use record::Record;
 
-/// The files, and the rows of each. The second are random scenarios in which the model differed once, reduced by `cc67 compare`.
+/// The files, and the number of rows in each. Those of the second are random scenarios in which the model once
+/// differed, reduced by `cc67 compare`.
 const FILES: [(&str, usize); 2] = [("fidelity-2.jsonl", 112), ("fidelity-3.jsonl", FOUND)];
 const FOUND: usize = 62;
-/// Ticks that the longest program takes at most; one that has stopped the board never ends.
+/// The maximum number of ticks for the longest program; a program that has stopped the board never ends.
 const LONGEST: u64 = 12_000;
-/// Ticks in which texts that a program has printed reach the PC.
+/// The number of ticks in which printed texts reach the PC.
 const TO_THE_END: u64 = 300;
 
-/// Rows that a board does not reproduce, and the reason.
+/// Rows that a board does not reproduce, with the reason.
 struct Exception {
     reason: &'static str,
     rows: &'static [usize],
@@ -56,7 +57,7 @@ const DIFFERENT: &[Exception] = &[
     rows_of("the firmware reads outside the memory for the axis of an unused letter", &[54, 100, 101]),
 ];
 
-/// A board on which rows are tried.
+/// A board on which rows are replayed.
 #[derive(Clone, Copy)]
 enum Subject<'f> {
     Model,
@@ -69,7 +70,7 @@ impl Subject<'_> {
         let scratch = Scratch::new(&format!("measured-{index}"));
         let mut setup = Setup::default();
         setup.options.timing = Timing::VENDOR;
-        // As the vendor's code, which was recorded; no PC asked for the status meanwhile.
+        // Like the vendor's code, which was recorded; no PC requested the status meanwhile.
         setup.options.division = Division::Firmware;
         setup.config.machine_file.cpu.board_faults = true;
         setup.config.host = false;
@@ -90,7 +91,7 @@ impl Subject<'_> {
         }
     }
 
-    /// Tries all rows; fails where the set of those that differ is not the known one.
+    /// Replays all rows; fails if the set of differing rows is not the known one.
     fn try_all(self, known: &[Exception]) {
         let rows = rows();
         let mut report = String::new();
@@ -152,7 +153,7 @@ fn differences<T: Target>(session: &mut Session<T>, row: &Json) -> Vec<String> {
     found
 }
 
-/// Sends a line, or lets time pass; what came back, if it is not what was recorded.
+/// Sends a line, or lets time pass; returns the reply if it differs from the recorded one.
 fn unlike<T: Target>(session: &mut Session<T>, exchange: &Json) -> Option<String> {
     let [line, expect] = [0, 1].map(|part| exchange[part].as_str().expect("text"));
     session.tap_wire();
@@ -167,7 +168,7 @@ fn unlike<T: Target>(session: &mut Session<T>, exchange: &Json) -> Option<String
     (found != expect).then(|| format!("{line}: {found:?}, recorded {expect:?}"))
 }
 
-/// Runs a program to its end; its console.
+/// Runs a program to its end; returns its console.
 fn run<T: Target>(session: &mut Session<T>) -> String {
     let mut console = String::new();
     let mut hear = |event: Event| {

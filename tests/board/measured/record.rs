@@ -1,4 +1,4 @@
-//! The record that a program leaves in the gather buffer: what it saw slice by slice, and everything at its end.
+//! The record that a program leaves in the gather buffer: its observations slice by slice, and the final values.
 
 use cc67::record::{PATH, PATH_VARIABLES, PRECISION, SAMPLES, STATES};
 use cc67_host::Session;
@@ -9,17 +9,17 @@ use kmotiondef::{CType, GuestAddr};
 use serde_json::Value as Json;
 use vm::memory::Scalar;
 
-/// Columns that are single precision in memory.
+/// Columns that are floats in memory.
 const SINGLES: [&str; 4] = ["ch0->Output", "ch0->integrator", "ch0->Backlash", "ch0->x1last"];
 
-/// A value, and whether it has single precision.
+/// A value, and whether it is a float.
 struct Value {
     value: f64,
     is_single: bool,
 }
 
 impl Value {
-    /// Returns whether it is the recorded one, to the last bit where it is a whole number or has single precision.
+    /// Returns whether it equals the recorded value: exactly if it is an integer or a float.
     fn is(&self, recorded: &Json) -> bool {
         let Some(recorded) = recorded.as_f64() else { return self.value.is_nan() };
         if self.is_single {
@@ -47,7 +47,7 @@ impl<'s, T: Target> Record<'s, T> {
         self.session.peek_object(self.begin.offset(4 * index))
     }
 
-    /// A value at the end, as the file names it.
+    /// A final value, by its name in the file.
     fn at_end(&self, name: &str) -> Value {
         if let Some(index) = (0..).zip(PATH_VARIABLES).find(|(_, known)| *known == name) {
             return Value { value: self.word(PATH + 2 * index.0), is_single: false };
@@ -73,13 +73,13 @@ impl<'s, T: Target> Record<'s, T> {
         Value { value, is_single }
     }
 
-    /// Adds where it differs from a row.
+    /// Adds the differences from a row.
     pub(super) fn compare(&self, row: &Json, found: &mut Vec<String>) {
         let columns: Vec<_> =
             row["columns"].as_array().into_iter().flatten().filter_map(Json::as_str).skip(1).collect();
         for sample in row["rows"].as_array().into_iter().flatten() {
             let slice = sample[0].as_u64().expect("a number");
-            // Not every sample that a program stores was written down.
+            // Not all samples stored by a program were recorded.
             let first = SAMPLES + 2 * (slice / samples_every(row)) as u32 * columns.len() as u32;
             let recorded = sample.as_array().into_iter().flatten().skip(1);
             for ((column, recorded), at) in columns.iter().zip(recorded).zip((first..).step_by(2)) {
@@ -105,13 +105,13 @@ impl<'s, T: Target> Record<'s, T> {
     }
 }
 
-/// Slices between two samples of a program: it stores one where `n%COUNT==0`.
+/// The number of slices between two samples of a program: it stores one where `n%COUNT==0`.
 fn samples_every(row: &Json) -> u64 {
     let (_, rest) = row["program"].as_str().and_then(|text| text.rsplit_once("n%")).expect("it samples");
     rest.split("==").next().and_then(|count| count.parse().ok()).expect("a count")
 }
 
-/// The place of a field of an axis in its structure, and its type; `iir[1][5]` is a word of a filter.
+/// The offset of a field in the structure of an axis, and its type; `iir[1][5]` is a word of a filter.
 fn place(name: &str) -> (u32, CType) {
     if let Some(filter) = name.strip_prefix("iir[") {
         let (filter, word) = filter.trim_end_matches(']').split_once("][").expect(name);

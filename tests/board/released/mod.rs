@@ -1,7 +1,8 @@
 //! Recorded behaviour of the released firmware, compared with the firmware itself: threads, motion, servo and outputs.
 //!
-//! The vectors were measured on it in another emulator, so what does not depend on the compiler of a program comes out to
-//! the last bit here. Where `CC67_FIRMWARE` names no file, the test says so; for firmware 5.3.2 it is `CC67_FIRMWARE_5`.
+//! The vectors were recorded from it in another emulator, so everything that does not depend on the compiler of a
+//! program must be reproduced exactly. If `CC67_FIRMWARE` names no file, each test reports that it is skipped; for
+//! firmware 5.3.2 the variable is `CC67_FIRMWARE_5`.
 
 mod firmware_5;
 mod motion;
@@ -26,13 +27,13 @@ use vm::memory::GuestMemory;
 
 /// Cycles of a tick.
 const TICK: u64 = 18_000;
-/// Ticks after which a line that was sent has been carried out and answered.
+/// The number of ticks after which a line has been executed and answered.
 const ANSWER: u32 = 40;
-/// Digits with which single precision was recorded.
+/// The number of digits with which floats were recorded.
 const SINGLE: usize = 9;
-/// Cycles that every interrupt takes at least.
+/// The minimum number of cycles of an interrupt.
 const SHORTEST: u64 = 1500;
-/// Cycles between two looks for its end: nothing of a slice is done in them.
+/// The number of cycles between checks for its end, too few for any work of a slice.
 const STEP: u64 = 20;
 
 /// The rows of a recording.
@@ -42,7 +43,8 @@ fn rows(name: &str) -> Vec<Json> {
     text.lines().map(|line| serde_json::from_str(&quoted(line)).expect("each line is JSON")).collect()
 }
 
-/// A line with its fractions as texts: the reader of JSON rounds the last of 17 digits, as a comparison to the bit cannot.
+/// A line with its fractions as texts: the JSON reader rounds the last of 17 digits, which would prevent an exact
+/// comparison.
 fn quoted(line: &str) -> String {
     let mut quoted = String::new();
     for (index, part) in line.split('"').enumerate() {
@@ -68,7 +70,7 @@ fn number(value: &Json) -> f64 {
     fraction.or(value.as_f64()).unwrap_or_else(|| panic!("{value} is a number"))
 }
 
-/// Returns whether a number is the recorded one to the last bit: single precision was recorded with nine digits.
+/// Returns whether a number equals the recorded one exactly: floats were recorded with nine digits.
 fn is_same(found: f64, expect: &Json) -> bool {
     let digits = expect.as_str().map_or(0, |text| {
         let mantissa = text.split('e').next().unwrap_or_default();
@@ -91,7 +93,7 @@ fn thread(number: u64) -> ThreadId {
     ThreadId::new(i32::try_from(number).expect("small")).expect("a thread")
 }
 
-/// Nothing around the board; it keeps what is written.
+/// Hardware that only records the written values.
 #[derive(Clone, Debug, Default)]
 struct Nothing {
     writes: Vec<(usize, u16)>,
@@ -109,20 +111,20 @@ impl ExternalHardware for Nothing {
     fn tick(&mut self, _: &mut TimerMatch<'_>) {}
 }
 
-/// A board with the released firmware, and what programs for it are linked against.
+/// A board with the released firmware, and the symbols against which programs are linked.
 #[derive(Clone)]
 struct Released {
     board: BootedBoard<Nothing>,
     symbols: Arc<Symbols>,
 }
 
-/// A board that has just booted firmware 4.34, with nothing around it.
+/// A board that has just booted firmware 4.34, without hardware around it.
 fn released() -> Option<Released> {
     static BOARD: OnceLock<Option<Mutex<Released>>> = OnceLock::new();
     booted(&BOARD, "CC67_FIRMWARE")
 }
 
-/// The board that has booted the file that a variable of the environment names; it is booted once.
+/// The board that has booted the file named by an environment variable; it is booted only once.
 fn booted(board: &OnceLock<Option<Mutex<Released>>>, variable: &str) -> Option<Released> {
     let boot = || {
         let Some(path) = env::var_os(variable) else {
@@ -142,7 +144,7 @@ fn booted(board: &OnceLock<Option<Mutex<Released>>>, variable: &str) -> Option<R
     Some(board.lock().expect("no test holds it while it fails").clone())
 }
 
-/// The place of a field of an axis, and its type, as recordings name it: `P`, `iir0__A1`, `iir0.d0`.
+/// The address of a field of an axis, and its type, with the name in the recordings: `P`, `iir0__A1`, `iir0.d0`.
 fn field(axis: u8, name: &str) -> (u32, CType) {
     let base = u32::from(axis) * Chan::STRUCTURE.size;
     let parts: Vec<&str> = name.split("__").flat_map(|part| part.split('.')).collect();
@@ -204,13 +206,13 @@ impl Released {
         self.board.memory().peek(self.address(name))
     }
 
-    /// Returns whether a field of an axis is the recorded one, to the last recorded digit.
+    /// Returns whether a field of an axis equals the recorded value, to the last recorded digit.
     fn is(&self, axis: u8, name: &str, expect: &Json) -> bool {
         let found = self.peek_axis(axis, name);
         if expect.is_boolean() { (found != 0.0) == *expect } else { is_same(found, expect) }
     }
 
-    /// Runs to the end of the next interrupt, except for a few cycles.
+    /// Runs to the end of the next interrupt, with a margin of a few cycles.
     fn interrupt(&mut self) {
         self.reach_match();
         self.run(SHORTEST);
@@ -244,7 +246,7 @@ impl Released {
         registers.iter().any(|(name, value)| name == "CSR" && value & 1 == 0)
     }
 
-    /// Sends a line; what the firmware has sent when it has carried it out.
+    /// Sends a line; returns the text sent by the firmware until the line is executed.
     fn command(&mut self, line: &str) -> String {
         self.board.take_bytes();
         self.board.send_line(line.as_bytes());
@@ -252,12 +254,12 @@ impl Released {
         self.said()
     }
 
-    /// Sends a line to a board that may have run away; the answer, or nothing.
+    /// Sends a line to a board that may have crashed; returns the reply, or an empty text.
     fn tried(&mut self, line: &str) -> String {
         self.board.take_bytes();
         self.board.send_line(line.as_bytes());
         let end = self.board.cycle() + u64::from(ANSWER) * TICK;
-        // A board that has run away answers nothing.
+        // A crashed board does not answer.
         if self.board.run_to(end).is_err() { String::new() } else { self.said() }
     }
 
@@ -284,19 +286,19 @@ impl Released {
         image::write(&linked).expect("an image")
     }
 
-    /// Puts an image into a thread's space.
+    /// Copies an image to a thread's space.
     fn load_image(&mut self, thread: ThreadId, image: &[u8]) {
         self.board.load_program(thread, image).unwrap_or_else(|error| panic!("{error}"));
     }
 
-    /// Compiles a program and puts it into a thread's space.
+    /// Compiles a program and copies it to a thread's space.
     fn load(&mut self, thread: ThreadId, source: &str) -> Program {
         let image = self.compiled(thread, source);
         self.load_image(thread, &image);
         Program(Image::read(&image).expect("it is one"))
     }
 
-    /// Starts threads and runs until `persist.UserData[9]` is set, for this many ticks at most.
+    /// Starts threads and runs until `persist.UserData[9]` is set, for at most this many ticks.
     fn run_threads(&mut self, threads: &[ThreadId], most: u32) {
         let started = self.board.execute_together(threads);
         started.unwrap_or_else(|crash| panic!("{crash}"));
@@ -315,7 +317,7 @@ impl Released {
     }
 }
 
-/// A program, for the places of its variables.
+/// A program, for the addresses of its variables.
 struct Program(Image);
 
 impl Program {
@@ -325,7 +327,7 @@ impl Program {
     }
 }
 
-/// Fails with all that differs.
+/// Fails with all differences.
 fn report(wrong: &[String], count: usize) {
     println!("{} of {count} rows agree", count - wrong.len());
     assert!(wrong.is_empty(), "{} of {count} rows differ:\n{}", wrong.len(), wrong.join("\n"));

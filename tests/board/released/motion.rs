@@ -7,13 +7,13 @@ use serde_json::Value as Json;
 
 use super::{Program, Released, list, number, released, report, rows, text, thread};
 
-/// Ticks that a program takes at most to begin.
+/// The maximum number of ticks until a program begins.
 const BEGIN: u32 = 200;
-/// Ticks of a motion that is always followed to its end, and of others after their last call.
+/// The number of ticks of a motion that is always followed to its end, and of other motions after their last call.
 const SHORT: u64 = 1000;
 const AFTER: u64 = 100;
 
-/// A program that makes the calls of a row in the ticks in which they were made; it notes when each began and ended.
+/// A program that makes the calls of a row in their recorded ticks; it notes the time of each call's begin and end.
 fn program(row: &Json) -> String {
     let mut source =
         "double begun[8], ended[8], first;\nmain()\n{\n  WaitNextTimeSlice();\n  first = ServoTick;\n"
@@ -32,7 +32,7 @@ fn program(row: &Json) -> String {
     source + "  for (;;) WaitNextTimeSlice();\n}\n"
 }
 
-/// The list of states of axis 0, to its end.
+/// The list of states of axis 0, up to its end.
 pub(super) fn states(board: &Released) -> Vec<[f64; 6]> {
     let memory = board.board.memory();
     let base = board.address("chan").offset(Chan::C.offset());
@@ -56,15 +56,15 @@ fn recorded_states(call: &Json) -> Vec<[f64; 6]> {
     list(&call["states"]).iter().map(field).collect()
 }
 
-/// The tick to which a row is followed: its last sample, which may be seconds of a crawl later, where `CC67_LONG` is set;
-/// else a little after its last call, or the end of a short one.
+/// The tick up to which a row is followed: its last sample if `CC67_LONG` is set, which may be after seconds of a
+/// crawl; otherwise a little after its last call, or the end of a short motion.
 fn end(row: &Json) -> u64 {
     let last = list(&row["samples"]).iter().map(|sample| number(&sample[0]) as u64).max().unwrap_or(0);
     let called = list(&row["calls"]).iter().map(|call| number(&call["end_tick"]) as u64).max().unwrap_or(0);
     if harness::is_long() || last <= SHORT { last } else { last.min(called + AFTER) }
 }
 
-/// A row that is replayed.
+/// A row during its replay.
 struct Replay<'r> {
     row: &'r Json,
     board: Released,
@@ -75,14 +75,14 @@ struct Replay<'r> {
 }
 
 impl<'r> Replay<'r> {
-    /// A board in the slice in which the program of a row makes its first call, at the end of it.
+    /// A board at the end of the slice in which the program of a row makes its first call.
     fn begin(row: &'r Json, mut board: Released) -> Self {
         for name in ["Vel", "Accel", "Jerk"] {
             board.poke(name, number(&row[name]));
         }
         board.poke("InputMode", 4.0);
         board.command(&format!("EnableAxisDest0 {:?}", number(&row["start_dest"])));
-        // To the last bit: the firmware's reader of numbers is a bit off with some fractions.
+        // Set exactly: the firmware's conversion of numbers has an error of one bit with some fractions.
         board.poke("Dest", number(&row["start_dest"]));
         let program = board.load(thread(1), &program(row));
         board.board.execute_together(&[thread(1)]).unwrap_or_else(|crash| panic!("{crash}"));
@@ -98,12 +98,12 @@ impl<'r> Replay<'r> {
         panic!("the program does not begin");
     }
 
-    /// Returns a value that the program has noted.
+    /// Returns a value noted by the program.
     fn noted(&self, name: &str, index: u32) -> f64 {
         self.board.board.memory().peek(self.program.variable(name).offset(8 * index))
     }
 
-    /// A call has ended: when, and which states it left.
+    /// Checks a call that has ended: the time, and the resulting states.
     fn check_call(&mut self, call: &Json, index: u32) {
         let at = ["begun", "ended"].map(|name| self.noted(name, index) - self.first);
         let expect = ["begin_tick", "end_tick"].map(|name| number(&call[name]));

@@ -11,21 +11,21 @@ fn writes(list: &Json) -> Vec<(usize, u16)> {
     super::list(list).iter().map(pair).collect()
 }
 
-/// Cycles by which an interrupt may read a generator earlier or later than in the recording: it begins when the code that
-/// it interrupts lets it, and where that was is not recorded.
+/// The number of cycles by which an interrupt may read a generator earlier or later than in the recording: it begins
+/// when the interrupted code allows it, and the position in that code was not recorded.
 const LATE: f64 = 64.0;
-/// Steps of the last bit in which a generator is read.
+/// The value of the last bit with which a generator is read, in steps.
 const READ: f64 = 1.0 / 128.0;
-/// Steps in a tick of one unit of a rate.
+/// The number of steps per tick for a rate of one unit.
 const RATE: f64 = 18_000.0 / 12.0 / (1 << 23) as f64;
-/// The register whose write makes a rate hold, and the first of its four.
+/// The registers of a rate; the write to the last one makes it effective.
 const RATES: std::ops::RangeInclusive<usize> = 0x3C..=0x3F;
 
-/// The row with bytes of three phases on channels below 8, which the firmware writes beside the registers: nothing is
-/// there. Of the recorded four the second is one of a register.
+/// The row with bytes of three phases on channels below 8, which the firmware writes to unused addresses between
+/// registers. Of the four recorded ones, the second is in a register.
 const BESIDE: &str = "BRUSHLESS mode 3, invDistPerCycle 0.001, CommutationOffset 0.1";
 
-/// The writes of registers in a recorded list.
+/// The writes to registers in a recorded list.
 fn of_registers(row: &Json, writes: Vec<(usize, u16)>) -> Vec<(usize, u16)> {
     if row["name"] != BESIDE {
         return writes;
@@ -33,7 +33,7 @@ fn of_registers(row: &Json, writes: Vec<(usize, u16)>) -> Vec<(usize, u16)> {
     writes.into_iter().skip(1).step_by(4).collect()
 }
 
-/// The rate that writes make hold, units; `None` for other writes.
+/// The rate that writes make effective, in units; `None` for other writes.
 fn rate(writes: &[(usize, u16)]) -> Option<f64> {
     let byte =
         |register: usize| writes.iter().find(|write| write.0 == register).map(|write| i32::from(write.1));
@@ -43,7 +43,7 @@ fn rate(writes: &[(usize, u16)]) -> Option<f64> {
     Some(f64::from(bits << 9 >> 9))
 }
 
-/// The first writes after a command, as many as were recorded, or the last.
+/// The first writes after a command, as many as were recorded, or the last ones.
 fn written_by(board: &mut Released, command: &str, row: &Json, found: &mut Vec<String>) {
     let is_first = command.starts_with("Enable");
     let expect =
@@ -80,7 +80,8 @@ fn check_words(board: &Released, place: &str, values: &Json, found: &mut Vec<Str
     }
 }
 
-/// A generator and the rate it gets, as far as the recording determines them; `before` are the steps of the last tick.
+/// Checks a generator and its new rate, as far as the recording determines them; `before` is the number of steps in the
+/// last tick.
 fn check_generator(
     board: &mut Released,
     place: &str,

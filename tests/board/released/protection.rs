@@ -4,10 +4,10 @@ use serde_json::Value as Json;
 
 use super::{Released, is_same, list, number, text};
 
-/// Ticks after a command until the first row.
+/// The number of ticks from a command to the first row.
 const FIRST: u32 = 200;
 
-/// Carries out an action of a recording: a poke at once, a command by its line.
+/// Executes an action of a recording: a poke at once, a command as a line.
 fn act(board: &mut Released, action: &str) {
     match action.strip_prefix("!poke VirtualBits i ") {
         Some(value) => {
@@ -51,7 +51,7 @@ pub(super) fn differences(row: &Json, board: &Released) -> Vec<String> {
         }
     }
     for (tick, values) in rows.iter().enumerate() {
-        // A command is sent into the slice before its tick.
+        // A command is sent in the slice before its tick.
         let action = values[0].as_str().filter(|action| action.parse::<f64>().is_err());
         if tick == 0 {
             board.reach_match();
@@ -76,7 +76,7 @@ pub(super) fn differences(row: &Json, board: &Released) -> Vec<String> {
     if found.is_empty() && console != text(&row["console"]) {
         found.push(format!("says {console:?}, recorded {}", row["console"]));
     }
-    // In the order of the recording, which JSON does not keep: a message comes with the first reply.
+    // In the order of the recording, which JSON does not preserve: a message comes with the first reply.
     for (command, expect) in row["after"].as_object().expect("replies").iter().rev() {
         let reply = board.command(command);
         if found.is_empty() && reply != text(expect) {

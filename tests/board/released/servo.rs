@@ -1,10 +1,10 @@
-//! Compensation, inputs, slaves and calls that enable: `data/vectors/servo.jsonl`.
+//! Compensation, inputs, slaves and calls that enable axes: `data/vectors/servo.jsonl`.
 
 use serde_json::Value as Json;
 
 use super::{Released, list, number, outputs, protection, released, report, rows, text};
 
-/// Ticks after which filters have come to rest.
+/// The number of ticks after which filters have settled.
 const SETTLED: u32 = 300;
 
 /// A board with axis 0 enabled at 0, whose position and destination the test writes.
@@ -32,7 +32,7 @@ pub(super) fn compensation(row: &Json, board: &Released) -> Vec<String> {
     let (mut board, mut found) = (enabled(board), Vec::new());
     board.set(&row["parameters"]);
     let columns: Vec<&str> = list(&row["columns"]).iter().map(text).collect();
-    // One recording changes the offset on the way, in the tick that shows an error of 6.
+    // One recording changes the offset during the run, in the tick with an error of 6.
     let has_offset = row["name"] == "DestOffset";
     for (tick, values) in list(&row["rows"]).iter().enumerate() {
         let values = list(values);
@@ -131,14 +131,14 @@ fn slave(row: &Json, board: &Released) -> Vec<String> {
     found
 }
 
-/// The fields of axis 0 that are not what they should be.
+/// The fields of axis 0 that differ from the expected values.
 fn differing(board: &Released, fields: &Json) -> Vec<String> {
     let fields = fields.as_object().expect("fields").iter();
     let differing = fields.filter(|(name, expect)| !board.is(0, name, expect));
     differing.map(|(name, expect)| format!("{name} {}, recorded {expect}", board.peek(name))).collect()
 }
 
-/// Calls of enable, disable and zero in motion: every field before and after.
+/// Calls that enable, disable and zero an axis in motion: every field before and after.
 fn enable(row: &Json, board: &Released) -> Vec<String> {
     let mut board = board.clone();
     for (name, value) in [("OutputMode", 2.0), ("InputMode", 4.0), ("P", 1.0), ("I", 0.5), ("iir0.A1", 0.5)] {

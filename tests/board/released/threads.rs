@@ -1,7 +1,7 @@
-//! Threads, time and the length of the servo interrupt: `data/vectors/threads.jsonl`.
+//! Threads, time and the duration of the servo interrupt: `data/vectors/threads.jsonl`.
 //!
-//! What the firmware does by itself comes out to the cycle. Programs of the recording were compiled by the vendor's
-//! compiler: times between two of their calls hold its code, here that of cc67, and may differ by [`CODE`].
+//! The firmware's own actions must be reproduced to the cycle. The recorded programs were compiled by the vendor's
+//! compiler: times between two of their calls include its code, here cc67's code, and may differ by [`CODE`].
 
 use kmotiondef::ThreadId;
 use serde_json::Value as Json;
@@ -10,15 +10,15 @@ use super::{Released, TICK, list, number, released, report, rows, text, thread};
 
 /// The tolerance for the code between two calls, relative to the vendor's, in seconds.
 const CODE: f64 = 2e-6;
-/// The same for the first of a series, which begins wherever the code before it ended.
+/// The tolerance for the first time of a series, which begins where the code before it has ended.
 const FIRST: f64 = 10e-6;
-/// Cycles of taking an interrupt, and of the branch that returns from it: they pass with interrupts on.
+/// The cycles for taking an interrupt, and for the branch that returns from it: interrupts are enabled during these.
 const AROUND: u64 = 11 + 5;
-/// Cycles of a second.
+/// Cycles per second.
 const SECOND: f64 = 2e8;
-/// Cycles before the end of an interrupt from which each is looked at.
+/// The number of cycles before the end of an interrupt from which each cycle is checked.
 const NEAR: u64 = 100;
-/// Ticks that a program of the recording takes at most.
+/// The maximum number of ticks for a recorded program.
 const LONGEST: u32 = 20_000;
 
 fn threads(list: &Json) -> Vec<ThreadId> {
@@ -37,7 +37,7 @@ const BUSY: &str = "main() { for (;;) ; }\n";
 const SECOND_THREAD: &str = "int g = 5; int s = 7;\nmain()\n{\n  g++; s++;\n  persist.UserData[20] = g; \
     persist.UserData[21] = s; persist.UserData[22] = 0;\n  persist.UserData[23]++;\n";
 
-/// The thread of each slice, over and over.
+/// Compares the thread of each slice over many slices.
 fn rotation(row: &Json, mut board: Released) -> Vec<String> {
     let active = threads(&row["active"]);
     for thread in &active {
@@ -56,7 +56,7 @@ fn rotation(row: &Json, mut board: Released) -> Vec<String> {
     if seen.contains(expect) { Vec::new() } else { vec![format!("{active:?}: {seen}, recorded {expect}")] }
 }
 
-/// Returns whether values are as recorded: counts exactly, times except for the code between calls.
+/// Returns whether values are as recorded: counts exactly, times within the tolerance for the code between calls.
 fn is_time(name: &str, index: usize, found: f64, recorded: f64) -> bool {
     match name {
         "ServoTick growth over Delay_sec(0.09)" | "CurrentThread as read by thread 1" => found == recorded,
@@ -112,7 +112,7 @@ fn scenario(row: &Json, mut board: Released) -> Vec<String> {
     let mut found = Vec::new();
     for (index, expect) in row["UserData"].as_object().expect("values") {
         let index: usize = index.parse().expect("an index");
-        // How far a counter gets depends on its code; that it stands still while paused does not.
+        // The value reached by a counter depends on the code; that it does not change while paused does not.
         let is = if matches!(index, 30 | 31) && number(expect) > 20_000.0 {
             let stands = board.user_data(30) == board.user_data(31) && board.user_data(30) > 0;
             i32::from(stands) * number(expect) as i32
@@ -130,7 +130,7 @@ fn scenario(row: &Json, mut board: Released) -> Vec<String> {
     found
 }
 
-/// Two threads count up one variable, with and without a lock.
+/// Two threads increment one variable, with and without a lock.
 fn preemption(row: &Json, mut board: Released) -> Vec<String> {
     let (lock, unlock) = if number(&row["mutex"]) == 0.0 {
         ("", "")
@@ -145,7 +145,7 @@ fn preemption(row: &Json, mut board: Released) -> Vec<String> {
     both.iter().for_each(|one| drop(board.load(*one, &source)));
     board.run_threads(&both, LONGEST);
     let (sum, recorded) = (board.user_data(0), number(&row["result"]));
-    // Without a lock it depends on the code how many are lost.
+    // Without a lock, the number of lost increments depends on the code.
     let is_right = if lock.is_empty() { sum < 40_000 } else { f64::from(sum) == recorded };
     if is_right { Vec::new() } else { vec![format!("{sum}, recorded {recorded}")] }
 }
@@ -195,14 +195,14 @@ fn main_arguments(row: &Json, mut board: Released) -> Vec<String> {
     let source = "main(int a, int b, int c)\n{\n  persist.UserData[1] = a; persist.UserData[2] = b; \
         persist.UserData[3] = c; persist.UserData[9] = 1;\n}\n";
     board.load(third, source);
-    // Later runs find what the code of the run before left in its registers, which is another compiler's here.
+    // Later runs find the values that the previous run's code left in the registers, which depend on the compiler.
     board.run_threads(&[third], LONGEST);
     let is = [1, 2, 3].map(|index| f64::from(board.user_data(index)));
     let expect: Vec<f64> = list(&row["runs"][0]).iter().map(number).collect();
     if is.as_slice() == expect { Vec::new() } else { vec![format!("{is:?}, recorded {expect:?}")] }
 }
 
-/// A lock whose owner is gone, or a variable that holds the number of no owner.
+/// A lock whose owner has ended, or a variable that contains an invalid owner.
 fn mutex(row: &Json, mut board: Released) -> Vec<String> {
     let case = text(&row["case"]);
     let taker = "main()\n{\n  persist.UserData[3] = persist.UserData[1]; MutexLock(&persist.UserData[1]); \
@@ -237,7 +237,7 @@ fn owned_mutex(row: &Json, mut board: Released, case: &str) -> Vec<String> {
     if agrees { Vec::new() } else { vec![format!("{is:?} {got}, recorded {row}")] }
 }
 
-/// Cycles of the next interrupt from its vector to the return; it takes at least `least`.
+/// The cycles of the next interrupt from its vector to the return; it takes at least `least`.
 fn length(board: &mut Released, least: u64) -> u64 {
     board.reach_match();
     while !board.is_in_interrupt() {
@@ -251,7 +251,7 @@ fn length(board: &mut Released, least: u64) -> u64 {
     board.board.cycle() - began + AROUND
 }
 
-/// A board with this many axes enabled in a mode, at rest.
+/// A board with a number of axes enabled in a mode, at rest.
 fn at_rest(board: &Released, axes: u8, input: f64, output: f64) -> Released {
     let mut board = board.clone();
     for axis in 0..axes {
@@ -289,7 +289,7 @@ fn moving(board: &Released) -> Vec<String> {
     if cycles == 5198 { Vec::new() } else { vec![format!("{cycles} cycles")] }
 }
 
-/// Output modes by the names of the rows, and the input modes with them.
+/// Output modes by the names of the rows, with the corresponding input modes.
 const MODES: &[(&str, f64, f64)] = &[
     ("MICROSTEP", 1.0, 1.0),
     ("DC_SERVO", 2.0, 1.0),
@@ -299,7 +299,7 @@ const MODES: &[(&str, f64, f64)] = &[
     ("CL_STEP_DIR", 7.0, 1.0),
 ];
 
-/// Microseconds with and without waits for registers. Two rows about motion do not say with which channels, or on what path.
+/// Microseconds with and without waits for registers. Two rows about motion do not specify the channels or the path.
 fn servo_time(row: &Json, board: &Released) -> Vec<String> {
     let Some(name) = row["output_mode"].as_str() else { return Vec::new() };
     let (_, output, input) = MODES.iter().find(|mode| mode.0 == name).expect("a mode");

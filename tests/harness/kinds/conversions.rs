@@ -54,7 +54,7 @@ fn wide(writer: &mut Writer, depth: usize) -> String {
     }
 }
 
-/// Types of integers, each with the values of a `double` that fit into them.
+/// Types of integers, each with the range of `double` values that fit.
 const RANGES: &[(&str, &str, &str)] = &[
     ("int", "-2e9", "2e9"),
     ("unsigned", "0", "4.2e9"),
@@ -64,7 +64,7 @@ const RANGES: &[(&str, &str, &str)] = &[
     ("unsigned long long", "0", "1.8e19"),
 ];
 
-/// Writes arithmetic of floating point, and conversions to and from integers.
+/// Writes floating-point arithmetic, and conversions to and from integers.
 pub(super) fn write_conversions(writer: &mut Writer) {
     writer.open(
         "    float f = w, g = x;\n    double d = y, e = w * 3;\n    long long l = z;\n    unsigned long long u = z;\n    short s = x;\n    \
@@ -103,7 +103,7 @@ pub(super) fn write_conversions(writer: &mut Writer) {
                 writer.line(&format!("{place} = {value};"));
             }
         }
-        // Values stay where neither infinities nor the smallest numbers are.
+        // Values stay in a range without infinities and denormals.
         writer.line("sum = @real(@real(@real(@real(sum, f), g), d), e);");
         for (place, most, value) in
             [("d", "1e12", "x"), ("f", "1e9f", "0.5f"), ("e", "1e12", "y"), ("g", "1e9f", "x")]

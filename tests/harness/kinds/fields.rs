@@ -1,8 +1,8 @@
-//! Bit-fields of all types and widths beside members: stores, read-modify-writes, values of assignments, layout.
+//! Bit-fields of all types and widths next to members: stores, read-modify-writes, values of assignments, layout.
 
 use super::Writer;
 
-/// Types with their bits.
+/// Types with their widths in bits.
 const TYPES: &[(&str, usize)] = &[
     ("int", 32),
     ("unsigned", 32),
@@ -18,7 +18,7 @@ const TYPES: &[(&str, usize)] = &[
 pub(super) fn write(writer: &mut Writer) {
     let fields = declare(writer);
     writer.open("    struct $s *p = &$v[x & 1], a;\n");
-    // What a local one holds in its padding is nobody's, so only its fields are read.
+    // The padding of a local structure is unspecified, so only its fields are read.
     for field in &fields {
         let value = writer.integer(1);
         writer.line(&format!("a.{field} = {value};"));

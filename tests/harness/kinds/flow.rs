@@ -17,7 +17,7 @@ pub(super) fn write_switches(writer: &mut Writer) {
     writer.close();
 }
 
-/// A loop that begins in its middle.
+/// A loop that is entered in its middle.
 fn duff(offset: usize) -> String {
     format!(
         "k = (x & 7) + {};\n    switch (k % 4) {{\n        do {{\n            case 0: n += 3; case 3: n ^= 5; case 2: n += k; case 1: n *= 3;\n        \
@@ -47,7 +47,7 @@ fn switch(writer: &mut Writer, depth: usize) {
     writer.line("}");
 }
 
-/// Writes a case and what it does; returns the first value that is free.
+/// Writes a case with its statements; returns the next free value.
 fn case(writer: &mut Writer, value: i64, depth: usize) -> i64 {
     let next = match writer.below(8) {
         // A gap, small or large, or a range.
@@ -92,7 +92,7 @@ pub(super) fn write_jumps(writer: &mut Writer) {
     writer.close();
 }
 
-/// A jump that is not taken without end.
+/// Writes a jump that is taken only a limited number of times.
 fn jump(writer: &mut Writer, labels: usize) {
     let (condition, label) = (writer.integer(1), writer.below(labels));
     writer.line(&format!(
@@ -100,7 +100,7 @@ fn jump(writer: &mut Writer, labels: usize) {
     ));
 }
 
-/// A loop that can be entered at its label; each passage takes a step.
+/// A loop that can be entered at its label; each pass counts a step.
 fn repetition(writer: &mut Writer, label: usize, labels: usize) {
     let (most, skipped, change) = (1 + writer.below(9), writer.below(100), writer.integer(1));
     match writer.below(3) {

@@ -1,8 +1,8 @@
-//! Initialisers with designators in any order, ranges, repeated ones and omitted braces.
+//! Initialisers with designators in any order, ranges, repetitions and omitted braces.
 
 use super::Writer;
 
-/// A type of objects.
+/// The type of an object.
 enum Shape {
     Integer,
     Real,
@@ -10,12 +10,12 @@ enum Shape {
     Structure(Vec<Shape>),
 }
 
-/// The largest object, in numbers.
+/// The maximum number of scalars in an object.
 const MOST_SCALARS: usize = 30;
 
 /// Writes objects with initialisers and a function that reads all of them.
 pub(super) fn write(writer: &mut Writer) {
-    // A stack of the board is small.
+    // The stack of the board is small.
     let shape = loop {
         let shape = shape(writer, 3);
         if scalars(&shape) <= MOST_SCALARS {
@@ -86,7 +86,7 @@ fn scalars(shape: &Shape) -> usize {
     }
 }
 
-/// Parts of an aggregate.
+/// The number of parts of an aggregate.
 fn len(shape: &Shape) -> usize {
     match shape {
         Shape::Integer | Shape::Real => 0,
@@ -130,17 +130,17 @@ fn initialiser(writer: &mut Writer, shape: &Shape, is_static: bool) -> String {
     format!("{{ {} }}", items.join(", "))
 }
 
-/// An initialiser with a designator: of a part, of a range of an array, or of a part of a part.
+/// An initialiser with a designator: for a part, for a range of an array, or for a part of a part.
 fn designated(writer: &mut Writer, shape: &Shape, index: usize, is_static: bool) -> String {
     let of = part(shape, index);
     let place = designator(shape, index);
     match (shape, writer.below(4)) {
-        // gcc takes no range of aggregates that are not constant.
+        // gcc rejects ranges of aggregates that are not constant.
         (Shape::Array(..), 0) if is_static || len(of) == 0 => {
             format!("[0 ... {index}] = {}", initialiser(writer, of, is_static))
         }
         (_, 1) if len(of) > 0 => {
-            // The last part of the part: what follows is the part after it.
+            // The last part of the part: the following initialiser is for the part after it.
             let last = len(of) - 1;
             let value = initialiser(writer, part(of, last), is_static);
             format!("{place}{} = {value}", designator(of, last))
@@ -149,7 +149,7 @@ fn designated(writer: &mut Writer, shape: &Shape, index: usize, is_static: bool)
     }
 }
 
-/// An initialiser of the next part: with braces, or all its scalars without.
+/// An initialiser for the next part: with braces, or all its scalars without.
 fn plain(writer: &mut Writer, shape: &Shape, is_static: bool) -> String {
     if len(shape) == 0 || writer.below(3) > 0 {
         return initialiser(writer, shape, is_static);

@@ -1,12 +1,12 @@
-//! Loops over arrays, as -O2 puts them into its pipeline: filters, sums, copies, searches; with few iterations, too.
+//! Loops over arrays, for software pipelining at -O2: filters, sums, copies, searches; also with few iterations.
 
 use super::Writer;
 
-/// Elements of each array.
+/// The arrays, of 48 elements each.
 const ARRAYS: &str = "static double $a[48], $b[48];\nstatic float $f[48], $g[48];\nstatic int $m[48], $n[48];\nstatic short $s[48], $t[48];\n\
                       static unsigned char $c[48];\n\n";
 
-/// Fills the arrays from the arguments and from their values of the call before.
+/// Fills the arrays from the arguments and from their values in the previous call.
 const FILL: &str = "    for (i = 0; i < 48; i++) {
         $a[i] = i * 0.375 - 7 + (x & 15);
         $b[i] = $b[i] * 0.5 + i;
@@ -44,7 +44,7 @@ const LOOPS: &[&str] = &[
     "for (i = 0; i < N; i++) {\n        $m[i] += K;\n        $n[i] -= $m[i] & 255;\n        $s[i] = $n[i];\n    }",
 ];
 
-/// Writes arrays and a function of a few loops over them.
+/// Writes arrays and a function with a few loops over them.
 pub(super) fn write(writer: &mut Writer) {
     writer.put(ARRAYS);
     writer.open("    double p = 0, q = 1;\n    float r = 0;\n    long long l = z;\n    int k = 0;\n");
@@ -59,7 +59,7 @@ pub(super) fn write(writer: &mut Writer) {
     writer.close();
 }
 
-/// A loop with its numbers.
+/// A loop with its placeholders filled in.
 fn filled(writer: &mut Writer) -> String {
     let text = writer.pick(LOOPS);
     let count = match writer.below(5) {

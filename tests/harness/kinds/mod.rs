@@ -1,8 +1,8 @@
-//! Random C programs of the kinds that generators of code write: bit-fields, designators, variable arguments, structures
-//! by value, switches, jumps into loops, 64-bit integers, conversions of floating point, loops for the pipeline.
+//! Random C programs for specific features of code generation: bit-fields, designators, variable arguments, structures
+//! by value, switches, jumps into loops, 64-bit integers, conversions of floating point, loops for software pipelining.
 //!
-//! Their behaviour is defined as that of [`crate::generate`]: `gcc -fwrapv` agrees, integers wrap, a number becomes an
-//! integer only where it fits. Floating values are compared to the bit where they are not tiny: the processor has no
+//! Their behaviour is defined as in [`crate::generate`]: `gcc -fwrapv` agrees, integers wrap, a number is converted to
+//! an integer only if it fits. Floating values are compared exactly unless they are tiny: the processor has no
 //! denormals.
 
 mod conversions;
@@ -17,10 +17,10 @@ use std::fmt::Write as _;
 use crate::generate;
 use crate::random::Random;
 
-/// A kind: its name, and what writes a function of it.
+/// A kind: its name, and the writer of its functions.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
-    /// Its name, which begins the names of the function.
+    /// Its name, with which the names of its functions begin.
     pub name: &'static str,
     write: fn(&mut Writer),
 }
@@ -38,7 +38,7 @@ pub const KINDS: &[Kind] = &[
     Kind { name: "loops", write: loops::write },
 ];
 
-/// Functions of a program.
+/// The number of functions in a program.
 const FUNCTIONS: usize = 4;
 
 /// The beginning of every program; `@` is its prefix.
@@ -67,8 +67,8 @@ static unsigned @real(unsigned sum, double value)
 
 ";
 
-/// A random program; `prefix` begins all its names, and its entry is `int PREFIXmain(void)`, which prints a line that
-/// begins with `label`.
+/// A random program; all its names begin with `prefix`, and its entry is `int PREFIXmain(void)`, which prints a line
+/// that begins with `label`.
 #[must_use]
 pub fn program(seed: u64, prefix: &str, label: &str) -> String {
     let mut writer = Writer::new(seed, prefix);
@@ -76,7 +76,7 @@ pub fn program(seed: u64, prefix: &str, label: &str) -> String {
     writer.of_kinds(&chosen, label)
 }
 
-/// A random program of either generator: of statements and expressions, or of these kinds.
+/// A random program from either generator: statements and expressions, or these kinds.
 #[must_use]
 pub fn of_any_kind(seed: u64, prefix: &str, label: &str) -> String {
     if seed.is_multiple_of(2) { generate::program(seed, prefix, label) } else { program(seed, prefix, label) }
@@ -94,7 +94,7 @@ struct Writer {
     text: String,
     /// The name of the function that is being written.
     function: String,
-    /// Integers that can be read there.
+    /// Integer variables that can be read in it.
     names: Vec<String>,
 }
 
@@ -139,7 +139,7 @@ impl Writer {
         self.random.pick(from)
     }
 
-    /// Writes text; `@` is the prefix of the program, `$` the name of the function.
+    /// Writes text, with `@` replaced by the prefix of the program, and `$` by the name of the function.
     fn put(&mut self, text: &str) {
         self.text.push_str(&text.replace('@', &self.prefix).replace('$', &self.function));
     }
@@ -149,7 +149,7 @@ impl Writer {
         self.put(&format!("    {text}\n"));
     }
 
-    /// Begins the function; `locals` are declarations beside its own.
+    /// Begins the function; `locals` are additional declarations.
     fn open(&mut self, locals: &str) {
         self.put(
             "static unsigned $(unsigned sum, int x, unsigned y, long long z, double w)\n{\n    int i = 0;\n",
@@ -168,7 +168,7 @@ impl Writer {
         self.line(&format!("sum = @mix(sum, {value});"));
     }
 
-    /// An integer constant: small ones and the ends of types.
+    /// An integer constant: a small one, or a limit of a type.
     fn constant(&mut self) -> String {
         const EDGES: &[&str] =
             &["0", "1", "-1", "127", "-128", "255", "32767", "65535", "2147483647", "(-2147483647 - 1)"];
@@ -179,7 +179,7 @@ impl Writer {
         }
     }
 
-    /// An integer expression without effects, of 32 bits.
+    /// A 32-bit integer expression without side effects.
     fn integer(&mut self, depth: usize) -> String {
         if depth == 0 {
             return if self.below(3) == 0 {

@@ -1,8 +1,8 @@
-//! Variable arguments, and structures that are passed, returned and assigned by value.
+//! Variable arguments, and structures passed, returned and assigned by value.
 
 use super::Writer;
 
-/// Readers of variable arguments: the second is given the list, and reads it again from a copy.
+/// Readers of variable arguments: the second one receives the list, and reads it again from a copy.
 const READERS: &str = "static unsigned $r(unsigned sum, const char *kinds, va_list list)
 {
     for (; *kinds; kinds++)
@@ -76,7 +76,7 @@ const MEMBERS: &[(&str, &str)] = &[
 /// A structure: the functions that add its members.
 type Structure = Vec<&'static str>;
 
-/// Writes structures, functions from some to others, and their calls.
+/// Writes structures, functions that convert between them, and their calls.
 pub(super) fn write_structures(writer: &mut Writer) {
     let structures: Vec<Structure> = (0..3).map(|number| declare(writer, number)).collect();
     for number in 0..3 {
@@ -96,7 +96,7 @@ pub(super) fn write_structures(writer: &mut Writer) {
     writer.close();
 }
 
-/// Writes a structure of up to four members, sometimes an array among them.
+/// Writes a structure of up to four members, some of which may be arrays.
 fn declare(writer: &mut Writer, number: usize) -> Structure {
     let mut text = format!("struct $s{number} {{");
     let mut structure = Structure::new();
@@ -112,7 +112,7 @@ fn declare(writer: &mut Writer, number: usize) -> Structure {
     structure
 }
 
-/// Writes the function that makes a structure of itself, of the next one, and of numbers.
+/// Writes the function that computes a structure from itself, from the next one, and from numbers.
 fn conversion(writer: &mut Writer, structures: &[Structure], number: usize) {
     let other = (number + 1) % 3;
     writer.put(&format!(

@@ -1,4 +1,4 @@
-//! The tree of `lang-c` in the printed form of ours, see `compiler::parse::print`.
+//! The tree of `lang-c` in our printed form, see `compiler::parse::print`.
 
 use lang_c::ast::{
     ArraySize, BinaryOperator, BlockItem, Constant, Declaration, DeclarationSpecifier, Declarator,
@@ -11,7 +11,7 @@ use lang_c::ast::{
 };
 use lang_c::span::Node;
 
-/// The text of a translation unit, an item a line.
+/// The text of a translation unit, one item per line.
 pub(super) fn print(unit: &TranslationUnit) -> String {
     let mut lines = String::new();
     for item in &unit.0 {
@@ -26,7 +26,7 @@ pub(super) fn print(unit: &TranslationUnit) -> String {
     lines
 }
 
-/// `(head part part …)`, without the parts that are empty.
+/// `(head part part …)`, without empty parts.
 fn list(head: &str, parts: impl IntoIterator<Item = String>) -> String {
     format!("({})", joined(std::iter::once(head.to_owned()).chain(parts)))
 }
@@ -129,7 +129,7 @@ impl SpecifierList {
     }
 }
 
-/// The type that words in any order name.
+/// The type named by specifiers in any order.
 fn basic(words: &[&str]) -> &'static str {
     let count = |word: &str| words.iter().filter(|found| **found == word).count();
     let has = |word: &str| count(word) > 0;
@@ -211,7 +211,7 @@ fn type_name(ty: &TypeName) -> String {
     joined([specifier_qualifiers(&ty.specifiers), derived.unwrap_or_default()])
 }
 
-/// The name, then the derivations from it outwards: what follows it, then the pointers before it.
+/// The name, then the derivations from inside to outside: those after the name, then the pointers before it.
 fn declarator(declarator: &Declarator) -> String {
     let inner = match &declarator.kind.node {
         DeclaratorKind::Abstract => String::new(),
@@ -263,7 +263,7 @@ fn parameters(parameters: &[Node<ParameterDeclaration>]) -> String {
             joined([specifiers(&parameter.node.specifiers), declarator.unwrap_or_default()])
         })
         .collect();
-    // `(void)` says that there are none.
+    // `(void)` means that there are no parameters.
     if shown == ["void"] { String::new() } else { shown.join(", ") }
 }
 
@@ -380,7 +380,7 @@ fn expression(expression: &Expression) -> String {
         Expression::Call(call) => {
             let callee = of(&call.node.callee);
             let arguments = call.node.arguments.iter().map(of);
-            // Our parser knows these as expressions of their own.
+            // Our parser represents these as separate kinds of expressions.
             match callee.strip_prefix("__builtin_").unwrap_or(&callee) {
                 head @ ("va_start" | "va_end" | "va_copy") => list(head, arguments),
                 _ => list("call", std::iter::once(callee.clone()).chain(arguments)),
@@ -485,7 +485,7 @@ fn constant(constant: &Constant) -> String {
             let (prefix, inside) = unquoted(text, '\'');
             let elements = unescaped(inside);
             let value = match elements[..] {
-                // A byte has the sign of `char`.
+                // A byte has the signedness of `char`.
                 [byte] if prefix.is_empty() && byte < 256 => i64::from(byte as u8 as i8),
                 [one] => i64::from(one),
                 _ => elements.iter().fold(0, |value, byte| value << 8 | i64::from(*byte)),
@@ -518,13 +518,13 @@ fn float(float: &Float) -> String {
     float.number.parse::<f64>().map_or_else(|_| float.number.to_string(), |value| format!("{value:?}"))
 }
 
-/// Prefix and inside of a literal.
+/// The prefix and the contents of a literal.
 fn unquoted(text: &str, quote: char) -> (&str, &str) {
     let (prefix, rest) = text.split_once(quote).unwrap_or(("", text));
     (prefix, rest.strip_suffix(quote).unwrap_or(rest))
 }
 
-/// The characters of a literal, escapes replaced; those of its text as bytes.
+/// The characters of a literal, with escapes replaced; literal text as bytes.
 fn unescaped(text: &str) -> Vec<u32> {
     let bytes = text.as_bytes();
     let (mut found, mut at) = (Vec::new(), 0);

@@ -1,27 +1,27 @@
-//! The hostile inputs: each a name, a text, and what must be said of it if that is certain.
+//! The hostile inputs: each has a name, a text, and the expected message if it is certain.
 
 mod nested;
 mod repeated;
 mod truncated;
 
-/// A source file that means no good.
+/// A hostile source file.
 #[derive(Clone, Debug)]
 pub(crate) struct Input {
-    /// The property that it tries.
+    /// The property that it tests.
     pub(crate) name: String,
     /// The text.
     pub(crate) text: Vec<u8>,
-    /// Part of an error message: the limit that it must hit, with its number.
+    /// Part of the expected error message: the limit that is exceeded, with its number.
     pub(crate) says: Option<&'static str>,
 }
 
 impl Input {
-    /// An input of which nothing is demanded but an answer.
+    /// An input for which any answer is accepted.
     pub(crate) fn new(name: impl Into<String>, text: impl Into<Vec<u8>>) -> Self {
         Self { name: name.into(), text: text.into(), says: None }
     }
 
-    /// The input, with a message that must come.
+    /// Adds an expected message to the input.
     #[must_use]
     pub(crate) fn says(mut self, part: &'static str) -> Self {
         self.says = Some(part);
@@ -29,7 +29,7 @@ impl Input {
     }
 }
 
-/// Every input that is compiled in the process of the test.
+/// All inputs that are compiled in the process of the test.
 pub(crate) fn all() -> Vec<Input> {
     [nested::inputs(), repeated::inputs(), truncated::inputs()].concat()
 }

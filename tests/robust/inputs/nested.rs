@@ -1,16 +1,16 @@
-//! Constructs within each other, deeper than anybody writes.
+//! Nested constructs, deeper than any real program.
 
 use super::{Input, in_main};
 
 /// The depth of nesting.
 const DEPTH: usize = 10_000;
 
-/// Repeats of `open`, then `middle`, then as many of `close`.
+/// Repeats `open`, then adds `middle`, then as many times `close`.
 fn nest(open: &str, middle: &str, close: &str) -> String {
     format!("{}{middle}{}", open.repeat(DEPTH), close.repeat(DEPTH))
 }
 
-/// Constructs within a function: name, opening, middle, closing, and the limit that is hit.
+/// Constructs within a function: name, opening, middle, closing, and the limit that is exceeded.
 const WITHIN: &[(&str, &str, &str, &str, Option<&str>)] = &[
     ("parentheses", "a = ", "(", "1", Some("640")),
     ("negations", "a = ", "!", "1", Some("640")),
@@ -73,7 +73,7 @@ const OUTSIDE: &[(&str, &str, &str, &str, &str, &str)] = &[
     ("old-style parameters", "f(", "a,", "b", "", ") { }\nmain() { }\n"),
 ];
 
-/// Everything nested.
+/// All nested inputs.
 pub(super) fn inputs() -> Vec<Input> {
     let within = WITHIN.iter().flat_map(|(name, before, open, middle, says)| {
         let closing = match open.trim_end().chars().last() {

@@ -1,4 +1,4 @@
-//! Much of the same, and numbers that are too large.
+//! Many repetitions, and numbers that are too large.
 
 use std::fmt::Write;
 
@@ -10,12 +10,12 @@ const MANY: usize = 100_000;
 /// The length of a single item.
 const LONG: usize = 1_000_000;
 
-/// `MANY` times what a number gives.
+/// The items for `MANY` numbers.
 fn many(item: impl Fn(usize) -> String) -> String {
     (0..MANY).map(item).collect()
 }
 
-/// Everything repeated or large.
+/// All repeated or large inputs.
 pub(super) fn inputs() -> Vec<Input> {
     let mut inputs = [sequences(), tokens(), macros(), sizes(), formats(), bytes()].concat();
     inputs.extend(heavy());
@@ -53,7 +53,7 @@ pub(super) fn heavy() -> Vec<Input> {
     ]
 }
 
-/// The input that takes most memory for its tokens.
+/// The input whose tokens take the most memory.
 fn strings() -> String {
     (0..LONG - LONG / 20).fold(String::new(), |mut text, n| {
         let _ = write!(text, "\"a{n}\";");
@@ -82,7 +82,7 @@ fn doubling_structure() -> String {
     format!("{text}struct s39 x;\nmain() {{ }}\n")
 }
 
-/// Many of one construct, one after another.
+/// Many constructs of one kind, one after another.
 fn sequences() -> Vec<Input> {
     let declared = |text: String| format!("{text}\nmain() {{ }}\n");
     vec![
@@ -147,7 +147,7 @@ fn sequences() -> Vec<Input> {
     ]
 }
 
-/// Single tokens and lines without end.
+/// Very long tokens and lines.
 fn tokens() -> Vec<Input> {
     let long = |text: &str| text.repeat(LONG);
     let declared = |text: String| format!("{text}\nmain() {{ }}\n");
@@ -183,7 +183,7 @@ fn tokens() -> Vec<Input> {
     ]
 }
 
-/// Macros that grow, and numbers of lines.
+/// Macros that grow, and line numbers.
 fn macros() -> Vec<Input> {
     let declared = |text: &str| format!("{text}\nmain() {{ }}\n");
     let doubled = |body: &str| {
@@ -330,7 +330,7 @@ fn sizes() -> Vec<Input> {
     ]
 }
 
-/// Formats that mean nothing.
+/// Meaningless formats.
 fn formats() -> Vec<Input> {
     [
         ("percent signs", "%".repeat(LONG)),
@@ -353,7 +353,7 @@ fn formats() -> Vec<Input> {
 
 /// Bytes that no editor writes.
 fn bytes() -> Vec<Input> {
-    // A generator of the oldest kind is random enough here.
+    // The simplest kind of generator is random enough here.
     let random = |seed: u32, length: usize| -> Vec<u8> {
         let step = |state: &mut u32| {
             *state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -388,7 +388,7 @@ fn bytes() -> Vec<Input> {
         Input::new(format!("random characters {n}"), text)
     }));
     inputs.extend((0..24).map(|n: u32| {
-        // A program with a random byte in a random place.
+        // A program with a random byte at a random position.
         let mut text = program.clone().into_bytes();
         let noise = random(n + 99, 12);
         for pair in noise.chunks_exact(3) {

@@ -1,8 +1,8 @@
-//! A program that ends too early, at each of its tokens, and one that lacks each of them.
+//! A program truncated at each of its tokens, and one without each of them.
 
 use super::Input;
 
-/// A bit of everything.
+/// A program with many features.
 const PROGRAM: &str = r#"#include "KMotionDef.h"
 #define SCALE(x, y) ((x) * (y))
 #if defined(SCALE) && SCALE(2, 3) == 6
@@ -51,7 +51,7 @@ fn ends() -> Vec<usize> {
         .collect()
 }
 
-/// The program cut off at each token, and without each token.
+/// The program truncated at each token, and without each token.
 pub(super) fn inputs() -> Vec<Input> {
     let ends = ends();
     let cut = ends.iter().map(|end| Input::new(format!("a program of {end} bytes"), &PROGRAM[..*end]));

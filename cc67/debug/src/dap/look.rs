@@ -49,7 +49,7 @@ impl Handle {
 /// The maximum length of a value in an editor's list; the editor expands a longer one.
 const MOST_LETTERS: usize = 300;
 
-/// Reports whether a request wants numbers in hexadecimal.
+/// Reports whether a request is for numbers in hexadecimal.
 fn wants_hex(arguments: &Value) -> bool {
     arguments["format"]["hex"] == true
 }

@@ -8,6 +8,7 @@ use super::values::Prepared;
 use super::{DebugError, Debugger, HitCondition, file_name, place_of};
 use crate::programs::Statement;
 
+/// The kind of a breakpoint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum BreakpointKind {
     /// Instructions: the location as text, and their addresses.
@@ -55,6 +56,7 @@ pub struct Breakpoint {
     pub log: Option<String>,
     /// True if it is deleted when it stops.
     pub is_temporary: bool,
+    /// False if it never stops.
     pub is_enabled: bool,
     /// The number of times that it was reached.
     pub hits: u64,

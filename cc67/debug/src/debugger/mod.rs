@@ -64,9 +64,11 @@ impl From<&str> for DebugError {
 pub struct CodePlace {
     /// The thread of the program.
     pub thread: ThreadId,
+    /// The name of the function.
     pub function: String,
     /// The path of the file.
     pub file: String,
+    /// The line, from 1.
     pub line: u32,
     /// True if it is in an inlined call.
     pub is_inlined: bool,

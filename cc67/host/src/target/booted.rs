@@ -6,11 +6,11 @@
 //!
 //! ```text
 //! firmware   a firmware that is ready
-//! begin      programs in, surroundings connected, start
+//! begin      loads programs, connects surroundings, starts
 //! debug      holding programs
 //! calls      the calls in progress
-//! observers  profile, calls of the firmware
-//! attached   surroundings at the registers
+//! observers  profile, calls of the firmware, stops
+//! attached   surroundings attached to the registers
 //! ```
 
 mod attached;

@@ -20,6 +20,7 @@ const LONGEST: usize = 64;
 /// A test to be written.
 #[derive(Debug)]
 pub(super) struct Kept {
+    /// The path, without an extension.
     path: PathBuf,
     source: String,
     stimulus: String,

@@ -34,6 +34,7 @@ pub enum ListenError {
     /// The server cannot listen on the address.
     #[error("cannot listen on {address}: {error}")]
     Address {
+        /// The address.
         address: SocketAddr,
         /// The error of the operating system.
         error: io::Error,

@@ -139,7 +139,7 @@ struct Temporary(PathBuf);
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        // An incomplete file is of no use.
+        // An incomplete file is useless.
         let _ = fs::remove_file(&self.0);
     }
 }

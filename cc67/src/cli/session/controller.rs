@@ -49,7 +49,7 @@ fn agree() -> Result<()> {
     Ok(())
 }
 
-/// Asks the user at the terminal a question; without a terminal, the answer is no.
+/// Asks the user at the terminal a question; without a terminal, it counts as declined.
 pub(crate) fn agrees(question: &str) -> Result<bool> {
     if !(io::stdin().is_terminal() && io::stderr().is_terminal()) {
         bail!("nobody is here to agree to that: `--yes` does");
@@ -118,7 +118,7 @@ pub(crate) fn stop<T: Target>(session: &mut Session<T>, events: EventSink<'_>) {
     if session.target().lost().is_some() || !io::stdin().is_terminal() {
         return;
     }
-    // An answer that cannot be read is no.
+    // An answer that cannot be read counts as "no".
     if agrees_to("Disable all axes?").unwrap_or(false) {
         for axis in session.target().axes().iter() {
             session.exchange(format!("DisableAxis{axis}").as_bytes(), events);

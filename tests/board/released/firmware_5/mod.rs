@@ -1,7 +1,7 @@
-//! Firmware 5.3.2: `data/vectors/fw5.jsonl` and `fw5-text.jsonl`, asked of the firmware itself.
+//! Firmware 5.3.2: `data/vectors/fw5.jsonl` and `fw5-text.jsonl`, compared with the firmware itself.
 //!
-//! Without a file in `CC67_FIRMWARE_5` each test says so. The rows of kind `session` are compared beside the model of
-//! the hardware, in the crate of booted firmware.
+//! Without a file in `CC67_FIRMWARE_5` each test reports that it is skipped. The rows of kind `session` are compared in
+//! the crate for booted firmware.
 
 mod moves;
 mod programs;
@@ -13,7 +13,7 @@ use serde_json::Value as Json;
 
 use super::{Released, booted, report, rows, text};
 
-/// Bytes of a row of `TripCoeffs`: twenty states of 48.
+/// The bytes of a row of `TripCoeffs`: twenty states of 48.
 const STATES: u32 = 20 * 48;
 const AXES: u32 = 8;
 
@@ -22,7 +22,7 @@ fn firmware_5() -> Option<Released> {
     static BOARD: OnceLock<Option<Mutex<Released>>> = OnceLock::new();
     let mut board = booted(&BOARD, "CC67_FIRMWARE_5")?;
     assert!(board.board.file().version().contains(" 5.3.2 "), "CC67_FIRMWARE_5 is not firmware 5.3.2");
-    // The first jog after power-up finds what RAM held; the recorded board had it so.
+    // The first jog after power-up uses the initial contents of RAM; the recorded board had these.
     let states = board.address("TripCoeffs");
     (0..AXES).for_each(|axis| board.memory().poke(states.offset(axis * STATES), 1));
     Some(board)
@@ -34,7 +34,7 @@ fn of_kinds(kinds: &[&str]) -> Vec<(usize, Json)> {
     all.filter(|(_, row)| kinds.contains(&text(&row["kind"]))).collect()
 }
 
-/// Compares each of some rows on a board of its own; fails with all that differ.
+/// Compares rows, each on a new board; fails with all differences.
 fn compare(kinds: &[&str], differences: impl Fn(&Json, Released) -> Vec<String>) {
     let Some(board) = firmware_5() else { return };
     let rows = of_kinds(kinds);

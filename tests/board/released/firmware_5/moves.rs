@@ -1,4 +1,4 @@
-//! Moves and jogs: the states that a call leaves, and the axis at ticks counted from its end.
+//! Moves and jogs: the states that a call leaves, and the axis in ticks counted from the call's end.
 
 use serde_json::Value as Json;
 
@@ -6,27 +6,27 @@ use super::super::motion::states;
 use super::super::{Program, Released, list, number, text, thread};
 use super::{STATES, compare};
 
-/// The soft limit of rows about one.
+/// The soft limit in rows about soft limits.
 const SOFT_LIMIT: f64 = 60.0;
-/// Ticks that the calls of a row take at most.
+/// The maximum number of ticks for the calls of a row.
 const LONGEST: u32 = 4000;
-/// Relative difference of a number of a state and the recorded one that depends on functions in the processor's ROM.
+/// The relative tolerance for numbers in a state that depend on functions in the processor's ROM.
 const ROM: f64 = 1e-9;
-/// The row's own word for a number that is none.
+/// The notation of the rows for NaN.
 const NAN: &str = "nan";
 
 fn value(recorded: &Json) -> f64 {
     if recorded == NAN { f64::NAN } else { number(recorded) }
 }
 
-/// Returns whether a number is the recorded one, except for the last digits of a root.
+/// Returns whether a number equals the recorded one, except for the last digits of a root.
 fn is_close(found: f64, recorded: f64, scale: f64) -> bool {
     found == recorded
         || found.is_nan() && recorded.is_nan()
         || (found - recorded).abs() <= ROM * scale.max(recorded.abs())
 }
 
-/// Sets an axis up as a row says, and starts its calls.
+/// Sets up an axis as a row requires, and starts its calls.
 fn begin(row: &Json, board: &mut Released) -> Program {
     for name in ["Vel", "Accel", "Jerk"] {
         board.poke(name, number(&row[name]));
@@ -60,7 +60,7 @@ fn check_states(row: &Json, board: &Released, found: &mut Vec<String>) {
         let sizes = expect.iter().map(|state| state[column].abs());
         sizes.filter(|size| *size < 1e98).fold(0.0, f64::max)
     };
-    // Recordings go on to the state after one without end.
+    // Recordings continue to the state after one without an end.
     let is_same = is
         .iter()
         .zip(&expect)
@@ -108,7 +108,7 @@ fn differences(row: &Json, mut board: Released) -> Vec<String> {
 }
 
 fn check_end(row: &Json, mut board: Released, done: Option<u64>, found: &mut Vec<String>) {
-    // The recorder looks for the end from this tick on.
+    // The recorder checks for the end from this tick on.
     let done = done.map(|tick| tick.max(2));
     if done != row["result"]["done_tick"].as_u64() {
         found.push(format!("done in {done:?}, recorded {}", row["result"]["done_tick"]));

@@ -1,4 +1,4 @@
-//! Programs: sizes, locks, library functions, names that link; and programs that were linked for the other firmware.
+//! Programs: sizes, locks, library functions, names that link; and programs linked for the other firmware.
 
 use kmotiondef::boards::TargetBoard;
 use kmotiondef::map::PROGRAM_SIZE;
@@ -8,11 +8,11 @@ use super::super::servo::compensation;
 use super::super::{Program, Released, list, number, released, report, text, thread};
 use super::{compare, firmware_5, of_kinds};
 
-/// Ticks after which a program that has not ended waits forever.
+/// The number of ticks after which a program that has not ended waits forever.
 const FOREVER: u32 = 2000;
-/// The time in seconds by which the code of a program, twenty iterations at most, may differ from the vendor's.
+/// The tolerance in seconds for the code of a program, at most twenty iterations, compared with the vendor's code.
 const CODE: f64 = 8e-6;
-/// Relative difference of a number that depends on the last digits of a function in the processor's ROM.
+/// The relative tolerance for numbers that depend on the last digits of a function in the processor's ROM.
 const ROM: f64 = 2.0 * f64::EPSILON;
 /// The stack of thread 1: its first address and its size.
 const STACK: std::ops::Range<i64> = 0x1001_7AE0..0x1001_82E0;
@@ -45,7 +45,7 @@ fn program(row: &Json, mut board: Released) -> Vec<String> {
             break;
         }
     }
-    // What it has printed comes in the slices of the primary thread.
+    // The printed lines are sent in the slices of the primary thread.
     board.ticks(20);
     check(row, board, &program)
 }
@@ -59,7 +59,7 @@ fn check(row: &Json, mut board: Released, program: &Program) -> Vec<String> {
     let is_address = text(&row["name"]).contains("address of the first local");
     for (index, value) in expect["UserData"].as_object().into_iter().flatten() {
         let is = i64::from(board.user_data(index.parse().expect("an index")));
-        // Where a local lies on the stack depends on the compiler.
+        // The addresses of locals on the stack depend on the compiler.
         let is_same =
             if is_address && index == "0" { STACK.contains(&is) } else { Some(is) == value.as_i64() };
         if !is_same {
@@ -81,7 +81,7 @@ fn check(row: &Json, mut board: Released, program: &Program) -> Vec<String> {
     found
 }
 
-/// A program that was linked for one version, on the other: it stores and prints nothing, and the board answers no more.
+/// Runs a program linked for one version on the other: it stores and prints nothing, and the board no longer answers.
 fn cross(row: &Json, mut board: Released, linked: &Released) -> Vec<String> {
     let source = text(&row["program"]).replace("#include \"KMotionDef.h\"\n", "");
     let image = linked.compiled(thread(1), &source);
@@ -93,7 +93,7 @@ fn cross(row: &Json, mut board: Released, linked: &Released) -> Vec<String> {
     assert!(before.iter().any(|byte| *byte != 0), "the program is there");
     board.said();
     board.board.execute(thread(1));
-    // It may run away.
+    // It may crash.
     let end = board.board.cycle() + 200 * super::super::TICK;
     let has_run_away = board.board.run_to(end).is_err();
     let mut found = Vec::new();
@@ -110,7 +110,7 @@ fn cross(row: &Json, mut board: Released, linked: &Released) -> Vec<String> {
     if reply != text(&row["version_reply_afterwards"]) {
         found.push(format!("answers {reply:?}"));
     }
-    // In which function a call lands depends on the code around it, and with that whether thread 1 ends.
+    // The function that a call reaches depends on the code around it, which also decides whether thread 1 ends.
     let active = board.int("ThreadActive") | 1 << 1;
     if f64::from(active) != number(&row["ThreadActive"]) {
         found.push(format!("ThreadActive {active}, recorded {}", row["ThreadActive"]));

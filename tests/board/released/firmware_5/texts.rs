@@ -5,30 +5,31 @@ use serde_json::Value as Json;
 use super::super::{Program, Released, number, report, rows, text, thread};
 use super::firmware_5;
 
-/// Calls of a program.
+/// The number of calls in a program.
 const CALLS: usize = 50;
-/// Bytes of each text.
+/// The size of each text in bytes.
 const BYTES: usize = 256;
-/// This many characters of one call reach the console.
+/// The number of characters of one call that reach the console.
 const SEEN: usize = 128;
-/// Ticks that a program takes at most.
+/// The maximum number of ticks for a program.
 const LONGEST: u32 = 20_000;
 
-/// A call with the constants that the vendor's compiler makes of numbers that an `int` does not hold.
+/// A call in which numbers outside the range of `int` are replaced by the constants that the vendor's compiler makes of
+/// them.
 fn folded(call: &str) -> String {
     ["(int)1e20", "(int)-1e20", "(int)2147483648.0"]
         .iter()
         .fold(call.to_owned(), |call, number| call.replace(number, "(int)0x80000000"))
 }
 
-/// A program that makes the calls of some rows.
+/// A program with the calls of some rows.
 fn source(rows: &[Json]) -> String {
     let mut source = format!(
         "char out[{CALLS}][{BYTES}];\nint result[{CALLS}], first[{CALLS}], second[{CALLS}];\nint at[3], other[4];\n\
          #define i0 at[0]\n#define i1 at[2]\nmain()\n{{\n"
     );
     for (index, row) in rows.iter().enumerate() {
-        // A conversion without its argument finds those of this call.
+        // A conversion without an argument takes those of this call.
         source += match row["printf"].is_null() {
             false => "  sprintf(other, \"\", 0, 0, 0, 0, 0, 0);\n",
             true => "  sscanf(\"\", \"\", other, other, other, other);\n",

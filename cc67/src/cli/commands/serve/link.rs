@@ -61,7 +61,7 @@ impl Unread {
         }
     }
 
-    /// Adds a console line; `is_heard` tells whether a client is the console.
+    /// Adds a console line; `is_heard` is true if a client is the console.
     pub(super) fn console(&mut self, line: Vec<u8>, is_heard: bool) {
         while !is_heard && self.console.len() >= UNHEARD_LINES {
             self.console.pop_front();

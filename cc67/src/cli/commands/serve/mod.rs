@@ -6,18 +6,18 @@
 //! listen    sockets and ports; a thread for each connection
 //! desk      takes one request after another, keeps the board's time
 //! calls     what each request does
-//! boards    several boards beside each other
-//! board     the board under control, with what is written of it
-//! served    what is under control there
-//! page      the page of it
-//! connection messages, over a stream of bytes
-//! pipe      the same over a pipe of Windows
-//! link      what the board has sent and nobody has read yet
-//! carry     a thread for a client that has the board's own bytes
+//! boards    several boards of one server
+//! board     the served board, with its link and its recordings
+//! served    the session of the board, with its page
+//! page      the plan of the page
+//! connection messages over a stream of bytes
+//! pipe      messages over a pipe of Windows
+//! link      data from the board that are still unread
+//! carry     a thread for a client of the board's own bytes
 //! wire      the board's own bytes for one client
 //! message   requests and replies as bytes
 //! log       the exchanges as a script for the console
-//! home      the folder that the vendor's library reads
+//! home      the folder for the vendor's library
 //! ```
 
 mod board;

@@ -167,8 +167,8 @@ pub(super) fn test(arguments: &TestArguments) -> Result<Exit> {
     Ok(if verdicts.iter().any(Verdict::is_bad) { Exit::Failure } else { Exit::Success })
 }
 
-/// Asks whether faults, remarks, traps and an exit code should become expected output; without a terminal, the answer
-/// is no.
+/// Asks whether faults, remarks, traps and an exit code should become expected output; without a terminal, it
+/// returns false.
 fn agrees(name: &str, shown: &Shown) -> Result<bool> {
     if !io::stdin().is_terminal() {
         return Ok(false);
