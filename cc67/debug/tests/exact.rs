@@ -42,7 +42,7 @@ struct Extent {
     instants: u64,
     /// The length of a run in ticks.
     ticks: u64,
-    /// The work between snapshots: enough of them that some are dropped, and some remain while going back.
+    /// The work between snapshots: so little that snapshots are dropped, some of them while going back.
     interval: u64,
 }
 

@@ -79,7 +79,7 @@ pub fn words(remark: &Remark, programs: &[DebugInfo]) -> String {
         return format!("{who}{mark} {text}");
     }
     match &remark.message {
-        // A sentence about the thread that reads.
+        // These messages continue a sentence with the thread as its subject.
         message @ (Message::UndrivenInput { .. } | Message::Assisted { .. } | Message::MovesAway { .. }) => {
             format!("{who} {message}")
         }

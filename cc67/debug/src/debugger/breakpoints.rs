@@ -56,7 +56,7 @@ pub struct Breakpoint {
     pub log: Option<String>,
     /// True if it is deleted when it stops.
     pub is_temporary: bool,
-    /// False if it never stops.
+    /// True unless it was disabled.
     pub is_enabled: bool,
     /// The number of times that it was reached.
     pub hits: u64,

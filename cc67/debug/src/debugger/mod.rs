@@ -502,8 +502,7 @@ impl<T: Target> Debugger<T> {
         self.stop.clone()
     }
 
-    /// The frame of a breakpoint at the beginning of an inlined function: the one whose function contains the
-    /// breakpoint's line.
+    /// The frame of a breakpoint at the beginning of an inlined function: the one at the breakpoint's line.
     fn frame_of_breakpoint(&self) -> usize {
         let Reason::Breakpoint(ids) = &self.stop.reason else { return 0 };
         let met = self.breakpoints.iter().find(|breakpoint| ids.contains(&breakpoint.id));

@@ -28,7 +28,7 @@ impl<T: Target> ViewState<T> {
         self.broadcast(&self.branches());
     }
 
-    /// Shows the end of a line that was left; the present line becomes a left one in turn.
+    /// Shows the end of a line that was left; the present line is kept as a branch in turn.
     pub(super) fn take_branch(&mut self, session: &mut Session<T>, id: BranchId) -> Result<(), String> {
         let gone = || "this run is not kept any more".to_owned();
         let timeline = self.timeline.as_mut().ok_or_else(gone)?;

@@ -61,8 +61,8 @@ impl Clock {
         self.is_running = false;
     }
 
-    /// The tick that is due while the board is at `tick`. If the board cannot keep up, the clock does not run ahead of
-    /// it.
+    /// The tick that is due while the board is at `tick`. If the board cannot keep up, the clock is set
+    /// back to it.
     pub(super) fn due(&mut self, tick: Ticks) -> Ticks {
         if !self.is_running {
             return tick;

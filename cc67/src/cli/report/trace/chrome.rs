@@ -158,7 +158,7 @@ impl Events {
             .map(|(index, shown)| (index, shown.item().and_then(Item::bit), shown.to_string()))
             .collect();
         for (index, bit, name) in columns {
-            // JSON has no infinity, and viewers show `null` as a gap.
+            // JSON has no infinity, and viewers have no notation for a gap.
             let value = values.get(index).copied().filter(|value| value.is_finite()).unwrap_or_default();
             if let Some(bit) = bit {
                 if self.bits.insert(bit) {
