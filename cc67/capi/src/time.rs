@@ -1,4 +1,4 @@
-//! Board time, and looking at the board and its inputs meanwhile.
+//! Board time, and access to the board and its inputs.
 
 use std::ffi::{c_int, c_void};
 

@@ -112,7 +112,7 @@ struct State {
     /// Console lines are discarded.
     is_deaf: bool,
     has_told_loss: bool,
-    /// The present tick since the firmware ran away: nothing happens any more.
+    /// The present tick, once the firmware has crashed and nothing happens any more.
     halted: Option<Ticks>,
     debugging: Debugging,
 }
