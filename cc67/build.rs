@@ -1,13 +1,14 @@
-//! Links the command for a fast start, and lists the programs of `c-programs/` with their texts, which it brings along.
+//! Links the command for a fast start, and lists the programs of `c-programs/` with their texts, which are embedded in
+//! it.
 //!
-//! Reads files of this package only, and fails if one cannot be read: a command without its examples is not built.
+//! Reads only files of this package, and fails if one cannot be read: a command without its examples is not built.
 
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
-/// Files of programs: sources, machine files, stimuli, goldens.
+/// Suffixes of the files of programs: sources, machine files, stimuli, expected outputs.
 const SUFFIXES: &[&str] = &["c", "h", "toml", "stim", "expected"];
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -15,11 +16,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     list_examples()
 }
 
-/// On Linux the executable gets a fixed address.
+/// Links the executable at a fixed address on Linux.
 ///
-/// One that can be loaded anywhere has 25,000 pointers to adjust and 130 pages to copy before `main`, a fifth of the
-/// time in which a program of 300 lines is compiled. Libraries, heap, stacks and the machine code of programs keep
-/// their random addresses; what a program can reach does not depend on any address, each of its accesses is checked.
+/// A position-independent executable has 25,000 pointers to adjust and 130 pages to copy before `main`, a fifth of the
+/// time for compiling a program of 300 lines. Libraries, heap, stacks and the machine code of programs keep their
+/// random addresses; the accesses of a program do not depend on any address, as each of them is checked.
 fn link() {
     println!("cargo::rerun-if-changed=build.rs");
     let target = |what: &str| std::env::var(format!("CARGO_CFG_TARGET_{what}")).unwrap_or_default();
@@ -50,8 +51,8 @@ fn list_examples() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The folder of the examples: a folder of a published package, a link in the repository. Where git makes no symbolic links,
-/// the link is a file that holds its target.
+/// The folder of the examples: a folder in a published package, a link in the repository. If git creates no symbolic
+/// links, the link is a file that contains its target.
 fn examples(package: &Path) -> Result<PathBuf, Box<dyn Error>> {
     let folder = package.join("c-programs");
     if !folder.is_file() {
@@ -61,7 +62,7 @@ fn examples(package: &Path) -> Result<PathBuf, Box<dyn Error>> {
     Ok(package.join(target.trim()))
 }
 
-/// Adds the files of programs in a folder and in those within it.
+/// Adds the files of programs in a folder and its subfolders.
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-changed={}", folder.display());
     for entry in fs::read_dir(folder).map_err(|error| at(folder, &error))? {
@@ -76,7 +77,7 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), Box<dyn Error>
     Ok(())
 }
 
-/// An error with its place.
+/// An error with the path.
 fn at(path: &Path, error: &io::Error) -> Box<dyn Error> {
     format!("{}: {error}", path.display()).into()
 }

@@ -1,8 +1,9 @@
-//! The way from an image to a running program: reading, loading, translating, running, calling the firmware.
+//! The time from an image to a running program: reading, loading, translating, running, calling the firmware.
 //!
-//! `image/read/...`: bytes to an image. `load/...`: an image to a program in a thread, with all checks, and its first
-//! tick, before which the native engine translates it. `execute/...`: a program that computes, and one that calls
-//! the firmware or a function of its own by its address in each turn, so that the difference is what a call costs.
+//! `image/read/...`: converts bytes to an image. `load/...`: loads an image as a program in a thread, with all checks
+//! and the first tick, before which the native engine translates it. `execute/...`: a program that computes, and one
+//! that calls the firmware or one of its own functions through a pointer in each iteration, so that the difference is
+//! the cost of a call.
 //!
 //! `cargo bench -p cc67 --bench board`
 
@@ -20,7 +21,7 @@ use vm::interp::BytecodeEngine;
 #[cfg(feature = "native")]
 use vm::native::NativeEngine;
 
-/// Calls of one run.
+/// The number of calls in a run.
 const CALLS: u64 = 100_000;
 
 fn thread() -> ThreadId {
@@ -39,7 +40,7 @@ fn program(name: &str) -> Vec<u8> {
     compile(&path, text)
 }
 
-/// A program that does something this many times.
+/// A program that repeats a statement this many times.
 fn repeat(what: &str) -> Vec<u8> {
     let text = format!(
         "#include \"KMotionDef.h\"\nint state;\nint own(int bit) {{ return state >> bit & 1; }}\n\

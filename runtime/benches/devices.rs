@@ -1,7 +1,8 @@
-//! The cost of the simulated world: a tick of a board whose program toggles a bit in every other one.
+//! The cost of the simulated world: a tick of a board whose program toggles a bit in every second tick.
 //!
-//! `devices/none`: nothing is attached, nobody watches. `devices/wire`: an input follows the bit. `devices/stimulus`: a
-//! stimulus waits for an edge of another one. `devices/trace`: every edge and slice is recorded. An element is one tick.
+//! `devices/none`: no device is attached, nothing is recorded. `devices/wire`: an input follows the bit.
+//! `devices/stimulus`: a stimulus waits for an edge of another bit. `devices/trace`: every edge and slice is recorded.
+//! An element is one tick.
 
 use std::hint::black_box;
 
@@ -16,12 +17,12 @@ use vm::machine::Config as MachineConfig;
 use vm::text::assemble;
 use vm::verify::verify;
 
-/// Ticks of one measurement.
+/// The number of ticks in a measurement.
 const TICKS: u64 = 1000;
 /// First word of the program after its header.
 const MAIN: usize = 4;
 
-/// A program that sets and clears bit 8 some five times in each of its slices, forever.
+/// A program that sets and clears bit 8 about five times in each of its slices, forever.
 fn program() -> String {
     let address = |name: &str| FIRMWARE_FUNCTIONS[function_named(name).expect(name)].address.get();
     let (set, clear) = (address("SetBit"), address("ClearBit"));
@@ -32,7 +33,7 @@ fn program() -> String {
     )
 }
 
-/// A board that runs it.
+/// A board that runs the program.
 fn board() -> Board {
     let machine = MachineConfig { shortcuts: false, ..MachineConfig::default() };
     let mut board: Board = Board::new(Config { machine, ..Config::default() });
@@ -46,7 +47,7 @@ fn board() -> Board {
     board
 }
 
-/// A board in a world.
+/// A board with a stimulus.
 fn board_with(stimulus: &str) -> Board {
     let mut board = board();
     board.play(Stimulus::parse(stimulus, "bench").unwrap_or_else(|error| panic!("{error}")));

@@ -1,10 +1,10 @@
-//! The cost of a tick: the servo with nothing else to do. An element is one tick of 90 µs.
+//! The cost of a tick: the servo with no other work. An element is one tick of 90 µs.
 //!
 //! `servo/moving/8`: eight servo axes with encoders, jogging. `servo/still/3`: three of them at rest. `servo/idle`: no
 //! axis is enabled. Shortcuts are off, so that no tick is skipped.
 //!
-//! What is measured is the time of the processor where the system tells it, so that a busy machine does not blur it.
-//! Goal: 2,000,000 ticks a second of eight moving axes, 5,000,000 of three still ones.
+//! Processor time is measured if the operating system reports it, so that a busy machine does not distort the result.
+//! Goal: 2,000,000 ticks per second with eight moving axes, 5,000,000 with three axes at rest.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -23,7 +23,7 @@ use vm::text::assemble;
 use vm::thread::ThreadState;
 use vm::verify::verify;
 
-/// Ticks of one measurement.
+/// The number of ticks in a measurement.
 const TICKS: u64 = 1000;
 /// First word of the program after its header.
 const MAIN: usize = 5;
@@ -85,10 +85,10 @@ fn board(axes: u64) -> Board {
     board
 }
 
-/// The time that this process has had a processor.
+/// The processor time of this process.
 struct CpuTime;
 
-/// The processor time so far, where the system reports it.
+/// The processor time so far, if the operating system reports it.
 fn on_cpu() -> Option<Duration> {
     #[cfg(unix)]
     {

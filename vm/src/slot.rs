@@ -1,4 +1,4 @@
-//! Register slots: how values of each class lie in the 64 bits of a register.
+//! Register slots: the representation of values of each class in the 64 bits of a register.
 //!
 //! Values of 32 bits are kept zero-extended, floating values as their bit patterns.
 

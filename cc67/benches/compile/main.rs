@@ -1,4 +1,4 @@
-//! The time of compiling, each stage by itself and all together.
+//! The time of compilation, for each stage and for all together.
 //!
 //! The stages run over a program of `c-programs/` (what a user edits, header included) and over
 //! generated text: `sequence` is 10,000 lines of ordinary statements, `table/n` is an initialiser
@@ -22,7 +22,7 @@ use compiler::source::{FileId, SourceMap};
 use compiler::{Options, driver, parse, sema};
 use kmotiondef::timing::Timing;
 
-/// A program of the size users write.
+/// A program of typical size.
 const INIT_PROGRAM: &str = include_str!("../../../c-programs/motion/init3.c");
 
 /// The state of a compilation before its first stage.
@@ -47,7 +47,7 @@ impl Start {
     }
 }
 
-/// The stages one after another, each on the result of the one before.
+/// The stages one after another, each on the result of the previous one.
 fn stages(c: &mut Criterion) {
     let options = Options::default();
     for (name, text) in [("init3", INIT_PROGRAM), ("sequence", &generate::sequence(10_000))] {
@@ -80,7 +80,7 @@ fn stages(c: &mut Criterion) {
     }
 }
 
-/// All stages, as `cc67 check` does them, over growing inputs.
+/// All stages, as in `cc67 check`, with inputs of increasing size.
 fn whole(c: &mut Criterion) {
     let options = Options { level: Level::None, ..Options::default() };
     let mut group = c.benchmark_group("compile/all");

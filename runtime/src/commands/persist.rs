@@ -8,7 +8,7 @@ use super::arguments::Values;
 use super::session::{Answer, Session};
 use crate::views::Typed;
 
-/// The element that the first argument names.
+/// The element selected by the first argument.
 fn element(values: &Values) -> Place<i32> {
     PERSIST.field(Persist::USER_DATA).element(values.count(0))
 }

@@ -1,4 +1,4 @@
-//! The words sent to amplifiers, which programs see in `LastPWM`. Source: io.md.
+//! The words sent to amplifiers, which programs can read in `LastPWM`. Source: io.md.
 
 use kmotiondef::limits::{MAX_PWM_VALUE, MAX_PWMC_VALUE, MAX_PWMR_VALUE};
 use kmotiondef::variables::LAST_PWM;
@@ -14,19 +14,19 @@ pub(crate) fn store_pwm(memory: &mut GuestMemory, channel: i32, word: i32) {
     }
 }
 
-/// The word of a locked-antiphase value.
+/// The word for a locked-antiphase value.
 #[inline]
 pub(crate) fn antiphase(value: i32) -> i32 {
     value.clamp(-MAX_PWM_VALUE, MAX_PWM_VALUE) + 1280
 }
 
-/// The word of a recirculate value.
+/// The word for a recirculate value.
 pub(crate) fn recirculate(value: i32) -> i32 {
     let value = value.clamp(-MAX_PWMR_VALUE, MAX_PWMR_VALUE);
     if value < 0 { 512 - value } else { value }
 }
 
-/// The word of a current-loop value.
+/// The word for a current-loop value.
 #[inline]
 pub(crate) fn current(value: i32) -> i32 {
     value.clamp(-MAX_PWMC_VALUE, MAX_PWMC_VALUE) + 41_984

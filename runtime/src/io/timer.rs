@@ -3,16 +3,16 @@
 use kmotiondef::Cycles;
 use kmotiondef::map::MemoryMap;
 
-/// Cycles of a microsecond.
+/// Cycles per microsecond.
 const CYCLES_PER_US: i64 = Cycles::PER_SECOND.get() / 1_000_000;
 
-/// The counter at an instant on a KFLOP; it wraps every 85.9 s.
+/// The counter at a given time on a KFLOP; it wraps every 85.9 s.
 #[inline]
 pub(crate) const fn count(now: Cycles) -> u32 {
     (now.get() / 4) as u32
 }
 
-/// The counter at an instant at the rate of a map, in 64 bits.
+/// The counter at a given time in 64 bits, with the rate in a map.
 pub(crate) fn count_of(map: &MemoryMap, now: Cycles) -> u64 {
     (i128::from(now.get()) * i128::from(map.counter) / i128::from(CYCLES_PER_US)) as u64
 }

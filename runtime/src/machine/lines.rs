@@ -1,4 +1,4 @@
-//! The board's lines for their drivers: devices that listen respond at once.
+//! The board's lines, as seen by their drivers: devices that listen respond at once.
 
 use kmotiondef::{Bit, Cycles};
 use vm::memory::GuestMemory;
@@ -8,7 +8,7 @@ use crate::io::Io;
 use crate::io::bits::{bit_state, write_bit};
 use crate::out::Out;
 
-/// The lines at an instant.
+/// The lines at one time.
 #[derive(Debug)]
 pub(crate) struct Lines<'a> {
     pub(crate) machine: &'a mut Machine,
@@ -23,20 +23,20 @@ impl Lines<'_> {
         bit_state(self.io, memory, bit).0
     }
 
-    /// The board writes a bit.
+    /// Writes a bit for the board.
     pub(crate) fn write(&mut self, memory: &mut GuestMemory, bit: Bit, level: bool) {
         write_bit(self.io, self.out, memory, bit, level, self.now);
         self.settle();
     }
 
-    /// The world drives an input.
+    /// Drives an input from the world.
     pub(crate) fn drive(&mut self, bit: Bit, level: bool) {
         self.machine.pulses.drive(bit, level, self.now);
         self.io.pins.drive(bit, level, self.now);
         self.settle();
     }
 
-    /// Bits may have changed: devices that listen to them answer.
+    /// Lets the devices respond that listen to bits which may have changed.
     pub(crate) fn settle(&mut self) {
         self.machine.settle(self.io, self.out, self.now);
     }

@@ -1,4 +1,4 @@
-//! Machines connected to the board: what programs see of them.
+//! Machines connected to the board, as seen by programs.
 
 use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
@@ -23,7 +23,7 @@ fn bench(machine: &str) -> TestBench {
     bench
 }
 
-/// A bench with a motor on axis 0, enabled as a servo that is at 0, to be commanded to 400 with limits as in the
+/// A bench with a motor on axis 0, enabled as a servo at position 0, for a command to 400 with the limits in the
 /// reference table of plant.md.
 fn servo(p: f32, i: f32, d: f32) -> TestBench {
     let mut bench = bench("[axis.0]\nmodel = \"motor\"");
@@ -37,7 +37,8 @@ fn servo(p: f32, i: f32, d: f32) -> TestBench {
     bench
 }
 
-/// When 90 % of the step are reached, the highest load, and when it stays within 2 %: in ms.
+/// The time at which 90 % of the step are reached, the highest load, and the time from which it stays within 2 %, in
+/// ms.
 fn response(bench: &mut TestBench, ticks: u64) -> [f64; 3] {
     let (mut rise, mut peak, mut settled) = (None, 0.0_f64, 0);
     for tick in 1..=ticks {
@@ -89,7 +90,7 @@ fn swing(gain: f32) -> f32 {
 #[test]
 fn a_hundred_times_the_gain_is_unstable() {
     assert!(swing(1.0) < 60.0, "{}", swing(1.0));
-    // From one end of what the amplifier takes to the other.
+    // From one end of the amplifier's range to the other.
     assert_eq!(swing(100.0), 460.0);
 }
 
@@ -155,7 +156,7 @@ fn a_spindle_is_driven_by_its_axis() {
     bench.run(10_000);
     let before = bench.memory.axis(axis(6), Chan::POSITION);
     bench.run(1111);
-    // 1000 of 2047 counts are 10 revolutions a second; 1111 ticks are 0.1 s.
+    // 1000 of 2047 counts are 10 revolutions per second; 1111 ticks are 0.1 s.
     let turned = bench.memory.axis(axis(6), Chan::POSITION) - before;
     assert!((turned - 1000.0).abs() <= 3.0, "{turned}");
 }

@@ -1,10 +1,10 @@
-//! Reads the recorded vectors and the C arguments they contain.
+//! Reads the recorded vectors and the C arguments in them.
 
 use std::path::Path;
 
 use serde_json::Value as Json;
 
-/// A value as a variadic call passes it.
+/// A value passed to a variadic call.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Argument {
     /// An integer or address.
@@ -33,7 +33,7 @@ pub(crate) fn call(text: &str) -> (Vec<u8>, Vec<Argument>) {
     (unquote(&first), parts.map(|part| argument(&part)).collect())
 }
 
-/// Splits at commas outside string literals.
+/// Splits a text at commas outside string literals.
 pub(crate) fn split(text: &str) -> Vec<String> {
     let (mut parts, mut quoted, mut escaped) = (vec![String::new()], false, false);
     for letter in text.chars() {

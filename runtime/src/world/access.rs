@@ -1,4 +1,4 @@
-//! The board as the world acts on it.
+//! Access of the world to the board.
 
 use kmotiondef::Cycles;
 use vm::memory::GuestMemory;
@@ -10,7 +10,7 @@ use crate::machine::{Lines, Machine};
 use crate::out::Out;
 use crate::pc::Pc;
 
-/// The parts of the board that the world reaches at an instant.
+/// The parts of the board that the world can access at one time.
 #[derive(Debug)]
 pub(crate) struct WorldAccess<'a> {
     pub(crate) machine: &'a mut Machine,

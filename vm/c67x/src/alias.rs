@@ -1,6 +1,6 @@
 //! Additional names for the assembler: `MV`, `NEG`, `NOT`.
 //!
-//! Each is an instruction with one constant operand, which the text leaves out.
+//! Each is an instruction with one constant operand, which is omitted in the text.
 
 use crate::inst::Inst;
 use crate::kind::Kind;
@@ -8,13 +8,13 @@ use crate::mnemonic::Mnemonic;
 use crate::operand::Operand;
 use crate::register::UnitKind;
 
-/// A second name of an instruction with a certain constant.
+/// A second name for an instruction with a particular constant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Alias {
     name: &'static str,
     mnemonic: Mnemonic,
     constant: i32,
-    /// True if the .D unit has it too, where the constant is the second operand.
+    /// True if it also exists on the .D unit, where the constant is the second operand.
     on_d: bool,
 }
 
@@ -48,7 +48,7 @@ impl Alias {
         self.mnemonic
     }
 
-    /// The operands with the constant put in: for .L and .S, and for .D.
+    /// The operands with the constant inserted: for .L and .S, and for .D.
     pub(crate) fn complete(self, operands: &[Operand]) -> Vec<Vec<Operand>> {
         let with = |at: usize| {
             let mut all = operands.to_vec();
@@ -58,12 +58,12 @@ impl Alias {
         if self.on_d { vec![with(0), with(1)] } else { vec![with(0)] }
     }
 
-    /// The index of the constant among the operands of the text.
+    /// The index of the constant in the operands of the instruction.
     pub(crate) fn hidden_operand(self, inst: Inst) -> usize {
         usize::from(inst.op().row().unit == Some(UnitKind::D))
     }
 
-    /// Reports whether the form has the constant as an operand of 5 bits and two registers of 32 bits.
+    /// Reports whether the form has a 5-bit constant as this operand, and two 32-bit registers.
     fn takes(self, inst: Inst) -> bool {
         let row = inst.op().row();
         let simple =

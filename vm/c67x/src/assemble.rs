@@ -1,7 +1,7 @@
-//! The assembler: a line of text to an instruction.
+//! The assembler: converts a line of text to an instruction.
 //!
-//! It reads what [`Inst`] prints, in any case and with any blanks. Where the unit is left
-//! out, the first form of the table that takes the operands is chosen.
+//! It reads the text that [`Inst`] prints, in any case and with any blanks. If the unit is omitted, the first form in
+//! the table that takes the operands is chosen.
 
 use thiserror::Error;
 
@@ -26,19 +26,19 @@ pub struct AssemblyLine {
 /// A line that is not an instruction.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum SyntaxError {
-    /// Nothing on the line.
+    /// The line is empty.
     #[error("no instruction on the line")]
     Empty,
     /// The part in brackets is not a condition.
     #[error("`{0}` is not a condition: A0, A1, A2, B0, B1, B2")]
     Condition(String),
-    /// No such mnemonic.
+    /// Unknown mnemonic.
     #[error("no instruction is named `{0}`")]
     Mnemonic(String),
     /// An operand that cannot be read.
     #[error("`{0}` is not an operand")]
     Operand(String),
-    /// The word in braces is not an instruction, or not the one before it.
+    /// The word in braces is not an instruction, or does not match the text before it.
     #[error("`{{{0}}}` is not the word of this instruction")]
     Word(String),
     /// No form of the mnemonic takes these operands on this unit.
@@ -46,10 +46,10 @@ pub enum SyntaxError {
     Form(String),
 }
 
-/// Reads one line; `at` is its address, needed where a branch names an absolute target.
+/// Reads one line; `at` is its address, needed for branches with absolute targets.
 ///
 /// # Errors
-/// The line is not an instruction of the table.
+/// The line is not an instruction in the table.
 pub fn assemble(line: &str, at: u32) -> Result<AssemblyLine, SyntaxError> {
     let (rest, joins_previous) = match line.trim().strip_prefix("||") {
         Some(rest) => (rest.trim_start(), true),
@@ -76,14 +76,14 @@ pub fn assemble(line: &str, at: u32) -> Result<AssemblyLine, SyntaxError> {
     Ok(AssemblyLine { inst, joins_previous })
 }
 
-/// The instruction of a word that is spelled out, if the text before it is the word's.
+/// The instruction of a word in braces, if the text before it matches the word.
 fn word_in_braces(text: &str, word: &str, at: u32) -> Option<Inst> {
     let inst = Inst::decode(u32::from_str_radix(word, 16).ok()?).ok()?;
     let is_its_text = inst.plain_text(None) == text || inst.plain_text(Some(at)) == text;
     is_its_text.then_some(inst)
 }
 
-/// The first form that takes the operands on the unit.
+/// The first form that takes the operands on this unit.
 fn choose(name: &str, unit: &str, pred: Pred, operands: &[Operand]) -> Result<Inst, SyntaxError> {
     let (mnemonic, lists) = match (Mnemonic::from_name(name), Alias::from_name(name)) {
         (Some(Mnemonic::Nop), _) if operands.is_empty() => (Mnemonic::Nop, vec![vec![Operand::Const(1)]]),
@@ -223,7 +223,7 @@ fn memory(text: &str) -> Option<Mem> {
     };
     let base = register(base.trim_matches(['+', '-']))?;
     let offset = match (offset, register(offset)) {
-        // Without an offset a base that changes does so by one element.
+        // Without an offset, a base that changes does so by one element.
         ("", _) => Offset::Const(u16::from(update != Update::None)),
         (_, Some(reg)) => Offset::Reg(reg),
         (constant, None) => Offset::Const(u16::try_from(number(constant)?).ok()?),

@@ -1,8 +1,8 @@
-//! The registers of a call, by the convention that the board's firmware and its compilers follow.
+//! The registers of a call, by the convention of the board's firmware and compilers.
 
 use crate::Reg;
 
-/// Registers of the arguments, in order; a pair takes the register and the next.
+/// Registers of the arguments, in order; a pair takes the register and the next one.
 pub const ARGUMENTS: [Reg; 10] = [
     Reg::a(4),
     Reg::b(4),
@@ -16,7 +16,7 @@ pub const ARGUMENTS: [Reg; 10] = [
     Reg::b(12),
 ];
 
-/// The register of the result; of a pair the even one.
+/// The register of the result; for a pair, the even one.
 pub const RESULT: Reg = Reg::a(4);
 
 /// The return address.

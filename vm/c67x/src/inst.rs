@@ -1,7 +1,7 @@
-//! One instruction: a form with its operands and condition, kept as the processor's word.
+//! One instruction: a form with its operands and condition, stored as the processor's word.
 //!
-//! An [`Inst`] is always valid: it comes from a word that the table knows, or from operands
-//! that fit a form. So nothing that takes one can fail.
+//! An [`Inst`] is always valid: it comes from a word that is in the table, or from operands that fit a form. So
+//! operations on an [`Inst`] cannot fail.
 
 use thiserror::Error;
 
@@ -40,7 +40,7 @@ pub enum BadWord {
     Condition(u32),
 }
 
-/// Operands that a form does not take.
+/// Operands that do not fit a form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum BadOperands {
     /// The number of operands is wrong.
@@ -63,7 +63,7 @@ pub enum BadOperands {
         /// The kind of operand that the form takes there.
         wanted: Kind,
     },
-    /// The form exists on the other side alone, or has no condition.
+    /// The form exists only on the other side, or has no condition.
     #[error("{form} does not exist on side {side} or under a condition", form = .op.row().mnemonic)]
     Unit {
         /// The form.
@@ -88,8 +88,8 @@ impl Inst {
 
     /// The instruction of a form on the unit of `side`, with operands in the order of the text.
     ///
-    /// Of loads and stores `side` must be the base register's (B for a 15-bit offset); of
-    /// `NOP` and `IDLE` it must be A.
+    /// For loads and stores, `side` must be that of the base register (B for a 15-bit offset); for `NOP` and `IDLE` it
+    /// must be A.
     ///
     /// # Errors
     /// The operands do not fit the form, or it does not exist on that side.
@@ -122,8 +122,8 @@ impl Inst {
 
     /// Every form of a mnemonic, on every unit, that takes the operands in the order of the text.
     ///
-    /// In this order all forms of one mnemonic compute the same, so a scheduler may take any.
-    /// Forms that are disputed ([`Op::is_disputed`]) are left out.
+    /// With this order of operands, all forms of a mnemonic compute the same, so a scheduler may use any of them. Forms
+    /// that are disputed ([`Op::is_disputed`]) are left out.
     pub fn forms(mnemonic: Mnemonic, pred: Pred, operands: &[Operand]) -> impl Iterator<Item = Self> + '_ {
         Op::ALL
             .iter()
@@ -133,7 +133,7 @@ impl Inst {
             .filter_map(Result::ok)
     }
 
-    /// `NOP` of 1..=9 cycles; other numbers are brought into this range.
+    /// `NOP` of 1..=9 cycles; other numbers are clamped to this range.
     #[must_use]
     pub fn nop(cycles: u32) -> Self {
         Self { op: Op::Nop, word: (cycles.clamp(1, 9) - 1) << Field::N.lowest_bit() }
@@ -287,7 +287,7 @@ fn has_valid_fields(op: Op, word: u32) -> bool {
     })
 }
 
-/// Bit s of a form that has one; of loads and stores it comes from the data register.
+/// Bit s of a form that has one; for loads and stores it comes from the data register.
 fn side_bits(op: Op, side: Side) -> u32 {
     let row = op.row();
     let fixed = row.mask >> SIDE & 1 != 0 || row.operands.iter().any(|(field, _)| *field == Field::Mem);
@@ -297,7 +297,7 @@ fn side_bits(op: Op, side: Side) -> u32 {
 /// The bits of an operand in a word; `None` if it does not fit.
 fn field_bits(field: Field, kind: Kind, operand: Operand, side: Side, mnemonic: Mnemonic) -> Option<u32> {
     let lowest = field.lowest_bit();
-    // The data register of a load or store chooses its side itself: bit s.
+    // The data register of a load or store determines its own side: bit s.
     let is_data = mnemonic.bytes().is_some();
     match operand {
         Operand::Reg(reg) => {

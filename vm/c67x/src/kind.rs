@@ -1,6 +1,6 @@
-//! The kinds of operands, where their fields are in a word, and the timing of forms.
+//! The kinds of operands, the positions of their fields in a word, and the timing of forms.
 
-/// The name of an operand, which says where its field is.
+/// The name of an operand, which determines the position of its field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Field {
     /// First source, bits 17..13.
@@ -17,14 +17,14 @@ pub enum Field {
     Csta,
     /// Second constant of a bit field, bits 12..8.
     Cstb,
-    /// A long constant, from bit 7 on.
+    /// A long constant, beginning with bit 7.
     Cst,
-    /// Cycles, from bit 13 on.
+    /// Cycles, beginning with bit 13.
     N,
 }
 
 impl Field {
-    /// The lowest bit of its field in a word. Of [`Field::Mem`] it is the offset's.
+    /// The lowest bit of its field in a word; for [`Field::Mem`], of the offset's field.
     #[must_use]
     pub const fn lowest_bit(self) -> u32 {
         match self {
@@ -36,7 +36,7 @@ impl Field {
         }
     }
 
-    /// Reports whether the instruction writes it.
+    /// Reports whether the instruction writes the operand.
     #[must_use]
     pub const fn is_written(self) -> bool {
         matches!(self, Self::Dst)
@@ -124,11 +124,11 @@ pub struct Mode {
 /// The update of the base register of a load or store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Update {
-    /// None.
+    /// No update.
     None,
-    /// The new value is the address.
+    /// The address is the updated base.
     Before,
-    /// The old value is the address.
+    /// The address is the base before the update.
     After,
 }
 
@@ -191,7 +191,7 @@ impl Kind {
         }
     }
 
-    /// Reports whether it may come from the other file over the cross path.
+    /// Reports whether the operand may come from the other file over the cross path.
     #[must_use]
     pub const fn may_cross(self) -> bool {
         matches!(self, Self::Xr | Self::Xd)
@@ -203,11 +203,11 @@ impl Kind {
 pub enum Isa {
     /// The C67x.
     Base,
-    /// The C67x+, of which the board's C6722 is one.
+    /// The C67x+; the board's C6722 is one.
     Plus,
 }
 
-/// When the forms of a row read their sources and write their results.
+/// The times at which the forms of a row read their sources and write their results.
 ///
 /// Stage E1 is the cycle of the issue. A result written in Ek is visible to packets that
 /// issue k cycles later.
@@ -223,9 +223,9 @@ pub enum Timing {
     Widening,
     /// Sums of doubles.
     DoubleSum,
-    /// Compares of doubles.
+    /// Comparisons of doubles.
     DoubleCompare,
-    /// Forms with one source that give a double.
+    /// Forms with one source and a double as result.
     DoubleMove,
     /// `MPYI`
     LongProduct,
@@ -247,7 +247,7 @@ pub enum Timing {
     Nothing,
 }
 
-/// The numbers of a [`Timing`].
+/// The stages of a [`Timing`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stages {
     /// Stage in which single registers and low halves of sources are first read.
@@ -262,12 +262,12 @@ pub struct Stages {
     pub write_low: u8,
     /// Stage in which the high half is written; 0 if there is no result.
     pub write_high: u8,
-    /// Cycles from its issue in which the unit accepts no other instruction, its own included.
+    /// The number of cycles from the issue in which the unit accepts no other instruction, including the issue cycle.
     pub unit: u8,
 }
 
 impl Timing {
-    /// The numbers.
+    /// The stages.
     #[must_use]
     pub const fn stages(self) -> Stages {
         const fn stages(reads: [u8; 4], writes: [u8; 2], unit: u8) -> Stages {
@@ -299,7 +299,7 @@ impl Timing {
         }
     }
 
-    /// Cycles after its issue until its last result may be read, less 1: its delay slots.
+    /// The number of delay slots: cycles from the issue until the last result may be read, minus 1.
     #[must_use]
     pub const fn delay_slots(self) -> u8 {
         match self {

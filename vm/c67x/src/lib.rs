@@ -1,14 +1,14 @@
 //! The instructions of the TMS320C67x+, the processor of the board.
 //!
-//! Decoder, encoder, assembler, disassembler and the model of the pipeline are expanded from one table of 302 forms
-//! ([`for_each_form!`]). It has three users: the engine that executes real images, the code generator that makes them,
-//! and `inspect -d`.
+//! The decoder, encoder, assembler, disassembler and the model of the pipeline are expanded from one table of 302 forms
+//! ([`for_each_form!`]). They have three users: the engine that executes real images, the code generator that creates
+//! them, and `inspect -d`.
 //!
 //! - [`Inst`] is one valid instruction: [`Inst::decode`] from a word, [`Inst::new`],
 //!   [`Inst::pick`] and [`Inst::forms`] from operands, [`assemble`] from text.
 //! - [`Inst::unit`], [`Inst::reads`], [`Inst::writes`], [`Inst::delay_slots`],
 //!   [`Inst::cross_path`], [`Inst::data_path`]: properties for a scheduler.
-//! - [`schedule`] checks packets against the rules of the pipeline, whatever their origin.
+//! - [`schedule`] checks packets against the rules of the pipeline, independently of their origin.
 //!
 //! Map: `register` (registers, conditions, units), `kind` (fields, kinds of operands,
 //! timing), `mnemonic`, `table` (the rows), `operand`, `inst` (encode, decode), `model`

@@ -1,12 +1,11 @@
 //! The names of instructions.
 //!
-//! One mnemonic covers several forms of the table: `ADD` exists on three units, with
-//! registers, constants and 40-bit operands. In the order of the assembler's text all
-//! forms of a mnemonic compute the same.
+//! One mnemonic covers several forms in the table: `ADD` exists on three units, with registers, constants and 40-bit
+//! operands. With the operands in the assembler's order, all forms of a mnemonic compute the same.
 
 use std::fmt;
 
-/// Hands every mnemonic to the macro `$m`.
+/// Passes all mnemonics to the macro `$m`.
 #[macro_export]
 macro_rules! for_each_mnemonic {
     ($m:ident) => {
@@ -243,7 +242,7 @@ macro_rules! define_mnemonics {
                 }
             }
 
-            /// Its operation, in a few words.
+            /// A short description of its operation.
             #[must_use]
             pub const fn meaning(self) -> &'static str {
                 match self {
@@ -251,7 +250,7 @@ macro_rules! define_mnemonics {
                 }
             }
 
-            /// The bytes that a load or store of this name moves; `None` for all others.
+            /// The number of bytes moved by a load or store with this name; `None` for all others.
             #[must_use]
             pub const fn bytes(self) -> Option<u32> {
                 match self {

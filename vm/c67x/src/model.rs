@@ -1,8 +1,8 @@
 //! The properties of an instruction that a scheduler needs: registers, stages, units, paths.
 //!
-//! Everything here follows from the instruction's row: its operands' kinds and its
-//! [`Timing`]. Stage k of an instruction that issues in cycle t is cycle t + k - 1; what is
-//! written in stage k is visible to packets that issue in t + k or later.
+//! Everything here follows from the instruction's row: the kinds of its operands and its [`Timing`]. For an instruction
+//! that issues in cycle t, stage k is cycle t + k - 1; a result written in stage k is visible to packets that issue in
+//! t + k or later.
 
 use crate::inst::Inst;
 use crate::kind::{Field, Kind, Timing, Update};
@@ -15,9 +15,9 @@ use crate::register::{Pair, Reg, Side, Unit};
 pub struct Read {
     /// The register.
     pub reg: Reg,
-    /// The stage of the first read: a result may become visible in this very cycle.
+    /// The stage of the first read: a result that becomes visible in this very cycle is read.
     pub first: u8,
-    /// The stage of the last read: the register must not change before its end.
+    /// The stage of the last read: the register must not change before the end of this stage.
     pub last: u8,
 }
 
@@ -26,21 +26,21 @@ pub struct Read {
 pub struct Write {
     /// The register.
     pub reg: Reg,
-    /// Cycles from the issue to the first packet that sees the result.
+    /// The number of cycles from the issue to the first packet that sees the result.
     pub stage: u8,
 }
 
 /// The target of a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Branch {
-    /// To `bytes` from the address of its fetch packet.
+    /// A distance from the address of its fetch packet.
     Near {
         /// Signed distance in bytes.
         bytes: i32,
     },
-    /// To the address in a register.
+    /// The address in a register.
     Register(Reg),
-    /// Back from an interrupt.
+    /// The return from an interrupt.
     Interrupt,
 }
 
@@ -51,19 +51,19 @@ impl Inst {
         self.op().row().timing
     }
 
-    /// Cycles after its issue, less 1, until its last result may be read.
+    /// The number of delay slots: cycles from the issue until the last result may be read, minus 1.
     #[must_use]
     pub const fn delay_slots(self) -> u8 {
         self.timing().delay_slots()
     }
 
-    /// Cycles from its issue in which its unit, and its cross path, accept nothing else.
+    /// The number of cycles from the issue in which the unit, and the cross path, accept no other instruction.
     #[must_use]
     pub const fn unit_cycles(self) -> u8 {
         self.timing().stages().unit
     }
 
-    /// The cycles that the packet lasts because of it: 1, or the count of a `NOP`.
+    /// The number of cycles that the instruction contributes to its packet: 1, or the count of a `NOP`.
     #[must_use]
     pub fn cycles(self) -> u32 {
         match self.field(Field::N) {
@@ -126,7 +126,7 @@ impl Inst {
         })
     }
 
-    /// The registers it reads, its condition left out (which is read in stage 1).
+    /// The registers that it reads, except the condition register (which is read in stage 1).
     pub fn reads(self) -> impl Iterator<Item = Read> {
         let stages = self.timing().stages();
         let mut found = Few::default();
@@ -184,7 +184,7 @@ impl Inst {
         matches!(self.mnemonic(), Mnemonic::Mvkh | Mnemonic::Addk)
     }
 
-    /// The unit it occupies and for how many cycles from its issue.
+    /// The unit that it occupies, and the number of cycles from the issue.
     #[must_use]
     pub fn occupies(self) -> Option<(Unit, u8)> {
         self.unit().map(|unit| (unit, self.unit_cycles()))
@@ -200,7 +200,7 @@ impl Inst {
     }
 }
 
-/// A list of at most four, without an allocation.
+/// A list of at most four items, without allocation.
 #[derive(Clone, Copy)]
 struct Few<T> {
     items: [Option<T>; 4],

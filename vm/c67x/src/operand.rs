@@ -1,4 +1,4 @@
-//! Operands as a person or a code generator names them.
+//! Operands, as named by users and code generators.
 
 use std::fmt;
 
@@ -10,9 +10,9 @@ use crate::register::{Control, Pair, Reg};
 pub enum Operand {
     /// A register.
     Reg(Reg),
-    /// A double, a 40-bit long, or the two words of an `LDDW`.
+    /// A register pair: a double, a 40-bit long, or the two words of an `LDDW`.
     Pair(Pair),
-    /// A constant: of `MVKH` the upper 16 bits as a number, of `NOP` the cycles 1..=9.
+    /// A constant: for `MVKH` the upper 16 bits as a number, for `NOP` the cycles 1..=9.
     Const(i32),
     /// Bytes from the address of the branch's fetch packet (its address with the low five bits 0).
     Target(i32),

@@ -1,8 +1,7 @@
 //! Registers, pairs, control registers, predicates and units of the processor.
 //!
-//! The register file has two sides of 32 registers. A register is a number 0..=63, the A
-//! side first, as in the vectors; a pair is named by its even register, which holds the low
-//! word.
+//! The register file has two sides of 32 registers. A register is a number 0..=63, the A side first, as in the vectors;
+//! a pair is identified by its even register, which contains the low word.
 
 use std::fmt;
 
@@ -16,7 +15,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// Side A for a 0, side B for a 1, as bits s and y say.
+    /// Side A for 0, side B for 1, as in bits s and y.
     #[must_use]
     #[inline]
     pub const fn from_bit(bit: u32) -> Self {
@@ -68,7 +67,7 @@ impl fmt::Display for Side {
 pub struct Reg(u8);
 
 impl Reg {
-    /// Number of registers.
+    /// The number of registers.
     pub const COUNT: usize = 64;
 
     /// Register `number` of `side`; only the low five bits of the number count.
@@ -92,7 +91,7 @@ impl Reg {
         Self::new(Side::B, number)
     }
 
-    /// The register with this index; `None` from 64 on.
+    /// The register with this index; `None` for 64 and above.
     #[must_use]
     #[inline]
     pub const fn from_index(index: usize) -> Option<Self> {
@@ -106,7 +105,7 @@ impl Reg {
         self.0 as usize
     }
 
-    /// The side whose file it belongs to.
+    /// The side of its file.
     #[must_use]
     #[inline]
     pub const fn side(self) -> Side {
@@ -120,7 +119,7 @@ impl Reg {
         self.0 & 31
     }
 
-    /// The pair it belongs to.
+    /// The pair that contains it.
     #[must_use]
     #[inline]
     pub const fn pair(self) -> Pair {
@@ -166,7 +165,7 @@ impl Pair {
         Reg(self.0.0 | 1)
     }
 
-    /// The side whose file it belongs to.
+    /// The side of its file.
     #[must_use]
     #[inline]
     pub const fn side(self) -> Side {
@@ -215,7 +214,7 @@ pub enum PredReg {
 }
 
 impl PredReg {
-    /// All of them in the order of the field creg, from 1 on.
+    /// All condition registers in the order of the field creg, beginning with 1.
     pub const ALL: [Self; 6] = [Self::B0, Self::B1, Self::B2, Self::A1, Self::A2, Self::A0];
 
     /// The register.
@@ -275,7 +274,7 @@ impl Pred {
         }
     }
 
-    /// The register that is tested; `None` for always.
+    /// The register that is tested; `None` for [`Pred::Always`].
     #[must_use]
     #[inline]
     pub fn reg(self) -> Option<Reg> {
@@ -323,7 +322,7 @@ pub enum UnitKind {
 pub struct Unit {
     /// The kind of unit.
     pub kind: UnitKind,
-    /// On which side.
+    /// The side of the processor.
     pub side: Side,
 }
 

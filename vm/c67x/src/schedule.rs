@@ -1,12 +1,11 @@
 //! Checks packets against the rules of the pipeline.
 //!
-//! Independent of whoever made the code: [`check`] takes packets with their place, looks at
-//! each by itself, then follows every path from the entries cycle by cycle, with what is in
-//! flight, and reports every rule that a path breaks. The processor itself checks none of
-//! them: broken code gives other results, or none that can be relied on.
+//! It is independent of the generator of the code: [`check`] takes packets with their addresses, checks each one by
+//! itself, then follows every path from the entries cycle by cycle, with the results in flight, and reports every rule
+//! that a path violates. The processor itself checks none of them: invalid code gives wrong or unpredictable results.
 //!
-//! What it cannot see: addresses in registers (whether a load and a store of one packet meet),
-//! and that two conditional branches depend on each other: it follows both ways of each.
+//! It cannot check addresses in registers (whether a load and a store in one packet overlap), or the correlation of two
+//! conditional branches: it follows both ways of each.
 
 mod flow;
 mod packet;
@@ -24,19 +23,19 @@ pub struct Packet {
 }
 
 impl Packet {
-    /// Its words, all but the last with bit p.
+    /// Its words; bit p is set in all except the last.
     pub fn words(&self) -> impl Iterator<Item = u32> {
         let last = self.insts.len().saturating_sub(1);
         self.insts.iter().enumerate().map(move |(index, inst)| inst.encode(index < last))
     }
 
-    /// Bytes that it takes.
+    /// Its size in bytes.
     #[must_use]
     pub fn bytes(&self) -> u32 {
         self.insts.len() as u32 * 4
     }
 
-    /// Cycles that it lasts if no branch arrives.
+    /// The number of cycles that it takes if no branch arrives.
     #[must_use]
     pub fn cycles(&self) -> u32 {
         self.insts.iter().map(|inst| inst.cycles()).max().unwrap_or(1)
@@ -46,7 +45,7 @@ impl Packet {
 /// The packets of a sequence of words.
 ///
 /// # Errors
-/// A word that is not an instruction.
+/// One of the words is not an instruction.
 pub fn packets(words: &[u32]) -> Result<Vec<Packet>, BadWord> {
     let mut all = vec![Packet { insts: Vec::new() }];
     for (index, word) in words.iter().enumerate() {
@@ -61,7 +60,7 @@ pub fn packets(words: &[u32]) -> Result<Vec<Packet>, BadWord> {
     Ok(all)
 }
 
-/// A rule that code breaks.
+/// A violated rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rule {
     /// More than eight instructions.
@@ -88,7 +87,7 @@ pub enum Rule {
     NopTwice,
     /// A load and a store of the same bytes.
     LoadMeetsStore,
-    /// A store of the register that it changes as its base.
+    /// A store of the register that it modifies as its base.
     StoresItsBase,
     /// Two branches that can be taken together.
     TwoBranches,
@@ -96,28 +95,28 @@ pub enum Rule {
     TwoResults(Reg),
     /// Two results of one unit are written in one cycle.
     WritePort(Unit),
-    /// The register is read while a result for it is in flight, where an interrupt may come between.
+    /// The register is read while a result for it is in flight, at a point where an interrupt may occur.
     EarlyRead(Reg),
-    /// The register changes while an instruction reads it in several cycles.
+    /// The register changes while an instruction reads it over several cycles.
     ChangesDuringRead(Reg),
-    /// A long multiply too soon after a different one of the same unit.
+    /// A long multiply too soon after a different one on the same unit.
     LongMultiplies(Unit),
     /// A branch into the middle of a packet.
     IntoPacket(u32),
-    /// A result is in flight when the code is left by a call or return.
+    /// A result is in flight when a call or return leaves the code.
     InFlight(Reg),
     /// Execution runs beyond the last packet.
     RunsOut,
-    /// More than [`LONGEST_SHADOW`] cycles without a place where an interrupt is taken.
+    /// More than [`LONGEST_SHADOW`] cycles without a point at which an interrupt can be taken.
     NotInterruptible,
-    /// Code with more paths than can be followed.
+    /// The code has more paths than can be followed.
     TooComplex,
 }
 
-/// Cycles without an interruptible point that are harmless: 1 µs.
+/// The number of cycles without an interruptible point that is harmless: 1 µs.
 pub const LONGEST_SHADOW: u32 = 200;
 
-/// A broken rule and the packet that breaks it.
+/// A violated rule, with the packet that violates it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Violation {
     /// Address of the packet.
@@ -165,12 +164,11 @@ impl fmt::Display for Rule {
     }
 }
 
-/// Every rule that code breaks, by address, each once.
+/// All rules that the code violates, by address, without duplicates.
 ///
-/// `base` is the address of the first packet, the others follow without gaps. `entries` are
-/// the addresses where execution can begin with nothing in flight: functions, and the places
-/// where calls return to. Branches inside the code are followed; a branch through a register,
-/// or out of the code, ends a path.
+/// `base` is the address of the first packet; the others follow without gaps. `entries` are the addresses at which
+/// execution can begin with nothing in flight: functions, and the return addresses of calls. Branches within the code
+/// are followed; a branch through a register, or out of the code, ends a path.
 #[must_use]
 pub fn check(base: u32, packets: &[Packet], entries: &[u32]) -> Vec<Violation> {
     let mut found: Vec<Violation> = Vec::new();

@@ -1,6 +1,6 @@
-//! An instruction's parts as they are written: unit, operands, the target of a branch.
+//! The text of an instruction's parts: unit, operands, the target of a branch.
 //!
-//! [`Inst::plain_text`] may be another word as well; `text` adds the word where it does.
+//! [`Inst::plain_text`] may be ambiguous; in that case `text` adds the word.
 
 use crate::alias::Alias;
 use crate::inst::Inst;
@@ -11,7 +11,7 @@ use crate::operand::Operand;
 pub const FETCH_PACKET: u32 = 32;
 
 impl Inst {
-    /// The unit as it is written: `.L1X`, `.D1T2`; empty for `NOP` and `IDLE`.
+    /// The unit in the text: `.L1X`, `.D1T2`; empty for `NOP` and `IDLE`.
     #[must_use]
     pub fn unit_text(self) -> String {
         let Some(unit) = self.unit() else { return String::new() };
@@ -67,7 +67,7 @@ fn operand_text(operand: Operand, kind: Kind, at: Option<u32>) -> String {
     }
 }
 
-/// The address that a branch at `at` goes to, `bytes` from the start of its fetch packet.
+/// The address of the target of a branch at `at`, `bytes` from the start of its fetch packet.
 #[must_use]
 pub fn target(at: u32, bytes: i32) -> u32 {
     (at & !(FETCH_PACKET - 1)).wrapping_add_signed(bytes)

@@ -1,16 +1,15 @@
-//! The instruction table: one row a form, everything mechanical expanded from it.
+//! The instruction table: one row for each form; everything mechanical is expanded from it.
 //!
-//! `for_each_form!` hands all 302 rows to a macro of the caller's; the rows are in the
-//! files of this folder, a file a group of units. Here they become the [`Op`] enum and
-//! [`Op::row`].
+//! `for_each_form!` passes all 302 rows to the caller's macro; the rows are in the files of this folder, one file for
+//! each group of units. Here they become the [`Op`] enum and [`Op::row`].
 //!
 //! Rules of the table:
 //! - A row is `/// formula`, then
 //!   `Name = Mnemonic.Unit.form { field: Kind, … }, word value of mask, Timing, Isa;`.
-//! - The fields are in the order of the assembler's text. Where they are in the word, and
-//!   bits x, y and s, follow from their names and kinds ([`Field`], [`Kind`]).
-//! - A word is of this form if `word & mask == value`. The mask leaves out bits creg, z, p,
-//!   the side, and the fields; it holds the even bit of a pair and x where no cross path is.
+//! - The fields are in the order of the assembler's text. Their positions in the word, and bits x, y and s, follow from
+//!   their names and kinds ([`Field`], [`Kind`]).
+//! - A word is of this form if `word & mask == value`. The mask excludes the bits creg, z and p, the side, and the
+//!   fields; it includes the even bit of a pair, and x if there is no cross path.
 //! - In formulas s1 and s2 are the values of `src1` and `src2`; R is the base register; sx
 //!   and zx are sign and zero extension; sat32 and sat40 clamp.
 //!
@@ -28,7 +27,7 @@ use crate::kind::{Field, Isa, Kind, Timing};
 use crate::mnemonic::Mnemonic;
 use crate::register::UnitKind;
 
-/// Hands every row of the instruction table to the macro `$m`.
+/// Passes all rows of the instruction table to the macro `$m`.
 #[macro_export]
 macro_rules! for_each_form {
     ($m:ident) => {
@@ -43,9 +42,9 @@ pub struct Row {
     pub mnemonic: Mnemonic,
     /// The kind of unit that executes it; `None` for `NOP` and `IDLE`.
     pub unit: Option<UnitKind>,
-    /// The kinds of its operands, src1_src2_dst, or how a load or store finds its address.
+    /// The kinds of its operands, src1_src2_dst, or the addressing mode of a load or store.
     pub form: &'static str,
-    /// The bits of a word that tell the form.
+    /// The bits of a word that determine the form.
     pub mask: u32,
     /// The value of these bits.
     pub value: u32,
@@ -109,7 +108,7 @@ macro_rules! define_ops {
 for_each_form!(define_ops);
 
 impl Op {
-    /// The form of a word, the condition left aside; `None` if there is none.
+    /// The form of a word, apart from the condition; `None` if there is none.
     #[must_use]
     pub fn of_word(word: u32) -> Option<Self> {
         Self::ALL.iter().copied().find(|op| word & op.row().mask == op.row().value)

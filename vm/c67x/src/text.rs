@@ -1,9 +1,8 @@
 //! Instructions as text.
 //!
-//! `|| [!A1] LDW .D1T2 *+A4[3],B5`: bars for an instruction that executes in parallel with
-//! the one before it, the condition, the name, the unit with its cross or data path, the
-//! operands. What is printed here [`crate::assemble`] reads back to the same word: where
-//! the text alone would give another one (a field that the processor ignores, a second
+//! `|| [!A1] LDW .D1T2 *+A4[3],B5`: bars for an instruction that executes in parallel with the previous one, the
+//! condition, the name, the unit with its cross or data path, the operands. [`crate::assemble`] reads this text back to
+//! the same word: if the text alone would give another word (because of a field that the processor ignores, or a second
 //! form for the same operands), the word follows in braces.
 
 use std::fmt;
@@ -12,7 +11,7 @@ use crate::assemble::assemble;
 use crate::inst::Inst;
 
 impl Inst {
-    /// The text of the instruction at an address: branches show where they go.
+    /// The text of the instruction at an address: branches show their targets.
     #[must_use]
     pub fn text(self, at: u32) -> String {
         self.print(Some(at))

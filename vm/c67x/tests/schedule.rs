@@ -1,11 +1,11 @@
-//! The checker of schedules: good code passes, code broken on purpose does not.
+//! The checker of schedules: valid code passes, deliberately invalid code does not.
 
 use c67x::schedule::{Packet, Rule, check, packets};
 use c67x::{Reg, Side, Unit, UnitKind, assemble};
 
 const BASE: u32 = 0x8005_0000;
 
-/// Packets of a text, a line an instruction.
+/// The packets of a text, one instruction per line.
 fn code(text: &str) -> Vec<Packet> {
     let mut all: Vec<Packet> = Vec::new();
     let mut at = BASE;
@@ -22,7 +22,7 @@ fn code(text: &str) -> Vec<Packet> {
 }
 
 fn rules(text: &str) -> Vec<Rule> {
-    // What follows lets everything land and returns.
+    // The code after it lets all results land, and returns.
     let text = format!("{text}\nNOP 9\nB .S2 B3\nNOP 5");
     check(BASE, &code(&text), &[BASE]).into_iter().map(|violation| violation.rule).collect()
 }
@@ -47,7 +47,7 @@ fn handwritten_loops_break_only_one_rule() {
         check(BASE, &packets, &[BASE]).iter().map(ToString::to_string).collect::<Vec<_>>()
     };
     assert!(broken(sum).is_empty());
-    // Its count goes down on .L2 in the cycle in which the sum of the turn before is written there.
+    // Its count is decremented on .L2 in the cycle in which the previous iteration's sum is written there.
     assert_eq!(broken(dot), ["80050060: two results of .L2 are written in the same cycle"]);
 }
 
@@ -89,7 +89,7 @@ fn two_results_in_one_cycle_are_found_unless_they_exclude_each_other() {
 fn a_result_is_not_read_early_where_interrupts_are_taken() {
     assert_eq!(rules("LDW .D1T1 *A4,A5\nNOP 3\nADD .L1 A5,A6,A7"), [Rule::EarlyRead(Reg::a(5))]);
     assert_eq!(rules("LDW .D1T1 *A4,A5\nNOP 4\nADD .L1 A5,A6,A7"), []);
-    // Held off by the branch before: the old value is certain.
+    // The interrupt is held off by the previous branch: the old value is certain.
     assert_eq!(rules("[A0] B .S1 pc+0\nLDW .D1T1 *A4,A5\nADD .L1 A5,A6,A7\nNOP 4\nNOP 4"), []);
     assert_eq!(rules("LDW .D1T1 *A4,A0\nNOP 2\n[A0] ADD .L1 A5,A6,A7"), [Rule::EarlyRead(Reg::a(0))]);
 }
@@ -142,7 +142,7 @@ fn overlapping([two, three, five]: [&str; 3]) -> Vec<Rule> {
 fn overlapping_iterations_are_checked_across_the_branch_back() {
     let sum = "ADD .L1 A5,A6,A5";
     assert_eq!(overlapping(["NOP 1", sum, "NOP 1"]), []);
-    // The load of the turn before lands a cycle later, and an interrupt could come at the branch back.
+    // The previous iteration's load lands a cycle later, and an interrupt could occur at the branch back.
     assert_eq!(overlapping([sum, "NOP 1", "NOP 1"]), [Rule::EarlyRead(Reg::a(6))]);
     assert_eq!(overlapping(["MV .L1 A7,A6", sum, "NOP 1"]), [Rule::TwoResults(Reg::a(6))]);
     let product = "MPYDP .M2 B5:B4,B7:B6,B9:B8";

@@ -1,7 +1,7 @@
-//! A second reader of words: the GNU disassembler, where `OBJDUMP` names one that knows this processor (`tic6x`).
+//! A second decoder: the GNU disassembler, if `OBJDUMP` names one that supports this processor (`tic6x`).
 //!
-//! Each word is read alike, or the difference has one of the reasons of [`Reason`]; the page `contributing.md` of the
-//! book says how to get the tool and lists the reasons.
+//! Both decode each word in the same way, or the difference has one of the reasons in [`Reason`]; the page
+//! `contributing.md` of the book describes how to get the tool and lists the reasons.
 
 mod gnu;
 
@@ -14,18 +14,19 @@ use self::gnu::gnu_text;
 
 /// The address of the words.
 const PLACE: u32 = 0x1002_0000;
-/// Words of a fetch packet; the last one is left 0, as it may be a header of short instructions for the tool.
+/// The number of words in a fetch packet; the last one is left 0, as the tool may take it for a header of compact
+/// instructions.
 const FETCH: usize = 8;
-/// Random words, and random words of each form.
+/// The number of random words, and of random words of each form.
 const RANDOM: usize = 100_000;
 const OF_FORM: usize = 100;
 
-/// A reason why a word may be read differently.
+/// A reason why a word may be decoded differently.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Reason {
-    /// The tool reads an instruction that only later processors have.
+    /// The tool decodes an instruction that only later processors have.
     Later,
-    /// The tool reads a word whose fixed bits are not what they have to be.
+    /// The tool decodes a word with invalid fixed bits.
     FixedBits,
     /// Published descriptions contradict each other on the order of the sources (`c67x.md` 3.4).
     Disputed,
@@ -33,16 +34,16 @@ enum Reason {
     Control,
 }
 
-/// Forms of later processors whose mnemonic this one has as well: other units, cross paths, longer constants.
+/// Forms of later processors with mnemonics that this one also has: other units, cross paths, longer constants.
 const LATER: [&str; 18] = [
     "add.D", "add2.D", "add2.L", "addab.D", "addah.D", "addaw.D", "and.D", "cmpgtu.L", "cmpltu.L", "mvc.S",
     "mvk.D", "or.D", "sadd.S", "sub.D", "sub.S", "sub2.D", "sub2.L", "xor.D",
 ];
-/// Forms that the tool reads although bit x, or a field without an operand, is not what it has to be.
+/// Forms that the tool decodes although bit x, or a field without an operand, has an invalid value.
 const FIXED_BITS: [&str; 9] =
     ["absdp.S", "dpint.L", "dpsp.L", "dptrunc.L", "rcpdp.S", "rsqrdp.S", "sadd.L", "ssub.L", "sub.L"];
 
-/// The reason why two readings of a word differ; `None` if it is not known.
+/// The reason why two decodings of a word differ; `None` if it is unknown.
 fn reason(ours: Option<Inst>, theirs: Option<&str>) -> Option<Reason> {
     let Some(inst) = ours else {
         // "[!b1]add.D1Xa1,b2,a3" is of the form "add.D".
@@ -62,7 +63,7 @@ fn reason(ours: Option<Inst>, theirs: Option<&str>) -> Option<Reason> {
     (inst.mnemonic() == Mnemonic::Mvc).then_some(Reason::Control)
 }
 
-/// Numbers that look random, the same in every run.
+/// A pseudo-random number generator with the same numbers in every run.
 struct Numbers(u64);
 
 impl Numbers {
@@ -72,7 +73,7 @@ impl Numbers {
     }
 }
 
-/// The words that are read, none of them in parallel with another.
+/// The words to decode, none of them in parallel with another.
 fn words() -> Vec<u32> {
     let mut numbers = Numbers(67);
     let mut words: Vec<u32> = (0..RANDOM).map(|_| numbers.next() & !1).collect();
@@ -83,7 +84,7 @@ fn words() -> Vec<u32> {
     words
 }
 
-/// The tool's reading of each word, without blanks; `None` for one that it does not read as an instruction.
+/// The tool's decoding of each word, without blanks; `None` for a word that is not an instruction for it.
 fn read_by_tool(tool: &str, words: &[u32]) -> Vec<Option<String>> {
     let mut bytes = Vec::new();
     for fetch in words.chunks(FETCH - 1) {

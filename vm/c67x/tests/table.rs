@@ -1,4 +1,4 @@
-//! The table, row by row, against the published list of instructions in `tests/data`.
+//! The table, compared row by row with the published list of instructions in `tests/data`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -16,7 +16,7 @@ fn published() -> Vec<Line> {
     lines.map(|cells| head.iter().cloned().zip(cells).collect()).collect()
 }
 
-/// The cells of a line; a cell in quotes may hold commas.
+/// The cells of a line; a cell in quotes may contain commas.
 fn cells(line: &str) -> Vec<String> {
     let mut cells = vec![String::new()];
     let mut quoted = false;
@@ -30,7 +30,7 @@ fn cells(line: &str) -> Vec<String> {
     cells
 }
 
-/// The list distinguishes the disputed forms by their ids alone.
+/// The list distinguishes the disputed forms only by their ids.
 fn id(op: Op) -> String {
     let id = op.id();
     match id.as_str() {
@@ -62,7 +62,7 @@ fn kind_name(kind: Kind) -> &'static str {
     }
 }
 
-/// The fields of a row as the list writes them, in any order.
+/// The fields of a row in the notation of the list, in any order.
 fn fields(op: Op) -> BTreeSet<String> {
     let row = op.row();
     let mut fields = BTreeSet::new();
@@ -106,7 +106,7 @@ fn fields(op: Op) -> BTreeSet<String> {
     fields
 }
 
-/// The order of the operands as the list writes it.
+/// The order of the operands in the notation of the list.
 fn syntax(op: Op) -> String {
     let names = op.row().operands.iter().map(|(field, kind)| match (field, kind) {
         (_, Kind::Irp) => "irp".to_owned(),
@@ -126,7 +126,7 @@ fn syntax(op: Op) -> String {
     names.collect::<Vec<_>>().join(",")
 }
 
-/// Reads and writes in the words of the list.
+/// Reads and writes in the notation of the list.
 fn stages(timing: Timing) -> (&'static str, &'static str) {
     match timing {
         Timing::Single => ("E1", "E1"),

@@ -1,4 +1,4 @@
-//! Words to text and back, against the recorded instructions and on random fields.
+//! Words to text and back, for the recorded instructions and for random fields.
 
 mod gnu;
 
@@ -53,7 +53,7 @@ fn check_text(inst: Inst, at: u32) {
     assert_eq!(assemble(&relative, 0).expect("its own text").inst, inst, "{relative}");
 }
 
-/// A word of the form with random fields: everything that the mask leaves free is random.
+/// A word of the form with random fields: all bits not in the mask are random.
 fn word_of(op: Op, random: u32) -> Option<u32> {
     let row = op.row();
     let word = row.value | random & !row.mask & !1;
@@ -72,7 +72,7 @@ proptest! {
             let operands: Vec<Operand> = inst.operands().collect();
             let side = inst.unit().map_or(Side::A, |unit| unit.side);
             let made = Inst::new(*op, side, inst.pred(), &operands).expect("its own operands");
-            // Only of forms with one source pair a field, src1, is not in the operands.
+            // Only in forms with one source pair, a field, src1, is not among the operands.
             let pair = inst.op().row().operands.iter().any(|(_, kind)| *kind == Kind::Dodd);
             let ignored = if pair { 31 << 13 } else { 0 };
             prop_assert_eq!((made.op(), made.encode(false) & !ignored), (*op, word & !ignored));

@@ -1,4 +1,4 @@
-//! The executor against what the emulator recorded.
+//! The executor, compared with the emulator's recordings.
 
 mod faults;
 mod flat;

@@ -1,4 +1,4 @@
-//! A slice's memory and devices as the processor reaches them.
+//! The memory and devices of a slice, as accessed by the processor.
 
 use kmotiondef::{Cycles, GuestAddr};
 
@@ -15,7 +15,7 @@ use crate::trap::TrapKind;
 pub(super) struct View<'s, 'a, F: ?Sized>(pub(super) &'s mut Slice<'a, F>);
 
 impl<F: Firmware + ?Sized> View<'_, '_, F> {
-    /// A load that RAM does not answer: a device, or a trap. The processor waits while a device works.
+    /// A load outside RAM: from a device, or a trap. The processor waits while a device works.
     #[cold]
     fn load_elsewhere(&mut self, addr: u32, width: Width, clock: &mut Clock) -> Result<u32, TrapKind> {
         self.0.budget = Cycles::new(clock.left());
@@ -24,7 +24,7 @@ impl<F: Firmware + ?Sized> View<'_, '_, F> {
         Ok(value as u32)
     }
 
-    /// A store that RAM does not take.
+    /// A store outside RAM.
     #[cold]
     fn store_elsewhere(
         &mut self,

@@ -1,4 +1,4 @@
-//! Every kind of instruction on its own, data first.
+//! Every kind of instruction by itself.
 
 mod every;
 
@@ -11,7 +11,7 @@ fn run_body(body: &str, others: &str) -> Machine<Fake> {
     run(&[(1, &format!("@main: func sig0, 16, 2\ntypes 0xffaa5500\ncharge 1000\n{body}\n{others}"))], 1)
 }
 
-/// Checks the doubleword that `body` leaves at `OUT`.
+/// Checks the doubleword that `body` stores at `OUT`.
 fn check(body: &str, expected: u64) {
     let machine = run_body(&format!("{body} | ret"), "");
     assert_eq!(machine.firmware().log, [""; 0], "{body}");

@@ -1,4 +1,4 @@
-//! Threads in time: small programs and what the firmware saw, `time thread value`.
+//! Threads in time: small programs, and the firmware's log, `time thread value`.
 //!
 //! A tick is 18 000 cycles, of which the servo takes the first 8000.
 
@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::testing::{CALLBACK, Fake, OUT, machine, run, thread};
 
-/// Notes 1, 2, 3 and so on, once each slice.
+/// Notes 1, 2, 3 and so on, once per slice.
 const SLICES: &str = "@main: func sig0, 1, 0
 types 0
 @next: charge 10
@@ -20,7 +20,7 @@ call_fw sig1, 0x10008000
 charge 1
 br @next";
 
-/// Counts forever at `OUT`, 10 cycles a round.
+/// Counts forever at `OUT`, 10 cycles per iteration.
 const COUNTS: &str = "@main: func sig0, 1, 0
 types 0
 @next: charge 10
@@ -29,7 +29,7 @@ add_i32_imm r0, r0, 1
 store_i32_at r0, 0x10000000
 br @next";
 
-/// A `main` with registers r0, r1 that notes, delays and so on as `steps` say, then notes 99 and returns.
+/// A `main` with registers r0, r1 that notes, delays and so on as given by `steps`, then notes 99 and returns.
 fn steps(steps: &[(&str, i32)]) -> String {
     let mut text = "@main: func sig0, 2, 0\ntypes 0\n".to_owned();
     for (name, argument) in steps.iter().chain(&[("note", 99)]) {
@@ -47,7 +47,7 @@ fn steps(steps: &[(&str, i32)]) -> String {
     text + "charge 2\nret"
 }
 
-/// The log of `programs`, of which the first thread 1 is started.
+/// The log of `programs`, with thread 1 started.
 fn check(programs: &[(i32, &str)], ticks: u64, expected: &[&str]) -> Machine<Fake> {
     let machine = run(programs, ticks);
     assert_eq!(machine.firmware().log, expected);
@@ -56,7 +56,7 @@ fn check(programs: &[(i32, &str)], ticks: u64, expected: &[&str]) -> Machine<Fak
 
 #[test]
 fn a_single_thread_gets_a_slice_every_180_us() {
-    // 20 cycles are charged between the slice's beginning and the note.
+    // 20 cycles are charged between the beginning of the slice and the note.
     check(&[(1, SLICES)], 7, &["62020 1 1", "98020 1 2", "134020 1 3"]);
 }
 
@@ -88,10 +88,10 @@ fn a_delay_ends_at_its_instant_inside_a_slice() {
 
 #[test]
 fn a_delay_longer_than_the_slice_ends_in_a_later_one() {
-    // Ends at 50 000, in the primary thread's tick: goes on when the next own slice begins.
+    // Ends at 50 000, in the primary thread's tick: continues when the thread's next slice begins.
     let main = steps(&[("delay", 50_000 - 26_006)]);
     check(&[(1, &main)], 4, &["62006 1 99"]);
-    // Ends at 65 000, in the middle of an own slice.
+    // Ends at 65 000, in the middle of the thread's slice.
     let main = steps(&[("delay", 65_000 - 26_006)]);
     check(&[(1, &main)], 4, &["65006 1 99"]);
 }
@@ -99,7 +99,7 @@ fn a_delay_longer_than_the_slice_ends_in_a_later_one() {
 #[test]
 fn an_endless_loop_loses_the_processor_and_its_debt_is_carried() {
     let machine = check(&[(1, COUNTS)], 1, &[]);
-    // The 1001st charge exceeds the budget of 10 000; its round is executed in the next slice.
+    // The 1001st charge exceeds the budget of 10 000; its iteration is executed in the next slice.
     assert_eq!(machine.memory().peek::<i32>(OUT), 1000);
     let machine = check(&[(1, COUNTS)], 3, &[]);
     assert_eq!(machine.memory().peek::<i32>(OUT), 2000);
@@ -237,7 +237,7 @@ fn an_entry_that_is_not_a_function_traps() {
     assert_eq!(machine.firmware().log, [message]);
 }
 
-/// Runs a call-back of `body` for three ticks beside a thread that counts.
+/// Runs a call-back with `body` for three ticks while a thread counts.
 fn check_callback(body: &str, expected: &[&str]) -> i32 {
     let callback = format!("{COUNTS}\n@callback: func sig0, 2, 0\ntypes 0\n{body}");
     let mut machine = machine(Config::default(), &[(1, &callback)]);

@@ -1,4 +1,4 @@
-//! Every way into guest memory at its borders.
+//! Every access to guest memory at its limits.
 
 use kmotiondef::boards::TargetBoard;
 use kmotiondef::map::{PROGRAM_BASE, TIMER0};
@@ -29,7 +29,7 @@ fn the_memory_of_another_board_is_where_its_map_says() {
         assert_eq!((memory.peek(first), memory.load(last)), (7_u32, Ok(8_u32)));
         assert_eq!(memory.load::<u8>(last.offset(4)), unmapped(last.get() + 4, Access::Read));
     }
-    // The engines' fast way ends after 16 MiB; what follows is memory all the same.
+    // The engines' fast access ends after 16 MiB; the rest is memory nevertheless.
     memory.poke(sdram.offset(0x100_0000), 5_u32);
     assert_eq!(memory.load::<u32>(sdram.offset(0x100_0000)), Ok(5));
     assert_eq!(memory.block::<4>(sdram.offset(0x100_0000)), Some(&[5, 0, 0, 0]));

@@ -1,4 +1,4 @@
-//! The native engine against the bytecode engine: they must not differ in anything.
+//! The native engine compared with the bytecode engine: there must be no difference.
 
 mod generate;
 mod long_slices;
@@ -22,7 +22,7 @@ use crate::program::Program;
 use crate::testing::{CALLBACK, Fake, HEAD_WORDS, assert_same, machine_on, program, thread};
 use crate::thread::Threads;
 
-/// The address at which the harness puts the numbers that generated programs begin with.
+/// The address at which the harness stores the initial numbers of generated programs.
 const NUMBERS: u32 = 0x80f0_0000;
 
 /// The context that all tests run.
@@ -30,7 +30,7 @@ fn id() -> ContextId {
     ContextId::of(thread(1))
 }
 
-/// All that a context works on, with an engine of its own.
+/// Everything on which a context works, with its own engine.
 struct World<E> {
     engine: E,
     program: Arc<Program>,
@@ -75,7 +75,7 @@ impl<E: Engine> World<E> {
         self.resume_part(budget, budget, woken)
     }
 
-    /// Goes on in a slice of `length` of which some is left.
+    /// Continues in a slice of `length`, of which `budget` is left.
     fn resume_within(&mut self, length: i64, budget: i64) -> Seen {
         self.resume_part(length, budget, None)
     }
@@ -110,8 +110,7 @@ impl World<NativeEngine> {
     }
 }
 
-/// Runs the last of `functions` on both engines, a slice of each of `budgets` at a time, and yields how
-/// it stopped at last.
+/// Runs the last of `functions` on both engines, in slices with these budgets, and returns how it finally stopped.
 fn lockstep(functions: &str, budgets: &[i64]) -> Stop {
     lockstep_with(Preemption::Segments, functions, budgets)
 }
@@ -143,7 +142,7 @@ fn lockstep_with(preemption: Preemption, functions: &str, budgets: &[i64]) -> St
     last
 }
 
-/// A call of itself as deep as the stack allows, or as deep as the argument says.
+/// Calls itself as deep as the stack allows, or as deep as the argument requires.
 const RECURSION: &str = "@f: func sig3, 2, 3\ntypes 0\ncharge 9\nadd_i32_imm r1, r0, -1\nbr_unless r0, @end\n\
      charge 9\narg_i32 r1, 0\ncall fn@f\nresult_i32 r1\ncharge 9\nadd_i32 r0, r0, r1\n@end: charge 9\nret_i32 r0\n";
 
@@ -263,7 +262,7 @@ fn threads_can_be_paused_replaced_and_removed_at_any_moment() {
     assert!(native.firmware().log.iter().any(|line| line.ends_with(" 1 78")), "{:?}", native.firmware().log);
 }
 
-/// Number of generated programs of a test: `many` if `CC67_LONG` is in the environment.
+/// The number of generated programs in a test: `many` if `CC67_LONG` is in the environment.
 fn cases(few: u32, many: u32) -> u32 {
     if std::env::var_os("CC67_LONG").is_some() { many } else { few }
 }

@@ -1,4 +1,4 @@
-//! Texts that the verifier accepts or refuses, data first.
+//! Programs that the verifier accepts or rejects.
 
 use kmotiondef::GuestAddr;
 use proptest::prelude::*;
@@ -9,7 +9,7 @@ use crate::testing::{HEAD_WORDS, bytes};
 
 const BASE: GuestAddr = GuestAddr::new(0x8005_0000);
 
-/// The message for a program of `functions`, `ok` if there is none.
+/// The message for a program of `functions`; `ok` if there is none.
 fn message(functions: &str) -> String {
     verify(&bytes(functions), BASE).map_or_else(|error| error.to_string(), |_| "ok".to_owned())
 }

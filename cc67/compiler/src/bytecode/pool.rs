@@ -1,4 +1,4 @@
-//! The pool: constants of eight bytes, each once.
+//! The pool: constants of eight bytes, without duplicates.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ pub(super) struct ConstantPool {
 }
 
 impl ConstantPool {
-    /// The number of a constant, new if it was not seen before.
+    /// The number of a constant, which is added if it is new.
     pub(super) fn number(&mut self, bits: u64) -> Pool {
         let next = self.values.len() as u32;
         let number = *self.numbers.entry(bits).or_insert(next);

@@ -19,7 +19,7 @@ use crate::link::{self, Linked};
 use crate::lower::testing;
 use crate::passes::Level;
 
-/// A firmware of nothing.
+/// A firmware without functions.
 #[derive(Debug, Default)]
 struct Nothing {
     traps: Vec<String>,
@@ -105,7 +105,7 @@ fn run(source: &str) -> (Vec<u8>, Vec<String>) {
     optimised
 }
 
-/// Checks what a program leaves in `int out[]`.
+/// Checks the values that a program leaves in `int out[]`.
 fn check(source: &str, expected: &[i32]) {
     let source = format!("int out[{}];\n{source}", expected.len());
     let (bytes, traps) = run(&source);
@@ -114,7 +114,7 @@ fn check(source: &str, expected: &[i32]) {
     assert_eq!(words, expected, "{source}");
 }
 
-/// Compares the words of a program of one function.
+/// Compares the words of a program that consists of one function.
 fn check_words(source: &str, expected: &str) {
     let text = disassemble(&build(source, Level::Full).text.bytes);
     let words = text.lines().filter(|line| line.starts_with('@')).skip_while(|line| !line.contains("func"));
@@ -169,7 +169,7 @@ fn a_loop_loads_constants_beforehand_and_takes_one_branch_per_iteration() {
 
 #[test]
 fn registers_are_shared_except_between_values_live_at_the_same_time() {
-    // Values that cross a loop's end keep theirs; `a` is a parameter and `b` is set before the loop.
+    // Values that are live across the end of a loop keep theirs; `a` is a parameter and `b` is set before the loop.
     check(
         "f(int a) { int b = a * 2, i, s = 0; for (i = 0; i < 3; i++) { int t = a + i; s += t * b; } return s + a; }
          main() { out[0] = f(5); }",

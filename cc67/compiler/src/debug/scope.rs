@@ -1,13 +1,13 @@
 //! Blocks of a source text, found by their braces.
 
-/// A walk over a text that leaves out comments, strings and characters.
+/// A traversal of a text that skips comments, strings and characters.
 struct Braces<'a> {
     text: &'a [u8],
     at: usize,
 }
 
 impl Iterator for Braces<'_> {
-    /// A brace and where it is.
+    /// A brace and its position.
     type Item = (u8, usize);
 
     fn next(&mut self) -> Option<(u8, usize)> {
@@ -64,7 +64,7 @@ pub(super) fn begin_of_body(text: &[u8], from: usize) -> Option<usize> {
     (Braces { text, at: from }).find(|(brace, _)| *brace == b'{').map(|(_, at)| at + 1)
 }
 
-/// The line of a place, counted from 1.
+/// The line of a position, counted from 1.
 pub(super) fn line_of(text: &[u8], at: usize) -> u32 {
     1 + text.iter().take(at).filter(|byte| **byte == b'\n').count() as u32
 }

@@ -1,4 +1,4 @@
-//! The promises of the driver: the library compiles, and leaving out unused declarations has no visible effect.
+//! Properties of the driver: the library compiles, and omitting unused declarations has no visible effect.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -18,7 +18,7 @@ fn every_library_member_compiles_without_unexpected_warnings() {
     for member in library::members() {
         let compilation = compile_library(&member, Target::Sim, Timing::default());
         let mut said = compilation.diagnostics();
-        // The names are the firmware's on purpose, and so is the test for what is not a number.
+        // The names are deliberately those of the firmware, and so is the test for NaN.
         let on_purpose =
             [Lint::Portability, Lint::SelfComparison, Lint::Redeclared, Lint::Vendor, Lint::VendorParameter]
                 .map(Some);
@@ -41,10 +41,10 @@ fn functions_missing_from_firmware_4_34_are_in_the_library() {
     }
 }
 
-/// A program that includes the board's headers, and what it begins with.
+/// The beginning of a program that includes the board's headers.
 const INCLUDE: &str = "#include \"KMotionDef.h\"\n";
 
-/// The tokens of a program, with the sources that they are in.
+/// The tokens of a program, with their sources.
 fn tokens(text: &str, headers: Headers) -> (Vec<Token>, HeadersRead, SourceMap, Names, Sink) {
     let (mut sources, mut names, mut sink) = (SourceMap::new(), Names::new(), Sink::new());
     let main = sources.add_file("main.c", None, text.as_bytes().to_vec(), None);
@@ -54,7 +54,7 @@ fn tokens(text: &str, headers: Headers) -> (Vec<Token>, HeadersRead, SourceMap, 
     (tokens, read, sources, names, sink)
 }
 
-/// The names in the headers of the board, each once.
+/// The names in the headers of the board, without duplicates.
 fn header_names() -> BTreeSet<String> {
     let texts = kmotiondef::headers::EMBEDDED.iter().map(|(_, text)| String::from_utf8_lossy(text));
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
@@ -128,7 +128,7 @@ fn programs(folder: &str) -> Vec<PathBuf> {
     found
 }
 
-/// The object of a program, and the image that it links to, as bytes.
+/// The object of a program, and the resulting image, as bytes.
 fn bytes(compilation: Compilation, options: &Options) -> (Option<Vec<u8>>, Option<Vec<u8>>) {
     let object = compilation.object.as_ref().map(|object| object.write().expect("it is small"));
     let thread = ThreadId::new(3).expect("it is a thread");
@@ -164,7 +164,7 @@ fn programs_compile_the_same_with_only_the_declarations_they_need() {
             same += 1;
         }
     }
-    // Half of the tests of this repository are about what is wrong with programs.
+    // Half of the tests in this repository are about errors in programs.
     assert!(same > 600, "{same} are the same, {again} were read again");
 }
 

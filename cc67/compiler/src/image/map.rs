@@ -6,7 +6,7 @@ use std::fmt::{self, Write};
 use crate::link::{Linked, LinkedSymbol, Section};
 use crate::typed::Linkage;
 
-/// Number of the largest symbols that are listed.
+/// The number of the largest symbols that are listed.
 const LARGEST: usize = 10;
 
 /// The map as text.

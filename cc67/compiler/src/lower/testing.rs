@@ -1,4 +1,4 @@
-//! Helpers that the tests of the back end share: C source to a typed unit and to IR.
+//! Helpers for the tests of the back ends: C source to a typed unit and to IR.
 
 use kmotiondef::timing::Timing;
 

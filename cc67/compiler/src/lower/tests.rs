@@ -1,4 +1,4 @@
-//! The shape of the code that C constructs become, unoptimised.
+//! The shape of the code for C constructs, without optimisation.
 
 mod recorded;
 

@@ -1,9 +1,9 @@
-//! The operators between two operands, and how tight they bind.
+//! Binary operators and their precedence.
 
 use crate::operators::BinaryOperator;
 use crate::pp::TokenKind;
 
-/// An operator after an operand, with another operand after it.
+/// An operator that comes between two operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Infix {
     /// `,`
@@ -18,14 +18,14 @@ pub(super) enum Infix {
     Binary(BinaryOperator),
 }
 
-/// The binding of `,`, the loosest.
+/// The precedence of `,`, the lowest.
 pub(super) const COMMA: u8 = 0;
-/// The binding of `=` and the other assignments.
+/// The precedence of `=` and the other assignments.
 pub(super) const ASSIGNMENT: u8 = 1;
-/// The binding of `?:`.
+/// The precedence of `?:`.
 pub(super) const CONDITIONAL: u8 = 2;
 
-/// The infix operator that a token is, and how tight it binds; larger is tighter.
+/// The infix operator of a token, and its precedence; higher numbers bind tighter.
 pub(super) fn infix(kind: TokenKind) -> Option<(Infix, u8)> {
     let other = match kind {
         TokenKind::Comma => Some((Infix::Comma, COMMA)),

@@ -1,4 +1,4 @@
-//! Promises of the parser, as pairs of source and tree or message.
+//! Properties of the parser, as pairs of source and tree or message.
 
 use std::fmt::Write;
 
@@ -6,7 +6,7 @@ use super::*;
 use crate::pp::{self, MemoryFiles};
 use crate::render::human::{Color, Renderer};
 
-/// Words that C programs, good and bad, are made of.
+/// Fragments of valid and invalid C programs.
 const FRAGMENTS: &[&str] = &[
     "int ",
     "x",
@@ -137,7 +137,7 @@ fn expression(input: &str, expect: &str) {
     body(&format!("{input};"), expect);
 }
 
-/// Source with exactly these errors.
+/// Source that has exactly these errors.
 fn errors(input: &str, expect: &[&str]) {
     assert_eq!(run(input).said, expect, "said about:\n{input}");
 }
@@ -463,7 +463,7 @@ fn misplaced_constructs_are_reported() {
 }
 
 proptest::proptest! {
-    /// Whatever the text, there is a tree and a message for each diagnostic.
+    /// For any text, there is a tree and a message for each diagnostic.
     #[test]
     fn no_text_makes_the_compiler_panic(words in proptest::collection::vec(0..FRAGMENTS.len(), 0..80)) {
         let text: String = words.into_iter().map(|word| FRAGMENTS[word]).collect();
@@ -479,7 +479,7 @@ fn text_abandoned_by_the_preprocessor_is_not_reported_as_unclosed() {
     );
 }
 
-/// Runs on more stack than a test has: frames are larger on Windows.
+/// Runs on a larger stack than a test has: frames are larger on Windows.
 fn on_large_stack<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
     let thread = std::thread::Builder::new().stack_size(64 << 20).spawn(work);
     thread.expect("a thread starts").join().expect("nothing panics")

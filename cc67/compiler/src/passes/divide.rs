@@ -1,7 +1,7 @@
 //! Signed division and remainder by a power of two, without a division.
 //!
-//! A shift to the right rounds down, C's division rounds toward zero: a negative dividend
-//! first gets the divisor less one added, which its sign bits supply.
+//! A shift to the right rounds down, but C's division rounds toward zero: first the divisor minus one is added to a
+//! negative dividend; the dividend's sign bits provide that number.
 
 use crate::ir::function::Function;
 use crate::ir::inst::{BlockId, Class, Inst, InstKind, Operand, ValueId};
@@ -54,7 +54,7 @@ fn expand(function: &mut Function, inst: &Inst, division: &Division, out: &mut V
         Operand::Value(dst)
     };
     let log = Operand::int(division.log.cast_signed());
-    // All sign bits, then as many of them as the divisor less one has.
+    // All sign bits, of which as many are kept as the divisor minus one has bits.
     let sign = if division.log == 1 {
         division.dividend
     } else {

@@ -11,7 +11,7 @@ use super::macros::{Macro, MacroId, Parameters};
 use super::token::{Flags, Token, TokenKind};
 
 impl Preprocessor<'_> {
-    /// Defines a macro from the rest of the line; the name of the macro.
+    /// Defines a macro from the rest of the line; returns its name.
     pub(super) fn define(&mut self) -> Option<Name> {
         let name = self.macro_name("define")?;
         let is_function_like = self.lexer().is_some_and(|(lexer, _)| lexer.is_at_paren());
@@ -111,7 +111,7 @@ impl Preprocessor<'_> {
                 }
                 _ => {}
             }
-            // Blanks before the body do not count.
+            // Blanks before the body are ignored.
             if is_first {
                 token.flags = token.flags.without(Flags::SPACE);
                 is_first = false;
@@ -167,7 +167,7 @@ impl Preprocessor<'_> {
         Some(())
     }
 
-    /// Warns if the new definition is another one.
+    /// Warns if the new definition differs from the old one.
     fn check_redefinition(
         &mut self,
         old: MacroId,
@@ -198,7 +198,7 @@ impl Preprocessor<'_> {
     }
 }
 
-/// Makes the name of a parameter an operand.
+/// Converts the name of a parameter to an operand.
 fn make_operand(token: &mut Token, kind: TokenKind, parameters: Option<&Parameters>) {
     if token.kind == TokenKind::Identifier
         && let Some(number) =

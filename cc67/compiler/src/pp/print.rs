@@ -1,4 +1,4 @@
-//! Tokens as text again, for people and tests.
+//! Converts tokens back to text, for users and tests.
 
 use crate::names::is_name_byte;
 use crate::source::SourceMap;
@@ -6,7 +6,7 @@ use crate::source::SourceMap;
 use super::lexer::without_splices;
 use super::token::{Flags, Token, TokenKind};
 
-/// The text of a preprocessed translation unit; lines stay lines, other white space becomes one blank.
+/// The text of a preprocessed translation unit; line breaks are kept, other white space becomes one blank.
 #[must_use]
 pub fn print(tokens: &[Token], sources: &SourceMap) -> Vec<u8> {
     let mut output: Vec<u8> = Vec::new();
@@ -31,7 +31,7 @@ pub fn print(tokens: &[Token], sources: &SourceMap) -> Vec<u8> {
     output
 }
 
-/// Reports whether two tokens without a separator could be read as one, by the bytes where they meet.
+/// Reports whether two tokens without a separator could be read as one, judged by the adjacent bytes.
 fn would_join(left: Option<u8>, right: Option<u8>) -> bool {
     let (Some(left), Some(right)) = (left, right) else { return false };
     match right {

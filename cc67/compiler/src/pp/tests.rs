@@ -1,4 +1,4 @@
-//! Promises of the preprocessor, as pairs of input and output.
+//! Properties of the preprocessor, as pairs of input and output.
 
 use super::*;
 
@@ -158,7 +158,7 @@ fn misused_macros() {
     said("#define f(a,b) a##b\nf(1,+)", "1+", pasted);
 }
 
-/// The examples of C11 6.10.3.5 that try every rule.
+/// The examples in C11 6.10.3.5, which test every rule.
 #[test]
 fn the_examples_of_the_standard() {
     check(
@@ -285,7 +285,7 @@ fn other_directives() {
     check("#if 0\n#foo\n#endif", "");
 }
 
-/// A message with the name of a file as this system writes it.
+/// A message with the name of a file in this system's notation.
 fn with_native_path(message: &str) -> String {
     let parts =
         message.split_once(" is `").and_then(|(start, rest)| Some((start, rest.strip_suffix("` on disk")?)));

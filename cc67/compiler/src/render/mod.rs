@@ -1,4 +1,4 @@
-//! Diagnostics as text: one file a reader.
+//! Diagnostics as text, with one file for each reader.
 //!
 //! | format | reader | file |
 //! |---|---|---|

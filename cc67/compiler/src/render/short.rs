@@ -5,7 +5,7 @@ use crate::source::SourceMap;
 
 use super::severity_name;
 
-/// The diagnostic in one line, without the line's end.
+/// The diagnostic in one line, without a line end.
 #[must_use]
 pub fn render(diagnostic: &Diagnostic, sources: &SourceMap) -> String {
     let severity = severity_name(diagnostic.severity);

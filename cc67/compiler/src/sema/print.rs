@@ -1,7 +1,7 @@
-//! The typed tree as text, for people and for tests.
+//! The typed tree as text, for users and tests.
 //!
-//! Every conversion and every byte offset is visible; types are written where they are not
-//! `int`. `@name` is a symbol, `name` a local, `t3` a temporary.
+//! Every conversion and every byte offset is shown; types other than `int` are written out. `@name` is a symbol, `name`
+//! a local, `t3` a temporary.
 
 use std::fmt::Write;
 

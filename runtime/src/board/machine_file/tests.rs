@@ -1,4 +1,4 @@
-//! Machine files that are right, and the messages about those that are not.
+//! Valid machine files, and the messages about invalid ones.
 
 use kmotiondef::AxisId;
 
@@ -245,7 +245,7 @@ out = 18
 word = \"0x10,0x20\"
 ";
     let machine = MachineFile::parse(text).unwrap_or_else(|error| panic!("{}: {error}", error.line));
-    // Keys come in the order of their names.
+    // Keys are processed in alphabetical order.
     let expect = "at 2.5 adc 0 = 1500; at 2.5 command \"StopImmediate0\"; at 2.5 axis 1 push 50
 at 2.5 encoder 3 moves 25; at 2.5 kill 2; at 2.5 persist 10 = 7; at 2.5 run thread 3 \"jog.c\"
 at 2.5 answer \"input=1.5\"; at 2.5 answer \"message_box=no\"; at 2.5 encoder 2 fails

@@ -4,7 +4,7 @@ use kmotiondef::{AxisId, Bit, ThreadId};
 
 /// An argument that distinguishes remarks of one kind.
 pub(super) trait Key {
-    /// As a number.
+    /// The argument as a number.
     fn key(&self) -> u64;
 }
 

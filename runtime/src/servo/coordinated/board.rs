@@ -1,4 +1,4 @@
-//! The path on the board: its bits are the board's lines.
+//! The path on the board: its bits are connected to the board's lines.
 
 use kmotiondef::Bit;
 use kmotiondef::variables::{COORD_SYSTEM0, KLP, TAU_KLP};
@@ -22,7 +22,7 @@ impl Bits for Lines<'_> {
     }
 }
 
-/// One tick of the path. Says whether it has moved or will.
+/// Executes one tick of the path; returns whether it has moved or will move.
 pub(crate) fn tick(tick: &mut Tick<'_>, memory: &mut GuestMemory) -> bool {
     let list = memory.get(COORD_SYSTEM0);
     if !list.is_null() && memory.block::<{ SIZE as usize }>(list).is_none() {
@@ -53,8 +53,8 @@ mod tests {
     use super::*;
     use crate::testing::TestBench;
 
-    /// A bench with axes 0 and 1 enabled and a path as a program builds it: X at 1000 units a second to 100, then a bit
-    /// and 0.1 s more.
+    /// A bench with axes 0 and 1 enabled, and a path as a program builds it: X to 100 at 1000 units per second, then a
+    /// bit and 0.1 s more.
     fn bench() -> TestBench {
         let mut bench = TestBench::new();
         let unused = u32::MAX.into();

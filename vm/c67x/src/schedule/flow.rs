@@ -1,9 +1,8 @@
-//! The rules that packets break together, found by following every path.
+//! The rules for sequences of packets, checked by following every path.
 //!
-//! A state is a packet and what is in flight when it issues, counted in cycles from then on.
-//! From each state the packet is issued once for every way that branches can go; states that
-//! were seen are not followed again. Nothing is in flight for more than ten cycles, so there
-//! are few of them.
+//! A state is a packet and the effects in flight when it issues, counted in cycles from then on. From each state the
+//! packet is issued once for each possible outcome of its branches; states that have been visited are not followed
+//! again. No effect is in flight for more than ten cycles, so there are few states.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,28 +13,28 @@ use crate::model::Branch;
 use crate::register::{Pred, Reg, Side, Unit, UnitKind};
 use crate::spelling::target;
 
-/// States after which code counts as too complex.
+/// The number of states from which code counts as too complex.
 const MOST_STATES: usize = 200_000;
 
-/// Cycles from a branch to its target.
+/// The number of cycles from a branch to its target.
 const BRANCH: u32 = 6;
 
-/// Cycles that must lie between different long multiplies of one unit.
+/// The minimum number of cycles between different long multiplies on one unit.
 const LONG_MULTIPLIES: u32 = 8;
 
 /// A result in flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Pending {
     reg: Reg,
-    /// Cycles until it is visible.
+    /// The number of cycles until it is visible.
     left: u32,
-    /// The condition it depends on, while that register is unchanged.
+    /// The condition on which it depends, while that register is unchanged.
     pred: Guard,
-    /// True if a point at which an interrupt is taken lies between it and now.
+    /// True if an interrupt could have been taken since its issue.
     exposed: bool,
 }
 
-/// A condition that can be ordered: the register's index, and whether it must be 0.
+/// A condition as a sortable value: the register, and whether it must be 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Guard(Option<(Reg, bool)>);
 
@@ -64,7 +63,7 @@ struct Reading {
     last: u32,
 }
 
-/// A branch in flight; `None` where it leaves the code.
+/// A branch in flight; `None` if it leaves the code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Coming {
     left: u32,
@@ -77,15 +76,15 @@ struct FlowState {
     at: u32,
     pending: Vec<Pending>,
     readings: Vec<Reading>,
-    /// Results of units by the cycles until they are written.
+    /// Results of units, with the number of cycles until they are written.
     ports: Vec<(Unit, u32, Guard)>,
     units: Vec<(Unit, u32)>,
     crosses: Vec<(Side, u32)>,
     multiplies: Vec<(Unit, Mnemonic, u32)>,
     branches: Vec<Coming>,
-    /// Cycles in which no interrupt is taken.
+    /// The number of cycles in which no interrupt can be taken.
     shadow: u32,
-    /// Cycles since an interrupt could be taken.
+    /// The number of cycles since an interrupt could be taken.
     since: u32,
 }
 
@@ -120,7 +119,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Issues the packet of a state; the states that can follow.
+    /// Issues the packet of a state; returns the possible next states.
     fn issue(&mut self, mut state: FlowState) -> Vec<FlowState> {
         let at = state.at;
         let Some(packet) = self.code.get(&at).copied() else {
@@ -145,7 +144,7 @@ impl Walk<'_> {
         self.pass(state, packet.cycles(), at)
     }
 
-    /// Lets the cycles of a packet pass; where a branch arrives, they end.
+    /// Passes the cycles of a packet; they end early if a branch arrives.
     fn pass(&mut self, mut state: FlowState, cycles: u32, at: u32) -> Vec<FlowState> {
         for _ in 0..cycles {
             state.tick();
@@ -173,7 +172,7 @@ impl Walk<'_> {
         vec![state]
     }
 
-    /// The code is left: everything must have landed.
+    /// Checks that all results have landed when the code is left.
     fn leave(&mut self, state: &FlowState, at: u32) {
         let late = state.pending.iter().map(|pending| Violation { at, rule: Rule::InFlight(pending.reg) });
         self.found.extend(late);
@@ -190,7 +189,7 @@ impl FlowState {
         }
     }
 
-    /// Units and cross paths that instructions before still hold.
+    /// Checks for units and cross paths that are still locked by earlier instructions.
     fn locks(&self, inst: &Inst, rules: &mut Vec<Rule>) {
         let Some(unit) = inst.unit() else { return };
         if self.units.iter().any(|(held, _)| *held == unit) {
@@ -213,7 +212,7 @@ impl FlowState {
         }
     }
 
-    /// Results that are in flight for what the instruction reads.
+    /// Checks for results in flight to the registers that the instruction reads.
     fn reads(&mut self, inst: &Inst, rules: &mut Vec<Rule>) {
         let guard = Guard::of(inst);
         let condition = inst.pred().reg().map(|reg| Reading { reg, first: 0, last: 0 });
@@ -241,7 +240,7 @@ impl FlowState {
         }));
     }
 
-    /// The instruction's results: against each other, and against what is still being read.
+    /// Checks the instruction's results against each other, and against registers that are still being read.
     fn start(&mut self, inst: &Inst, rules: &mut Vec<Rule>) {
         let pred = Guard::of(inst);
         for write in inst.writes() {
@@ -272,7 +271,7 @@ impl FlowState {
         }
     }
 
-    /// Records the resources that the instruction occupies from now on, and the branch that it is.
+    /// Records the resources that the instruction occupies, and its branch.
     fn occupy(&mut self, inst: &Inst, at: u32, code: &std::ops::Range<u32>) {
         if let Some((unit, cycles)) = inst.occupies()
             && cycles > 1
@@ -323,7 +322,7 @@ impl FlowState {
     }
 }
 
-/// Takes a cycle off every entry and removes those that have none left.
+/// Decrements the cycles of every entry, and removes those that have reached 0.
 fn count_down<T>(list: &mut Vec<T>, left: impl Fn(&mut T) -> &mut u32) {
     list.iter_mut().for_each(|item| *left(item) -= 1);
     list.retain_mut(|item| *left(item) > 0);

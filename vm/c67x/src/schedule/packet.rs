@@ -1,4 +1,4 @@
-//! The rules that concern one packet alone.
+//! The rules for a single packet.
 
 use super::{Packet, Rule};
 use crate::inst::Inst;
@@ -7,10 +7,10 @@ use crate::operand::Operand;
 use crate::register::{Reg, Side, Unit};
 use crate::spelling::FETCH_PACKET;
 
-/// Operands that may read one register in one cycle.
+/// The maximum number of operands that may read one register in one cycle.
 const READS: usize = 4;
 
-/// Every rule that the packet at `at` breaks.
+/// All rules that the packet at `at` violates.
 pub(super) fn rules(at: u32, packet: &Packet) -> Vec<Rule> {
     let insts = &packet.insts;
     let mut found = Vec::new();

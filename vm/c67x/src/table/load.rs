@@ -1,6 +1,6 @@
 //! Rows of the .D units that load.
 
-/// Appends these rows to those before and continues with the next file; see [`crate::for_each_form!`].
+/// Appends these rows to the previous ones and continues with the next file; see [`crate::for_each_form!`].
 #[doc(hidden)]
 #[macro_export]
 macro_rules! rows_of_loads {

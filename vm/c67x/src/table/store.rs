@@ -1,6 +1,6 @@
 //! Rows of the .D units that store.
 
-/// Appends these rows to those before and hands all of them to the macro `$m`; see [`crate::for_each_form!`].
+/// Appends these rows to the previous ones and passes all of them to the macro `$m`; see [`crate::for_each_form!`].
 #[doc(hidden)]
 #[macro_export]
 macro_rules! rows_of_stores {

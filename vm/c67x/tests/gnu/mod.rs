@@ -1,4 +1,4 @@
-//! Instructions in the words of the GNU disassembler.
+//! Instructions in the notation of the GNU disassembler.
 
 use c67x::{Inst, Kind, Operand, target};
 

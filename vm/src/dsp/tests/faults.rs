@@ -1,4 +1,4 @@
-//! Code that no compiler makes ends in a fault that says what is wrong.
+//! Code that no compiler generates ends in a fault with a clear message.
 
 use c67x::{PARALLEL, Reg, assemble};
 
@@ -8,7 +8,7 @@ use crate::trap::{Fault, TrapKind};
 
 const BASE: u32 = 0x8005_0000;
 
-/// A core before the lines, a word each.
+/// A core at the beginning of the lines, one word each.
 fn code(text: &str) -> (Core, Flat) {
     let lines: Vec<_> = text.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
     let mut words: Vec<u32> = Vec::new();
@@ -98,7 +98,7 @@ fn results_in_flight_land_at_an_interrupt() {
 
 #[test]
 fn code_that_is_written_is_decoded_again() {
-    // The store replaces the constant before it comes round again.
+    // The store replaces the constant before the next iteration.
     let text = "MVK .S1 1,A1\nSTW .D1T1 A6,*A4\nB .S1 pc+0\nNOP 5";
     let (mut core, mut memory) = code(text);
     let new = assemble("MVK .S1 2,A1", BASE).expect("an instruction").inst.encode(false);

@@ -1,4 +1,4 @@
-//! A memory of tests: bytes by address, 0 where nothing was written.
+//! A memory for tests: bytes by address, 0 where nothing was written.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::trap::TrapKind;
 pub(super) struct Flat(pub(super) BTreeMap<u32, u8>);
 
 impl Flat {
-    /// Writes words from `at` on.
+    /// Writes words at `at` and the following addresses.
     pub(super) fn words(&mut self, at: u32, words: impl IntoIterator<Item = u32>) {
         for (address, word) in (at..).step_by(4).zip(words) {
             self.put::<4>(address, word);

@@ -1,4 +1,4 @@
-//! Memory for which the processor waits: time passes, and nothing else changes.
+//! Memory for which the processor waits: time passes, without other changes.
 
 use c67x::{Reg, assemble};
 
@@ -10,7 +10,7 @@ const BASE: u32 = 0x8005_0000;
 /// Loads a word twice while a product is in flight, and uses all of them as soon as they land.
 const CODE: &str = "MVK .S1 5,A1\nMVK .S1 64,A4\nLDW .D1T1 *A4,A5\nMPY .M1 A1,A1,A6\nADD .L1 A6,A6,A7\n\
                     LDW .D1T1 *A4,A8\nADD .L1 A6,A7,A7\nADD .L1 A5,A7,A7\nNOP 3\nADD .L1 A8,A7,A7\nNOP 9\nNOP 9";
-/// Cycles of that code without its last two packets.
+/// The cycles of that code without its last two packets.
 const CYCLES: u64 = 12;
 
 /// A memory with one slow word.
@@ -58,7 +58,7 @@ impl Memory for Slow {
     }
 }
 
-/// Runs the code to a time; the registers, the time, and when the slow word was loaded.
+/// Runs the code to a time; returns the registers, the time, and the times at which the slow word was loaded.
 fn run(waits: u64, until: u64) -> (Vec<(String, u32)>, u64, Vec<u64>) {
     let mut memory = Slow { waits, ..Slow::default() };
     let words = CODE.lines().zip((BASE..).step_by(4)).map(|(line, at)| {

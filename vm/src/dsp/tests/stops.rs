@@ -1,4 +1,4 @@
-//! Stops, and packets that are counted: what is executed, and when, is the same.
+//! Stops, and counting of packets: execution and timing stay the same.
 
 use c67x::{Reg, assemble};
 
@@ -24,7 +24,7 @@ fn state(core: &Core) -> (u32, u64, u64, Vec<(String, u32)>) {
     (core.state.pc(), core.state.cycle(), core.packets(), core.registers())
 }
 
-/// The state after 500 cycles, through as many stops as there are.
+/// The state after 500 cycles, with any number of stops.
 fn run(stops: &[u32], until: u64) -> (Core, Vec<(u32, u32)>) {
     let (mut core, mut memory) = at_begin();
     core.skip_waits(true);

@@ -1,5 +1,5 @@
-//! Translated code, and loops with their registers renamed, do what the interpreter of single packets does: registers,
-//! memory, cycles, packets, faults.
+//! Translated code, and loops with renamed registers, behave like the interpreter of single packets: registers, memory,
+//! cycles, packets, faults.
 
 use c67x::{PARALLEL, Reg, assemble};
 use kmotiondef::GuestAddr;
@@ -12,7 +12,7 @@ use crate::trap::{Access, TrapKind};
 const CODE: u32 = 0x8005_0000;
 const BACK: u32 = 0x0000_1000;
 
-/// Doubles of every kind, among them those that the processor takes for zeros.
+/// Doubles of every kind, including those that the processor treats as zeros.
 const DOUBLES: [f64; 20] = [
     1.5,
     -3.25,
@@ -90,7 +90,7 @@ fn words(text: &str) -> Vec<u32> {
     words
 }
 
-/// Everything that can be seen of a core.
+/// The whole observable state of a core.
 fn seen(core: &Core, halt: &Halt) -> String {
     let state = &core.state;
     let regs: Vec<u32> = (0..Reg::COUNT).filter_map(Reg::from_index).map(|reg| state.reg(reg)).collect();
@@ -105,7 +105,7 @@ fn seen(core: &Core, halt: &Halt) -> String {
     )
 }
 
-/// The RAMs with these words, and a core before them.
+/// The RAMs with these words, and a core at their beginning.
 fn start(words: &[u32], regs: &[(Reg, u32)]) -> (Ram, Core) {
     let mut ram = Ram(GuestMemory::new());
     for (at, word) in (CODE..).step_by(4).zip(words) {
@@ -123,7 +123,7 @@ fn start(words: &[u32], regs: &[(Reg, u32)]) -> (Ram, Core) {
     (ram, core)
 }
 
-/// Runs words packet by packet and with loops, up to any packets, and compares the state there; returns the number of
+/// Runs words packet by packet and with loops, up to any packets, and compares the states there; returns the number of
 /// packets that were executed in loops.
 fn check_borders(words: &[u32], regs: &[(Reg, u32)], steps: &[u64]) -> u64 {
     let (mut ram, mut plain) = start(words, regs);
@@ -142,8 +142,8 @@ fn check_borders(words: &[u32], regs: &[(Reg, u32)], steps: &[u64]) -> u64 {
     looping.looped()
 }
 
-/// Runs words packet by packet, with loops, and translated, in slices of this length; how many packets were translated,
-/// or those of loops where nothing is.
+/// Runs words packet by packet, with loops, and translated, in slices of this length; returns the number of translated
+/// packets, or of packets in loops without translation.
 fn check(words: &[u32], regs: &[(Reg, u32)], slice: i64, slices: usize) -> u64 {
     let (mut ram, mut plain) = start(words, regs);
     let (mut looping, mut translated) = (plain.clone(), plain.clone());
@@ -232,7 +232,7 @@ fn a_translated_loop_can_be_left_before_any_packet() {
         let looped = check_borders(&INTEGER, &regs, &[step]);
         assert!(looped > 4_000, "{looped}");
     }
-    // Software-pipelined: products of doubles, results on their way to the same registers from two iterations.
+    // Software-pipelined: products of doubles, with results in flight to the same registers from two iterations.
     let regs = [(Reg::a(4), 0x8007_0000), (Reg::b(4), 0x8007_0008), (Reg::a(6), 1000)];
     for step in 70..80 {
         let looped = check_borders(&DOUBLE, &regs, &[step, 2 * step]);
@@ -242,7 +242,7 @@ fn a_translated_loop_can_be_left_before_any_packet() {
 
 #[test]
 fn a_fault_in_a_loop_keeps_the_results_in_flight() {
-    // Products and the one load land after the other has run out of SDRAM.
+    // Products and one load land after the other load has run beyond SDRAM.
     let text = "MPYI .M1 A8,A9,A12\nMPYI .M2 B8,B9,B12\n|| LDW .D2T2 *B5++[1],B8\n|| ADDK .S2 1,B9\n|| LDW .D1T1 *A5++[16],A8\n\
                 || B .S1 BACK\nADD .L1 A8,A9,A9\nNOP 5\n"
         .replace("BACK", &format!("0x{CODE:08X}"));
@@ -259,7 +259,7 @@ fn a_fault_in_a_loop_keeps_the_results_in_flight() {
 
 #[test]
 fn repeatedly_overwritten_code_runs_the_same() {
-    // Each iteration stores one of two constants over the MVK after it.
+    // Each iteration replaces the MVK after it by one of two constants.
     let text = "ADDK .S2 -1,B0\nXOR .L1 A6,A7,A6\nSTW .D1T1 A6,*A5\nNOP 5\nMVK .S1 1,A8\nADD .L1 A8,A9,A9\n\
                 [B0] B .S2 B31\nNOP 5\nB .S2 B3\nNOP 5\n";
     let words = words(text);
@@ -276,16 +276,16 @@ fn repeatedly_overwritten_code_runs_the_same() {
 
 #[test]
 fn an_access_outside_ram_ends_the_same() {
-    // A pointer runs from the end of SDRAM into nothing.
+    // A pointer runs beyond the end of SDRAM.
     let text = "LDW .D1T1 *A5++[16],A8\nNOP 4\nADD .L1 A8,A9,A9\nB .S2 B31\nNOP 5\n";
     let translated =
         check(&words(text), &[(Reg::b(31), CODE), (Reg::a(5), 0x8100_0000 - 2000 * 64)], 18_000, 10);
     assert!(translated > 0);
 }
 
-/// A line of a loop from a few numbers.
+/// A line of a loop, determined by a few numbers.
 fn line(kind: u8, a: u8, b: u8, c: u8) -> String {
-    // A4 to A7 and B4 to B7 are addresses, A0, A1, B1, B2 conditions, B0 counts; the rest are values.
+    // A4 to A7 and B4 to B7 are addresses, A0, A1, B1 and B2 conditions, B0 is a counter; the rest are values.
     let [x, y, d] = [a, b, c].map(|n| if n % 16 == 7 { 24 } else { 8 + n % 16 });
     let (p, q) = (4 + a % 4, 4 + b % 4);
     let pair = |n: u8| format!("A{}:A{}", 9 + n % 8 * 2, 8 + n % 8 * 2);
@@ -359,7 +359,7 @@ fn doubles_of_every_kind_give_the_same_results() {
     }
 }
 
-/// Lines that write words which products and sums of doubles read in the cycles after their issue.
+/// Lines that write words which sums and products of doubles read in the cycles after their issue.
 const BESIDE_DOUBLES: [u8; 12] = [0, 21, 30, 32, 32, 33, 33, 33, 34, 37, 40, 42];
 
 /// A line of a loop, without a condition if its result comes later than in the first stage.
@@ -371,7 +371,8 @@ fn steady_line(kind: u8, a: u8, b: u8, c: u8) -> String {
     }
 }
 
-/// A loop of lines from numbers; every sixth is in parallel with the one before it, after every other there is a gap.
+/// A loop of lines from numbers; every sixth is in parallel with the previous one, and every second is followed by a
+/// gap.
 fn random_loop(lines: &[([u8; 4], u8)], gap: u8, line: impl Fn(u8, u8, u8, u8) -> String) -> String {
     let mut text = String::from("ADDK .S2 -1,B0\n");
     for (index, ([kind, a, b, c], nop)) in lines.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Every recorded instruction and packet.
+//! All recorded instructions and packets.
 
 use std::fs;
 
@@ -34,7 +34,7 @@ fn control(name: &str) -> Control {
     Control::ALL.iter().copied().find(|control| control.names().0 == name).expect("a control register")
 }
 
-/// A core and memory as the line says.
+/// A core and memory in the line's initial state.
 fn set_up(line: &Value, pc: u32) -> (Core, Flat) {
     let mut core = Core::new(pc);
     let mut memory = Flat::default();

@@ -1,4 +1,4 @@
-//! Every handler, very often in one slice: one that does not continue by a jump would use up the host's stack.
+//! Every handler, very often in one slice: a handler that does not continue by a jump would overflow the host's stack.
 
 use std::sync::Arc;
 
@@ -16,10 +16,10 @@ use crate::text::assemble;
 use crate::thread::Threads;
 use crate::verify::verify;
 
-/// Iterations of the loop that has every handler once.
+/// The number of iterations of the loop that contains every handler.
 const ITERATIONS: u32 = 20_000;
 
-/// The host's stack, in bytes: too small for a frame an iteration.
+/// The size of the host's stack in bytes: too small for one frame per iteration.
 const HOST_STACK: usize = 0x4_0000;
 
 /// Signatures `()` and from each class to itself, constants, and a function of each signature.
@@ -41,7 +41,7 @@ sig 6, 0\ntypes 0xf80
 @nothing: func sig0, 0, 0\ncharge 9\nret
 ";
 
-/// Instructions that are not for the loop, or only together with others.
+/// Instructions that cannot be in the loop, or only together with others.
 const SPECIAL: [&str; 23] = [
     "program",
     "sig",
@@ -68,9 +68,10 @@ const SPECIAL: [&str; 23] = [
     "result_f64",
 ];
 
-/// The instruction with a register of its class wherever it has one, and an address of RAM.
+/// The instruction with a register of the right class for each operand, and an address in RAM.
 ///
-/// It assigns another register than it reads, unless that is linked with what the one before assigns.
+/// It assigns a different register than it reads, unless that is linked with the register that the previous one
+/// assigns.
 fn line(step: &LinkedOp, label: &str) -> String {
     let mut word = [0; WORD];
     word[..2].copy_from_slice(&step.code.to_le_bytes());
@@ -80,12 +81,12 @@ fn line(step: &LinkedOp, label: &str) -> String {
     let mut place = DST;
     let mut written = Vec::new();
     for operand in operands.split(", ") {
-        // The first operand is what is written, for most: not the register with the address.
+        // For most instructions the first operand is written: it must not be the register with the address.
         let is_assigned = place == DST && step.links[0] != DST && !name.starts_with("br");
         written.push(operand_at(operand, is_assigned || step.links.contains(&place)));
         place += if operand.starts_with("0x") { 2 } else { 1 };
     }
-    // Sums and products have the value of one operand, so that an address stays one.
+    // Sums and products have the value of one operand, so that an address remains one.
     if let "add_i32" = name {
         written[2] = "r2".into();
     }
@@ -95,7 +96,7 @@ fn line(step: &LinkedOp, label: &str) -> String {
     format!("{name} {}\n", written.join(", ")).replace("0x00000000", "0x10000010").replace("@0", label)
 }
 
-/// An operand with a register that a piece has set, or with one that its instructions assign.
+/// An operand with a register that the piece has set, or with one that its instructions assign.
 fn operand_at(operand: &str, is_assigned: bool) -> String {
     let (set, assigned) = match operand {
         "r0" => ("r0", "r1"),
@@ -107,10 +108,10 @@ fn operand_at(operand: &str, is_assigned: bool) -> String {
     if is_assigned { assigned } else { set }.to_owned()
 }
 
-/// Code that has the instructions of `steps` in a row; nothing if one of them is special.
+/// Code with the instructions of `steps` in sequence; empty if one of them is special.
 fn piece(number: usize, steps: &[LinkedOp]) -> String {
     let label = format!("@l{number}");
-    // A sequence ends with the `charge` that every piece ends with.
+    // A sequence ends with the `charge` at the end of every piece.
     let is_charged =
         steps.len() > 1 && steps.last().is_some_and(|step| Op::NAMES[usize::from(step.code)] == "charge");
     let steps = &steps[..steps.len() - usize::from(is_charged)];
@@ -136,7 +137,7 @@ fn call(class: &str, register: &str) -> String {
 const MORE: &str = "arg_i32 r0, 0\narg_i32 r0, 1\narg_i32 r0, 2\narg_f32 f8, 3\narg_f64 d12, 4\narg_f64 d12, 5\n\
                     call fn@take\ncharge 2000\nbr_table r3, 0\nbr @behind\n@behind: charge 2000\n";
 
-/// A program whose `main` does everything.
+/// A program whose `main` contains everything.
 fn everything() -> String {
     let each = (0..OPCODES).map(|code| vec![LinkedOp { code, links: [0; 2] }]);
     let rows = SEQUENCES.iter().map(|sequence| sequence.to_vec());
@@ -149,7 +150,7 @@ fn everything() -> String {
     )
 }
 
-/// Runs the program in one slice; how it stopped.
+/// Runs the program in one slice; returns how it stopped.
 fn run_everything() -> Stop {
     let text = assemble(&everything()).expect("the text is correct");
     let program = Arc::new(verify(&text, program_base(thread(1))).expect("the program is correct"));

@@ -1,8 +1,7 @@
 //! Programs of random instructions, straight from the instruction table.
 //!
-//! A program is a `main` of blocks with random branches between them, and a function that calls
-//! itself. Each class has four registers, which begin with numbers at the edges of what the
-//! operations distinguish. Addresses are mostly good.
+//! A program is a `main` of blocks with random branches between them, and a function that calls itself. Each class has
+//! four registers, whose initial values are edge cases of the operations. Most addresses are valid.
 
 use std::fmt::Write as _;
 
@@ -13,7 +12,7 @@ use crate::operand::{
     RegI64, SigRef,
 };
 
-/// Numbers at the edges: of integers, of doubles, of pairs of singles.
+/// Edge cases of integers, of doubles, and of pairs of floats.
 pub(super) const NUMBERS: &[u64] = &[
     0,
     1,
@@ -45,7 +44,7 @@ pub(super) const NUMBERS: &[u64] = &[
     0x3690_0000_0000_0001,
 ];
 
-/// Addresses: mostly of RAM, some where it ends, some of text, devices, flash and nothing.
+/// Addresses: most of them in RAM, some at its end, some in text, devices, flash and unmapped memory.
 const ADDRESSES: &[u32] = &[
     0x80f0_0000,
     0x80f0_0020,
@@ -142,7 +141,7 @@ macro_rules! define_generators {
 }
 for_each_op!(define_generators);
 
-/// The instructions that a generated block ends with or contains by itself.
+/// Instructions with which a generated block ends, or which it contains separately.
 const CONTROL: &[&str] =
     &["program", "sig", "types", "func", "charge", "br", "arg_", "call", "result_", "ret", "unreachable"];
 
@@ -214,7 +213,7 @@ fn instruction(random: &mut Random, text: &mut String) {
     }
     random.integers = (0, 4);
     if uses_addresses(name) {
-        // r2 and r3 are addresses then.
+        // Here r2 and r3 are addresses.
         for register in 2..4 {
             let good = 18 + usize::from(random.below(8) == 0) * (ADDRESSES.len() - 18);
             let address = ADDRESSES[random.below(good)].cast_signed();

@@ -1,11 +1,11 @@
-//! Many slices at once against one after another.
+//! Many slices at once, compared with single ones.
 
 use super::*;
 
-/// The length of a slice with the servo's time of the tests.
+/// The length of a slice with the servo time of the tests.
 const SLICE: i64 = 10_000;
 
-/// The machine on engine `E` after this many ticks at a time.
+/// The machine with engine `E` after runs of these numbers of ticks.
 fn run<E: Engine>(
     main: &str,
     pauses: &[u64],
@@ -19,7 +19,7 @@ fn run<E: Engine>(
     machine
 }
 
-/// Checks that a program does the same on both engines, seen after each of `pauses`; the native machine.
+/// Checks that a program does the same on both engines, observed after each of `pauses`; returns the native machine.
 fn check(main: &str, pauses: &[u64]) -> Machine<Fake, NativeEngine> {
     let mut steps = Vec::new();
     let mut places = Vec::new();
@@ -37,14 +37,14 @@ fn check(main: &str, pauses: &[u64]) -> Machine<Fake, NativeEngine> {
     native
 }
 
-/// A program that does `steps`, each a kind and a number, over and over or until it divides by 0.
+/// A program that repeats `steps`, each a kind and a number, until it divides by 0 if `ends`.
 fn program_of(steps: &[(usize, i32)], ends: bool) -> String {
     let mut text = "@main: func sig0, 4, 8\ntypes 0\ncharge 9\nconst_i32 r2, 0x80f00000\n\
                     const_i32 r3, 0x10000040\nbr @again\n@again: "
         .to_owned();
     for (at, (kind, number)) in steps.iter().enumerate() {
         text += &match kind {
-            // So many cycles in rounds of 100, and a block of any length.
+            // This number of cycles in iterations of 100, and a block of any length.
             0 => format!(
                 "charge 9\nconst_i32 r0, {}\n@round{at}: charge 100\nload_i32 r1, r2, +8\nadd_i32_imm r1, r1, 1\n\
                  store_i32 r1, r2, +8\nadd_i32_imm r0, r0, -1\nbr_if r0, @round{at}\n",
@@ -76,8 +76,8 @@ fn program_of(steps: &[(usize, i32)], ends: bool) -> String {
 
 #[test]
 fn a_block_that_ends_with_its_slice_belongs_to_it() {
-    // Slices begin 8000 cycles after every other tick. The note is made behind 3 of them less a cycle, behind 3, and
-    // behind 3 and a cycle.
+    // Slices begin 8000 cycles after every second tick. The cycles before the note are those of three slices minus one,
+    // of three slices, and of three slices plus one.
     for (cycles, expected) in [(29_999, "107999 1 0"), (30_000, "108000 1 0"), (30_001, "134001 1 0")] {
         let rest = cycles - 2 * (SLICE - 1) - 40 - 2;
         let main = format!(

@@ -4,7 +4,8 @@ use super::lockstep;
 use crate::engine::Stop;
 use crate::trap::TrapKind;
 
-/// A loop that executes `body` with an address in `r0` and the iterations left in `r1`; `r2`, `r3` and `d4` are free.
+/// A loop that executes `body` with an address in `r0` and the remaining iterations in `r1`; `r2`, `r3` and `d4` are
+/// free.
 fn walk(from: u32, step: i32, iterations: u32, body: &str) -> String {
     let from = from.cast_signed();
     format!(
@@ -17,7 +18,7 @@ fn walk(from: u32, step: i32, iterations: u32, body: &str) -> String {
 /// Runs `functions` on both engines in one slice, and in many.
 fn stop_of(functions: &str) -> Stop {
     let all_at_once = lockstep(functions, &[1_000_000]);
-    // Slices that end in the middle of the iterations that run at once, in front of them and behind them.
+    // Slices that end within the iterations that run at once, before them and after them.
     let budgets: Vec<i64> = (0..400).map(|slice| 1 + slice % 29 * 17).collect();
     assert_eq!(lockstep(functions, &budgets), all_at_once, "{functions}");
     all_at_once
@@ -78,7 +79,7 @@ fn addresses_that_are_not_aligned_trap() {
     ] {
         assert!(matches!(trap_of(&walk(0x8010_0000, step, 9, body)), TrapKind::Misaligned { .. }), "{body}");
     }
-    // A double may be stored at any word.
+    // A double may be stored at any word address.
     assert_eq!(stop_of(&walk(0x8010_0000, 4, 9, "store_f64 d4, r0, +0")), Stop::Ended);
 }
 

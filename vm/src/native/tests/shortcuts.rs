@@ -1,4 +1,4 @@
-//! Functions that may return soon: executing the path to the return and making the call have the same effects.
+//! Functions that may return early: executing the path to the return has the same effects as making the call.
 
 use super::lockstep;
 use crate::engine::Stop;
@@ -13,7 +13,7 @@ fn calls(functions: &str, first: i32) -> String {
     )
 }
 
-/// Runs `functions` on both engines in one slice, and in many that end in each place on the way.
+/// Runs `functions` on both engines in one slice, and in many that end at every position on the way.
 fn stop_of(functions: &str) -> Stop {
     let all_at_once = lockstep(functions, &[1_000_000]);
     for length in [1, 3, 17, 40, 66] {
@@ -65,7 +65,7 @@ fn a_division_by_zero_traps_in_the_function() {
 
 #[test]
 fn a_function_that_returns_soon_still_needs_its_stack_frame() {
-    // The last call has no room, wherever the recursion ends.
+    // The last call does not fit, wherever the recursion ends.
     for frame in [0, 8, 4000] {
         let leaf =
             format!("@leaf: func sig3, 1, {frame}\ntypes 0\ncharge 3\nadd_i32_imm r0, r0, 1\nret_i32 r0\n");
@@ -89,7 +89,7 @@ fn a_nan_result_has_the_bits_of_arithmetic() {
         "{f}@main: func sig0, 3, 0\ntypes 0x3c\ncharge 9\nload_f64_at d1, ADDRESS\narg_i32 r0, 0\narg_f64 d1, 1\n\
          call fn@f\nresult_f64 d2\ncharge 4\nstore_f64_at d2, 0x10000000\nret"
     );
-    // Two infinities, two that are no numbers, and a number.
+    // Two infinities, two NaNs, and a number.
     for number in 16..=20 {
         let address = format!("{:#x}", super::NUMBERS + 8 * number);
         assert_eq!(stop_of(&main.replace("ADDRESS", &address)), Stop::Ended);

@@ -1,4 +1,4 @@
-//! A machine continues from each of its snapshots as it continued when the snapshot was taken, on every engine.
+//! A machine continues from each of its snapshots as it did when the snapshot was taken, on every engine.
 
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -10,7 +10,7 @@ use crate::engine::ForeignSnapshot;
 use crate::machine::Snapshot;
 use crate::profile::ProfilingEngine;
 
-/// Calls itself to a depth that changes, notes, and calls what waits.
+/// Calls itself to varying depths, notes, and calls a function that waits.
 fn deep(delay: u32) -> String {
     format!(
         "@main: func sig0, 2, 0\ntypes 0\n@up: charge 99\nadd_i32_imm r1, r1, 37\nand_i32_imm r1, r1, 511\n\
@@ -20,12 +20,12 @@ fn deep(delay: u32) -> String {
     )
 }
 
-/// Writes to more and more of SDRAM, through a pointer to a function now and then.
+/// Writes to more and more of SDRAM, occasionally through a pointer to a function.
 const WRITES: &str = "@main: func sig0, 3, 2\ntypes 0\ncharge 9\nconst_i32 r0, 0x80200000\n@up: charge 60\n\
     store_i32 r1, r0, +0\nadd_i32_imm r0, r0, 260\nadd_i32_imm r1, r1, 1\nand_i32_imm r2, r1, 15\nbr_if r2, @up\n\
     charge 60\nconst_i32 r2, 0x80070000\nadd_i32_imm r2, r2, 0\ncall_fw sig0, 0x10008010\ncharge 9\nbr @up\n";
 
-/// Counts in registers alone, in long slices.
+/// Counts only in registers, in long slices.
 const COUNTS: &str = "@main: func sig0, 2, 0\ntypes 0\n@up: charge 60\nadd_i32_imm r0, r0, 1\nmul_i32_imm r1, r0, 7\n\
     and_i32_imm r1, r1, 4095\nbr_if r1, @up\ncharge 60\nstore_i32_at r0, 0x80f00400\nbr @up\n";
 
@@ -34,7 +34,7 @@ const WAITS: &str = "@main: func sig0, 1, 0\ntypes 0\n@up: charge 99\ncall_fw si
     @callback: func sig0, 1, 0\ntypes 0\ncharge 30\nload_i32_at r0, 0x10000000\nadd_i32_imm r0, r0, 1\n\
     store_i32_at r0, 0x10000000\nret";
 
-/// A small generator of numbers (Marsaglia's xorshift).
+/// A small random number generator (Marsaglia's xorshift).
 struct Numbers(u64);
 
 impl Numbers {
@@ -46,7 +46,7 @@ impl Numbers {
     }
 }
 
-/// A machine with programs as `seed` chooses them, all started.
+/// A machine with programs selected by `seed`, all started.
 fn machine_of<E: Engine>(seed: u64) -> Machine<Fake, E> {
     let generated = generate::program(seed);
     let texts =
@@ -87,7 +87,7 @@ fn disturb<E: Engine>(machine: &mut Machine<Fake, E>, kind: u64) {
     }
 }
 
-/// A machine as it was, with its firmware.
+/// A snapshot of a machine, with its firmware.
 type Kept<E> = (Snapshot<<E as crate::engine::Executor>::Snapshot>, Fake);
 
 fn keep<E: Engine>(machine: &mut Machine<Fake, E>) -> Kept<E> {
@@ -99,7 +99,7 @@ fn go_back<E: Engine>(machine: &mut Machine<Fake, E>, (snapshot, firmware): &Kep
     *machine.firmware_mut().0 = firmware.clone();
 }
 
-/// Runs from instant to instant, keeping each, then goes back to them in another order and runs to the end.
+/// Runs from one time to the next, taking snapshots, then restores them in another order and runs to the end.
 fn check<E: Engine>(seed: u64) {
     let mut numbers = Numbers(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
     let mut instants: Vec<(u64, u64)> = (0..8).map(|_| (1 + numbers.below(150), numbers.below(9))).collect();
@@ -122,7 +122,7 @@ fn check<E: Engine>(seed: u64) {
         let first = numbers.below(instants.len() as u64) as usize;
         go_back(&mut machine, &kept[first]);
         assert_eq!(machine.tick(), Ticks::new(instants[first].0));
-        // Some way on, and again from the same instant.
+        // Runs for some ticks, and again from the same snapshot.
         machine.run_until(Ticks::new(instants[first].0 + numbers.below(9)));
         go_back(&mut machine, &kept[first]);
         for (tick, kind) in &instants[first..] {
@@ -180,7 +180,7 @@ fn a_snapshot_takes_little_time_and_memory() {
         begin.elapsed(),
         second.memory().bytes_beyond(first.memory())
     );
-    // Many times what it takes, for a computer that has other things to do.
+    // Many times the expected duration, for a busy computer.
     assert!(taken < Duration::from_millis(200), "{taken:?}");
     assert!(second.memory().bytes_beyond(first.memory()) < 0x10_0000);
 }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::engine::HoldReason;
 
-/// Adds 1 to a cell in memory without end: the load takes effect in cycle 2 + 6 of 25, the store in cycle 18.
+/// Repeatedly adds 1 to a cell in memory: the load takes effect in cycle 2 + 6 of 25, the store in cycle 18.
 const COUNT: &str = "@main: func sig0, 1, 0\ntypes 0\n@up: charge 25\nload_i32_at r0, 0x80f00100\n\
      add_i32_imm r0, r0, 1\nstore_i32_at r0, 0x80f00100\nbr @up";
 
@@ -16,7 +16,7 @@ const COUNT_DOWN: &str = "@main: func sig0, 2, 0\ntypes 0\ncharge 9\nconst_i32 r
 const DOUBLES: &str = "@main: func sig0, 2, 0\ntypes 15\ncharge 9\nconst_f64 d0, pool[0]\nconst_f64 d1, pool[1]\n\
      @up: charge 12\nstore_f64_at d0, 0x80f00100\nstore_f64_at d1, 0x80f00100\nbr @up";
 
-/// The instruction before which a slice of `budget` has ended, and what is left.
+/// The instruction before which a slice of `budget` has ended, and the rest of the budget.
 fn stops_at(functions: &str, budget: i64) -> (usize, i64) {
     let program = Arc::new(program(1, functions));
     let mut world = World::<BytecodeEngine>::new(&program);
@@ -73,7 +73,7 @@ fn a_store_of_eight_bytes_is_split_between_its_words() {
     }
 }
 
-/// The result of two threads that each count to 20,000 in one cell.
+/// The result of two threads that each count to 20,000 in the same cell.
 fn race<E: Engine>(config: Config) -> (i32, Machine<Fake, E>) {
     let mut machine = machine_on::<E>(config, &[(1, COUNT_DOWN), (2, COUNT_DOWN)]);
     let _ = machine.start(thread(2));

@@ -7,7 +7,7 @@ use crate::ir::inst::{Class, Operand, ValueId};
 use crate::ir::operators::{BinaryOp, CompareOp};
 
 impl Selector<'_> {
-    /// The other sign, of every number.
+    /// Inverts the sign, of any number.
     pub(super) fn negate_float(&mut self, class: Class, dst: VReg, src: VReg) {
         let sign = self.operand(Operand::int(i32::MIN));
         if class == Class::F32 {

@@ -8,7 +8,7 @@ use crate::c67x::forms::Kind;
 use crate::ir::inst::{self, Address, Class, Operand, SlotId, ValueId};
 use crate::ir::operators::Width;
 
-/// Bytes that are copied or cleared word by word.
+/// The maximum number of bytes that are copied or cleared word by word.
 const INLINE: u32 = 64;
 
 impl Selector<'_> {
@@ -41,7 +41,7 @@ impl Selector<'_> {
                 let place = self.place(address, 4);
                 self.access(Kind::StoreWord, Arg::None, src.into(), place);
             }
-            // The processor has no store of a pair.
+            // The processor has no store for pairs.
             Width::I64 | Width::F64 => {
                 let place = self.place_of_two(address);
                 let next = MemoryPlace { offset: place.offset + 4, ..place };
@@ -63,7 +63,7 @@ impl Selector<'_> {
         self.access(kind, dst.into(), Arg::None, place);
     }
 
-    /// An address that an access of `bytes` bytes can have.
+    /// An address in a form that an access of `bytes` bytes can use.
     fn place(&mut self, address: Address, bytes: u32) -> MemoryPlace {
         let step = bytes.cast_signed();
         let (base, offset) = match address.base {
@@ -81,7 +81,7 @@ impl Selector<'_> {
         MemoryPlace::new(Base::Reg(sum), 0)
     }
 
-    /// An address of a word or pair some bytes, a multiple of 8, after that in a register.
+    /// An address of a word or pair at an offset, a multiple of 8, from the address in a register.
     pub(super) fn beyond(&mut self, base: VReg, offset: i32) -> MemoryPlace {
         if offset / 4 <= 31 {
             return MemoryPlace::new(Base::Reg(base), offset);
@@ -91,7 +91,7 @@ impl Selector<'_> {
         MemoryPlace::new(Base::Reg(sum), 0)
     }
 
-    /// An address of two words one after another.
+    /// An address of two consecutive words.
     fn place_of_two(&mut self, address: Address) -> MemoryPlace {
         let place = self.place(address, 4);
         if place.offset / 4 < 31 || !matches!(place.base, Base::Reg(_)) {

@@ -1,4 +1,4 @@
-//! The functions of the firmware that test programs call, with no more than their interface.
+//! The firmware functions that test programs call, reduced to their interface.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -23,7 +23,7 @@ impl Firmware {
         Self { names: names.collect(), console: String::new(), calls: 0 }
     }
 
-    /// Does what the function at an address does.
+    /// Executes the function at an address.
     pub(super) fn call(&mut self, address: GuestAddr, core: &mut Core, ram: &mut Ram) {
         let name = self.names.get(&address.get()).cloned();
         let name = name.unwrap_or_else(|| panic!("call of {address}, where nothing is"));
@@ -84,7 +84,7 @@ impl Firmware {
         self.calls += 1;
         let back = core.state.reg(abi::LINK);
         scramble(core, abi::CHANGED, self.calls);
-        // What is at the stack pointer and below belongs to interrupts.
+        // The memory at and below the stack pointer belongs to interrupts.
         (0..40).for_each(|at| ram.set_bytes(stack - 4 * at, &self.calls.wrapping_mul(77).to_le_bytes()));
         core.state.set_reg(abi::LINK, back);
         match result {
@@ -102,7 +102,7 @@ enum Result {
     Double(f64),
 }
 
-/// `printf`, as far as the test programs go.
+/// `printf`, with the conversions used in the test programs.
 fn format(ram: &Ram, at: u32, mut next: u32) -> String {
     let (mut out, text) = (String::new(), ram.text(at));
     let mut chars = text.chars().peekable();

@@ -1,4 +1,5 @@
-//! Kernels: what a call of each takes, beside the vendor's compiler, code by hand and what the processor allows.
+//! Kernels: the cycles of a call of each, compared with the vendor's compiler, hand-written code and the processor's
+//! limit.
 //!
 //! The tables are a section of `cc67/benches/README.md`; `CC67_WRITE_BOOK=1` rewrites them.
 
@@ -8,7 +9,7 @@ use super::{build, machine};
 use crate::c67x::abi;
 use crate::passes::Level;
 
-/// The addresses of arguments that are arrays.
+/// The addresses of array arguments.
 const FIRST: u32 = 0x8006_0000;
 const SECOND: u32 = 0x8006_8000;
 /// The address of a string, and its length with the terminator.
@@ -17,16 +18,17 @@ const LENGTH: u32 = 40;
 
 /// A call of a function.
 struct Kernel {
-    /// The function, and the file in `vm/benches/processor`.
+    /// The function, and the name of its file in `vm/benches/processor`.
     name: &'static str,
     source: &'static str,
-    /// The computation, for people.
+    /// A description of the computation.
     what: &'static str,
     arguments: &'static [u32],
-    /// Cycles of the vendor's code and of code by hand (`c67x.md` 7).
+    /// The cycles of the vendor's code and of hand-written code (`c67x.md` 7).
     vendor: Option<u64>,
     by_hand: Option<u64>,
-    /// The least cycles that the processor's rules allow: the longest chain of an iteration times the iterations.
+    /// The minimum number of cycles by the processor's rules: the longest dependence chain of an iteration times the
+    /// number of iterations.
     limit: u64,
 }
 
@@ -60,16 +62,16 @@ const KERNELS: &[Kernel] = &[
     kernel!("crc16", "CRC-16 of 16 bytes", [FIRST, 16], None, None, 16 * 16),
 ];
 
-/// A program of `vm/benches/kernels`, with less to do.
+/// A program of `vm/benches/kernels`, with less work.
 struct Whole {
     /// The file.
     name: &'static str,
     source: &'static str,
-    /// The computation, for people.
+    /// A description of the computation.
     what: &'static str,
-    /// Texts of the source, and what they become.
+    /// Texts in the source, and their replacements.
     less: &'static [(&'static str, &'static str)],
-    /// Cycles of the longest chain of results that wait for each other, where one can be named.
+    /// The cycles of the longest dependence chain, if it is known.
     limit: Option<u64>,
 }
 
@@ -85,8 +87,8 @@ macro_rules! whole {
     };
 }
 
-/// A sample of the filter waits for 19 sums and products of singles, one after another; a step of a sequence for three
-/// instructions; a point's next one for two products and a sum; a term of a matrix product for the sum before.
+/// The chains are: for a sample of the filter, 19 sums and products of floats; for a step of a sequence, three
+/// instructions; for the next point, two products and a sum; for a term of a matrix product, the previous sum.
 const WHOLE: &[Whole] = &[
     whole!("filter", "100 samples", Some(100 * 19 * 4), [("20000000", "100")]),
     whole!("integer", "sequences of 1 to 99, 3117 steps", Some(3117 * 3), [("1500000", "100")]),
@@ -106,12 +108,12 @@ const WHOLE: &[Whole] = &[
 
 const LEVELS: [Level; 3] = [Level::Small, Level::Full, Level::Fast];
 
-/// Cycles of a call, from the first packet of the function to the first after its return.
+/// The cycles of a call, from the first packet of the function to the first one after its return.
 fn cycles(kernel: &Kernel, level: Level) -> u64 {
     call(kernel, level).run()
 }
 
-/// A call, before its first packet.
+/// A call, at the first packet of the function.
 fn call(kernel: &Kernel, level: Level) -> machine::Call {
     let keep = format!("void *keep = (void *){};\nint main(void) {{ return keep != 0; }}\n", kernel.name);
     let linked = build(&(kernel.source.to_owned() + &keep), level);
@@ -162,7 +164,7 @@ fn table_of_programs() -> String {
     table
 }
 
-/// The page with a table in place of the one that begins with `head`.
+/// The page with the table that begins with `head` replaced.
 fn with_table(page: &str, head: &str, table: &str) -> String {
     let start = page.find(head).expect("the table");
     let end = start + page[start..].find("\n\n").expect("a text after the table") + 1;
@@ -182,7 +184,7 @@ fn the_benchmark_page_shows_the_measured_cycles() {
     }
 }
 
-/// The cycles of the worked examples, each the best of the levels. None is farther from the code by hand than 1.3 times.
+/// The cycles of the worked examples, each at its best level. None takes more than 1.3 times the hand-written code.
 const REACHED: &[(&str, u64)] = &[
     ("sum of 1 integer", 14),
     ("of 12", 55),

@@ -1,7 +1,7 @@
-//! Operations that the processor has no instruction for, and those that the vendor's compiler gets wrong.
+//! Operations for which the processor has no instruction, and operations that the vendor's compiler gets wrong.
 //!
-//! The program divides doubles and singles at random, with estimates of the firmware that are off by up to three
-//! units of the last place; what it prints was computed by another compiler.
+//! The program divides random doubles and floats, with the firmware's estimates off by up to three units in the last
+//! place; the expected output was computed by another compiler.
 
 use super::{build, machine};
 use crate::passes::Level;
@@ -27,7 +27,7 @@ fn division_64_bit_integers_structures_and_many_arguments_work() {
     }
 }
 
-/// Constants for a matrix wait in registers when `sin` and `cos` return.
+/// Constants for a matrix are kept in registers across the calls of `sin` and `cos`.
 const ROTATION: &str = r#"
 #include "KMotionDef.h"
 typedef struct { double x, y, z; } V3;
@@ -51,7 +51,7 @@ fn a_caller_waits_for_results_still_in_flight_after_a_return() {
     }
 }
 
-/// All registers of arguments are pairs, from memory: they fit only on their own sides.
+/// All argument registers are pairs, from memory: they fit only on their own sides.
 const ARGUMENTS: &str = r#"
 #include "KMotionDef.h"
 typedef struct { int x; double y; char n[5]; } REC;

@@ -1,4 +1,4 @@
-//! A processor with a thread's memory, and what a run on it gave.
+//! A processor with a thread's memory, and the result of a run on it.
 
 use kmotiondef::GuestAddr;
 use vm::dsp::{Clock, Core, Halt, Memory};
@@ -9,9 +9,9 @@ use crate::link::Linked;
 
 const PAGE: usize = 4096;
 
-/// The address of the firmware's end of a thread.
+/// The address at which the firmware ends a thread.
 pub(super) const THREAD_DONE: u32 = 0x1000_0040;
-/// The cycles that a run may take.
+/// The maximum number of cycles of a run.
 const MOST_CYCLES: i64 = 400_000_000;
 /// The stack pointer of thread 1.
 const STACK: u32 = 0x1001_3C78;
@@ -92,14 +92,14 @@ pub(super) struct Run {
     pub(super) cycles: u64,
 }
 
-/// A call of a function of a program, with nothing around it.
+/// A call of a function of a program, without a caller.
 pub(super) struct Call {
     pub(super) core: Core,
     pub(super) ram: Ram,
 }
 
 impl Call {
-    /// Is before the first packet of the function, with rubbish in the registers.
+    /// Prepares the call at the first packet of the function, with random values in the registers.
     pub(super) fn new(linked: &Linked, name: &str) -> Self {
         let function = linked.symbols.iter().find(|symbol| symbol.name == name).expect("a function");
         let mut core = Core::new(function.address.get());
@@ -116,7 +116,7 @@ impl Call {
         self.core.state.cycle()
     }
 
-    /// Runs up to the return; wherever an interrupt is taken, everything in flight lands.
+    /// Runs up to the return; at each point where an interrupt can be taken, all results in flight land.
     pub(super) fn run_interrupted(&mut self) {
         while self.core.state.pc() != THREAD_DONE {
             assert_eq!(self.core.step(&mut self.ram), Ok(()));
@@ -137,7 +137,7 @@ fn loaded(linked: &Linked) -> Ram {
     ram
 }
 
-/// Runs `main` to its end; panics for whatever a program must not do.
+/// Runs `main` to its end; panics if the program does something forbidden.
 pub(super) fn run(linked: &Linked) -> Run {
     let mut ram = loaded(linked);
     let mut core = Core::new(linked.entry.get());
@@ -164,7 +164,7 @@ pub(super) fn run(linked: &Linked) -> Run {
     Run { console: firmware.console, result, cycles: core.state.cycle() }
 }
 
-/// The registers that a function keeps.
+/// The callee-saved registers.
 const KEPT: [c67x::Reg; 11] = [
     c67x::Reg::a(10),
     c67x::Reg::a(11),
@@ -179,7 +179,7 @@ const KEPT: [c67x::Reg; 11] = [
     c67x::Reg::b(14),
 ];
 
-/// Puts rubbish into registers: of a set, a bit each.
+/// Stores random values in the registers of a set, one bit for each.
 pub(super) fn scramble(core: &mut Core, set: u64, seed: u32) {
     for index in (0..64).filter(|index| set >> index & 1 != 0) {
         if let Some(reg) = c67x::Reg::from_index(index) {

@@ -1,4 +1,4 @@
-//! The whole way from C to words, executed on the processor's own engine with a firmware of a few lines.
+//! From C to machine words, executed on the processor's own engine with a minimal firmware.
 
 mod firmware;
 mod kernels;

@@ -1,4 +1,4 @@
-//! The recorded programs of the specification: the same console and result, and the cycles beside the vendor's.
+//! The recorded programs of the specification: the same console and result, and the cycles compared with the vendor's.
 
 use serde_json::Value;
 
@@ -7,11 +7,11 @@ use crate::passes::Level;
 
 const PROGRAMS: &str = include_str!("programs.jsonl");
 
-/// Programs whose output differs from that with the vendor's compiler: its division is not correctly rounded, and
-/// comparisons with a NaN are wrong. Others need time or `%g`, which the firmware of these tests does not have.
+/// Programs whose output differs from that with the vendor's compiler, whose division is not correctly rounded and
+/// whose comparisons with a NaN are wrong. Others need time or `%g`, which the firmware of these tests lacks.
 const OTHERWISE: &[&str] = &["specials", "convert", "printfmt", "timeslice", "delay"];
 
-/// Runs every program; the table, and the geometric means of cycles and of bytes.
+/// Runs every program; returns the table, and the geometric means of cycles and of bytes.
 fn all(level: Level) -> (String, f64, f64) {
     let (mut table, mut cycles, mut bytes, mut count) = (String::new(), 0.0, 0.0, 0);
     let mut wrong = Vec::new();

@@ -1,4 +1,4 @@
-//! Round trips: printed IR is read back; malformed IR is refused with its line.
+//! Round trips: printed IR is read back; malformed IR is rejected with its line.
 
 use super::super::text;
 use super::*;
@@ -85,7 +85,7 @@ fn copies_take_their_sources_class_and_unwritten_values_are_declared() {
         "function f(v0: f32) -> f32\nblock0:\n  jump block1\nblock1:\n  v1 = v2\n  v2 = v0\n  branch 1, block1, block2\nblock2:\n  return v1\n",
     );
     check_same("function f() -> i64\n  v0: i64\n  v1: i64\nblock0:\n  v0 = v1\n  v1 = v0\n  return v0\n");
-    // A declaration that says nothing new is not printed.
+    // A redundant declaration is not printed.
     assert_eq!(
         reprint("function f()\n  v0: i32\nblock0: ; entry\n\n  v0 = 1\n  return\n").as_deref(),
         Ok("function f()\nblock0:\n  v0 = 1\n  return\n")

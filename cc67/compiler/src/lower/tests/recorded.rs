@@ -24,7 +24,7 @@ use crate::link;
 use crate::lower::{cost_table, testing};
 use crate::passes::Level;
 
-/// A firmware whose functions take as long as the board's and do nothing, and that adds up slices.
+/// A firmware whose functions take as long as the board's and do nothing; it adds up slices.
 #[derive(Debug, Default)]
 struct Stopwatch {
     signatures: Vec<Option<Signature>>,
@@ -72,7 +72,7 @@ impl Firmware for Stopwatch {
 
     fn call(&mut self, addr: GuestAddr, caller: &mut Caller<'_>) -> Result<Outcome<Value>, TrapKind> {
         let number = function_at(addr).ok_or(TrapKind::UnknownFirmwareFunction { addr })?;
-        // Arguments of the recorded constructs are not the typical ones here and there.
+        // In some recorded constructs the arguments are not typical.
         caller.spend(FIRMWARE_FUNCTIONS[number].cost);
         let result = self.signatures[number].as_ref().and_then(|signature| signature.result);
         Ok(Outcome::Done(match result {
@@ -196,12 +196,12 @@ fn programs_take_the_recorded_cycles() {
             let recorded = row["work"][index].as_f64().expect("a number");
             let [found, optimised] = [Level::None, Level::Full].map(|level| spent(&source, level, waits));
             assert_eq!(found, optimised, "at both levels: {text}");
-            // The functions' costs are those of registers that wait.
+            // The functions' costs include waits for registers.
             let found =
                 found as f64 - if text.contains("ReadBit") && index == 0 { 44.0 * calls(text) } else { 0.0 };
             let error = (found - recorded) / recorded;
             compared += 1;
-            // Most are within 0.3 %; what is printed and what sines take depends on values that are not computed here.
+            // Most are within 0.3 %; the cost of printing and of sines depends on values that are not computed here.
             if error.abs() > 0.05 {
                 off.push(format!(
                     "{} {index}: {found}, recorded {recorded}: {:.1} %",
@@ -214,7 +214,7 @@ fn programs_take_the_recorded_cycles() {
     assert!(off.is_empty() && compared > 50, "{compared} compared\n{}", off.join("\n"));
 }
 
-/// Number of calls of a program that access a register.
+/// The number of calls in a program that access a register.
 fn calls(text: &str) -> f64 {
     if text.contains("i<60") { 120.0 } else { 200.0 }
 }

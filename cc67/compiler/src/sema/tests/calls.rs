@@ -1,4 +1,4 @@
-//! Calls: which function, which types.
+//! Calls: the called function, and the types.
 
 use super::{check, said};
 

@@ -1,4 +1,4 @@
-//! Declarations: which may be repeated, and their meaning.
+//! Declarations: permitted repetitions, and their meaning.
 
 use super::{accept, check, said};
 

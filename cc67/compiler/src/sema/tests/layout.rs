@@ -1,4 +1,4 @@
-//! Sizes and offsets of the target, stated by the programs themselves.
+//! Sizes and offsets of the target, checked by the programs themselves.
 
 use super::{accept, said};
 

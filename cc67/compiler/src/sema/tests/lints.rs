@@ -1,4 +1,4 @@
-//! Warnings: what fires and what does not.
+//! Warnings: programs that cause them, and programs that do not.
 
 use super::{accept, said};
 

@@ -1,4 +1,4 @@
-//! Promises of semantic analysis, as pairs of C text and typed tree, or C text and messages.
+//! Properties of semantic analysis, as pairs of C text and typed tree, or C text and messages.
 
 mod calls;
 mod declarations;
@@ -21,7 +21,7 @@ use crate::pp::{MemoryFiles, Options, preprocess};
 use crate::source::SourceMap;
 use crate::typed::Unit;
 
-/// A board that knows a few names.
+/// A board with a few names.
 struct Board;
 
 impl FirmwareNames for Board {
@@ -110,7 +110,7 @@ fn expression(source: &str, expect: &str) {
          {{ {source}; }}"
     );
     let (tree, mut said) = run(&program);
-    // An expression that stores in a parameter is all that the function does.
+    // A store to a parameter is the whole body of the function.
     said.retain(|message| !message.contains("parameter-copy"));
     assert_eq!(said, [""; 0], "said about:\n{source}");
     let body =
