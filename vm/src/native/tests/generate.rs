@@ -174,7 +174,7 @@ pub(super) fn program(seed: u64) -> String {
     text
 }
 
-/// The first function, at word 11: its argument and, below that, the sum of its results.
+/// The first function, at word 11: returns the exclusive or of its argument and its result for the argument minus one.
 fn recursion() -> String {
     "@f: func sig3, 2, 1\ntypes 0\ncharge 30\nadd_i32_imm r1, r0, -1\nlt_i32_s r1, r0, r1\nbr_if r1, @out\n\
      charge 30\nadd_i32_imm r1, r0, -1\nbr_unless r0, @out\ncharge 30\narg_i32 r1, 0\ncall fn@f\nresult_i32 r1\n\
