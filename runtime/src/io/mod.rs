@@ -1,7 +1,7 @@
 //! Everything except memory that a program can access: pins, registers of the FPGA, lines, step generators, option
 //! boards, flash.
 //!
-//! The chips behind the registers are those of [`chips`]; this module adds the parts that use guest memory. These parts
+//! The chips themselves are in [`chips`]; this module adds the parts that use guest memory. These parts
 //! access each other. `machine` and `world` handle the equipment connected to them.
 
 pub(crate) mod amplifiers;

@@ -619,8 +619,8 @@ messages! {
     NoStates { axis: AxisId } = "no-states", Warning, [always],
         "axis {axis}: pcoeff does not point to a list of states; its motion has ended";
     /// A step generator is commanded to go faster than its pulses allow.
-    StepsTooFast { axis: AxisId, fastest: f64, length: f64 } = "steps-too-fast", Warning, [per axis],
-        "axis {axis} needs more than {fastest:.0} steps per second, the most that pulses of {length:.2} µs allow: it falls behind and catches up later: lower Vel, or shorten the pulses (STEP_PULSE_LENGTH_ADD)";
+    StepsTooFast { axis: AxisId, fastest: f64, length: f64, slower: &'static str } = "steps-too-fast", Warning, [per axis],
+        "axis {axis} needs more than {fastest:.0} steps per second, the most that pulses of {length:.2} µs allow: it falls behind and catches up later: {slower}, or shorten the pulses (STEP_PULSE_LENGTH_ADD)";
     /// A real brushless motor would not turn as the simulated one does.
     WouldNotTurn { axis: AxisId } = "would-not-turn", Warning, [always],
         "axis {axis}: with this CommutationOffset a real brushless motor would not turn as commanded; the simulated one follows (model \"follow\")";

@@ -277,10 +277,14 @@ pub(super) fn answer(host: &mut Host, out: &mut Out, context: &mut TickContext<'
         Some(PcAction::BeginJob) if host.answers.has_job => set_job(memory, true),
         Some(PcAction::BeginJob) => {}
         Some(PcAction::Override(Rate::Feed, Change::To)) if !(0.001..=1000.0).contains(&number) => {
-            let text = format!(
-                "feed override: refused, as {number:?}, the float in persist.UserData[101], is not from 0.001 to 1000"
-            );
-            say(out, context, text);
+            let bits = parameters[0];
+            let held = match bits {
+                1..=100_000 => {
+                    format!("persist.UserData[101] holds the integer {bits}, and a float is needed")
+                }
+                _ => format!("{number:?}, the float in persist.UserData[101], is not from 0.001 to 1000"),
+            };
+            say(out, context, format!("feed override: refused, as {held}"));
             return INVALID;
         }
         Some(PcAction::Override(rate, change)) => set_override(out, context, (rate, change), number),

@@ -42,7 +42,7 @@ pub(crate) mod trajectory;
 pub(crate) mod wired;
 
 use kmotiondef::limits::TIMEBASE;
-use kmotiondef::modes::OutputMode;
+use kmotiondef::modes::{LastMotion, OutputMode};
 use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, Bit};
 use vm::memory::GuestMemory;
@@ -227,6 +227,8 @@ fn note_rewritten(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, from:
     let dest = memory.axis(axis, Chan::DEST);
     let is_loop = matches!(plan.input, Input::Encoder(_)) && !plan.is_open_loop && plan.mode.is_some();
     if is_loop && plan.mode != Some(OutputMode::None) && (dest - to).abs() > (dest - from).abs() + FAR {
+        // The following error that comes of it has no other cause.
+        tick.servo.axes[axis.index()].has_stopped = true;
         tick.remark_near(Message::PositionWritten { axis, from, to });
     }
 }
@@ -272,7 +274,9 @@ fn step(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId) {
     if plant.take_behind()
         && let Some(StepLimit { fastest, length }) = tick.io.stepgens.limit(axis)
     {
-        tick.remark_on_axis(memory, axis, Message::StepsTooFast { axis, fastest, length });
+        let is_jog = memory.axis(axis, Chan::LAST_MOTION_TYPE) == LastMotion::Jog.get();
+        let slower = if is_jog { "jog with fewer counts a second" } else { "lower Vel" };
+        tick.remark_on_axis(memory, axis, Message::StepsTooFast { axis, fastest, length, slower });
     }
     tick.io.stepgens.step(axis, steps, &mut tick.io.pins, tick.now);
     if tick.machine.wiring.has_drives() {

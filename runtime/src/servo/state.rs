@@ -34,7 +34,7 @@ pub(crate) struct AxisMemory {
     pub(super) followed: f64,
     /// Magnitude of the position's speed in units per tick, over some ticks.
     pub(super) speed: f64,
-    /// True if its load has run into a hard stop since it was enabled.
+    /// True if its load has run into a hard stop, or its position was written, since it was enabled.
     pub(super) has_stopped: bool,
     /// The farthest distance of the position ahead of a moving destination.
     pub(super) ahead: f64,

@@ -1,6 +1,6 @@
 //@ args: check
 //@ says: warning[degrees]: `cos` takes radians, and `angle` is a multiple of 60
-//@ says: holes_in_parts_of_360_degrees.c:14:38
+//@ says: holes_in_parts_of_360_degrees.c:14:39
 #include "KMotionDef.h"
 
 #define HOLES 6

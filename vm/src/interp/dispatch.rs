@@ -8,7 +8,7 @@
 //! Rust does not promise that jump. Where the compiler is not known to make it (`tail_calls`, set by the build script),
 //! a handler returns instead and the loop in [`execute`] calls the next one. Where it is, a handler must own nothing
 //! that is dropped at its end, and must not lend its own data to its callees; an instruction that needs this leaves the
-//! execution instead, as a block copy does ([`Exit::Copy`]). `tests/every.rs` executes every handler so many times in
+//! execution instead, as a block copy does ([`Exit::Copy`]). `tests/every.rs` executes every handler often enough in
 //! one slice that the host's stack would overflow without the jumps.
 //!
 //! Frequent sequences of instructions have one handler each (`sequences.rs`).

@@ -5,8 +5,8 @@
 //! 1. [`select`]: IR to instructions over virtual registers ([`code`]); [`forms`] has the forms of the table that can
 //!    express an instruction.
 //! 2. [`predicate`]: short branches become conditions. [`copies`]: copies of selection are replaced by their sources.
-//!   [`unroll`]: short loops are unrolled. [`counters`]: the counters of loops are tested directly. [`sides`]: every
-//!   register gets one of the two files; copies are inserted where an instruction can only use one of them.
+//!    [`unroll`]: short loops are unrolled. [`counters`]: the counters of loops are tested directly. [`sides`]: every
+//!    register gets one of the two files; copies are inserted where an instruction can only use one of them.
 //! 3. [`live`], [`allocate`], [`spill`]: registers of the processor, but only those that survive a thread switch.
 //! 4. [`frame`], [`moves`], [`expand`]: calls, the stack, the beginning and the ends; regions of [`step`]s.
 //! 5. [`graph`], [`resources`], [`schedule`]: packets, [`refine`] makes them smaller; [`pipeline`], [`modulo`]: those of

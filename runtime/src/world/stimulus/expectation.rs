@@ -1,6 +1,6 @@
 //! Expectations: a value compared with another, a text on the console, the state of an axis or a thread.
 //!
-//! An expectation is checked at one instant, and reports the actual value. [`monitor`](super::monitor) watches
+//! An expectation is checked at a moment, and reports the actual value. [`monitor`](super::monitor) watches
 //! expectations that hold over a time.
 
 use std::fmt;
