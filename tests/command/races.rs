@@ -208,7 +208,7 @@ fn programs_that_run_together_are_compared() {
     let output = cc67(&scratch, ["check", "1:measure.c", "2:drill.c"]);
     let other =
         "persist.UserData[60] is read as an integer, and thread 1 at measure.c:4:5 stores a `float` there";
-    assert!(output.stderr.contains(other) && output.stderr.contains("drill.c:4:17"), "{}", output.stderr);
+    assert!(output.stderr.contains(other) && output.stderr.contains("drill.c:4:12"), "{}", output.stderr);
     scratch.write("drill.c", drill.replace("= persist.UserData[60]", "= *(float *)&persist.UserData[60]"));
     assert_eq!(cc67(&scratch, ["check", "1:measure.c", "2:drill.c"]).stderr, "");
     let waits = "#include \"KMotionDef.h\"\nint n;\nvoid f(void)\n{\n    n = 1;\n}\nmain()\n{\n    UserCallBack = f;\n    \
