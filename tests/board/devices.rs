@@ -397,7 +397,7 @@ main()
 ";
     let (output, _) = run("after", program, &[], &["-R", "no-dest-leaps"]);
     assert_eq!((output.code, output.stdout.as_str()), (0, "1 200\n"));
-    let told = "cc67: thread 1 at a.c:9:5 in `main`: axis 0 needs more than 132275 steps per second, the most that pulses of 3.78 µs allow: it falls behind and catches up later: lower Vel, or shorten the pulses (STEP_PULSE_LENGTH_ADD)\n";
+    let told = "cc67: thread 1 at a.c:9:5 in `main`: axis 0 needs more than 132275 steps per second, the most that pulses of 3.78 µs allow: it falls behind and catches up later: jog with fewer counts a second, or shorten the pulses (STEP_PULSE_LENGTH_ADD)\n";
     assert_eq!(output.stderr, told);
 }
 
