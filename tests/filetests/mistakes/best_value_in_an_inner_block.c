@@ -1,5 +1,4 @@
 //@ args: check
-//@ says: warning[shadow]: this `best` shadows the `best` of the block around it
 //@ says: warning[shadow]: this `bestPos` shadows the `bestPos` of the block around it
 //@ says: best_value_in_an_inner_block.c:16:20
 #include "KMotionDef.h"

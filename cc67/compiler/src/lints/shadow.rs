@@ -3,7 +3,7 @@
 //! A local that is read as well has a use of its own, and often a short name; unless other functions read the global, which
 //! then nothing sets.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::changes::{Changes, symbol};
 use super::program::AnalysedProgram;
@@ -58,44 +58,47 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// Reports locals of an inner block that hide one of an outer block which keeps its constant first value and is read.
+/// The use of a local in its function.
+#[derive(Clone, Copy, Default)]
+struct LocalUse {
+    /// True if something else than a constant is stored.
+    has_values: bool,
+    /// True if it is changed by adding, or its address is taken.
+    is_changed: bool,
+    /// The place of the last store in the text.
+    last_store: u32,
+    /// The last read in the text.
+    read: Option<Span>,
+}
+
+/// Reports locals of an inner block that hide one of an outer block which keeps its constant first value and is read
+/// afterwards.
 fn outer_locals(function: &Function, sink: &mut Sink) {
-    let place = |place: PlaceId| match function.places[place].kind {
-        PlaceKind::Local(local, _) => Some(local),
-        _ => None,
-    };
+    let mut first: BTreeMap<&str, LocalId> = BTreeMap::new();
+    for (id, local) in &function.locals {
+        let outer = first.entry(&local.name).or_insert(id);
+        if local.span.lo < function.locals[*outer].span.lo {
+            *outer = id;
+        }
+    }
+    let hides = |id: LocalId, name: &str| first.get(name).is_some_and(|outer| *outer != id);
+    if !function.locals.iter().any(|(id, local)| !local.name.is_empty() && hides(id, &local.name)) {
+        return;
+    }
+    let uses = uses(function);
+    let use_of = |id: LocalId| uses.get(&id).copied().unwrap_or_default();
     for (id, inner) in &function.locals {
-        let outer = function
-            .locals
-            .iter()
-            .find(|(other, outer)| *other != id && outer.name == inner.name && outer.span.lo < inner.span.lo);
-        let Some((outer_id, outer)) = outer.filter(|_| !inner.name.is_empty()) else { continue };
+        let Some(&outer_id) = first.get(inner.name.as_str()).filter(|outer| **outer != id) else { continue };
+        let (outer, kept) = (&function.locals[outer_id], use_of(outer_id));
+        let is_kept = !kept.has_values && !kept.is_changed && kept.last_store <= inner.span.lo;
+        // A counter of the inner block has a use of its own.
+        let is_doubtful = is_kept && use_of(id).has_values && !outer.in_memory;
+        // What is read after the inner block belongs to one around it.
+        let read = kept.read.filter(|read| read.lo > inner.span.lo && is_doubtful && !inner.name.is_empty());
+        let Some(read) = read else { continue };
         if function.parameters.contains(&outer_id) {
             continue;
         }
-        let (mut is_stored, mut is_constant, mut read) = (false, true, None);
-        for expr in function.exprs.values() {
-            match &expr.kind {
-                ExprKind::Assign(stored, value) if place(*stored) == Some(outer_id) => {
-                    let is_first = expr.span.lo < inner.span.lo;
-                    let value = &function.exprs[*value].kind;
-                    is_constant &= is_first && matches!(value, ExprKind::Int(_) | ExprKind::Float(_));
-                }
-                // A counter has a use of its own.
-                ExprKind::Assign(stored, value) => {
-                    let is_constant =
-                        matches!(function.exprs[*value].kind, ExprKind::Int(_) | ExprKind::Float(_));
-                    is_stored |= place(*stored) == Some(id) && !is_constant;
-                }
-                ExprKind::Update(update) => is_constant &= place(update.place) != Some(outer_id),
-                ExprKind::Address(taken) => is_constant &= place(*taken) != Some(outer_id),
-                ExprKind::Load(loaded) if place(*loaded) == Some(outer_id) => {
-                    read.get_or_insert(expr.span);
-                }
-                _ => {}
-            }
-        }
-        let Some(read) = read.filter(|_| is_stored && is_constant && !outer.in_memory) else { continue };
         let message = format!("this `{0}` shadows the `{0}` of the block around it", inner.name);
         sink.report(
             Diagnostic::warning(Lint::Shadow, inner.span, message)
@@ -105,6 +108,37 @@ fn outer_locals(function: &Function, sink: &mut Sink) {
                 .help("leave out the type to assign to the outer one"),
         );
     }
+}
+
+/// The uses of the locals of a function.
+fn uses(function: &Function) -> BTreeMap<LocalId, LocalUse> {
+    let mut uses: BTreeMap<LocalId, LocalUse> = BTreeMap::new();
+    let local = |place: PlaceId| match function.places[place].kind {
+        PlaceKind::Local(local, _) => Some(local),
+        _ => None,
+    };
+    for expr in function.exprs.values() {
+        let (place, note): (_, &dyn Fn(&mut LocalUse)) = match &expr.kind {
+            ExprKind::Assign(place, value) => {
+                let is_constant =
+                    matches!(function.exprs[*value].kind, ExprKind::Int(_) | ExprKind::Float(_));
+                (place, &move |one| {
+                    one.has_values |= !is_constant;
+                    one.last_store = one.last_store.max(expr.span.lo);
+                })
+            }
+            ExprKind::Update(update) => (&update.place, &|one| one.is_changed = true),
+            ExprKind::Address(place) => (place, &|one| one.is_changed = true),
+            ExprKind::Load(place) => {
+                (place, &|one| one.read = one.read.filter(|read| read.lo > expr.span.lo).or(Some(expr.span)))
+            }
+            _ => continue,
+        };
+        if let Some(local) = local(*place) {
+            note(uses.entry(local).or_default());
+        }
+    }
+    uses
 }
 
 /// A read of a global that nothing sets, so that it stays 0.

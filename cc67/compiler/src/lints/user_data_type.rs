@@ -186,9 +186,10 @@ fn second_halves(elements: &Elements<'_, '_>, stores: &BTreeMap<i32, Stores>, si
     let loads = exprs.iter().filter(|(id, _)| !printed.contains(id));
     let loads = loads.filter_map(|(id, expr)| Some((elements.integer_load(id)?, expr.span)));
     let loads: Vec<_> = loads.collect();
+    let loaded: BTreeSet<i32> = loads.iter().map(|(element, _)| *element).collect();
     let is_double = |element: i32| {
         let first = stores.get(&(element - 1)).copied().unwrap_or_default();
-        !first.has_others && !loads.iter().any(|(other, _)| *other == element - 1)
+        !first.has_others && !loaded.contains(&(element - 1))
     };
     let found = loads.iter().find_map(|(element, span)| {
         let double = stores.get(element)?.second_half.filter(|_| is_double(*element))?;
@@ -270,6 +271,7 @@ fn uses(program: &AnalysedProgram<'_>, function: &Function, expr: ExprId) -> Vec
 /// Every store at a constant index; a `double` in the mailbox is reported.
 fn stores(program: &AnalysedProgram<'_>, sink: &mut Sink) -> BTreeMap<i32, Stores> {
     let mut stores: BTreeMap<i32, Stores> = BTreeMap::new();
+    let mut has_none = None;
     for function in program.functions() {
         let elements = Elements::of(program, function);
         Walk { function, extent: Extent::All }.stmts(&function.body, &mut |expr| {
@@ -284,7 +286,11 @@ fn stores(program: &AnalysedProgram<'_>, sink: &mut Sink) -> BTreeMap<i32, Store
             if is_double && MAILBOX.contains(&element) {
                 sink.report(mailbox(element, span));
             }
-            if element == *MAILBOX.start() && !is_double && is_no_request(program, function, expr) {
+            let is_mailbox = element == *MAILBOX.start() && !is_double;
+            if is_mailbox
+                && is_own_number(program, function, expr)
+                && *has_none.get_or_insert_with(|| makes_no_requests(program))
+            {
                 sink.report(request(span));
             }
             let is_zero = matches!(function.exprs[expr].kind, ExprKind::Assign(_, value)
@@ -333,9 +339,21 @@ fn mailbox(element: i32, span: Span) -> Diagnostic {
         .help("use elements outside 100 to 107: `double` index 50 is element 100")
 }
 
-/// Returns whether a store in the mailbox is one of a number for the program's own use: it names no request, its value is
-/// not an argument, the program has no parameters or answers of requests, and no loop of it waits until the PC has taken it.
-fn is_no_request(program: &AnalysedProgram<'_>, function: &Function, store: ExprId) -> bool {
+/// Returns whether a program makes no requests to the PC: it stores no parameters of any and reads no answers, and no loop of
+/// it waits until the PC has taken one.
+fn makes_no_requests(program: &AnalysedProgram<'_>) -> bool {
+    !program.functions().any(|function| {
+        let others = *MAILBOX.start() + 1..=*MAILBOX.end();
+        let has_parameters = |place: PlaceId| {
+            element(program, function, place).is_some_and(|element| others.contains(&element))
+        };
+        function.places.keys().any(has_parameters) || waits_for_the_pc(program, function)
+    })
+}
+
+/// Returns whether a store in the mailbox is one of a number for the program's own use, in a program without requests: it
+/// names no request, and its value is not an argument.
+fn is_own_number(program: &AnalysedProgram<'_>, function: &Function, store: ExprId) -> bool {
     const REQUESTS: &[u8] = b"PC_COMM";
     let is_argument = |value: ExprId| match function.exprs[value].kind {
         ExprKind::Load(place) => matches!(function.places[place].kind,
@@ -346,19 +364,12 @@ fn is_no_request(program: &AnalysedProgram<'_>, function: &Function, store: Expr
     if text.windows(REQUESTS.len()).any(|word| word == REQUESTS) {
         return false;
     }
-    if let ExprKind::Assign(_, value) = function.exprs[store].kind {
-        let is_zero = matches!(function.exprs[value].kind, ExprKind::Int(0));
-        if is_zero || is_argument(value) {
-            return false;
+    match function.exprs[store].kind {
+        ExprKind::Assign(_, value) => {
+            !matches!(function.exprs[value].kind, ExprKind::Int(0)) && !is_argument(value)
         }
+        _ => true,
     }
-    !program.functions().any(|function| {
-        let others = *MAILBOX.start() + 1..=*MAILBOX.end();
-        let has_parameters = |place: PlaceId| {
-            element(program, function, place).is_some_and(|element| others.contains(&element))
-        };
-        function.places.keys().any(has_parameters) || waits_for_the_pc(program, function)
-    })
 }
 
 /// Returns whether a loop of a function looks at the mailbox.
