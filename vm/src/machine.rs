@@ -46,7 +46,7 @@ const CALLBACK_LIMIT: Cycles = Cycles::new(CALLBACK_TICKS * Cycles::PER_TICK.get
 pub struct Config {
     /// The cycles that the servo interrupt takes of each tick; `None` for the firmware's own figure.
     pub servo: Option<Cycles>,
-    /// Whether time in which nothing can happen is skipped; this never changes a result.
+    /// True if time in which nothing can happen is skipped; this never changes a result.
     pub shortcuts: bool,
     /// Stacks as small as the board's.
     pub strict_stack: bool,

@@ -34,7 +34,7 @@ pub(crate) fn notice(parts: &mut Parts, caller: &Caller<'_>, function: Function,
     });
     let numbers = elements.filter(|(_, bits)| is_number(*bits));
     let found = numbers.filter_map(|(index, bits)| Some((index, bits, factor(value, bits)?)));
-    let Some((index, bits, factor)) = found.min_by(|a, b| (a.2 != 1.0).cmp(&(b.2 != 1.0))) else {
+    let Some((index, bits, factor)) = found.min_by_key(|(.., factor)| *factor != 1.0) else {
         return false;
     };
     let float = f32::from_bits(bits.cast_unsigned());

@@ -95,7 +95,7 @@ pub(crate) fn check(
         let known = amplifier_off(tick, memory, axis);
         let known = known.or_else(|| scale(tick, memory, axis, &own));
         // An axis at the end of its travel cannot follow, which has already been reported.
-        if let Some(message) = known.or_else(|| cause(tick, memory, axis, &own)).filter(|_| !own.has_stopped)
+        if let Some(message) = known.or_else(|| cause(tick, memory, axis, &own)).filter(|_| !own.is_explained)
         {
             tick.remark_on_axis(memory, axis, message);
         }

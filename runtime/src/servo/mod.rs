@@ -228,7 +228,7 @@ fn note_rewritten(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, from:
     let is_loop = matches!(plan.input, Input::Encoder(_)) && !plan.is_open_loop && plan.mode.is_some();
     if is_loop && plan.mode != Some(OutputMode::None) && (dest - to).abs() > (dest - from).abs() + FAR {
         // The following error that comes of it has no other cause.
-        tick.servo.axes[axis.index()].has_stopped = true;
+        tick.servo.axes[axis.index()].is_explained = true;
         tick.remark_near(Message::PositionWritten { axis, from, to });
     }
 }
@@ -248,7 +248,7 @@ fn note_stopped(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, place: 
         }
         None => effect.to_owned(),
     };
-    tick.servo.axes[axis.index()].has_stopped = true;
+    tick.servo.axes[axis.index()].is_explained = true;
     tick.remark_on_axis(memory, axis, Message::HardStop { axis, place, key, effect });
 }
 

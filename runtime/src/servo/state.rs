@@ -34,8 +34,8 @@ pub(crate) struct AxisMemory {
     pub(super) followed: f64,
     /// Magnitude of the position's speed in units per tick, over some ticks.
     pub(super) speed: f64,
-    /// True if its load has run into a hard stop, or its position was written, since it was enabled.
-    pub(super) has_stopped: bool,
+    /// True if a remark has told the cause of its following error since it was enabled: a hard stop, a written position.
+    pub(super) is_explained: bool,
     /// The farthest distance of the position ahead of a moving destination.
     pub(super) ahead: f64,
     /// Changes of the output from one half of its range to the other, in one tick each.

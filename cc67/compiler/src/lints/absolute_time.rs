@@ -96,7 +96,8 @@ fn end(program: &AnalysedProgram<'_>, function: &TypedFunction, condition: ExprI
     }
 }
 
-fn number(function: &TypedFunction, expr: ExprId) -> Option<f64> {
+/// The value of a constant.
+pub(super) fn number(function: &TypedFunction, expr: ExprId) -> Option<f64> {
     match function.exprs[expr].kind {
         ExprKind::Float(number) => Some(number),
         ExprKind::Int(number) => Some(number as f64),

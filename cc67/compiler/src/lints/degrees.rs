@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use kmotiondef::firmware::Function as Firmware;
 
+use super::absolute_time::number;
 use super::format::called_firmware;
 use super::program::AnalysedProgram;
 use super::value_range::single_stores;
@@ -151,15 +152,6 @@ fn multiple(function: &Function, expr: ExprId) -> Option<(f64, Span)> {
     };
     let step = if is_count(a) { number(function, b) } else { number(function, a).filter(|_| is_count(b)) }?;
     (step >= LEAST && TURN % step == 0.0).then_some((step, function.exprs[expr].span))
-}
-
-/// A constant.
-fn number(function: &Function, expr: ExprId) -> Option<f64> {
-    match function.exprs[expr].kind {
-        ExprKind::Int(number) => Some(number as f64),
-        ExprKind::Float(number) => Some(number),
-        _ => None,
-    }
 }
 
 /// The variable whose value an expression is.

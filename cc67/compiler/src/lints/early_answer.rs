@@ -10,15 +10,15 @@ use kmotiondef::firmware::Function as FirmwareFunction;
 
 use super::format::called_firmware;
 use super::program::AnalysedProgram;
+use super::user_data_index::MAILBOX;
 use super::user_data_type::element;
 use super::walk::{Extent, Walk};
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::Span;
 use crate::typed::{Call, Callee, ExprId, ExprKind, Function, Stmt, StmtKind, SymbolId};
 
-/// The element with the code of a request, and the elements of its parameters and answers.
-const CODE: i32 = 100;
-const MAILBOX: std::ops::RangeInclusive<i32> = 100..=107;
+/// The element with the code of a request.
+const CODE: i32 = *MAILBOX.start();
 /// The parameters that can name other elements.
 const NAMES: std::ops::RangeInclusive<i32> = 101..=104;
 

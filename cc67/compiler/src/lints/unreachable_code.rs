@@ -53,21 +53,20 @@ fn after_jump(program: &AnalysedProgram<'_>, stmts: &[Stmt]) -> Option<Diagnosti
 /// The last `break` of a `switch` in an endless loop that no `break` leaves.
 fn break_of_a_switch(endless: &Stmt) -> Option<Span> {
     let StmtKind::Loop { body, .. } = &endless.kind else { return None };
-    let mut last = None;
-    for stmt in body.iter().flat_map(|stmt| match &stmt.kind {
+    let switch = unwrapped(body).filter_map(|stmt| match &stmt.kind {
+        StmtKind::Switch { body, .. } => Some(body),
+        _ => None,
+    });
+    let breaks = switch.flat_map(|body| unwrapped(body)).filter(|stmt| matches!(stmt.kind, StmtKind::Break));
+    breaks.map(|stmt| stmt.span).last()
+}
+
+/// The statements of a body, with those of its blocks.
+fn unwrapped(body: &[Stmt]) -> impl Iterator<Item = &Stmt> {
+    body.iter().flat_map(|stmt| match &stmt.kind {
         StmtKind::Block(inner) => inner.as_slice(),
         _ => std::slice::from_ref(stmt),
-    }) {
-        if let StmtKind::Switch { body, .. } = &stmt.kind {
-            let inner = body.iter().flat_map(|stmt| match &stmt.kind {
-                StmtKind::Block(inner) => inner.as_slice(),
-                _ => std::slice::from_ref(stmt),
-            });
-            last =
-                inner.filter(|stmt| matches!(stmt.kind, StmtKind::Break)).map(|stmt| stmt.span).next_back();
-        }
-    }
-    last
+    })
 }
 
 fn finding(span: Span) -> Diagnostic {

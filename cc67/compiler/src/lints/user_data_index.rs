@@ -1,9 +1,24 @@
 //! Elements that `persist.UserData` does not have.
 
+use std::ops::RangeInclusive;
+
+use kmotiondef::limits::{N_PC_COMM_PERSIST, PC_COMM_PERSIST};
 use kmotiondef::structs::Persist;
 
 use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;
+
+/// The elements of requests to the PC: the code, its parameters and answers.
+pub(crate) const MAILBOX: RangeInclusive<i32> =
+    PC_COMM_PERSIST as i32..=(PC_COMM_PERSIST + N_PC_COMM_PERSIST) as i32 - 1;
+
+/// The elements in which the PC stores a `float`: offset, factor, speed and limit of constant surface speed.
+pub(crate) const PC_FLOATS: RangeInclusive<i32> = 111..=114;
+
+/// Returns whether the PC uses an element: of the mailbox, or of constant surface speed, whose settings follow it.
+pub(crate) fn is_of_the_pc(element: i32) -> bool {
+    (*MAILBOX.start()..=*PC_FLOATS.end()).contains(&element)
+}
 
 /// The range of `UserData` in `persist`: the offset of its first byte and that after its last.
 pub(crate) fn range() -> (i32, i32) {

@@ -1,26 +1,23 @@
 //! An element of `persist.UserData` that holds a floating-point number and is read as an integer, one that holds an
-//! integer and is read as a floating-point number, an element that is stored over half of a `double`, and a `double` in the elements through which a program and the PC exchange requests.
+//! integer and is read as a floating-point number, halves of a `double` ([`halves`]), and numbers of a program in the mailbox ([`mailbox`]).
 //!
 //! The types of the PC's elements are those of `gather-persist-console.md` sections 5 and 8.
+
+mod halves;
+mod mailbox;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::format::literal_format;
 use super::program::{AnalysedProgram, PERSIST};
-use super::user_data_index;
+use super::user_data_index::{self, MAILBOX, PC_FLOATS};
 use super::value_range::single_stores;
 use super::walk::{Extent, Walk};
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::BinaryOp;
 use crate::source::Span;
 use crate::ty::{TypeId, Types};
-use crate::typed::{ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind, StmtKind};
-
-/// Elements in which the PC stores a `float`: offset, factor, speed and limit of constant surface speed.
-const PC_FLOATS: std::ops::RangeInclusive<i32> = 111..=114;
-
-/// Elements of requests to the PC: the code, and what belongs to it.
-const MAILBOX: std::ops::RangeInclusive<i32> = 100..=107;
+use crate::typed::{ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind};
 
 /// Bytes of an element.
 const ELEMENT: i32 = 4;
@@ -47,13 +44,13 @@ struct Stores {
 /// Reports elements of one type that are used as another.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     let stores = stores(program, sink);
-    overlaps(program, &stores, sink);
-    halves(program, &stores, sink);
+    halves::stored_over(program, &stores, sink);
+    halves::integers_stored(program, &stores, sink);
     for function in program.functions() {
         let elements = Elements::of(program, function);
         let walk = Walk { function, extent: Extent::All };
         let copied = copied(function);
-        second_halves(&elements, &stores, sink);
+        halves::integers_read(&elements, &stores, sink);
         walk.stmts(&function.body, &mut |expr| {
             sink.report_if(integer_bits(&elements, expr, &stores));
             if !copied.contains(&expr) {
@@ -91,66 +88,6 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// Reports stores in the second half of a `double`, unless the program uses its first half as an integer as well.
-fn overlaps(program: &AnalysedProgram<'_>, stores: &BTreeMap<i32, Stores>, sink: &mut Sink) {
-    for (element, stored) in stores {
-        let (Some((span, ty)), Some(double)) = (stored.begun, stored.second_half) else { continue };
-        let first = stores.get(&(element - 1)).copied().unwrap_or_default();
-        if first.has_others || ty == Types::DOUBLE && double == span {
-            continue;
-        }
-        let message = format!("`persist.UserData[{element}]` is the second half of a `double`");
-        sink.report(
-            Diagnostic::warning(Lint::UserDataType, span, message)
-                .at(format!("a `{}` overwrites it", program.spell(ty)))
-                .label(double, format!("elements {} and {element} hold this one", element - 1))
-                .help("a `double` takes two elements: use the next even index after it"),
-        );
-    }
-}
-
-/// Reports integers that are stored in one half of a `double` which the same program reads.
-fn halves(program: &AnalysedProgram<'_>, stores: &BTreeMap<i32, Stores>, sink: &mut Sink) {
-    let is_int = |element: i32| {
-        stores.get(&element).is_some_and(|stored| stored.has_others && stored.floating.is_none())
-    };
-    let mut reported = BTreeSet::new();
-    for function in program.functions() {
-        let elements = Elements::of(program, function);
-        for expr in function.exprs.values() {
-            let ExprKind::Load(place) = expr.kind else { continue };
-            if function.places[place].ty != Types::DOUBLE {
-                continue;
-            }
-            let Some(first) = elements.element(place) else { continue };
-            // Both halves together are a copy.
-            let (half, which) = match (is_int(first), is_int(first + 1)) {
-                (true, false) => (first, "first"),
-                (false, true) => (first + 1, "second"),
-                (true, true) | (false, false) => continue,
-            };
-            let Some((span, _)) = stores.get(&half).and_then(|stored| stored.begun.or(stored.zero)) else {
-                continue;
-            };
-            if !reported.insert(half) {
-                continue;
-            }
-            let message = format!("`persist.UserData[{half}]` is the {which} half of a `double`");
-            sink.report(
-                Diagnostic::warning(Lint::UserDataType, span, message)
-                    .at("an `int` overwrites it")
-                    .label(
-                        expr.span,
-                        format!("elements {first} and {} are read as a `double` here", first + 1),
-                    )
-                    .help(
-                        "a `double` takes two elements: index N of the doubles is elements 2 N and 2 N + 1",
-                    ),
-            );
-        }
-    }
-}
-
 /// Reports an element that is read as a floating-point number where the program only stores small integers.
 fn integer_bits(
     elements: &Elements<'_, '_>,
@@ -175,36 +112,6 @@ fn integer_bits(
             .label(place, "an `int` is stored here")
             .help(format!("write `persist.UserData[{element}]`")),
     )
-}
-
-/// Reports an integer that is read from the second half of a `double`, where the first half is not one.
-fn second_halves(elements: &Elements<'_, '_>, stores: &BTreeMap<i32, Stores>, sink: &mut Sink) {
-    let exprs = &elements.function.exprs;
-    // A print may show the halves on purpose.
-    let printed: BTreeSet<ExprId> =
-        elements.function.calls().flat_map(|(_, call)| call.variable.iter().flatten().copied()).collect();
-    let loads = exprs.iter().filter(|(id, _)| !printed.contains(id));
-    let loads = loads.filter_map(|(id, expr)| Some((elements.integer_load(id)?, expr.span)));
-    let loads: Vec<_> = loads.collect();
-    let loaded: BTreeSet<i32> = loads.iter().map(|(element, _)| *element).collect();
-    let is_double = |element: i32| {
-        let first = stores.get(&(element - 1)).copied().unwrap_or_default();
-        !first.has_others && !loaded.contains(&(element - 1))
-    };
-    let found = loads.iter().find_map(|(element, span)| {
-        let double = stores.get(element)?.second_half.filter(|_| is_double(*element))?;
-        Some((element, span, double))
-    });
-    let Some((element, span, double)) = found else { return };
-    let message = format!("`persist.UserData[{element}]` is the second half of a `double`");
-    sink.report(
-        Diagnostic::warning(Lint::UserDataType, *span, message)
-            .at("read as an integer")
-            .label(double, format!("this `double` is in elements {} and {element}", element - 1))
-            .help(
-                "use an element that no `double` takes: index N of the doubles is elements 2 N and 2 N + 1",
-            ),
-    );
 }
 
 /// Returns whether the PC stores a `float` in an element before the program starts.
@@ -284,14 +191,14 @@ fn stores(program: &AnalysedProgram<'_>, sink: &mut Sink) -> BTreeMap<i32, Store
             let (ty, span) = (function.places[place].ty, function.exprs[expr].span);
             let is_double = ty == Types::DOUBLE;
             if is_double && MAILBOX.contains(&element) {
-                sink.report(mailbox(element, span));
+                sink.report(mailbox::double(element, span));
             }
             let is_mailbox = element == *MAILBOX.start() && !is_double;
             if is_mailbox
-                && is_own_number(program, function, expr)
-                && *has_none.get_or_insert_with(|| makes_no_requests(program))
+                && mailbox::is_own_number(program, function, expr)
+                && *has_none.get_or_insert_with(|| mailbox::makes_no_requests(program))
             {
-                sink.report(request(span));
+                sink.report(mailbox::own_number(span));
             }
             let is_zero = matches!(function.exprs[expr].kind, ExprKind::Assign(_, value)
                 if matches!(function.exprs[value].kind, ExprKind::Int(0)));
@@ -328,69 +235,6 @@ fn small(function: &Function, value: ExprId) -> Option<i64> {
         ExprKind::Int(value) if (1..LARGE).contains(&value) => Some(value),
         _ => None,
     }
-}
-
-fn mailbox(element: i32, span: Span) -> Diagnostic {
-    let message =
-        format!("a `double` is stored in `persist.UserData[{element}]`, which is part of the PC's mailbox");
-    Diagnostic::warning(Lint::UserDataType, span, message)
-        .at(format!("elements {element} and {}", element + 1))
-        .note("elements 100 to 107 hold requests to the PC: it takes what it finds in element 100 as the code of one")
-        .help("use elements outside 100 to 107: `double` index 50 is element 100")
-}
-
-/// Returns whether a program makes no requests to the PC: it stores no parameters of any and reads no answers, and no loop of
-/// it waits until the PC has taken one.
-fn makes_no_requests(program: &AnalysedProgram<'_>) -> bool {
-    !program.functions().any(|function| {
-        let others = *MAILBOX.start() + 1..=*MAILBOX.end();
-        let has_parameters = |place: PlaceId| {
-            element(program, function, place).is_some_and(|element| others.contains(&element))
-        };
-        function.places.keys().any(has_parameters) || waits_for_the_pc(program, function)
-    })
-}
-
-/// Returns whether a store in the mailbox is one of a number for the program's own use, in a program without requests: it
-/// names no request, and its value is not an argument.
-fn is_own_number(program: &AnalysedProgram<'_>, function: &Function, store: ExprId) -> bool {
-    const REQUESTS: &[u8] = b"PC_COMM";
-    let is_argument = |value: ExprId| match function.exprs[value].kind {
-        ExprKind::Load(place) => matches!(function.places[place].kind,
-            PlaceKind::Local(local, _) if function.parameters.contains(&local)),
-        _ => false,
-    };
-    let text = program.sources.text(function.exprs[store].span);
-    if text.windows(REQUESTS.len()).any(|word| word == REQUESTS) {
-        return false;
-    }
-    match function.exprs[store].kind {
-        ExprKind::Assign(_, value) => {
-            !matches!(function.exprs[value].kind, ExprKind::Int(0)) && !is_argument(value)
-        }
-        _ => true,
-    }
-}
-
-/// Returns whether a loop of a function looks at the mailbox.
-fn waits_for_the_pc(program: &AnalysedProgram<'_>, function: &Function) -> bool {
-    let mut waits = false;
-    function.each_stmt(&mut |stmt| {
-        let StmtKind::Loop { condition: Some(condition), .. } = stmt.kind else { return };
-        Walk { function, extent: Extent::All }.expr(condition, &mut |expr| {
-            waits |= matches!(function.exprs[expr].kind, ExprKind::Load(place)
-                if element(program, function, place) == Some(*MAILBOX.start()));
-        });
-    });
-    waits
-}
-
-fn request(span: Span) -> Diagnostic {
-    let message = format!("`persist.UserData[{}]` is the PC's mailbox", MAILBOX.start());
-    Diagnostic::warning(Lint::UserDataType, span, message)
-        .at("the PC takes any number here as the code of a request")
-        .note("elements 100 to 107 hold requests to the PC; they are written as `PC_COMM_…`")
-        .help("use an element outside 100 to 107 for a number of your own")
 }
 
 /// The elements that a function reaches, also through pointers such as `double *d = (double *)persist.UserData;`.

@@ -12,6 +12,7 @@ use super::accesses::{Action, CellAccess, ThreadProgram, UpdateKind};
 use super::flow::{Guard, Wait};
 use crate::diag::{Diagnostic, Lint};
 use crate::ir::operators::Width;
+use crate::lints::user_data_index::is_of_the_pc;
 use crate::typed::SymbolId;
 
 /// The reference to further information.
@@ -217,12 +218,10 @@ fn other_types<'a>(
 
 /// Returns whether a cell is an element of `persist.UserData` for programs.
 fn is_element(cell: Cell) -> bool {
-    /// The elements of the PC's requests and answers, and of constant surface speed.
-    const OF_THE_PC: std::ops::RangeInclusive<u32> = 100..=114;
     let Cell::Board(address) = cell else { return false };
     let first = PERSIST.field(Persist::USER_DATA).address().get();
     let index = address.wrapping_sub(first) / 4;
-    index < N_USER_DATA_VARS as u32 && !OF_THE_PC.contains(&index)
+    index < N_USER_DATA_VARS as u32 && !is_of_the_pc(index.cast_signed())
 }
 
 /// Variables that a loop of `main` without a call waits for, that the call-back stores and that are not `volatile`.

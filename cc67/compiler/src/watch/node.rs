@@ -20,7 +20,7 @@ pub(super) enum Node {
     Constant(Constant),
     /// An item of the board.
     Item(usize),
-    /// What a place holds.
+    /// The contents of a place.
     Read(Place, TypeId),
     /// A local as a whole, which may be in a register.
     Local(LocalId, TypeId),

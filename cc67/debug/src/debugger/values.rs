@@ -124,11 +124,9 @@ struct Outside<'a, T> {
 impl<T: Target> DebugReader for Outside<'_, T> {
     fn bytes(&self, address: GuestAddr) -> [u8; 8] {
         let mut bytes = [0; 8];
-        match self.target.read(address, &mut bytes) {
-            Ok(()) => bytes,
-            // What is unknown is not so.
-            Err(_) => [0; 8],
-        }
+        // A value that is unknown counts as 0.
+        let known = self.target.read(address, &mut bytes);
+        known.map_or([0; 8], |()| bytes)
     }
 
     fn item(&self, index: usize) -> f64 {

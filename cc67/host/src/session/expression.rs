@@ -94,7 +94,7 @@ impl Watch {
         }
     }
 
-    /// The same value for the recorder of a running board.
+    /// The watched value in the form that the recorder of a running board takes.
     pub(super) fn into_quantity(self) -> Quantity {
         match self.0 {
             Watched::Item(item) => item.into(),

@@ -28,7 +28,7 @@ const PART: u64 = 111;
 /// The number of chunks that a peer may send ahead, and of characters on the line, from which it has to wait.
 const AHEAD: usize = 16;
 const BACKLOG: usize = 4096;
-/// The same interval on the peer's clock; the run is about as fast as the board.
+/// [`PART`] in time of the peer's clock; the run is about as fast as the board.
 const PART_TIME: Duration = Duration::from_millis(10);
 
 /// The other end, which runs in real time.
