@@ -273,7 +273,7 @@ fn wrong_events_are_named_with_their_place() {
         ("[[event]]\nat = -1", "2:6: `event[0].at` must be 0 or a positive number, not -1"),
         (
             "[[event]]\nafter = \"bit 46 blinks\"\nkill = 1",
-            "3:8: expected `rises`, `falls` or `changes`, found `blinks`",
+            "3:8: expected `rises`, `falls`, `changes` or `= 1`, found `blinks`",
         ),
         ("[[event]]\nkil = 1", "2:1: unknown key `kil` in `event[0]`; did you mean `kill`?"),
         (

@@ -143,7 +143,15 @@ impl StatementReader<'_> {
         match self.peek() {
             Some("bit") => {
                 let bit = self.bit()?;
-                let edge = self.take("`rises`, `falls` or `changes`", |word| match word {
+                if self.accept_sign("=") {
+                    let edge = self.take("`1` or `0`", |word| match word {
+                        "1" => Some(Edge::Rises),
+                        "0" => Some(Edge::Falls),
+                        _ => None,
+                    })?;
+                    return Ok(Condition::Bit(bit, edge));
+                }
+                let edge = self.take("`rises`, `falls`, `changes` or `= 1`", |word| match word {
                     "rises" => Some(Edge::Rises),
                     "falls" => Some(Edge::Falls),
                     "changes" => Some(Edge::Changes),
@@ -200,6 +208,10 @@ mod tests {
                 "when bit 46 rises after 20ms pulse bit 0",
                 "When { condition: Bit(Bit(46), Rises), after: Cycles(4000000), is_once: false } \
                  Pulse(Bit(0), Cycles(2000000))",
+            ),
+            (
+                "when bit 152 = 0 set bit 136",
+                "When { condition: Bit(Bit(152), Falls), after: Cycles(0), is_once: false } Set(Bit(136), true)",
             ),
             (
                 "once printed \"go\" uart \"A\\r\"",
