@@ -146,8 +146,13 @@ proptest! {
         prop_assume!(!is_on_border(from_stop.abs(), &limits));
         let scale = distance.abs().max(limits.v * limits.v / limits.a).max(begun.abs()).max(change_way(start.v, 0.0, &limits).abs());
         check(start, &states, &limits, scale)?;
-        let expect = in_motion(start.v, distance - begun, &limits);
-        prop_assert!(near(duration(&states), expect), "in motion: {} s instead of {}", duration(&states), expect);
+        // The length of a short move after a stop is a small difference of singles, and its time a root of it.
+        let rounding = SINGLE * scale;
+        let times = [-rounding, 0.0, rounding].map(|by| in_motion(start.v, distance - begun + by, &limits));
+        let (shortest, longest) = times.iter().fold((f64::MAX, 0.0_f64), |(min, max), time| (min.min(*time), max.max(*time)));
+        let found = duration(&states);
+        let is_within = near(found, found.clamp(shortest, longest));
+        prop_assert!(is_within, "in motion: {} s instead of {}", found, times[1]);
         let moving: Vec<&MotionState> = states.iter().filter(|state| state.mode == Mode::Independent).collect();
         let end = moving.last().map(|state| state.at(state.t).x).unwrap_or_default();
         prop_assert!((end - distance).abs() <= SINGLE * scale, "ends at {} instead of {}", end, distance);
