@@ -406,13 +406,21 @@ impl GuestMemory {
         Err(TrapKind::Misaligned { addr, size, access: Access::Write })
     }
 
+    /// A value in the RAM of a KFLOP, without alignment; `None` anywhere else.
+    #[must_use]
+    #[inline]
+    pub fn peek_ram<T: Scalar>(&self, addr: GuestAddr) -> Option<T> {
+        let address = addr.get();
+        T::get(&self.iram[..], index(address.wrapping_sub(IRAM_BASE)))
+            .or_else(|| T::get(&self.sdram[..], index(address.wrapping_sub(SDRAM_BASE))))
+    }
+
     /// Reads a value for the kernel: no alignment; bytes outside the map read as 0.
     #[must_use]
     #[inline]
     pub fn peek<T: Scalar>(&self, addr: GuestAddr) -> T {
         let address = addr.get();
-        T::get(&self.iram[..], index(address.wrapping_sub(IRAM_BASE)))
-            .or_else(|| T::get(&self.sdram[..], index(address.wrapping_sub(SDRAM_BASE))))
+        self.peek_ram(addr)
             .or_else(|| T::get(self.flash.bytes(), index(address.wrapping_sub(FLASH_BASE))))
             .or_else(|| self.peek_by_map(address))
             .unwrap_or_default()

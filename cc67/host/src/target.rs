@@ -57,6 +57,14 @@ pub trait TargetSnapshot: Debug {
     fn bytes_beyond(&self, other: &Self) -> usize;
 }
 
+/// The eight bytes that a target reads from an address on; `None` without memory there.
+fn word_of<T: Target + ?Sized>(target: &T, address: GuestAddr) -> Option<[u8; 8]> {
+    let mut bytes = [0; 8];
+    target.read(address, &mut bytes).ok()?;
+    // Only where there is no memory nothing but zeros is read.
+    (bytes != [0; 8] || target.is_mapped(address)).then_some(bytes)
+}
+
 /// A board under control.
 ///
 /// Methods for something that not every target can do have a default: what a target without it does. Whoever calls them
@@ -228,6 +236,11 @@ pub trait Target {
     fn is_mapped(&self, address: GuestAddr) -> bool {
         let _ = address;
         true
+    }
+
+    /// The eight bytes from an address on, for expressions that are evaluated every tick; `None` without memory there.
+    fn word(&self, address: GuestAddr) -> Option<[u8; 8]> {
+        word_of(self, address)
     }
 
     /// Reads the status record of a connected target: what was known before is out of date.

@@ -42,6 +42,13 @@ pub trait DebugReader {
         true
     }
 
+    /// The eight bytes from an address on; `None` without memory there.
+    fn word(&self, address: GuestAddr) -> Option<[u8; 8]> {
+        let bytes = self.bytes(address);
+        // Only where there is no memory nothing but zeros is read.
+        (bytes != [0; 8] || self.is_mapped(address)).then_some(bytes)
+    }
+
     /// The item of this place in the list that the expression was compiled with.
     fn item(&self, index: usize) -> f64;
 
@@ -378,12 +385,10 @@ struct Inner<'a, R: ?Sized> {
 impl<R: DebugReader + ?Sized> watch::ItemReader for Inner<'_, R> {
     #[inline]
     fn bytes(&self, address: GuestAddr) -> [u8; 8] {
-        let bytes = self.reader.bytes(address);
-        // Only where there is no memory nothing but zeros is read.
-        if u64::from_le_bytes(bytes) == 0 && !self.reader.is_mapped(address) {
+        self.reader.word(address).unwrap_or_else(|| {
             self.unmapped.set(Some(address));
-        }
-        bytes
+            [0; 8]
+        })
     }
 
     fn item(&self, index: usize) -> f64 {

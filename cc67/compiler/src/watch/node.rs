@@ -49,7 +49,9 @@ pub(super) enum Node {
 #[derive(Debug)]
 pub(super) enum Place {
     Fixed(GuestAddr),
-    /// At a distance from the address that a pointer holds.
+    /// At a distance from the address that a pointer variable holds, as of most pointers.
+    Variable(GuestAddr, i32),
+    /// At a distance from the address that a pointer has.
     Pointed(Box<Node>, i32),
     /// At a distance from the beginning of a local that is in memory.
     Local(LocalId, u32),
@@ -62,19 +64,17 @@ impl Place {
     pub(super) fn address<R: ItemReader + ?Sized>(&self, reader: &R) -> Option<GuestAddr> {
         match self {
             Self::Fixed(address) => Some(*address),
-            Self::Pointed(pointer, distance) => {
-                // Most pointers are variables.
-                let value = match &**pointer {
-                    Node::Read(place, ty) => read(*ty, reader.bytes(place.address(reader)?)),
-                    other => other.value(reader)?,
-                };
-                match value {
-                    Constant::Int(address) => {
-                        Some(GuestAddr::new((address as u32).wrapping_add_signed(*distance)))
-                    }
-                    Constant::Float(_) => None,
-                }
+            Self::Variable(variable, distance) => {
+                let [b0, b1, b2, b3, ..] = reader.bytes(*variable);
+                let address = u32::from_le_bytes([b0, b1, b2, b3]);
+                Some(GuestAddr::new(address.wrapping_add_signed(*distance)))
             }
+            Self::Pointed(pointer, distance) => match pointer.value(reader)? {
+                Constant::Int(address) => {
+                    Some(GuestAddr::new((address as u32).wrapping_add_signed(*distance)))
+                }
+                Constant::Float(_) => None,
+            },
             Self::Local(local, distance) => match reader.local(*local)? {
                 Local::Memory(address) => Some(GuestAddr::new(address.get().wrapping_add(*distance))),
                 Local::Slot(_) => None,
@@ -242,7 +242,10 @@ impl Builder<'_> {
                 }
                 Some(Meaning::Item(_) | Meaning::Function(_) | Meaning::Code(_)) | None => Place::Nowhere,
             },
-            PlaceKind::Pointer(pointer, offset) => Place::Pointed(Box::new(self.node(pointer)), offset),
+            PlaceKind::Pointer(pointer, offset) => match self.node(pointer) {
+                Node::Read(Place::Fixed(variable), _) => Place::Variable(variable, offset),
+                pointer => Place::Pointed(Box::new(pointer), offset),
+            },
             PlaceKind::Local(local, offset) => Place::Local(local, offset),
             PlaceKind::Bits(..) => Place::Nowhere,
         }

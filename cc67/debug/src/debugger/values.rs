@@ -123,10 +123,12 @@ struct Outside<'a, T> {
 
 impl<T: Target> DebugReader for Outside<'_, T> {
     fn bytes(&self, address: GuestAddr) -> [u8; 8] {
-        let mut bytes = [0; 8];
         // A value that is unknown counts as 0.
-        let known = self.target.read(address, &mut bytes);
-        known.map_or([0; 8], |()| bytes)
+        self.word(address).unwrap_or_default()
+    }
+
+    fn word(&self, address: GuestAddr) -> Option<[u8; 8]> {
+        self.target.word(address)
     }
 
     fn item(&self, index: usize) -> f64 {

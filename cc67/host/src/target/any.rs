@@ -139,6 +139,7 @@ impl Target for AnyTarget {
         fn read(&self, address: GuestAddr, bytes: &mut [u8]) -> Result<(), HostError>;
         fn glance(&self, address: GuestAddr, bytes: &mut [u8]) -> Option<()>;
         fn is_mapped(&self, address: GuestAddr) -> bool;
+        fn word(&self, address: GuestAddr) -> Option<[u8; 8]>;
         fn unsent_lines(&self) -> Vec<Vec<u8>>;
         fn knows(&self, item: Item) -> bool;
         fn value(&self, item: Item) -> f64;

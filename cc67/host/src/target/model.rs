@@ -13,7 +13,7 @@ use vm::scheduler::{ThreadSet, Turn};
 use vm::thread::ThreadState;
 use vm::trap::Access;
 
-use super::{EXCHANGE, EventSink, Target, TargetSnapshot};
+use super::{EXCHANGE, EventSink, Target, TargetSnapshot, word_of};
 use crate::capability::Capability;
 use crate::error::SnapshotError;
 use crate::{HostError, UserProgram};
@@ -38,13 +38,6 @@ const INSTRUCTION: u32 = 8;
 /// Copies guest memory; where there is none, zeros.
 #[inline]
 pub(super) fn read(memory: &GuestMemory, address: GuestAddr, bytes: &mut [u8]) {
-    // Expressions that are looked at every tick read words. One that is 0 may be cut short by the end of a region.
-    if let Ok(bytes) = <&mut [u8; 8]>::try_from(&mut *bytes)
-        && let word @ 1.. = memory.peek::<u64>(address)
-    {
-        *bytes = word.to_le_bytes();
-        return;
-    }
     match u32::try_from(bytes.len()).ok().and_then(|length| memory.read_bytes(address, length).ok()) {
         Some(found) => bytes.copy_from_slice(found),
         // The end of a region.
@@ -179,6 +172,12 @@ impl<E: Engine> Target for Board<E> {
 
     fn is_mapped(&self, address: GuestAddr) -> bool {
         is_mapped(self.memory(), address)
+    }
+
+    #[inline]
+    fn word(&self, address: GuestAddr) -> Option<[u8; 8]> {
+        let ram: Option<u64> = self.memory().peek_ram(address);
+        ram.map_or_else(|| word_of(self, address), |word| Some(word.to_le_bytes()))
     }
 
     fn unsent_lines(&self) -> Vec<Vec<u8>> {
