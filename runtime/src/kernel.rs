@@ -43,6 +43,7 @@ use crate::pc::files::HostFiles;
 use crate::pc::host;
 use crate::servo::cache::Change;
 use crate::servo::{CallPlace, Servo, limits};
+use crate::text::legible;
 use crate::views::Typed;
 use crate::world::Moment;
 use crate::world::trace::{Record, View};
@@ -199,7 +200,7 @@ impl Kernel {
             note_kept_locks(calls, out, context);
         }
         for (axis, SmallMove { thread, at, function, way }) in calls.motions.small_moves() {
-            let message = Message::TinyMove { function, axis, way };
+            let message = Message::TinyMove { function, axis, way: legible(way) };
             out.remark_of(context.now, Speaker::Thread(thread), at, message);
         }
         for WrongWait { thread, asked, moving, at } in calls.motions.wrong_waits() {

@@ -207,22 +207,31 @@ impl Function {
         })
     }
 
+    /// Returns an expression without the conversions of its value.
+    #[must_use]
+    pub fn unconverted(&self, mut expr: ExprId) -> ExprId {
+        while let ExprKind::Convert(inner) = self.exprs[expr].kind {
+            expr = inner;
+        }
+        expr
+    }
+
     /// Visits every statement of the body, outer ones first, except those in statement expressions.
     pub fn each_stmt<'f>(&'f self, visit: &mut dyn FnMut(&'f Stmt)) {
         fn each<'f>(stmts: &'f [Stmt], visit: &mut dyn FnMut(&'f Stmt)) {
             for stmt in stmts {
                 visit(stmt);
-                match &stmt.kind {
-                    StmtKind::Block(body) | StmtKind::Loop { body, .. } | StmtKind::Switch { body, .. } => {
-                        each(body, visit);
-                    }
-                    StmtKind::If { then, otherwise, .. } => {
-                        each(then, visit);
-                        each(otherwise, visit);
-                    }
-                    _ => {}
-                }
+                stmt.lists().for_each(|inner| each(inner, visit));
             }
+        }
+        each(&self.body, visit);
+    }
+
+    /// Visits every list of statements of the body, outer ones first, except those in statement expressions.
+    pub fn each_list<'f>(&'f self, visit: &mut dyn FnMut(&'f [Stmt])) {
+        fn each<'f>(stmts: &'f [Stmt], visit: &mut dyn FnMut(&'f [Stmt])) {
+            visit(stmts);
+            stmts.iter().flat_map(Stmt::lists).for_each(|inner| each(inner, visit));
         }
         each(&self.body, visit);
     }
@@ -263,6 +272,20 @@ pub struct Stmt {
     pub kind: StmtKind,
     /// The source line that a trap inside it names.
     pub span: Span,
+}
+
+impl Stmt {
+    /// The lists of statements in it.
+    pub fn lists(&self) -> impl Iterator<Item = &[Stmt]> {
+        let (first, second) = match &self.kind {
+            StmtKind::Block(body) | StmtKind::Loop { body, .. } | StmtKind::Switch { body, .. } => {
+                (Some(body), None)
+            }
+            StmtKind::If { then, otherwise, .. } => (Some(then), Some(otherwise)),
+            _ => (None, None),
+        };
+        first.into_iter().chain(second).map(Vec::as_slice)
+    }
 }
 
 /// The kinds of statement.

@@ -352,9 +352,11 @@ pub(crate) fn goes(parts: &mut Parts, caller: &Caller<'_>, function: Function, a
     parts.calls.motions.begins_at(axis, speed);
 }
 
-/// A motion that takes minutes, most of them for its acceleration.
+/// A motion that takes minutes, most of them for its acceleration, or several seconds because of one limit.
 pub(crate) fn planned(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId, way: f64) {
     const LONG: f64 = 60.0;
+    /// A time that is long for a move which the other limits let end in an eighth of it.
+    const SLOW: f64 = 4.0;
     const ENDLESS: f64 = 600.0;
     let get = |field: Field<f32>| f64::from(caller.memory.axis(axis, field));
     let (velocity, accel, jerk) = (get(Chan::VEL), get(Chan::ACCEL), get(Chan::JERK));
@@ -370,7 +372,8 @@ pub(crate) fn planned(parts: &mut Parts, caller: &Caller<'_>, function: Function
         let message = Message::SlowRamp { function, axis, seconds: cruise, field: "Vel", value: velocity };
         return parts.out.diagnose(caller, message);
     }
-    if seconds > LONG && seconds > 3.0 * cruise {
+    let others = cruise.max(by_accel.min(by_jerk));
+    if (seconds > LONG && seconds > 3.0 * cruise) || (seconds > SLOW && seconds > 8.0 * others) {
         let value = if field == "Accel" { accel } else { jerk };
         parts.out.diagnose(caller, Message::SlowRamp { function, axis, seconds, field, value });
     }

@@ -427,7 +427,7 @@ messages! {
     DestLeaps { axis: AxisId, from: f64, to: f64 } = "dest-leaps", Warning, [per axis],
         "Dest of axis {axis} is changed from {from:.0} to {to:.0} at once, which no motor follows: use Move, which accelerates and decelerates (noticed at this call)";
     /// All moves of an axis are shorter than a few counts.
-    TinyMove { function: Function, axis: AxisId, way: f64 } = "tiny-move", Hint, [per axis],
+    TinyMove { function: Function, axis: AxisId, way: String } = "tiny-move", Hint, [per axis],
         "{function}: axis {axis} moves by {way} units, and never further: units are counts of an encoder or steps, so multiply a length by the counts of an inch or a millimetre";
     /// The target of a motion is beyond a soft limit.
     TargetBeyond { function: Function, axis: AxisId, target: f64, name: &'static str, limit: f32 } = "target-beyond-limit", Warning, [per axis],

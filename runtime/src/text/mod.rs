@@ -12,7 +12,7 @@ pub(crate) mod vectors;
 
 pub(crate) use decimal::{Digits, Keep, digits, place_of_point};
 pub(crate) use format::{Arguments, format, format_counted};
-pub(crate) use number::{float_prefix, integer_prefix, magnitude};
+pub(crate) use number::{float_prefix, integer_prefix, legible, magnitude};
 pub(crate) use scan::{Scanned, Sink, scan};
 pub(crate) use scanned::float_value;
 

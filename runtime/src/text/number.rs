@@ -79,6 +79,12 @@ fn sign(text: &[u8]) -> (bool, usize) {
     }
 }
 
+/// A value for a message. The bits of a small integer, read as a floating-point number, would have dozens of zeros.
+pub(crate) fn legible(value: f64) -> String {
+    const SMALL: f64 = 1e-9;
+    if value != 0.0 && value.abs() < SMALL { format!("{value:e}") } else { value.to_string() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -158,6 +158,10 @@ macro_rules! for_each_lint {
             UnusedCopy = "unused-copy", On, pass unused_copy;
             /// A variable counts a loop of `main` from its initial value, and nothing sets it back when the program starts again.
             KeptCounter = "kept-counter", On, pass kept_counter;
+            /// A mean is computed from a sum that was not set back to 0 since the last one.
+            StaleSum = "stale-sum", On, pass stale_sum;
+            /// `a = b; b = a;`: a swap that loses the first value.
+            LostSwap = "lost-swap", On, pass lost_swap;
             /// The position of an axis without an input is read.
             StalePosition = "stale-position", On, pass stale_position;
             /// A text is stored in an array that is too small for it.

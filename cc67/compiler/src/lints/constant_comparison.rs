@@ -84,10 +84,7 @@ fn compared(program: &AnalysedProgram<'_>, function: &Function, expr: ExprId) ->
         (Some(number), None) => (mirrored(op), b, number),
         _ => return None,
     };
-    let mut load = value;
-    while let ExprKind::Convert(inner) = function.exprs[load].kind {
-        load = inner;
-    }
+    let load = function.unconverted(value);
     // A state for which a program waits may change in between.
     let ExprKind::Load(place) = function.exprs[load].kind else { return None };
     let is_plain = !matches!(function.places[place].kind, PlaceKind::Bits(..));

@@ -62,10 +62,7 @@ pub(super) fn literal_argument<'p>(
     call: &Call,
     index: usize,
 ) -> Option<&'p [u8]> {
-    let mut text: ExprId = *call.arguments.get(index)?;
-    while let ExprKind::Convert(inner) = function.exprs[text].kind {
-        text = inner;
-    }
+    let text = function.unconverted(*call.arguments.get(index)?);
     let ExprKind::Address(place) = function.exprs[text].kind else { return None };
     let PlaceKind::Symbol(symbol, 0) = function.places[place].kind else { return None };
     let literal = unit.symbols.get(symbol).filter(|symbol| symbol.is_anonymous())?;

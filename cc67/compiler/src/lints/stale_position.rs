@@ -42,14 +42,12 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
 
 /// The arguments of calls: printing a position, or enabling an axis at it, does not rely on its value.
 fn passed(function: &Function) -> BTreeSet<ExprId> {
-    let unconverted = |mut expr: ExprId| {
-        while let ExprKind::Convert(inner) = function.exprs[expr].kind {
-            expr = inner;
-        }
-        expr
-    };
     let arguments = |call: &Call| -> Vec<ExprId> {
-        call.arguments.iter().chain(call.variable.iter().flatten()).copied().map(unconverted).collect()
+        call.arguments
+            .iter()
+            .chain(call.variable.iter().flatten())
+            .map(|argument| function.unconverted(*argument))
+            .collect()
     };
     function.calls().flat_map(|(_, call)| arguments(call)).collect()
 }

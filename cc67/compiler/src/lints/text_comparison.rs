@@ -35,11 +35,8 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-fn text(program: &AnalysedProgram<'_>, function: &Function, mut expr: ExprId) -> Option<TextOperand> {
-    while let ExprKind::Convert(inner) = function.exprs[expr].kind {
-        expr = inner;
-    }
-    let ExprKind::Address(place) = function.exprs[expr].kind else { return None };
+fn text(program: &AnalysedProgram<'_>, function: &Function, expr: ExprId) -> Option<TextOperand> {
+    let ExprKind::Address(place) = function.exprs[function.unconverted(expr)].kind else { return None };
     match function.places[place].kind {
         PlaceKind::Symbol(symbol, 0) if program.unit.symbols[symbol].is_anonymous() => {
             is_character_array(program, function, place).then_some(TextOperand::Literal)

@@ -133,12 +133,9 @@ fn formatted(format: &[u8], next: &mut dyn FnMut() -> Option<Option<i64>>) -> us
 fn room<'p>(
     program: &AnalysedProgram<'p>,
     function: &'p typed::Function,
-    mut to: ExprId,
+    to: ExprId,
 ) -> Option<(&'p str, u32)> {
-    while let ExprKind::Convert(inner) = function.exprs[to].kind {
-        to = inner;
-    }
-    let ExprKind::Address(place) = function.exprs[to].kind else { return None };
+    let ExprKind::Address(place) = function.exprs[function.unconverted(to)].kind else { return None };
     let (name, ty, offset) = match function.places[place].kind {
         PlaceKind::Local(local, offset) => {
             let local = &function.locals[local];

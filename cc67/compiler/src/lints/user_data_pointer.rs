@@ -50,13 +50,7 @@ fn is_element(program: &AnalysedProgram<'_>, function: &Function, place: PlaceId
 /// Reports whether an address is stored in an element.
 fn keeps_addresses(program: &AnalysedProgram<'_>, function: &Function) -> bool {
     let types = &program.unit.types;
-    let is_address = |value: ExprId| {
-        let mut inner = value;
-        while let ExprKind::Convert(from) = function.exprs[inner].kind {
-            inner = from;
-        }
-        types.is_pointer(function.exprs[inner].ty)
-    };
+    let is_address = |value: ExprId| types.is_pointer(function.exprs[function.unconverted(value)].ty);
     function.exprs.values().any(|expr| match expr.kind {
         ExprKind::Assign(place, value) => is_element(program, function, place) && is_address(value),
         _ => false,

@@ -193,11 +193,8 @@ fn cut_variable<'a>(
 }
 
 /// An expression without its conversions.
-fn plain(function: &Function, mut expr: ExprId) -> &ExprKind {
-    while let ExprKind::Convert(inner) = function.exprs[expr].kind {
-        expr = inner;
-    }
-    &function.exprs[expr].kind
+fn plain(function: &Function, expr: ExprId) -> &ExprKind {
+    &function.exprs[function.unconverted(expr)].kind
 }
 
 /// The variables that are only assigned one constant, with that constant.

@@ -121,10 +121,7 @@ fn long_chain(program: &AnalysedProgram<'_>, function: &Function, head: ExprId) 
         if let PlaceKind::Pointer(pointer, _) = function.places[place].kind {
             targets.push(limit(function, pointer, function.places[place].ty));
         }
-        at = value;
-        while let ExprKind::Convert(inner) = function.exprs[at].kind {
-            at = inner;
-        }
+        at = function.unconverted(value);
     }
     let limit = *targets.iter().min()?;
     (targets.len() >= limit).then(|| {
@@ -153,12 +150,5 @@ fn inner_assignments(function: &Function) -> BTreeSet<ExprId> {
         ExprKind::Assign(_, value) => Some(value),
         _ => None,
     });
-    values
-        .map(|mut value| {
-            while let ExprKind::Convert(inner) = function.exprs[value].kind {
-                value = inner;
-            }
-            value
-        })
-        .collect()
+    values.map(|value| function.unconverted(value)).collect()
 }

@@ -16,6 +16,7 @@ use super::reading;
 use super::relation::Relation;
 use super::scene::Scene;
 use super::tokens::Mistake;
+use crate::text::legible;
 use crate::views::Typed;
 use crate::world::trace::{Formula, Item, View};
 
@@ -159,7 +160,7 @@ impl Expectation {
             Predicate::Value { subject, relation, number, tolerance } => match facts.value(subject) {
                 Some(value) => {
                     let holds = relation.holds(value, *number, *tolerance);
-                    (holds, format!("{subject} is {}", shown(value)))
+                    (holds, format!("{subject} is {}", legible(value)))
                 }
                 // It is not met in either case.
                 None => (!is_wanted, format!("{subject} has no value here")),
@@ -249,12 +250,6 @@ impl fmt::Display for Expectation {
             Predicate::Active(thread, false) => write!(f, "thread {thread} ended"),
         }
     }
-}
-
-/// A value for a message; the bits of a small integer, read as a floating-point number, would have dozens of zeros.
-fn shown(value: f64) -> String {
-    const SMALL: f64 = 1e-9;
-    if value != 0.0 && value.abs() < SMALL { format!("{value:e}") } else { value.to_string() }
 }
 
 impl Subject {

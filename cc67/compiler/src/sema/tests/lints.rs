@@ -17,7 +17,7 @@ fn pointers_and_integers() {
         ],
     );
     accept(
-        "int *p; unsigned *u; char *c; void *v; volatile int *w; double *d; void f(void) { p = u; c = p; v = p; p = v; p = w; w = p; d = c; d = (double *)p; }",
+        "int *p; unsigned *u; char *c; void *v; volatile int *w; double *d; void f(void) { p = u; v = p; c = p; p = v; p = w; d = c; w = p; d = (double *)p; }",
     );
     said(
         "int *p; double *d; void f(void) { d = p; }",
